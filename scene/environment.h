@@ -1,0 +1,58 @@
+// Light from infinitely far away, from all directions: a constant, a lat-long map, or spherical harmonics.
+//
+// Map: +y at the top row, the centre column looks along -z, +x to the right of it; bilinear between texel centres,
+// wrapping around in longitude, clamped at the poles. Spherical harmonics: real, orthonormal, Condon-Shortley, index
+// l(l+1)+m, polar axis z of the world, of lookup directions (towards the light); they may be negative, and are not
+// clamped.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/math/types.h"
+
+namespace airlight::scene {
+
+// Linear RGB radiance on a lat-long grid, row 0 at +y. width = 2 height is usual, not required.
+struct EnvironmentMap {
+  int width = 0;
+  int height = 0;
+  std::vector<float> rgb;  // 3 per texel, x fastest; finite, >= 0
+};
+
+// A light; immutable after make_environment, which builds the sampling tables. Directions are unit and point towards
+// the light.
+struct EnvironmentLight {
+  Rgb scale = Rgb::Ones();                    // multiplies the map, the coefficients or 1
+  Mat3 to_map = Mat3::Identity();             // world direction to map direction (a rotation)
+  std::shared_ptr<const EnvironmentMap> map;  // null: no map
+  std::vector<Rgb> sh;                        // (order)^2 coefficients; empty: none. With neither: the constant `scale`
+  struct Tables;                              // luminance table mixed with 5 % uniform
+  std::shared_ptr<const Tables> tables;
+  std::string source;  // file, or "constant", or "sh"
+};
+
+EnvironmentLight make_constant_environment(const Rgb& radiance);
+EnvironmentLight make_map_environment(std::shared_ptr<const EnvironmentMap>, const Mat3& to_map, const Rgb& scale,
+                                      std::string source);
+// `coefficients.size()` must be a square. Throws Error otherwise.
+EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& to_map, const Rgb& scale);
+
+// Reads a lat-long RGB map; Error on NaN, infinity or a negative value (with the pixel).
+std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& path);
+
+// Radiance from direction w [W/m^2/sr].
+Rgb radiance(const EnvironmentLight&, const Vec3& w);
+
+// A direction for two uniforms, and its density over solid angle [1/sr], positive wherever the radiance is not zero.
+Vec3 sample_environment(const EnvironmentLight&, double u1, double u2);
+double pdf_environment(const EnvironmentLight&, const Vec3& w);
+
+// Projection on real spherical harmonics of `order` bands (order^2 coefficients), by quadrature over the texels.
+std::vector<Rgb> project_environment(const EnvironmentLight&, int order);
+
+// Integral of the luminance over the sphere [W/m^2]; and the share of the sphere where an SH light is negative.
+double environment_power(const EnvironmentLight&);
+double negative_fraction(const EnvironmentLight&);
+
+}  // namespace airlight::scene

@@ -1,0 +1,83 @@
+// What methods and references have in common: supports, prepare, render.
+//
+// `prepare` decides what this scene needs and leaves the rest out; each stage is recorded as kept or left out with the
+// reason
+// (`airlight explain` prints it). What is left out costs nothing: no call, no dispatch, no entry in the times.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/film.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+
+namespace airlight::scene {
+
+// What is looked at. Resolution is the view's, so that one Prepared serves several.
+struct View {
+  Camera camera;
+  int width = 0;
+  int height = 0;
+};
+inline View view_of(const Scene& scene) { return {scene.camera, scene.width, scene.height}; }
+
+// How to run: threads (0: as many as the machine has), and a callback with the fraction done in [0, 1], called from any
+// thread, that returns false to stop; a stopped render throws Interrupted, or keeps what it has where the renderer says
+// so.
+struct Execution {
+  int threads = 0;
+  std::function<bool(double fraction)> progress;
+};
+
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Stage {
+  std::string name;
+  bool kept;
+  std::string reason;  // why it is kept or left out, in this scene
+};
+
+struct StageTime {
+  std::string name;
+  double seconds;
+};
+
+struct Rendering {
+  Film film;
+  std::vector<StageTime> times;            // per kept stage, wall clock; precompute of `prepare` is not in it
+  std::map<std::string, double> counters;  // rays, steps, kernel evaluations, ...: what was really done
+};
+
+class Prepared {
+ public:
+  virtual ~Prepared() = default;
+  virtual std::vector<Stage> stages() const = 0;
+  virtual std::vector<StageTime> prepare_times() const { return {}; }
+  virtual Rendering render(const View&, const Execution&) const = 0;
+};
+
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  virtual std::string name() const = 0;   // as in --method: "fogshop", "ray_marcher", "path_tracer"
+  virtual std::string about() const = 0;  // one line, with the source
+  virtual std::vector<SettingSpec> settings() const = 0;
+  // Empty: it can render the scene. Else the reasons why not, one line each.
+  virtual std::vector<std::string> supports(const Scene&, const Settings&) const = 0;
+  // The scene is shared because a Prepared may outlive the caller's copy. Throws Error if supports() objects.
+  virtual std::unique_ptr<Prepared> prepare(std::shared_ptr<const Scene>, const Settings&, const Execution&) const = 0;
+};
+
+// Runs body(row) for every row of [0, rows) on all threads, reports progress, throws Interrupted if asked to stop,
+// rethrows the first exception of a body.
+void parallel_rows(int rows, const Execution&, const std::function<void(int row)>& body);
+
+// True for pixels whose ray touches a light's ball, or whose centre ray passes within it: metrics leave them out.
+std::vector<unsigned char> ball_mask(const Scene&, const View&);
+
+}  // namespace airlight::scene

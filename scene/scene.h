@@ -1,0 +1,50 @@
+// What is rendered: an immutable value. One camera, lights, media, surfaces.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/geometry/geometry.h"
+#include "scene/light.h"
+#include "scene/media/medium.h"
+
+namespace airlight::scene {
+
+struct Scene {
+  std::string name;  // from the file, or the file's stem
+  Camera camera;
+  int width = 160;  // film, pixels
+  int height = 120;
+  std::vector<Light> lights;
+  std::vector<Medium> media;
+  std::vector<Surface> surfaces;
+  std::shared_ptr<const Geometry> geometry;  // null without surfaces
+  Rgb ambient_in_scatter =
+      Rgb::Zero();   // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
+  std::string hash;  // 32 hex digits of the content: equal hash, equal picture
+};
+
+// Changes before reading: "film.width" -> "64", "medium.0.sigma_t" -> "[1, 2, 4]"; the value is TOML text.
+using Overrides = std::map<std::string, std::string>;
+
+// Reads a scene file (scene/README.md). Throws Error: file:line:column, what was found, what was expected, nearest
+// valid key.
+Scene load_scene(const std::string& path, const Overrides& = {});
+
+// The same from text; relative asset names are resolved against `folder`.
+Scene parse_scene(const std::string& toml, const std::string& name, const std::string& folder, const Overrides& = {});
+
+// Fills geometry and hash of a scene made in code.
+void finish(Scene&);
+
+// What ends a ray: a surface hit, a light ball, or nothing (t infinite).
+struct RayEnd {
+  double t = infinity;
+  std::optional<Hit> hit;  // set when a surface is first
+  bool on_ball = false;    // the ray ends on a light's ball
+};
+RayEnd ray_end(const Scene&, const Ray&);
+
+}  // namespace airlight::scene

@@ -1,0 +1,120 @@
+#include "scene/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "scene/error.h"
+
+namespace airlight::scene {
+namespace {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t(0));
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t up = row[j];
+      row[j] = std::min({up + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = up;
+    }
+  }
+  return row.back();
+}
+
+template <class T>
+bool parse_number(const std::string& text, T& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, value);
+  return code == std::errc() && stop == end;
+}
+
+void check_range(const SettingSpec& spec, double value, const std::string& where) {
+  if (!(value >= spec.least && value <= spec.greatest))
+    throw Error(fmt::format("{}: {} = {} is out of range, expected {} to {}", where, spec.name, value, spec.least,
+                            spec.greatest));
+}
+
+void check(const SettingSpec& spec, const std::string& text, const std::string& where) {
+  using Type = SettingSpec::Type;
+  if (spec.type == Type::integer) {
+    long long value = 0;
+    if (!parse_number(text, value))
+      throw Error(fmt::format("{}: {} = '{}', expected an integer", where, spec.name, text));
+    check_range(spec, double(value), where);
+  } else if (spec.type == Type::real) {
+    double value = 0;
+    if (!parse_number(text, value) || std::isnan(value))
+      throw Error(fmt::format("{}: {} = '{}', expected a number", where, spec.name, text));
+    check_range(spec, value, where);
+  } else if (spec.type == Type::flag) {
+    if (text != "true" && text != "false")
+      throw Error(fmt::format("{}: {} = '{}', expected true or false", where, spec.name, text));
+  } else if (std::find(spec.choices.begin(), spec.choices.end(), text) == spec.choices.end()) {
+    throw Error(fmt::format("{}: {} = '{}', expected one of {} (nearest: {})", where, spec.name, text,
+                            fmt::join(spec.choices, ", "), nearest(text, spec.choices)));
+  }
+}
+
+}  // namespace
+
+std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
+  const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(word, a) < edit_distance(word, b);
+  });
+  return best == candidates.end() ? std::string() : *best;
+}
+
+Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, std::string>& given,
+                   const std::string& where)
+    : specs_(std::move(specs)) {
+  std::vector<std::string> names;
+  for (const SettingSpec& s : specs_) {
+    names.push_back(s.name);
+    values_[s.name] = s.fallback;
+  }
+  for (const auto& [name, text] : given) {
+    const auto spec = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
+    if (spec == specs_.end())
+      throw Error(fmt::format("{}: unknown setting '{}', expected one of {} (nearest: {})", where, name,
+                              fmt::join(names, ", "), nearest(name, names)));
+    check(*spec, text, where);
+    values_[name] = text;
+  }
+}
+
+const SettingSpec& Settings::spec(const std::string& name) const {
+  const auto found = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
+  if (found == specs_.end()) throw std::logic_error("undeclared setting " + name);
+  return *found;
+}
+
+long long Settings::integer(const std::string& name) const {
+  long long value = 0;
+  parse_number(values_.at(spec(name).name), value);
+  return value;
+}
+
+double Settings::real(const std::string& name) const {
+  double value = 0;
+  parse_number(values_.at(spec(name).name), value);
+  return value;
+}
+
+bool Settings::flag(const std::string& name) const { return values_.at(spec(name).name) == "true"; }
+
+const std::string& Settings::text(const std::string& name) const { return values_.at(spec(name).name); }
+
+std::string Settings::canonical() const {
+  std::vector<std::string> parts;
+  for (const SettingSpec& s : specs_) parts.push_back(s.name + "=" + values_.at(s.name));
+  return fmt::format("{}", fmt::join(parts, " "));
+}
+
+}  // namespace airlight::scene
