@@ -1,0 +1,42 @@
+// Curves of error against time: who is on the front, how much it dominates, and equal time or equal error between
+// curves.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "experiments/statistics.h"
+
+namespace airlight::experiments {
+
+// One measurement; time and error positive. Intervals collapse to the value where they are not known.
+struct Point {
+  Estimate time;
+  Estimate error;
+};
+
+// Point p dominates q if it is no worse in both, interval-wise (upper end of p <= lower end of q) and better in one.
+bool dominates(const Point& p, const Point& q);
+
+// Indices of the points that no other dominates, in order of time.
+std::vector<std::size_t> front(const std::vector<Point>&);
+
+// Area between the front and the reference point (worst_time, worst_error) in natural logarithms of both; points beyond
+// the reference point do not count. Plain values, without intervals.
+double hypervolume(const std::vector<Point>&, double worst_time, double worst_error);
+
+// Straight lines between neighbours in log error over log time, on the lower envelope of the curve (for each time the
+// best error reached until then). Nothing outside the range that was measured: no extrapolation.
+std::optional<double> error_at_time(const std::vector<Point>&, double time);
+std::optional<double> time_at_error(const std::vector<Point>&, double error);
+
+// Time of `baseline` over time of `other` at equal error, geometric mean over the errors that both curves reach.
+struct SpeedUp {
+  double geometric_mean;
+  double least;
+  double greatest;
+  double error_low;  // range of errors that both reach
+  double error_high;
+};
+std::optional<SpeedUp> speed_up(const std::vector<Point>& baseline, const std::vector<Point>& other);
+
+}  // namespace airlight::experiments
