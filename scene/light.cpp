@@ -1,0 +1,50 @@
+#include "scene/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::scene {
+namespace {
+
+// 1 inside the inner cone, 0 outside the outer one, smoothstep of the cosine between.
+double cone_factor(const SpotLight& spot, double cosine) {
+  const double inner = std::cos(spot.inner_angle);
+  const double outer = std::cos(spot.outer_angle);
+  if (cosine >= inner) return 1;
+  if (cosine <= outer) return 0;
+  const double s = (cosine - outer) / (inner - outer);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+bool is_delta(const Light& light) { return !std::holds_alternative<EnvironmentLight>(light); }
+
+std::string light_name(const Light& light) {
+  static const char* const names[] = {"point", "spot", "directional", "environment"};
+  return names[light.index()];
+}
+
+std::optional<LightBall> ball(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return LightBall{point->position, point->radius};
+  if (const auto* spot = std::get_if<SpotLight>(&light)) return LightBall{spot->position, spot->radius};
+  return std::nullopt;
+}
+
+Rgb intensity_towards(const Light& light, const Vec3& from_light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return point->intensity;
+  if (const auto* spot = std::get_if<SpotLight>(&light))
+    return spot->intensity * cone_factor(*spot, std::clamp(spot->axis.dot(from_light), -1.0, 1.0));
+  return Rgb::Zero();
+}
+
+Incident incident(const Light& light, const Point3& x) {
+  if (const auto* sun = std::get_if<DirectionalLight>(&light)) return {sun->to_light, infinity, sun->irradiance};
+  const Vec3 offset = ball(light).value().center - x;
+  const double distance = offset.norm();
+  if (!(distance > 0)) return {Vec3::UnitY(), 0, Rgb::Constant(infinity)};
+  const Vec3 to_light = offset / distance;
+  return {to_light, distance, intensity_towards(light, -to_light) / (distance * distance)};
+}
+
+}  // namespace airlight::scene

@@ -1,0 +1,73 @@
+#include "scene/load/assets.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "scene/data_folder.h"
+#include "scene/error.h"
+
+namespace fs = std::filesystem;
+
+namespace airlight::scene {
+namespace {
+
+std::string& chosen_folder() {
+  static std::string folder;
+  return folder;
+}
+
+}  // namespace
+
+std::string data_folder() {
+  if (!chosen_folder().empty()) return chosen_folder();
+  const char* variable = std::getenv("AIRLIGHT_DATA");
+  return variable ? variable : "";
+}
+
+void set_data_folder(const std::string& path) {
+  std::error_code code;
+  if (!fs::is_directory(path, code)) throw Error(fmt::format("{}: expected a data folder, found none", path));
+  chosen_folder() = path;
+}
+
+namespace load {
+
+std::string find_asset(const TableReader& reader, const std::string& key, const std::string& folder) {
+  const std::string name = reader.text(key);
+  if (name.empty()) reader.expected(key, "the name of a file");
+  std::error_code code;
+  const fs::path beside = fs::path(folder) / name;  // `name` alone if it is absolute
+  if (fs::exists(beside, code)) return beside.string();
+  const std::string data = data_folder();
+  if (data.empty() || fs::path(name).is_absolute())
+    reader.expected(key, fmt::format("a file: there is no {}{}", beside.string(),
+                                     fs::path(name).is_absolute() ? "" : ", and AIRLIGHT_DATA names no data folder"));
+  const fs::path shared = fs::path(data) / name;
+  if (fs::exists(shared, code)) return shared.string();
+  reader.expected(key, fmt::format("a file: there is neither {} nor {}", beside.string(), shared.string()));
+}
+
+std::string read_whole_file(const std::string& path, std::size_t max_bytes) {
+  std::error_code code;
+  if (!fs::exists(path, code)) throw Error(fmt::format("{}: no such file", path));
+  if (fs::is_directory(path, code)) throw Error(fmt::format("{}: found a folder, expected a file", path));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(fmt::format("{}: cannot be opened for reading", path));
+  // Read in pieces and not by the reported size, which pipes and devices do not have.
+  std::string content;
+  std::string piece(std::size_t(1) << 16, '\0');
+  while (stream.read(piece.data(), std::streamsize(piece.size())), stream.gcount() > 0) {
+    content.append(piece, 0, std::size_t(stream.gcount()));
+    if (content.size() > max_bytes)
+      throw Error(fmt::format("{}: found more than {} bytes, expected fewer", path, max_bytes));
+  }
+  if (stream.bad()) throw Error(fmt::format("{}: cannot be read to its end", path));
+  if (content.empty()) throw Error(fmt::format("{}: found an empty file", path));
+  return content;
+}
+
+}  // namespace load
+}  // namespace airlight::scene

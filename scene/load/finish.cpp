@@ -1,0 +1,128 @@
+// finish(): what a scene holds beside its description: the ray queries and the hash of its content.
+#include <string>
+
+#include "scene/load/content_hash.h"
+#include "scene/scene.h"
+
+namespace airlight::scene {
+namespace {
+
+using load::ContentHash;
+
+// Names, file names and the order of keys do not change the picture and are left out. What one kind does not use (the
+// height of a perspective camera) is left out too.
+void add(ContentHash& hash, const Camera& camera) {
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  hash.tag(perspective ? "perspective" : "orthographic");
+  hash.add(camera.position);
+  hash.add(camera.forward);
+  hash.add(camera.right);
+  hash.add(camera.up);
+  hash.add(perspective ? camera.vertical_fov : camera.height);
+}
+
+void add(ContentHash& hash, const PointLight& light) {
+  hash.add(light.position);
+  hash.add(light.intensity);
+  hash.add(light.radius);
+}
+
+void add(ContentHash& hash, const SpotLight& light) {
+  hash.add(light.position);
+  hash.add(light.axis);
+  hash.add(light.inner_angle);
+  hash.add(light.outer_angle);
+  hash.add(light.intensity);
+  hash.add(light.radius);
+}
+
+void add(ContentHash& hash, const DirectionalLight& light) {
+  hash.add(light.to_light);
+  hash.add(light.irradiance);
+}
+
+void add(ContentHash& hash, const EnvironmentLight& light) {
+  hash.add(light.scale);
+  hash.add(light.to_map);
+  hash.add(light.map ? light.map->width : 0);
+  hash.add(light.map ? light.map->height : 0);
+  if (light.map) hash.add(light.map->rgb);
+  hash.add(std::int64_t(light.sh.size()));
+  for (const Rgb& coefficient : light.sh) hash.add(coefficient);
+}
+
+void add(ContentHash& hash, const Homogeneous& field) { hash.add(field.density); }
+
+void add(ContentHash& hash, const GaussianSum& field) {
+  hash.add(field.constant);
+  hash.add(field.cutoff);
+  hash.add(std::int64_t(field.gaussians.size()));
+  for (const Gaussian& g : field.gaussians) {
+    hash.add(g.center);
+    hash.add(g.width);
+    hash.add(g.amplitude);
+  }
+}
+
+void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    hash.add(grid->size[axis]);
+    hash.add(grid->origin_index[axis]);
+  }
+  hash.add(grid->rotation);
+  hash.add(grid->voxel_size);
+  hash.add(grid->translation);
+  hash.add(int(grid->clamp_border));
+  hash.add(grid->values);
+}
+
+void add(ContentHash&, const Unbounded&) {}
+
+void add(ContentHash& hash, const Sphere& sphere) {
+  hash.add(sphere.center);
+  hash.add(sphere.radius);
+}
+
+void add(ContentHash& hash, const Box& box) { hash.add(box); }
+
+void add(ContentHash& hash, const Slab& slab) {
+  hash.add(slab.normal);
+  hash.add(slab.lo);
+  hash.add(slab.hi);
+}
+
+void add(ContentHash& hash, const Medium& medium) {
+  hash.add(int(medium.field.index()));
+  std::visit([&](const auto& field) { add(hash, field); }, medium.field);
+  hash.add(int(medium.region.index()));
+  std::visit([&](const auto& region) { add(hash, region); }, medium.region);
+  hash.add(medium.sigma_t);
+  hash.add(medium.albedo);
+  hash.tag(phase_name(medium.phase));
+  if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase)) hash.add(hg->g);
+}
+
+std::string content_hash(const Scene& scene) {
+  ContentHash hash;
+  hash.tag("airlight scene 1");  // raised when the meaning of the values changes
+  hash.add(scene.width);
+  hash.add(scene.height);
+  hash.add(scene.ambient_in_scatter);
+  add(hash, scene.camera);
+  hash.tag("lights");
+  hash.add(std::int64_t(scene.lights.size()));
+  for (const Light& light : scene.lights) {
+    hash.tag(light_name(light));
+    std::visit([&](const auto& kind) { add(hash, kind); }, light);
+  }
+  hash.tag("media");
+  hash.add(std::int64_t(scene.media.size()));
+  for (const Medium& medium : scene.media) add(hash, medium);
+  return hash.digits();
+}
+
+}  // namespace
+
+void finish(Scene& scene) { scene.hash = content_hash(scene); }
+
+}  // namespace airlight::scene

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include "scene/load/parts.h"
+
+namespace airlight::scene::load {
+namespace {
+
+PointLight read_point(TableReader reader) {
+  reader.allow({"type", "position", "intensity", "radius"});
+  return {reader.vector("position"), reader.color("intensity", not_negative), reader.number("radius", not_negative, 0)};
+}
+
+SpotLight read_spot(TableReader reader) {
+  reader.allow({"type", "position", "axis", "target", "inner_angle", "outer_angle", "intensity", "radius"});
+  SpotLight spot;
+  spot.position = reader.vector("position");
+  if (reader.one_of({"axis", "target"}) == "axis") {
+    spot.axis = reader.direction("axis");
+  } else {
+    const Vec3 view = reader.vector("target") - spot.position;
+    const double distance = view.stableNorm();
+    if (!(distance > 0)) reader.expected("target", "a point other than the light's position");
+    spot.axis = (view / distance).normalized();
+  }
+  const Range angle{0, pi};
+  spot.outer_angle = reader.number("outer_angle", angle);
+  spot.inner_angle = reader.number("inner_angle", angle, spot.outer_angle);
+  if (spot.inner_angle > spot.outer_angle)
+    reader.expected("inner_angle", fmt::format("at most outer_angle = {}", spot.outer_angle));
+  spot.intensity = reader.color("intensity", not_negative);
+  spot.radius = reader.number("radius", not_negative, 0);
+  return spot;
+}
+
+DirectionalLight read_directional(TableReader reader) {
+  reader.allow({"type", "to_light", "irradiance"});
+  return {reader.direction("to_light"), reader.color("irradiance", not_negative)};
+}
+
+}  // namespace
+
+Light read_light(TableReader reader, const std::string&) {
+  const std::string type = reader.type({"point", "spot", "directional"});
+  if (type == "point") return read_point(reader);
+  if (type == "spot") return read_spot(reader);
+  return read_directional(reader);
+}
+
+}  // namespace airlight::scene::load

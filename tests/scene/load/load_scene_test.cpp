@@ -1,0 +1,90 @@
+#include <catch2/catch.hpp>
+
+#include "scene/error.h"
+#include "scene/scene.h"
+
+using namespace airlight;
+using namespace airlight::scene;
+
+namespace {
+
+const std::string fog = R"(
+ambient_in_scatter = [0.1, 0.2, 0.3]
+[film]
+width = 32
+[camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+[[light]]
+type = "point"
+position = [0, 1, 0]
+intensity = 3
+[[medium]]
+type = "gaussians"
+sigma_t = [1, 2, 4]
+constant = 0.1
+gaussians = [{ center = [0, 0, 0], width = 1, amplitude = 0.5 }]
+)";
+
+std::string error_of(const std::string& text, const Overrides& overrides = {}) {
+  try {
+    parse_scene(text, "fog.toml", "", overrides);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a scene of Gaussians and a point light is what its file says", "[load]") {
+  const Scene scene = parse_scene(fog, "folder/fog.toml", "");
+  CHECK(scene.name == "fog");
+  CHECK(scene.width == 32);
+  CHECK(scene.height == 120);
+  CHECK(scene.camera.forward.isApprox(-Vec3::UnitZ()));
+  CHECK(scene.ambient_in_scatter[2] == 0.3);
+  CHECK(std::get<PointLight>(scene.lights.at(0)).intensity[1] == 3);
+  const Medium& medium = scene.media.at(0);
+  CHECK(medium.sigma_t[2] == 4);
+  const auto& sum = std::get<GaussianSum>(medium.field);
+  CHECK(sum.constant == 0.1);
+  CHECK(sum.cutoff == infinity);
+  CHECK(sum.gaussians.at(0).amplitude == 0.5);
+}
+
+TEST_CASE("overrides change values before they are read", "[load]") {
+  const Scene scene = parse_scene(fog, "fog.toml", "",
+                                  {{"film.width", "64"},
+                                   {"medium.0.sigma_t", "[3, 2, 1]"},
+                                   {"medium.0.gaussians.0.width", "2"},
+                                   {"medium.0.cutoff", "3"},
+                                   {"camera.position.1", "1.5"}});
+  CHECK(scene.width == 64);
+  CHECK(scene.media[0].sigma_t[0] == 3);
+  const auto& sum = std::get<GaussianSum>(scene.media[0].field);
+  CHECK(sum.gaussians[0].width == 2);
+  CHECK(sum.cutoff == 3);
+  CHECK(scene.camera.position[1] == 1.5);
+
+  CHECK(error_of(fog, {{"medium.0.sigma_t", "-1"}}) ==
+        "override medium.0.sigma_t = -1 of fog.toml: medium 0: sigma_t = -1, expected a number >= 0");
+  CHECK(error_of(fog, {{"medium.0.sigma", "1"}}) ==
+        "override medium.0.sigma = 1 of fog.toml: medium 0: unknown key 'sigma', expected one of name, type, sigma_t, "
+        "albedo, phase, region, constant, cutoff, gaussians, file (nearest: sigma_t)");
+  CHECK(error_of(fog, {{"medium.1.sigma_t", "1"}}) ==
+        "override medium.1.sigma_t = 1 of fog.toml: 'medium' is a list of 1, found '1', expected an index below 1");
+  CHECK(
+      error_of(fog, {{"mediun.0.sigma_t", "1"}}) ==
+      "override mediun.0.sigma_t = 1 of fog.toml: there is no 'mediun'; the file has ambient_in_scatter, camera, film, "
+      "light, medium (nearest: medium)");
+}
+
+TEST_CASE("the hash is of the content", "[load]") {
+  const std::string hash = parse_scene(fog, "a.toml", "").hash;
+  CHECK(hash.size() == 32);
+  CHECK(parse_scene("# a comment\nname = \"other\"" + fog, "b.toml", "").hash == hash);
+  CHECK(parse_scene(fog, "a.toml", "", {{"light.0.radius", "0"}, {"light.0.intensity", "[3.0, 3, 3]"}}).hash == hash);
+  CHECK(parse_scene(fog, "a.toml", "", {{"light.0.radius", "0.1"}}).hash != hash);
+  CHECK(parse_scene(fog, "a.toml", "", {{"medium.0.phase", "{type = 'rayleigh'}"}}).hash != hash);
+}
