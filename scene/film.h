@@ -36,11 +36,12 @@ struct Film {
 // Error.
 void write_exr(const std::string& path, const Film&);
 
-// Reads every RGB layer; Error (file, what was found) on anything missing, damaged, larger than max_bytes once decoded,
-// or a layer that lacks a channel.
+// Reads every RGB layer, whatever the channels' type and the compression; other channels (alpha, depth) are left out.
+// Error (file, what was found) on anything missing, damaged, cropped, deep or multi-part, larger than max_bytes once
+// decoded or than 65536 pixels a side, and on a layer that lacks a channel.
 Film read_exr(const std::string& path, std::size_t max_bytes = std::size_t(4) << 30);
 
-// 8-bit sRGB preview of a layer times 2^exposure, clamped; atomic.
+// 8-bit sRGB preview of a layer times 2^exposure, clamped, NaN in magenta; atomic.
 void write_png(const std::string& path, const Film&, const std::string& layer = "mean", double exposure = 0);
 
 }  // namespace airlight::scene

@@ -1,0 +1,90 @@
+#include "scene/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "scene/error.h"
+
+namespace airlight::scene {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, int error) {
+  throw Error(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
+}
+
+// Returns 0 or an errno.
+int write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    bytes.remove_prefix(std::size_t(n));
+  }
+  return 0;
+}
+
+// Opens a new file beside `target`; a name left behind by a killed process is stepped over.
+int open_temporary(const std::string& target, std::string& name) {
+  static std::atomic<unsigned> counter{0};
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    name = fmt::format("{}.{}-{}.tmp", target, ::getpid(), counter++);
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) return descriptor;
+  }
+  return -1;
+}
+
+void write_directly(const std::string& path, std::string_view bytes) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, errno);
+  int error = write_all(descriptor, bytes);
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error != 0) fail(path, error);
+}
+
+// The rename is on the disk once the folder is. A file system that cannot do this has still done the rename.
+void flush_folder(const std::string& target) {
+  const std::string folder = std::filesystem::path(target).parent_path().string();
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void write_file_atomically(const std::string& path, std::string_view bytes) {
+  if (path.empty()) throw Error("cannot write: the file name is empty");
+  struct stat status;
+  std::string target = path;
+  if (::stat(path.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+    if (!S_ISREG(status.st_mode)) return write_directly(path, bytes);
+    std::error_code ignored;
+    const auto resolved = std::filesystem::canonical(path, ignored);
+    if (!ignored) target = resolved.string();
+  }
+
+  std::string temporary;
+  const int descriptor = open_temporary(target, temporary);
+  if (descriptor < 0) fail(path, errno);
+  int error = write_all(descriptor, bytes);
+  // EINVAL: a file system that has nothing to flush.
+  if (error == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) error = errno;
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    fail(path, error);
+  }
+  flush_folder(target);
+}
+
+}  // namespace airlight::scene

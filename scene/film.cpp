@@ -1,0 +1,44 @@
+#include "scene/film.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scene/error.h"
+
+namespace airlight::scene {
+namespace {
+
+std::size_t offset_of(const Film& film, int x, int y) {
+  if (x < 0 || x >= film.width || y < 0 || y >= film.height)
+    throw Error(fmt::format("pixel ({}, {}) lies outside a film of {} x {}", x, y, film.width, film.height));
+  return 3 * (std::size_t(y) * film.width + x);
+}
+
+}  // namespace
+
+std::vector<float>& Film::add(const std::string& name) {
+  std::vector<float>& values = layers[name];
+  values.resize(3 * pixels(), 0.0f);
+  return values;
+}
+
+const std::vector<float>& Film::layer(const std::string& name) const {
+  const auto found = layers.find(name);
+  if (found != layers.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& entry : layers) names.push_back(entry.first);
+  throw Error(fmt::format("the film has no layer '{}'; it has: {}", name,
+                          names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
+void Film::set(const std::string& name, int x, int y, const Rgb& value) {
+  float* pixel = add(name).data() + offset_of(*this, x, y);
+  for (int c = 0; c < 3; ++c) pixel[c] = float(value[c]);
+}
+
+Rgb Film::get(const std::string& name, int x, int y) const {
+  const float* pixel = layer(name).data() + offset_of(*this, x, y);
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+}  // namespace airlight::scene

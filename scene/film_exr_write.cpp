@@ -1,0 +1,91 @@
+// Film to OpenEXR: encoded in memory, then put into place in one go.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+#include "scene/film.h"
+
+namespace airlight::scene {
+namespace {
+
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("film") {}
+  void write(const char bytes[], int n) override {
+    bytes_.resize(std::max(bytes_.size(), position_ + std::size_t(n)));
+    std::memcpy(bytes_.data() + position_, bytes, std::size_t(n));
+    position_ += std::size_t(n);
+  }
+  uint64_t tellp() override { return position_; }
+  void seekp(uint64_t position) override { position_ = position; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t position_ = 0;
+};
+
+// OpenEXR stores names as zero-terminated text of at most 255 characters, the channel's letter included.
+void check_name(const std::string& path, const std::string& what, const std::string& name) {
+  const bool printable = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 32 && c != 127; });
+  if (name.empty() || name.size() > 240 || !printable)
+    throw Error(fmt::format("{}: the {} name '{}' cannot be stored in an EXR file", path, what, name.substr(0, 80)));
+}
+
+std::string channel_name(const std::string& layer, char letter) {
+  return layer == "mean" ? std::string(1, letter) : layer + "." + letter;
+}
+
+void encode(const std::string& path, const Film& film, MemoryStream& stream) {
+  Imf::Header header(film.width, film.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer pixels;
+  for (const auto& [name, values] : film.layers) {
+    check_name(path, "layer", name);
+    if (values.size() != 3 * film.pixels())
+      throw Error(
+          fmt::format("{}: layer '{}' has {} values, expected {}", path, name, values.size(), 3 * film.pixels()));
+    for (int c = 0; c < 3; ++c) {
+      const std::string channel = channel_name(name, "RGB"[c]);
+      if (pixels.findSlice(channel)) throw Error(fmt::format("{}: two layers have a channel '{}'", path, channel));
+      header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+      char* base = reinterpret_cast<char*>(const_cast<float*>(values.data() + c));
+      pixels.insert(channel, Imf::Slice(Imf::FLOAT, base, 3 * sizeof(float), 3 * sizeof(float) * film.width));
+    }
+  }
+  for (const auto& [key, value] : film.metadata) {
+    check_name(path, "metadata", key);
+    header.insert("airlight." + key, Imf::StringAttribute(value));
+  }
+  Imf::OutputFile file(stream, header, 1);
+  file.setFrameBuffer(pixels);
+  file.writePixels(film.height);
+}  // the file is complete when it is closed
+
+}  // namespace
+
+void write_exr(const std::string& path, const Film& film) {
+  if (film.width < 1 || film.height < 1 || film.layers.empty())
+    throw Error(fmt::format("{}: a film of {} x {} pixels and {} layers cannot be written", path, film.width,
+                            film.height, film.layers.size()));
+  MemoryStream stream;
+  try {
+    encode(path, film, stream);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("{}: cannot encode: {}", path, std::string(error.what()).substr(0, 200)));
+  }
+  write_file_atomically(path, stream.bytes());
+}
+
+}  // namespace airlight::scene
