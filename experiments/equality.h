@@ -1,0 +1,37 @@
+// Are two images equal but for noise? Three tests on blocks of 8x8 pixels, and what they could have missed.
+//
+// Each block and channel gives t = (mean A - mean B) / standard error, from the scatter of the sixteen batches of
+// whichever image is noisy (Welch's degrees of freedom), turned into the normal value z of the same probability. Tests,
+// each at a third of alpha: the largest |z| against Sidak's threshold; the sum of z^2 against chi-square, both tails
+// (channels share samples, so each channel by itself, at a third again); z of the whole image.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/film.h"
+
+namespace airlight::experiments {
+
+struct Equality {
+  std::size_t blocks = 0;     // blocks times channels that have noise
+  std::size_t differing = 0;  // blocks without noise that differ: any such is a difference
+  double largest_z = 0;
+  double largest_threshold = 0;
+  double chi_square = 0;  // of the channel with the smallest probability
+  double chi_square_probability = 1;
+  double image_z = 0;
+  double image_threshold = 0;
+  double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image
+  bool equal = false;          // no test objects
+  bool tested = false;         // detectable_bias <= 1 %: an `equal` without it means little
+};
+
+// Throws Error if sizes differ, a value is not finite, or neither image is noisy. The images must not share random
+// numbers.
+Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
+                       const std::vector<unsigned char>& left_out, double alpha);
+
+// One line for people.
+std::string text(const Equality&);
+
+}  // namespace airlight::experiments

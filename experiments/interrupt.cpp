@@ -1,0 +1,39 @@
+#include "experiments/interrupt.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+
+namespace airlight::experiments {
+namespace {
+
+std::atomic<int> signals{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+extern "C" void on_signal(int) {
+  if (++signals > 1) _exit(130);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return signals.load() > 0; }
+
+void check_interrupted() {
+  if (interrupted()) throw scene::Interrupted("interrupted");
+}
+
+scene::Execution quiet_execution(int threads) {
+  return {threads, [](double) { return !interrupted(); }};
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,23 @@
+// The machine that a time was measured on.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace airlight::experiments {
+
+struct Machine {
+  std::string cpu;          // model name
+  int threads = 0;          // that this process may use
+  double memory_gib = 0;    // installed
+  std::string simd;         // widest of avx512, avx2, sse4.2 that the CPU offers
+  std::string system;       // kernel and architecture
+  double load_average = 0;  // of the last minute: other work disturbs times
+};
+Machine this_machine();
+
+// One line per EGL device, or one line that says why there are none. Never fails.
+std::vector<std::string> graphics_devices();
+
+std::string utc_now();  // 2026-01-31T12:00:00Z
+
+}  // namespace airlight::experiments

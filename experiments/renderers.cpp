@@ -1,0 +1,32 @@
+#include "experiments/renderers.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scene/error.h"
+
+namespace airlight::experiments {
+
+const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
+  static const auto renderers = [] {
+    std::vector<std::unique_ptr<scene::Renderer>> list;
+    return list;
+  }();
+  return renderers;
+}
+
+std::vector<std::string> renderer_names() {
+  std::vector<std::string> names;
+  for (const auto& renderer : all_renderers()) names.push_back(renderer->name());
+  return names;
+}
+
+const scene::Renderer& find_renderer(const std::string& name, const std::string& where) {
+  for (const auto& renderer : all_renderers())
+    if (renderer->name() == name) return *renderer;
+  const auto names = renderer_names();
+  throw Error(fmt::format("{}: unknown renderer '{}', expected one of {} (nearest: {})", where, name,
+                          fmt::join(names, ", "), scene::nearest(name, names)));
+}
+
+}  // namespace airlight::experiments

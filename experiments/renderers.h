@@ -1,0 +1,18 @@
+// Everything that can render a scene: references and methods. A new method joins the list in renderers.cpp.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/renderer.h"
+
+namespace airlight::experiments {
+
+const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers();
+
+std::vector<std::string> renderer_names();
+
+// Throws Error, beginning with `where`, that names the nearest renderer.
+const scene::Renderer& find_renderer(const std::string& name, const std::string& where);
+
+}  // namespace airlight::experiments

@@ -1,0 +1,200 @@
+#include "experiments/metrics.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "experiments/equality.h"
+#include "scene/error.h"
+
+using namespace airlight::experiments;
+using airlight::Error;
+using airlight::scene::Film;
+
+namespace {
+
+using Value = std::function<double(int x, int y, int c)>;
+
+double gradient(int x, int y, int c) { return 1 + 0.05 * x + 0.02 * y + 0.3 * c; }
+
+Film exact(int w, int h, const Value& value) {
+  Film film(w, h);
+  auto& mean = film.add("mean");
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int c = 0; c < 3; ++c) mean[std::size_t(3 * (y * w + x) + c)] = float(value(x, y, c));
+  return film;
+}
+
+// Sixteen batches of independent noise, gamma distributed with shape 2 (skewness 1.4), whose mean has standard
+// deviation `sigma` times the value.
+Film noisy(int w, int h, const Value& value, double sigma, unsigned seed) {
+  Film film = exact(w, h, [](int, int, int) { return 0.0; });
+  std::mt19937_64 random(seed);
+  std::gamma_distribution<double> gamma(2, 1);
+  auto& mean = film.layers["mean"];
+  for (int b = 0; b < 16; ++b) {
+    auto& batch = film.add(b < 10 ? "batch.0" + std::to_string(b) : "batch." + std::to_string(b));
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x)
+        for (int c = 0; c < 3; ++c) {
+          const double noise = (gamma(random) - 2) / std::sqrt(2.0) * sigma * 4;
+          batch[std::size_t(3 * (y * w + x) + c)] = float(value(x, y, c) * (1 + noise));
+        }
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += batch[i] / 16;
+  }
+  return film;
+}
+
+Measure one(const std::string& name, const Film& a, const Film& r, const Masks& masks = {}) {
+  return measure({name}, a, r, "mean", masks).at(0);
+}
+
+}  // namespace
+
+// Image = 1.1 times a reference that is 2 everywhere: every metric by hand. Films are floats: 2.2 is off by 1e-7.
+TEST_CASE("metrics of exact images are their definitions", "[metrics]") {
+  const Film r = exact(8, 4, [](int, int, int) { return 2.0; });
+  const Film a = exact(8, 4, [](int, int, int) { return 2.2; });
+  const auto near = [](double x) { return Approx(x).epsilon(1e-6); };
+  CHECK(one("rmse", a, r).value == near(0.2));
+  CHECK(one("rel_l2", a, r).value == near(0.1));
+  CHECK(one("rel_l2_squared", a, r).value == near(0.01));
+  CHECK(one("rel_mse", a, r).value == near(0.04 / (4 + 0.04)));
+  CHECK(one("bias", a, r).value == near(0.1));
+  CHECK(one("p95", a, r).value == near(0.2 / 2.02));
+  CHECK(std::isnan(one("rmse_range", a, r).value));  // a constant reference has no range
+  const Measure m = one("rel_l2", a, r);
+  CHECK(m.low == m.value);
+  CHECK(m.high == m.value);
+  CHECK(m.floor == 0);
+  CHECK_FALSE(m.below_floor);
+  CHECK(text(m) == "0.1");
+}
+
+// A ramp 0..7 in x, smoothed over 3x3 with borders cut: its ends become 0.5 and 6.5.
+TEST_CASE("the range is that of the smoothed reference", "[metrics]") {
+  const Film r = exact(8, 4, [](int x, int, int) { return double(x); });
+  const Film a = exact(8, 4, [](int x, int, int) { return x + 0.6; });
+  CHECK(one("rmse_range", a, r).value == Approx(0.6 / 6).epsilon(1e-6));
+}
+
+TEST_CASE("masks, foreground and channels choose the values", "[metrics]") {
+  Film r = exact(4, 2, [](int, int, int) { return 1.0; });
+  Film a = r;
+  a.layers["mean"][3 * 5 + 1] = 2;  // green of pixel (1, 1)
+  Masks masks;
+  CHECK(one("rmse", a, r).value == Approx(std::sqrt(1.0 / 24)));
+  CHECK(one("rmse.g", a, r).value == Approx(std::sqrt(1.0 / 8)));
+  CHECK(one("rmse.r", a, r).value == 0);
+  masks.left_out.assign(8, 0);
+  masks.left_out[5] = 1;
+  CHECK(one("rmse", a, r, masks).value == 0);
+  r.add("transmittance").assign(24, 1.0f);
+  r.layers["transmittance"][3 * 5 + 2] = 0.5f;
+  masks = {{}, foreground_mask(r)};
+  CHECK(one("foreground.rmse.g", a, r, masks).value == Approx(1));
+  CHECK_THROWS_WITH(one("foreground.rmse", a, r), Catch::Contains("foreground"));
+  CHECK_THROWS_WITH(one("rel_l3", a, r), Catch::Contains("nearest: rel_l2"));
+}
+
+// The reference has 2 % noise per pixel; a relative error of 1 % is below the raw noise, and yet comes out right.
+// Where noise dominates, the delete-one jackknife of a mean over pairs overstates its variance by up to 2 (the pairs
+// are nearly uncorrelated), with 7 of 8 batches in a half by (8/7)^2 more: intervals are up to 1.6 times too wide,
+// never too narrow. Over 400 images the count outside a true 0.95 has a standard deviation of 4.4: 42 is 5 of them
+// above 20.
+TEST_CASE("noise is taken out of every square, and the intervals cover", "[metrics]") {
+  const Film truth = exact(24, 16, gradient);
+  const Film image = exact(24, 16, [](int x, int y, int c) { return gradient(x, y, c) * ((x + y) % 2 ? 1.01 : 0.99); });
+  for (const std::string name : {"rmse", "rel_l2", "rel_l2_squared", "rel_mse", "bias"}) {
+    CAPTURE(name);
+    const bool rooted = name == "rmse" || name == "rel_l2";
+    const double right = one(name, image, truth).value;
+    int outside = 0;
+    double sum = 0, squares = 0, half_widths = 0;
+    for (unsigned seed = 0; seed < 400; ++seed) {
+      const Measure m = one(name, image, noisy(24, 16, gradient, 0.02, seed));
+      outside += m.low > right || m.high < right;
+      const auto plain = [&](double x) { return rooted ? x * x : x; };
+      sum += plain(m.value) / 400;
+      squares += plain(m.value) * plain(m.value) / 400;
+      half_widths += (plain(m.high) - plain(m.low)) / 2 / 400;
+    }
+    const double want = rooted ? right * right : right;
+    const double sigma = std::sqrt(squares - sum * sum);
+    CAPTURE(outside, sum, want, sigma, half_widths);
+    CHECK(outside <= 42);
+    // 2.13 sigma is right for Student's t with 15 degrees; the scatter itself is known to 1/sqrt(800) = 3.5 %.
+    CHECK(half_widths > 0.85 * 2.13 * sigma);
+    CHECK(half_widths < 1.8 * 2.13 * sigma);
+    // Unbiased: 4.5 standard errors of the mean of 400.
+    CHECK(std::abs(sum - want) < 4.5 * sigma / 20);
+  }
+}
+
+TEST_CASE("an image that differs by noise alone is below the noise floor", "[metrics]") {
+  const Film truth = exact(24, 16, gradient);
+  int below = 0, below_both = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Film r = noisy(24, 16, gradient, 0.02, seed);
+    const Measure m = one("rel_l2", truth, r);
+    below += m.below_floor;
+    CHECK(m.floor == Approx(0.02).epsilon(0.2));
+    below_both += one("rel_l2", noisy(24, 16, gradient, 0.02, 1000 + seed), r).below_floor;
+    if (m.below_floor) CHECK_THAT(text(m), Catch::StartsWith("below noise floor, <= "));
+  }
+  // At least 0.95 of them, binomial: 85 is more than 4.5 standard deviations below.
+  CHECK(below >= 85);
+  CHECK(below_both >= 85);
+}
+
+TEST_CASE("percentiles give the range that the noise leaves", "[metrics]") {
+  const Film truth = exact(32, 32, gradient);
+  const Film image = exact(32, 32, [](int x, int y, int c) { return gradient(x, y, c) * (x < 8 ? 1.2 : 1.0); });
+  const double right = one("p95", image, truth).value;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Measure m = one("p95", image, noisy(32, 32, gradient, 0.01, seed));
+    CHECK(m.low <= right);
+    CHECK(m.high >= right);
+    CHECK(m.high - m.low < 0.1);
+  }
+}
+
+TEST_CASE("images that cannot be judged are refused", "[metrics]") {
+  const Film r = exact(8, 8, gradient);
+  CHECK_THROWS_WITH(one("rmse", exact(8, 7, gradient), r), Catch::Contains("8x7") && Catch::Contains("8x8"));
+  Film bad = r;
+  bad.layers["mean"][3 * 9 + 1] = std::numeric_limits<float>::quiet_NaN();
+  CHECK_THROWS_WITH(one("rmse", bad, r), Catch::Contains("nan at pixel (1, 1)"));
+  Film unknown_noise = r;
+  unknown_noise.add("se");
+  CHECK_THROWS_WITH(one("rmse", r, unknown_noise), Catch::Contains("noisy"));
+  CHECK_THROWS_AS(compare_equal(r, r, "mean", {}, 1e-3), Error);
+}
+
+// False alarms of the three tests together at alpha = 0.05: binomial over 200 pairs, mean at most 10, standard
+// deviation 3.1; 25 is 4.8 of them. Batches are skewed, blocks average 64 of them.
+TEST_CASE("equal images pass the z-tests, biased ones do not", "[metrics]") {
+  const Film truth = exact(32, 24, gradient);
+  int alarms = 0;
+  for (unsigned seed = 0; seed < 200; ++seed)
+    alarms += !compare_equal(truth, noisy(32, 24, gradient, 0.05, seed), "mean", {}, 0.05).equal;
+  CHECK(alarms <= 25);
+
+  const Film other = noisy(32, 24, gradient, 0.05, 1);
+  CHECK(compare_equal(noisy(32, 24, gradient, 0.05, 2), other, "mean", {}, 1e-4).equal);
+  const auto scaled = [](double f) { return [f](int x, int y, int c) { return f * gradient(x, y, c); }; };
+  const Equality biased = compare_equal(exact(32, 24, scaled(1.01)), other, "mean", {}, 1e-4);
+  CHECK_FALSE(biased.equal);
+  CHECK(biased.tested);
+  CHECK(biased.detectable_bias < 0.01);
+  const auto spot = [](int x, int y, int c) { return gradient(x, y, c) * (x < 8 && y < 8 ? 1.1 : 1.0); };
+  const Equality local = compare_equal(exact(32, 24, spot), other, "mean", {}, 1e-4);
+  CHECK_FALSE(local.equal);
+  CHECK(local.largest_z > local.largest_threshold);
+  // Shared random numbers: too little scatter, which the lower tail of chi-square finds.
+  const Equality same = compare_equal(other, other, "mean", {}, 1e-4);
+  CHECK_FALSE(same.equal);
+}
