@@ -1,0 +1,35 @@
+// A medium as the marcher sees it: a constant that needs no steps, plus a part that varies and is marched.
+//
+// The constant of a homogeneous medium, or of a sum of Gaussians, contributes length * constant to an optical depth in
+// closed form; what is left is sampled, and only where it can be different from zero.
+#pragma once
+#include <vector>
+
+#include "scene/media/medium.h"
+
+namespace airlight::ray_marcher {
+
+struct Layer {
+  const scene::Medium* medium;
+  double constant = 0;   // [-] density in the whole region
+  bool varies = false;   // is there anything besides the constant
+  scene::Region varied;  // the varying part is zero (or negligible) outside this, or outside the medium's region
+};
+
+std::vector<Layer> make_layers(const std::vector<scene::Medium>&);
+
+// Where a ray meets the region; and where it meets the varying part, empty if there is none.
+Interval constant_extent(const Layer&, const Ray&, Interval t);
+Interval varied_extent(const Layer&, const Ray&, Interval t);
+
+// Density minus the constant at a point inside the region [-]; negative only where a Gaussian is.
+double varied_density(const Layer&, const Point3&);
+
+// Steps of a march through `extent`: `count` of them, or as many of at most `length` if that is positive.
+int steps_through(Interval extent, int count, double length);
+
+// Optical depth per unit sigma_t along the ray [m]: closed form for the constant, midpoint rule with that many steps
+// for the rest. `steps` counts the evaluations. May be infinite if t is.
+double marched_column(const Layer&, const Ray&, Interval t, int count, double length, long long& steps);
+
+}  // namespace airlight::ray_marcher

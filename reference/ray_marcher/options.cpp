@@ -1,0 +1,80 @@
+#include "reference/ray_marcher/options.h"
+
+namespace airlight::ray_marcher {
+
+std::vector<scene::SettingSpec> option_specs() {
+  using Type = scene::SettingSpec::Type;
+  return {
+      {"steps",
+       Type::integer,
+       "64",
+       "steps per camera ray, shared among the parts of it that lie in media",
+       1,
+       1 << 20,
+       {}},
+      {"shadow_steps", Type::integer, "32", "steps per shadow ray in each medium that varies", 1, 1 << 20, {}},
+      {"step",
+       Type::real,
+       "0",
+       "step length on camera rays in voxels of the finest grid (metres without a grid); 0: use steps",
+       0,
+       1e300,
+       {}},
+      {"shadow_step", Type::real, "0", "step length on shadow rays, same unit; 0: use shadow_steps", 0, 1e300, {}},
+      {"spacing",
+       Type::choice,
+       "graded",
+       "graded: steps shrink near point and spot lights and grow along unbounded media; uniform: equal steps",
+       0,
+       0,
+       {"graded", "uniform"}},
+      {"shadow", Type::choice, "march", "optical depth of shadow rays: by steps, or exact", 0, 0, {"march", "exact"}},
+      {"environment_directions",
+       Type::integer,
+       "256",
+       "directions that stand for each environment light",
+       1,
+       1 << 20,
+       {}},
+      {"early_exit", Type::real, "0", "a camera ray ends where its transmittance falls below this; 0: never", 0, 1, {}},
+      {"horizon",
+       Type::real,
+       "16",
+       "optical depth of unbounded medium at which an endless camera ray is cut",
+       1,
+       700,
+       {}},
+      {"empty_space_skipping",
+       Type::flag,
+       "true",
+       "leave out steps where a grid is zero; the image stays the same",
+       0,
+       1,
+       {}},
+      {"kernel",
+       Type::choice,
+       "auto",
+       "auto: vector kernels in float, scalar: plain loops in double, for checks",
+       0,
+       0,
+       {"auto", "scalar"}},
+  };
+}
+
+Options read_options(const scene::Settings& settings, double unit) {
+  Options o;
+  o.steps = int(settings.integer("steps"));
+  o.shadow_steps = int(settings.integer("shadow_steps"));
+  o.step = settings.real("step") * unit;
+  o.shadow_step = settings.real("shadow_step") * unit;
+  o.graded = settings.text("spacing") == "graded";
+  o.exact_shadow = settings.text("shadow") == "exact";
+  o.simd = settings.text("kernel") == "auto";
+  o.skip_empty = settings.flag("empty_space_skipping");
+  o.environment_directions = int(settings.integer("environment_directions"));
+  o.early_exit = settings.real("early_exit");
+  o.horizon = settings.real("horizon");
+  return o;
+}
+
+}  // namespace airlight::ray_marcher

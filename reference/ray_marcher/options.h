@@ -1,0 +1,29 @@
+// What a user can set on the ray marcher.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/settings.h"
+
+namespace airlight::ray_marcher {
+
+struct Options {
+  int steps = 64;          // per camera ray, over the parts of it that lie in media
+  int shadow_steps = 32;   // per shadow ray and medium
+  double step = 0;         // > 0: length of a camera ray's step instead of a count; unit below
+  double shadow_step = 0;  // > 0: length of a shadow ray's step instead of a count
+  bool graded = true;      // grade the steps around lights and along unbounded media
+  bool exact_shadow = false;
+  bool simd = true;
+  bool skip_empty = true;
+  int environment_directions = 256;
+  double early_exit = 0;  // stop where every channel's transmittance is below this
+  double horizon = 16;    // optical depth at which an infinite ray ends
+};
+
+std::vector<scene::SettingSpec> option_specs();
+
+// Lengths `step` and `shadow_step` are given in voxels of the finest grid; `unit` is that voxel's size [m], or 1.
+Options read_options(const scene::Settings&, double unit);
+
+}  // namespace airlight::ray_marcher

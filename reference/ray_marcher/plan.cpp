@@ -1,0 +1,68 @@
+#include "reference/ray_marcher/plan.h"
+
+#include <cmath>
+
+namespace airlight::ray_marcher {
+
+std::vector<scene::DirectionalLight> environment_as_lights(const scene::EnvironmentLight& environment, int count) {
+  const double golden = 0.6180339887498949;  // (sqrt 5 - 1) / 2
+  std::vector<scene::DirectionalLight> lights;
+  for (int k = 0; k < count; ++k) {
+    const double u2 = (k + 0.5) * golden;
+    const Vec3 w = sample_environment(environment, (k + 0.5) / count, u2 - std::floor(u2));
+    const double pdf = pdf_environment(environment, w);
+    const Rgb from_there = radiance(environment, w);
+    if (!(pdf > 0) || (from_there == 0).all()) continue;
+    lights.push_back({w, from_there / (pdf * count)});
+  }
+  return lights;
+}
+
+Rgb background(const scene::Scene& scene, const Vec3& direction) {
+  Rgb sum = Rgb::Zero();
+  for (const scene::Light& light : scene.lights)
+    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
+      sum += radiance(*environment, direction);
+  return sum;
+}
+
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
+  Plan plan{scene, options, make_layers(scene->media), {}};
+  for (const scene::Light& light : scene->lights) {
+    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
+      for (const auto& l : environment_as_lights(*environment, options.environment_directions))
+        plan.lights.emplace_back(l);
+    } else {
+      plan.lights.push_back(light);
+    }
+  }
+  return plan;
+}
+
+RaySteps ray_steps(const Plan& plan, const Ray& ray, double t_end) {
+  RaySteps result;
+  result.passes.push_back({make_spacing(plan.layers, plan.options, ray, t_end, {}), {}});
+  if (result.passes[0].spacing.steps.empty()) return result;
+  for (int i = 0; i < int(plan.lights.size()); ++i) {
+    const auto ball = plan.options.graded ? scene::ball(plan.lights[i]) : std::nullopt;
+    if (ball) {
+      Spacing own = make_spacing(plan.layers, plan.options, ray, t_end, approach(ray, ball->center));
+      if (own.around_light) {
+        result.passes.push_back({std::move(own), {i}});
+        continue;
+      }
+    }
+    result.passes[0].lights.push_back(i);
+  }
+  return result;
+}
+
+void Counters::add(const Counters& other) {
+  rays += other.rays;
+  steps += other.steps;
+  shadow_rays += other.shadow_rays;
+  shadow_steps += other.shadow_steps;
+  occlusion_rays += other.occlusion_rays;
+}
+
+}  // namespace airlight::ray_marcher

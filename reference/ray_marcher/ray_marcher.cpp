@@ -1,0 +1,131 @@
+#include "reference/ray_marcher/ray_marcher.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "reference/ray_marcher/plan.h"
+#include "reference/ray_marcher/scalar.h"
+#include "scene/error.h"
+
+namespace airlight::ray_marcher {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Size of the finest voxels [m]; 1 without a grid.
+double length_unit(const scene::Scene& scene) {
+  double unit = infinity;
+  for (const scene::Medium& medium : scene.media)
+    if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
+      unit = std::min(unit, (*grid)->voxel_size);
+  return unit == infinity ? 1 : unit;
+}
+
+bool has_environment(const scene::Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
+}
+
+std::vector<scene::Stage> explain(const Plan& plan) {
+  std::vector<scene::Stage> stages;
+  const auto add = [&](const char* name, bool kept, const std::string& reason) {
+    stages.push_back({name, kept, reason});
+  };
+  const scene::Scene& scene = *plan.scene;
+  const auto varying = std::count_if(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.varies; });
+  const bool constants =
+      std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
+  add("camera_march", !plan.layers.empty(),
+      plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
+  const bool lit = !plan.lights.empty();
+  add("shadow_march", lit && varying > 0 && !plan.options.exact_shadow,
+      !lit                        ? "no light"
+      : varying == 0              ? "no medium varies: optical depths have a closed form"
+      : plan.options.exact_shadow ? "shadow = exact"
+                                  : fmt::format("{} varying media, {} lights", varying, plan.lights.size()));
+  add("constant_media", constants,
+      constants ? "constants are integrated in closed form" : "no medium has a constant part");
+  add("environment_directions", has_environment(scene),
+      has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
+                             : "no environment light");
+  add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
+  add("surface_shading", bool(scene.geometry) && lit, scene.geometry ? "surfaces are lit directly" : "no surfaces");
+  add("background", has_environment(scene),
+      has_environment(scene) ? "environment seen through the media" : "no environment light");
+  if (!(scene.ambient_in_scatter == 0).all()) add("ambient", false, "the ray marcher has no ambient term");
+  return stages;
+}
+
+class PreparedMarch final : public scene::Prepared {
+ public:
+  PreparedMarch(Plan plan, std::string settings, double seconds)
+      : plan_(std::move(plan)), settings_(std::move(settings)), prepare_seconds_(seconds) {}
+
+  std::vector<scene::Stage> stages() const override { return explain(plan_); }
+  std::vector<scene::StageTime> prepare_times() const override { return {{"prepare", prepare_seconds_}}; }
+
+  scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    scene::Rendering result;
+    result.film = scene::Film(view.width, view.height);
+    for (const char* layer : {"mean", "airlight", "surface", "transmittance"}) result.film.add(layer);
+    result.film.metadata = {
+        {"method", "ray_marcher"}, {"settings", settings_}, {"scene", plan_.scene->name}, {"hash", plan_.scene->hash}};
+    Counters total;
+    std::mutex mutex;
+    const double start = now();
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      Counters counters;
+      for (int x = 0; x < view.width; ++x) {
+        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+        const Pixel pixel = march_ray(plan_, ray, counters);
+        result.film.set("mean", x, y, pixel.airlight + pixel.surface);
+        result.film.set("airlight", x, y, pixel.airlight);
+        result.film.set("surface", x, y, pixel.surface);
+        result.film.set("transmittance", x, y, pixel.transmittance);
+      }
+      const std::lock_guard lock(mutex);
+      total.add(counters);
+    });
+    result.times = {{"march", now() - start}};
+    result.counters = {{"rays", double(total.rays)},
+                       {"steps", double(total.steps)},
+                       {"shadow_rays", double(total.shadow_rays)},
+                       {"shadow_steps", double(total.shadow_steps)},
+                       {"occlusion_rays", double(total.occlusion_rays)}};
+    return result;
+  }
+
+ private:
+  Plan plan_;
+  std::string settings_;
+  double prepare_seconds_;
+};
+
+}  // namespace
+
+std::string RayMarcher::about() const {
+  return "brute-force single scattering: camera steps times shadow steps, any medium (reference/ray_marcher/README.md)";
+}
+
+std::vector<scene::SettingSpec> RayMarcher::settings() const { return option_specs(); }
+
+std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings&) const {
+  std::vector<std::string> reasons;
+  if (make_layers(scene.media).size() > most_layers)
+    reasons.push_back(
+        fmt::format("more than {} media with extinction: {}", most_layers, make_layers(scene.media).size()));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> RayMarcher::prepare(std::shared_ptr<const scene::Scene> scene,
+                                                     const scene::Settings& settings, const scene::Execution&) const {
+  const double start = now();
+  for (const std::string& reason : supports(*scene, settings)) throw Error("ray_marcher: " + reason);
+  const Options options = read_options(settings, length_unit(*scene));
+  Plan plan = make_plan(std::move(scene), options);
+  return std::make_unique<PreparedMarch>(std::move(plan), settings.canonical(), now() - start);
+}
+
+}  // namespace airlight::ray_marcher

@@ -1,0 +1,126 @@
+#include "reference/ray_marcher/scalar.h"
+
+#include <cmath>
+
+namespace airlight::ray_marcher {
+namespace {
+
+// (1 - exp(-x)) / x, 1 at x = 0.
+double mean_over_step(double x) { return x > 0 ? -std::expm1(-x) / x : 1; }
+
+// Densities of all layers at a step.
+void sample_densities(const Plan& plan, const Ray& ray, const Step& step, std::vector<double>& densities,
+                      Counters& counters) {
+  const Point3 x = ray.at(step.t);
+  for (std::size_t k = 0; k < plan.layers.size(); ++k) {
+    double value = in_constant(step.inside, k) ? plan.layers[k].constant : 0;
+    if (in_varied(step.inside, k)) {
+      value += varied_density(plan.layers[k], x);
+      ++counters.steps;
+    }
+    densities[k] = value;
+  }
+}
+
+// In-scattered radiance per length at x towards -direction [W/m^3/sr], one light.
+Rgb in_scattered(const Plan& plan, const std::vector<double>& densities, const Point3& x, const Vec3& direction,
+                 const scene::Light& light, Counters& counters) {
+  const scene::Incident from = incident(light, x);
+  if ((from.irradiance == 0).all()) return Rgb::Zero();
+  const double cosine = from.to_light.dot(direction);
+  Rgb scattering = Rgb::Zero();
+  for (std::size_t k = 0; k < plan.layers.size(); ++k) {
+    if (densities[k] == 0) continue;
+    const scene::Medium& medium = *plan.layers[k].medium;
+    scattering += medium.albedo * medium.sigma_t * (densities[k] * phase_value(medium.phase, cosine));
+  }
+  if ((scattering == 0).all()) return Rgb::Zero();
+  return scattering * from.irradiance * transmittance_to_light(plan, x, from, counters);
+}
+
+}  // namespace
+
+Rgb transmittance_to_light(const Plan& plan, const Point3& x, const scene::Incident& from, Counters& counters) {
+  const Ray ray{x, from.to_light};
+  if (plan.scene->geometry) {
+    ++counters.occlusion_rays;
+    if (plan.scene->geometry->occluded(ray, from.distance)) return Rgb::Zero();
+  }
+  Rgb depth = Rgb::Zero();
+  ++counters.shadow_rays;
+  for (const Layer& layer : plan.layers) {
+    const double column = plan.options.exact_shadow
+                              ? density_integral(*layer.medium, ray, {0, from.distance})
+                              : marched_column(layer, ray, {0, from.distance}, plan.options.shadow_steps,
+                                               plan.options.shadow_step, counters.shadow_steps);
+    // An infinite column must not meet a zero coefficient.
+    for (int c = 0; c < 3; ++c)
+      if (layer.medium->sigma_t[c] > 0) depth[c] += layer.medium->sigma_t[c] * column;
+  }
+  return (-depth).exp();
+}
+
+Rgb lit_surface(const Plan& plan, const scene::Hit& hit, const Vec3& direction, Counters& counters) {
+  Rgb sum = Rgb::Zero();
+  const scene::Material& material = plan.scene->surfaces[hit.surface].material;
+  for (const scene::Light& light : plan.lights) {
+    scene::Incident from = incident(light, hit.position);
+    const double cosine = from.to_light.dot(hit.normal);
+    if (!(cosine > 0) || (from.irradiance == 0).all()) continue;
+    const Rgb reflected = brdf(material, hit.normal, from.to_light, -direction) * cosine * from.irradiance;
+    if ((reflected == 0).all()) continue;
+    const Point3 origin = plan.scene->geometry->offset_origin(hit.position, hit.normal, from.to_light);
+    sum += reflected * transmittance_to_light(plan, origin, from, counters);
+  }
+  return sum;
+}
+
+Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& counters) {
+  Pixel pixel;
+  const RaySteps steps = ray_steps(plan, ray, t_end);
+  std::vector<double> densities(plan.layers.size());
+  bool first = true;
+  for (const RaySteps::Pass& pass : steps.passes) {
+    Rgb depth = Rgb::Zero();
+    bool ended = false;
+    for (const Step& step : pass.spacing.steps) {
+      const Rgb before = (-depth).exp();
+      if ((before < plan.options.early_exit).all()) {
+        ended = true;
+        break;
+      }
+      sample_densities(plan, ray, step, densities, counters);
+      Rgb extinction = Rgb::Zero();
+      for (std::size_t k = 0; k < plan.layers.size(); ++k) extinction += plan.layers[k].medium->sigma_t * densities[k];
+      if ((extinction == 0).all()) continue;
+      const Rgb depth_of_step = extinction * step.length;
+      const Rgb weight = before * step.length * depth_of_step.unaryExpr(&mean_over_step);
+      const Point3 x = ray.at(step.t);
+      for (const int light : pass.lights) {
+        const auto ball = scene::ball(plan.lights[light]);
+        const double factor = ball ? inverse_square_factor(approach(ray, ball->center), step) : 1;
+        pixel.airlight +=
+            weight * factor * in_scattered(plan, densities, x, ray.direction, plan.lights[light], counters);
+      }
+      depth += depth_of_step;
+    }
+    if (first)
+      for (int c = 0; c < 3; ++c) pixel.transmittance[c] = pass.spacing.endless[c] || ended ? 0 : std::exp(-depth[c]);
+    first = false;
+  }
+  return pixel;
+}
+
+Pixel march_ray(const Plan& plan, const Ray& ray, Counters& counters) {
+  ++counters.rays;
+  const scene::RayEnd end = ray_end(*plan.scene, ray);
+  Pixel pixel = march_media(plan, ray, end.t, counters);
+  if ((pixel.transmittance == 0).all()) return pixel;
+  if (end.hit)
+    pixel.surface = pixel.transmittance * lit_surface(plan, *end.hit, ray.direction, counters);
+  else if (!end.on_ball)
+    pixel.surface = pixel.transmittance * background(*plan.scene, ray.direction);
+  return pixel;
+}
+
+}  // namespace airlight::ray_marcher

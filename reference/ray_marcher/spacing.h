@@ -1,0 +1,53 @@
+// Where a camera ray is sampled: its steps.
+//
+// The ray is cut where it enters or leaves a region or the support of a field, so that the density is smooth between
+// the cuts and the midpoint rule keeps its order. `uniform` gives all parts steps of one length. `graded` departs from
+// that where equal steps are hopeless:
+//   around a point or spot light at distance h from the ray, x = h u / (1 - u^2)^3 along the ray with equal steps in u:
+//   they grow as |x|^(4/3), which spreads the midpoint rule's error on 1/(h^2 + x^2) evenly, out to where they have
+//   grown to the length of the others; where a constant medium with extinction k goes on for ever, steps grow as exp(k
+//   t / 2) behind the light; the ray is cut at the optical depth `horizon`; parts of the ray where the medium is
+//   constant get no more steps than those where it varies.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "reference/ray_marcher/layer.h"
+#include "reference/ray_marcher/options.h"
+
+namespace airlight::ray_marcher {
+
+// One step [t - length/2, t + length/2] of a ray. Bit 2k of `inside`: in the region of layer k (which has a constant);
+// bit 2k+1: in its varying part.
+struct Step {
+  double t;
+  double length;
+  unsigned long long inside;
+};
+constexpr std::size_t most_layers = 32;
+inline bool in_constant(unsigned long long inside, std::size_t layer) { return inside >> (2 * layer) & 1; }
+inline bool in_varied(unsigned long long inside, std::size_t layer) { return inside >> (2 * layer + 1) & 1; }
+
+struct Spacing {
+  std::vector<Step> steps;  // in order of t
+  // Per channel: true where the medium behind the last step goes on for ever, so that nothing beyond it is seen.
+  Eigen::Array<bool, 3, 1> endless = Eigen::Array<bool, 3, 1>::Constant(false);
+  bool around_light = false;  // graded around the light: different from what it is without the light
+};
+
+// Distance of the ray from a light, and where along the ray it is reached.
+struct Approach {
+  double t;
+  double h;
+};
+Approach approach(const Ray&, const Point3& light);
+
+// Mean of 1/distance^2 to the light over a step, times the square of the distance at its midpoint: what makes the
+// inverse square exact in a step. In closed form, 1/(h length) times the angle under which the light sees the step.
+double inverse_square_factor(const Approach&, const Step&);
+
+// Steps of the ray over [0, t_end]; `light`: grade around it too.
+Spacing make_spacing(const std::vector<Layer>&, const Options&, const Ray&, double t_end,
+                     const std::optional<Approach>& light);
+
+}  // namespace airlight::ray_marcher
