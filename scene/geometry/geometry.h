@@ -1,8 +1,10 @@
 // Ray queries against the surfaces of a scene, by Embree. A scene without surfaces has no Geometry at all: nothing is
 // called.
 //
-// Embree works in float: coordinates are recentred and scaled to the unit box first (by a power of two), and hit points
-// are refined in double against the exact primitive. Two-sided surfaces.
+// Embree finds the candidates (candidate_tree.h); whether and where a triangle or sphere is met is decided in double,
+// watertight (ray_primitive.h). Infinite planes are few and tested one by one. So the answers do not depend on threads
+// or instruction set, scale bit by bit with a scene that is scaled by a power of two, and are exact to the rounding of
+// the coordinates however far the scene or the ray's origin is away. Two-sided surfaces. Const calls are thread safe.
 #pragma once
 #include <memory>
 #include <optional>
@@ -29,9 +31,10 @@ class Geometry {
   std::optional<Hit> first_hit(const Ray&, double tmax = infinity) const;
   // Is anything in 0 < t < tmax?
   bool occluded(const Ray&, double tmax = infinity) const;
-  // All crossings in order of t, duplicates on shared edges merged.
+  // All crossings in order of t. A ray through a shared edge or vertex of a closed mesh crosses it as one moved aside
+  // by an infinitesimal step would: in and out by turns. Triangles that are there twice count once.
   std::vector<Hit> all_hits(const Ray&, double tmax = infinity) const;
-  // Moves a point on a surface to the side of `direction` by a few ulp of the scene's coordinates.
+  // Moves a point on a surface to the side of `direction` by 32 ulp of the scene's largest coordinate.
   Point3 offset_origin(const Point3& position, const Vec3& normal, const Vec3& direction) const;
 
   Box bounds() const;  // of the finite surfaces
