@@ -1,0 +1,51 @@
+#include "reference/path_tracer/leaf.h"
+
+#include <fmt/format.h>
+#include <xmmintrin.h>
+
+#include "scene/error.h"
+
+namespace airlight::path_tracer {
+namespace {
+
+template <class Camera>
+void add_all(const World& world, Camera&& camera_of, std::uint32_t pixel, std::uint64_t first, std::uint64_t count,
+             const TallyLayout& layout, double* sums, Counters& counters, const std::function<std::string()>& where) {
+  const Options& options = world.options();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const SampleRandom random(options.seed, options.stream, pixel, first + i);
+    PathSample sample(layout.orders);
+    trace(world, camera_of(random), random, sample, counters);
+    if (!add_sample(layout, sample, int(i * batch_count / count), sums))
+      throw Error(
+          fmt::format("path_tracer: {}, sample {}: the radiance is not finite, expected a finite one (does the "
+                      "ray meet a light of radius 0 in a medium?)",
+                      where(), first + i));
+  }
+}
+
+}  // namespace
+
+void add_samples(const World& world, const CameraRay& camera, std::uint32_t pixel, std::uint64_t first,
+                 std::uint64_t count, const TallyLayout& layout, double* sums, Counters& counters,
+                 const std::function<std::string()>& where) {
+  add_all(
+      world, [&](const SampleRandom&) -> const CameraRay& { return camera; }, pixel, first, count, layout, sums,
+      counters, where);
+}
+
+void add_samples(const World& world, const RaySource& source, std::uint32_t pixel, std::uint64_t first,
+                 std::uint64_t count, const TallyLayout& layout, double* sums, Counters& counters,
+                 const std::function<std::string()>& where) {
+  add_all(
+      world,
+      [&](const SampleRandom& random) {
+        return prepare_camera_ray(world, source(random.block(0, Purpose::camera)), counters);
+      },
+      pixel, first, count, layout, sums, counters, where);
+}
+
+FlushSubnormals::FlushSubnormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
+FlushSubnormals::~FlushSubnormals() { _mm_setcsr(saved_); }
+
+}  // namespace airlight::path_tracer

@@ -1,0 +1,198 @@
+#include "reference/path_tracer/media.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/error.h"
+#include "scene/math/elementary.h"
+
+namespace airlight::path_tracer {
+namespace {
+
+// Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media.
+constexpr std::uint32_t flight_blocks = 1u << 18;
+constexpr std::size_t most_media = 64;
+
+Eigen::Vector3i cells_of(const scene::Medium& medium, const Box& box, const Options& options) {
+  if (!options.supergrid) return {1, 1, 1};
+  if (options.supergrid_cells > 0) return Eigen::Vector3i::Constant(options.supergrid_cells);
+  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
+    Eigen::Vector3i cells;
+    for (int a = 0; a < 3; ++a)
+      cells[a] = std::clamp(int(std::ceil(box.size()[a] / (4 * (*grid)->voxel_size))), 1, 1024);
+    return cells;
+  }
+  return Eigen::Vector3i::Constant(16);
+}
+
+TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
+  TrackedMedium tracked{&medium, false, 0, {}};
+  if (const auto* field = std::get_if<scene::Homogeneous>(&medium.field)) {
+    tracked.homogeneous = true;
+    tracked.constant = field->density;
+    return tracked;
+  }
+  const double scale = options.majorant_scale;
+  const Box all{Point3::Constant(-infinity), Point3::Constant(infinity)};
+  const Box box = intersect(scene::support(medium.field), scene::bounding_box(medium.region));
+  const bool bounded = (box.size().array() < infinity).all();
+  // The bound of the field where the grid is not: everywhere, if there is no box to put a grid on.
+  if (!bounded) {
+    tracked.majorants.outside = round_up(scale * scene::density_bounds(medium.field, all).hi);
+  }
+  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field); sum && !bounded) {
+    // A constant without bounds around bounded Gaussians: a grid on these, and a bound for the six half-spaces around.
+    scene::GaussianSum peaks = *sum;
+    peaks.constant = 0;
+    const Box core = intersect(scene::support(scene::DensityField(peaks)), scene::bounding_box(medium.region));
+    if (!core.empty() && (core.size().array() > 0).all() && (core.size().array() < infinity).all()) {
+      double around = 0;
+      for (int a = 0; a < 3; ++a) {
+        Box below = all, above = all;
+        below.hi[a] = core.lo[a];
+        above.lo[a] = core.hi[a];
+        around = std::max(
+            {around, scene::density_bounds(medium.field, below).hi, scene::density_bounds(medium.field, above).hi});
+      }
+      tracked.majorants = make_supergrid(core, cells_of(medium, core, options), scale,
+                                         [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
+      tracked.majorants.outside = round_up(scale * around);
+    }
+  } else if (bounded && !box.empty() && (box.size().array() > 0).all()) {
+    tracked.majorants = make_supergrid(box, cells_of(medium, box, options), scale,
+                                       [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
+  }
+  return tracked;
+}
+
+}  // namespace
+
+Media::Media(const std::vector<scene::Medium>& media, const Options& options) {
+  for (const scene::Medium& medium : media) {
+    if (!(medium.sigma_t.maxCoeff() > 0)) continue;
+    tracked_.push_back(prepare(medium, options));
+    if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff()) grey_ = false;
+  }
+  if (tracked_.size() > most_media)
+    throw Error(fmt::format("path_tracer: {} media, expected at most {}", tracked_.size(), most_media));
+}
+
+std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const SampleRandom& random,
+                                    std::uint32_t vertex, Counters& counters) const {
+  std::optional<Collision> nearest;
+  for (std::size_t m = 0; m < tracked_.size(); ++m) {
+    const TrackedMedium& tracked = tracked_[m];
+    const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
+    const double sigma = tracked.medium->sigma_t[hero];
+    if (range.empty() || !(sigma > 0)) continue;
+    std::uint32_t index = std::uint32_t(m) * flight_blocks;
+    const std::uint32_t last = index + flight_blocks;
+    RandomBlock block = random.block(vertex, Purpose::flight, index);
+    double depth = -elementary::log(block.fine(0));  // optical depth left to the next tentative collision
+    if (tracked.homogeneous) {
+      const double t = range.lo + depth / (sigma * tracked.constant);
+      if (t < range.hi) nearest = {t, int(m), tracked.constant};
+      continue;
+    }
+    walk(tracked.majorants, ray, range, [&](double begin, double end, double majorant) {
+      if (!(majorant > 0)) return false;
+      const double rate = sigma * majorant;
+      for (double t = begin;;) {
+        const double step = depth / rate;
+        if (!(t + step < end)) {
+          depth -= (end - t) * rate;
+          if (depth < 0) depth = 0;
+          return false;
+        }
+        t += step;
+        const double density = scene::density(tracked.medium->field, ray.at(t));
+        ++counters.lookups;
+        if (density > majorant * (1 + 1e-6)) ++counters.violations;
+        if (block.fine(1) * majorant < density) {
+          nearest = {t, int(m), density};
+          return true;
+        }
+        if (++index == last)
+          throw Error("path_tracer: 2^18 null collisions in one flight, expected a tighter majorant");
+        block = random.block(vertex, Purpose::flight, index);
+        depth = -elementary::log(block.fine(0));
+      }
+    });
+  }
+  if (nearest) ++counters.collisions;
+  return nearest;
+}
+
+Interval Media::hull(const Ray& ray, double tmax) const {
+  Interval hull;
+  for (const TrackedMedium& tracked : tracked_) {
+    const Interval range = scene::extent(*tracked.medium, ray, {0, tmax});
+    if (range.empty()) continue;
+    hull = {std::min(hull.lo, range.lo), std::max(hull.hi, range.hi)};
+  }
+  return hull;
+}
+
+Rgb Media::transmittance(const Ray& ray, double tmax, Counters& counters) const {
+  Rgb depth = Rgb::Zero();
+  for (const TrackedMedium& tracked : tracked_) {
+    ++counters.columns;
+    const double column = scene::density_integral(*tracked.medium, ray, {0, tmax});
+    // 0 times an infinite column is no extinction.
+    for (int c = 0; c < 3; ++c)
+      if (tracked.medium->sigma_t[c] > 0) depth[c] += tracked.medium->sigma_t[c] * column;
+  }
+  if (grey_) return Rgb::Constant(elementary::exp(-depth[0]));
+  return {elementary::exp(-depth[0]), elementary::exp(-depth[1]), elementary::exp(-depth[2])};
+}
+
+Rgb Media::ratio_transmittance(const Ray& ray, double tmax, const SampleRandom& random, std::uint32_t vertex,
+                               std::uint32_t branch, Counters& counters) const {
+  double product = 1;
+  for (std::size_t m = 0; m < tracked_.size(); ++m) {
+    const TrackedMedium& tracked = tracked_[m];
+    const double sigma = tracked.medium->sigma_t[0];
+    const Interval range = scene::extent(*tracked.medium, ray, {0, tmax});
+    if (range.empty() || !(sigma > 0)) continue;
+    if (tracked.homogeneous) {
+      product *= elementary::exp(-sigma * tracked.constant * range.length());
+      continue;
+    }
+    // Four branches of a vertex (light, and three segments of a connection) share its blocks, two numbers a block.
+    std::uint32_t index = (branch << 22) + std::uint32_t(m) * (flight_blocks >> 2);
+    const std::uint32_t last = index + (flight_blocks >> 2);
+    RandomBlock block = random.block(vertex, Purpose::transmittance, index);
+    int used = 1;
+    double depth = -elementary::log(block.fine(0));
+    walk(tracked.majorants, ray, range, [&](double begin, double end, double majorant) {
+      if (!(majorant > 0)) return false;
+      const double rate = sigma * majorant;
+      for (double t = begin;;) {
+        const double step = depth / rate;
+        if (!(t + step < end)) {
+          depth -= (end - t) * rate;
+          if (depth < 0) depth = 0;
+          return false;
+        }
+        t += step;
+        const double density = scene::density(tracked.medium->field, ray.at(t));
+        ++counters.lookups;
+        if (density > majorant * (1 + 1e-6)) ++counters.violations;
+        product *= 1 - density / majorant;
+        if (product == 0) return true;
+        if (used == 2) {
+          if (++index == last)
+            throw Error("path_tracer: 2^17 null collisions in one segment, expected a tighter majorant");
+          block = random.block(vertex, Purpose::transmittance, index);
+          used = 0;
+        }
+        depth = -elementary::log(block.fine(used++));
+      }
+    });
+  }
+  return Rgb::Constant(product);
+}
+
+}  // namespace airlight::path_tracer

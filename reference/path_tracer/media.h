@@ -1,0 +1,55 @@
+// The media of a scene, made ready for tracking: each with its supergrid, tracked on its own.
+//
+// Several media at one point superpose: independent collision distances are drawn in each and the nearest one wins,
+// which draws the medium in proportion to its extinction there and needs no common majorant.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "reference/path_tracer/counters.h"
+#include "reference/path_tracer/options.h"
+#include "reference/path_tracer/supergrid.h"
+#include "scene/math/random.h"
+#include "scene/media/medium.h"
+
+namespace airlight::path_tracer {
+
+struct TrackedMedium {
+  const scene::Medium* medium;
+  bool homogeneous;     // constant density in its region: exact free flights, no majorant
+  double constant = 0;  // that density
+  Supergrid majorants;  // of the density
+};
+
+struct Collision {
+  double t;    // along the ray [m]
+  int medium;  // index into the tracked media
+  double density;
+};
+
+class Media {
+ public:
+  Media(const std::vector<scene::Medium>&, const Options&);
+
+  const std::vector<TrackedMedium>& tracked() const { return tracked_; }
+  bool empty() const { return tracked_.empty(); }
+  bool grey() const { return grey_; }  // extinction is the same in all channels, in every medium
+
+  // The first collision before tmax under the extinction of channel `hero`, by delta tracking; nothing if there is
+  // none.
+  std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
+                               Counters&) const;
+  // The part of [0, tmax] from the first to the last point where any medium is met.
+  Interval hull(const Ray&, double tmax) const;
+  // Transmittance over [0, tmax], per channel, by noise-free columns.
+  Rgb transmittance(const Ray&, double tmax, Counters&) const;
+  // The same by ratio tracking: unbiased, noisy; only where grey().
+  Rgb ratio_transmittance(const Ray&, double tmax, const SampleRandom&, std::uint32_t vertex, std::uint32_t branch,
+                          Counters&) const;
+
+ private:
+  std::vector<TrackedMedium> tracked_;
+  bool grey_ = true;
+};
+
+}  // namespace airlight::path_tracer

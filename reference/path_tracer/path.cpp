@@ -1,0 +1,406 @@
+#include "reference/path_tracer/path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/path_tracer/sampling.h"
+#include "reference/path_tracer/surface_sampling.h"
+#include "scene/error.h"
+
+namespace airlight::path_tracer {
+namespace {
+
+constexpr std::uint32_t longest_path = 1u << 28;
+
+// A vertex from which light is gathered: in a medium, or on a surface.
+struct Vertex {
+  Point3 x;
+  Vec3 w;  // direction of the walk that arrived here, away from the eye
+  int medium = -1;
+  const scene::Hit* hit = nullptr;
+};
+
+// One walk; see path.h. `throughput` is what radiance arriving at the current vertex is worth; `density[c]` is how
+// likely channel c would have made the path so far, relative to the mean over the channels.
+class Walk {
+ public:
+  Walk(const World& world, const SampleRandom& random, PathSample& sample, Counters& counters)
+      : world_(world),
+        media_(world.media()),
+        lights_(world.lights()),
+        random_(random),
+        sample_(sample),
+        counters_(counters) {}
+
+  void run(const CameraRay&);
+
+ private:
+  // Transmittance of a whole segment, and the one that weights may use (1 where it would be noise).
+  Rgb transmittance(const Ray& ray, double t, std::uint32_t branch) {
+    if (world_.options().column_transmittance) return media_.transmittance(ray, t, counters_);
+    return media_.ratio_transmittance(ray, t, random_, vertex_, branch, counters_);
+  }
+  bool exact() const { return world_.options().column_transmittance; }
+
+  // Phase function or reflectance times cosine, towards a direction, and the density with which the walk would draw it.
+  Rgb scatter_value(const Vertex&, const Vec3& out) const;
+  double scatter_pdf(const Vertex&, const Vec3& out) const;
+  Point3 origin(const Vertex& v, const Vec3& out) const {
+    return v.hit ? world_.scene().geometry->offset_origin(v.x, v.hit->normal, out) : v.x;
+  }
+
+  double connection_pdf(int light, const Ray&, Interval hull, double t) const;
+  void gather(const Vertex&, const Rgb& analog_pdf);
+  void gather_delta(const Vertex&, const Pick&, const Rgb& analog_pdf);
+  void gather_environment(const Vertex&, const Pick&, double u1, double u2);
+  void connect(const Ray&, Interval hull, const Rgb& throughput, const Pick&, double direction_pdf, bool from_camera,
+               double u);
+  void connect_from(const Vertex&);
+  void escape(const Ray&);
+  bool survive(double u);
+
+  const World& world_;
+  const Media& media_;
+  const Lights& lights_;
+  const SampleRandom& random_;
+  PathSample& sample_;
+  Counters& counters_;
+
+  Rgb throughput_ = Rgb::Ones();
+  Rgb density_ = Rgb::Ones();
+  int hero_ = 0;
+  int m_ = 0, s_ = 0;         // scatterings, reflections so far
+  std::uint32_t vertex_ = 0;  // 0: the eye
+  Ray ray_;                   // current segment
+  Interval hull_;             // where media are on it
+  double direction_pdf_ = 1;  // density with which its direction was drawn [1/sr]; 1 from the eye
+};
+
+Rgb Walk::scatter_value(const Vertex& v, const Vec3& out) const {
+  if (v.hit) {
+    const double cosine = v.hit->normal.dot(out);
+    if (!(cosine > 0)) return Rgb::Zero();
+    return scene::brdf(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, out) * cosine;
+  }
+  const double c = std::clamp(v.w.dot(out), -1.0, 1.0);
+  return Rgb::Constant(scene::phase_value(media_.tracked()[v.medium].medium->phase, c));
+}
+
+double Walk::scatter_pdf(const Vertex& v, const Vec3& out) const {
+  if (v.hit) return pdf_reflection(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, out);
+  return scene::phase_value(media_.tracked()[v.medium].medium->phase, std::clamp(v.w.dot(out), -1.0, 1.0));
+}
+
+// Density, over solid angle and distance, with which the connection from the start of a ray would make its point at t,
+// the choice of the light included. The ray's own direction was drawn with direction_pdf_.
+double Walk::connection_pdf(int light, const Ray& ray, Interval hull, double t) const {
+  const Point3 center = scene::ball(lights_.light(light))->center;
+  const Equiangular angles(ray, center, hull);
+  if (!angles.usable()) return 0;
+  if (vertex_ == 0) return lights_.probability_for_ray(light, ray, hull) * angles.pdf(t);
+  const double sine = std::min(1.0, angles.h / (center - ray.origin).norm());
+  const double toward = 1 / (2 * pi * pi * sine);
+  return lights_.probability_for_connection(light, ray.origin) * 0.5 * (direction_pdf_ + toward) * angles.pdf(t);
+}
+
+bool Walk::survive(double u) {
+  const Options& o = world_.options();
+  if (m_ + s_ < o.roulette_order) return true;
+  const double q = std::min(o.roulette_cap, throughput_.maxCoeff());
+  if (q >= 1) return true;
+  if (!(u < q)) return false;
+  throughput_ /= q;
+  return true;
+}
+
+// Next-event estimation at a vertex: one light. `analog_pdf[c]`, for a vertex in a medium, is the density over solid
+// angle and distance with which channel c's walk made this vertex out of the one before (used where lights are
+// connected).
+void Walk::gather(const Vertex& v, const Rgb& analog_pdf) {
+  if (!lights_.any()) return;
+  const RandomBlock block = random_.block(vertex_, Purpose::light);
+  const Pick pick = lights_.pick(v.x, block.coarse(3));
+  if (pick.light < 0) return;
+  if (scene::is_delta(lights_.light(pick.light)))
+    gather_delta(v, pick, analog_pdf);
+  else
+    gather_environment(v, pick, block.fine(0), block.coarse(2));
+}
+
+void Walk::gather_delta(const Vertex& v, const Pick& pick, const Rgb& analog_pdf) {
+  const scene::Incident in = scene::incident(lights_.light(pick.light), v.x);
+  if (!(in.irradiance.maxCoeff() > 0)) return;
+  const Rgb value = scatter_value(v, in.to_light);
+  if (!(value.maxCoeff() > 0)) return;
+  double weight = 1 / pick.probability;
+  if (!v.hit && lights_.connected(pick.light)) {
+    // Both densities relative to the mean of the channels before the segment that led here; throughput_ already stands
+    // on the mean after it, analog_pdf's.
+    const double analog = pick.probability * analog_pdf.mean();
+    const double t = (v.x - ray_.origin).dot(ray_.direction);
+    --vertex_;  // the connection would have started at the vertex before
+    const double connection = connection_pdf(pick.light, ray_, hull_, t);
+    ++vertex_;
+    weight *= analog / (analog + connection);
+  }
+  const Ray shadow{origin(v, in.to_light), in.to_light};
+  if (!world_.visible(shadow, in.distance, pick.light)) return;
+  const Rgb radiance = throughput_ * value * in.irradiance * transmittance(shadow, in.distance, 0) * weight;
+  sample_.add(m_, s_ + (v.hit != nullptr), radiance);
+}
+
+void Walk::gather_environment(const Vertex& v, const Pick& pick, double u1, double u2) {
+  const auto& environment = std::get<scene::EnvironmentLight>(lights_.light(pick.light));
+  const Vec3 out = scene::sample_environment(environment, u1, u2);
+  const Rgb value = scatter_value(v, out);
+  if (!(value.maxCoeff() > 0)) return;
+  const double pdf = pick.probability * scene::pdf_environment(environment, out);
+  const Rgb radiance = scene::radiance(environment, out);
+  if (!(pdf > 0) || (radiance == 0).all()) return;
+  const Ray shadow{origin(v, out), out};
+  if (!world_.visible(shadow, infinity, -1)) return;
+  const Rgb T = transmittance(shadow, infinity, 0);
+  const double walk = scatter_pdf(v, out) * (exact() ? (density_ * T).mean() : 1.0);
+  sample_.add(m_, s_ + (v.hit != nullptr), throughput_ * value * radiance * T / (pdf + walk));
+}
+
+// Light of one point or spot light scattered once on a ray, at one point drawn with equal angles.
+void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const Pick& pick, double direction_pdf,
+                   bool from_camera, double u) {
+  const scene::Light& light = lights_.light(pick.light);
+  const Point3 center = scene::ball(light)->center;
+  const Equiangular angles(ray, center, hull);
+  if (!angles.usable()) return;
+  const double t = angles.sample(u);
+  const Point3 y = ray.at(t);
+  double extinction_there = 0;
+  std::array<double, 64> densities;
+  const auto& tracked = media_.tracked();
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    densities[i] = scene::density(*tracked[i].medium, y);
+    extinction_there += densities[i];
+  }
+  if (!(extinction_there > 0)) return;
+
+  const double distance = std::sqrt(angles.squared_distance(t));
+  const Vec3 to_light = (center - y) / (center - y).norm();
+  const Rgb intensity = scene::intensity_towards(light, -to_light);
+  if (!(intensity.maxCoeff() > 0)) return;
+  const Ray shadow{y, to_light};
+  if (!world_.visible(shadow, distance, pick.light)) return;
+
+  ++counters_.connections;
+  const Rgb T = transmittance(ray, t, 1);
+  const Rgb light_T = transmittance(shadow, distance, 2);
+  const double pdf = pick.probability * direction_pdf * angles.pdf(t);
+  // The other way to the same point: the walk's own collision there, with next-event estimation.
+  const double pick_there = lights_.probability(pick.light, y);
+  const double walk_pdf = from_camera ? 1.0 : direction_pdf_;
+  const double c = std::clamp(ray.direction.dot(to_light), -1.0, 1.0);
+  Rgb sum = Rgb::Zero();
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (!(densities[i] > 0)) continue;
+    const scene::Medium& medium = *tracked[i].medium;
+    const Rgb extinction = medium.sigma_t * densities[i];
+    const double analog =
+        pick_there * walk_pdf * (exact() ? (density_ * extinction * T).mean() : (density_ * extinction).mean());
+    sum += extinction * medium.albedo * (scene::phase_value(medium.phase, c) / (pdf + analog));
+  }
+  sample_.add(m_ + 1, s_, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
+}
+
+// The connection from a vertex: a direction half by phase function or reflection, half with density 1/(2 pi^2 sin
+// theta) about the direction to the light, which with equal angles on the ray bounds the contribution.
+void Walk::connect_from(const Vertex& v) {
+  const RandomBlock block = random_.block(vertex_, Purpose::connection);
+  const RandomBlock choice = random_.block(vertex_, Purpose::connection, 1);
+  const Pick pick = lights_.pick_for_connection(v.x, choice.coarse(0));
+  if (pick.light < 0) return;
+  const Vec3 offset = scene::ball(lights_.light(pick.light))->center - v.x;
+  const double length = offset.norm();
+  if (!(length > 0)) return;
+  const Vec3 axis = offset / length;
+  Vec3 out;
+  if (choice.coarse(1) < 0.5) {
+    if (v.hit)
+      out = sample_reflection(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, choice.coarse(3),
+                              block.fine(0), choice.coarse(2));
+    else
+      out = turned(v.w, scene::sample_phase_cosine(media_.tracked()[v.medium].medium->phase, block.fine(0)),
+                   choice.coarse(2));
+  } else {
+    const elementary::SinCos theta = elementary::sincos_turns(0.5 * block.fine(0));
+    out = turned(axis, theta.cos, theta.sin, choice.coarse(2));
+  }
+  const Rgb value = scatter_value(v, out);
+  if (!(value.maxCoeff() > 0)) return;
+  const Ray ray{origin(v, out), out};
+  ++counters_.rays;
+  const scene::RayEnd end = scene::ray_end(world_.scene(), ray);
+  const Interval hull = media_.hull(ray, end.t);
+  if (hull.empty()) return;
+  const double sine = (offset - offset.dot(out) * out).norm() / length;
+  direction_pdf_ = scatter_pdf(v, out);
+  const double direction_pdf = 0.5 * (direction_pdf_ + 1 / (2 * pi * pi * std::min(1.0, sine)));
+  connect(ray, hull, throughput_ * value, pick, direction_pdf, false, block.fine(1));
+}
+
+// The walk left the scene along ray_: environments, weighted against their own sampling at the vertex before.
+void Walk::escape(const Ray& ray) {
+  if (lights_.environments().empty() || vertex_ == 0) return;
+  for (const int i : lights_.environments()) {
+    const auto& environment = std::get<scene::EnvironmentLight>(lights_.light(i));
+    const Rgb radiance = scene::radiance(environment, ray.direction);
+    if ((radiance == 0).all()) continue;
+    const double pdf = lights_.probability(i, ray.origin) * scene::pdf_environment(environment, ray.direction);
+    sample_.add(m_, s_, throughput_ * radiance * (direction_pdf_ / (direction_pdf_ + pdf)));
+  }
+}
+
+void Walk::run(const CameraRay& camera) {
+  const Options& options = world_.options();
+  const bool grey = media_.grey();
+  const bool connected = lights_.any_connected();
+  const RandomBlock first = random_.block(0, Purpose::camera, 1);
+  if (!grey) hero_ = std::min(2, int(3 * first.coarse(0)));
+  ray_ = camera.ray;
+  scene::RayEnd later;  // of the second segment on
+  const scene::RayEnd* end = &camera.end;
+  hull_ = camera.hull;
+  if (camera.end.t == infinity) sample_.add(0, 0, camera.background);
+
+  if (connected && !hull_.empty() && options.max_order != 0) {
+    const Pick pick = lights_.pick_for_ray(ray_, hull_, first.coarse(1));
+    if (pick.light >= 0)
+      connect(ray_, hull_, throughput_, pick, 1.0, true, random_.block(0, Purpose::connection).fine(0));
+  }
+
+  for (;;) {
+    ++counters_.rays;
+    const auto collision = hull_.empty() ? std::nullopt : media_.fly(ray_, end->t, hero_, random_, vertex_, counters_);
+    const double t = collision ? collision->t : end->t;
+    // How the segment changes the densities of the channels; needed where they differ, and for weights.
+    Rgb factor = Rgb::Ones();
+    const bool weights_environment = !collision && end->t == infinity && vertex_ > 0 && !lights_.environments().empty();
+    const bool need_T = !grey || (exact() && ((collision && connected) || weights_environment));
+    Rgb T = Rgb::Ones();
+    if (need_T && !hull_.empty()) T = media_.transmittance(ray_, t, counters_);
+    if (collision) {
+      const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
+      factor = T * medium.sigma_t * collision->density;
+    } else {
+      factor = T;
+    }
+    const Rgb arriving = density_ * factor;  // unnormalised
+    const double mean = arriving.mean();
+    if (!(mean > 0)) return;  // underflow: optical depths beyond 700
+    if (!grey) {
+      throughput_ *= factor / mean;
+      density_ = arriving / mean;
+    }
+
+    if (!collision) {
+      if (end->on_ball) return;
+      if (!end->hit) {
+        // For its weight, the walk escapes with its direction's density times the transmittance.
+        if (exact()) direction_pdf_ *= mean;
+        escape(ray_);
+        return;
+      }
+    }
+    if (collision && options.max_order >= 0 && m_ >= options.max_order) {
+      const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
+      sample_.truncated += throughput_ * medium.albedo;
+      return;
+    }
+
+    ++vertex_;
+    if (vertex_ >= longest_path)
+      throw Error("path_tracer: a path has 2^28 vertices; set max_order, or absorb light somewhere");
+    Vertex v;
+    v.w = ray_.direction;
+    if (collision) {
+      v.x = ray_.at(t);
+      v.medium = collision->medium;
+      throughput_ *= media_.tracked()[v.medium].medium->albedo;
+      ++m_;
+      if (!(throughput_.maxCoeff() > 0)) return;
+      gather(v, (vertex_ == 1 ? 1.0 : direction_pdf_) * arriving);
+    } else {
+      v.x = end->hit->position;
+      v.hit = &*end->hit;
+      gather(v, Rgb::Zero());
+    }
+
+    const RandomBlock scatter = random_.block(vertex_, Purpose::scatter);
+    if (!survive(scatter.coarse(3))) return;
+    const bool may_scatter = options.max_order < 0 || m_ < options.max_order;
+    if (connected && may_scatter) connect_from(v);
+
+    Vec3 out;
+    if (v.hit) {
+      const scene::Material& material = world_.scene().surfaces[v.hit->surface].material;
+      out = sample_reflection(material, v.hit->normal, -v.w, random_.block(vertex_, Purpose::scatter, 1).coarse(0),
+                              scatter.fine(0), scatter.coarse(2));
+      const Rgb value = scatter_value(v, out);
+      direction_pdf_ = scatter_pdf(v, out);
+      if (!(direction_pdf_ > 0)) return;
+      throughput_ *= value / direction_pdf_;
+      if (!(throughput_.maxCoeff() > 0)) return;
+      ++s_;
+    } else {
+      const scene::PhaseFunction& phase = media_.tracked()[v.medium].medium->phase;
+      const double c = scene::sample_phase_cosine(phase, scatter.fine(0));
+      out = turned(v.w, c, scatter.coarse(2));
+      direction_pdf_ = scene::phase_value(phase, c);
+    }
+    ray_ = {origin(v, out), out};
+    later = scene::ray_end(world_.scene(), ray_);
+    end = &later;
+    hull_ = media_.hull(ray_, end->t);
+  }
+}
+
+}  // namespace
+
+World::World(std::shared_ptr<const scene::Scene> scene, const Options& options)
+    : scene_(std::move(scene)), options_(options), media_(scene_->media, options), lights_(*scene_, options) {}
+
+bool World::visible(const Ray& ray, double tmax, int except) const {
+  if (scene_->geometry && scene_->geometry->occluded(ray, tmax)) return false;
+  for (int i = 0; i < int(scene_->lights.size()); ++i) {
+    if (i == except) continue;
+    const auto ball = scene::ball(scene_->lights[i]);
+    if (!ball || !(ball->radius > 0)) continue;
+    const Vec3 offset = ball->center - ray.origin;
+    const double along = offset.dot(ray.direction);
+    const double half_squared = ball->radius * ball->radius - (offset - along * ray.direction).squaredNorm();
+    if (along <= 0 || half_squared <= 0) continue;
+    const double t = along - std::sqrt(half_squared);
+    if (t > 0 && t < tmax) return false;
+  }
+  return true;
+}
+
+CameraRay prepare_camera_ray(const World& world, const Ray& ray, Counters& counters) {
+  CameraRay camera{ray, scene::ray_end(world.scene(), ray), {}, Rgb::Zero()};
+  camera.hull = world.media().hull(ray, camera.end.t);
+  if (camera.end.t == infinity && !world.lights().environments().empty()) {
+    Rgb radiance = Rgb::Zero();
+    for (const int i : world.lights().environments())
+      radiance += scene::radiance(std::get<scene::EnvironmentLight>(world.lights().light(i)), ray.direction);
+    camera.background =
+        camera.hull.empty() ? radiance : Rgb(radiance * world.media().transmittance(ray, infinity, counters));
+  }
+  return camera;
+}
+
+void trace(const World& world, const CameraRay& camera, const SampleRandom& random, PathSample& sample,
+           Counters& counters) {
+  ++counters.paths;
+  Walk(world, random, sample, counters).run(camera);
+}
+
+}  // namespace airlight::path_tracer

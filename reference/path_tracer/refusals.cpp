@@ -1,0 +1,105 @@
+#include "reference/path_tracer/refusals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/math/random.h"
+
+namespace airlight::path_tracer {
+namespace {
+
+constexpr double thickest = 1e4;
+
+bool all_scattered(const scene::Medium& medium, int c) { return medium.sigma_t[c] > 0 && medium.albedo[c] >= 1; }
+
+// Optical depth through the middle of the medium in its thinnest direction, of channel c.
+double thinnest_depth(const scene::Medium& medium, int c) {
+  const Box box = scene::bounding_box(medium);
+  if (box.empty()) return 0;
+  Point3 middle = Point3::Zero();
+  for (int a = 0; a < 3; ++a)
+    if (std::isfinite(box.lo[a]) && std::isfinite(box.hi[a])) middle[a] = box.center()[a];
+  std::vector<Vec3> directions = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  if (const auto* slab = std::get_if<scene::Slab>(&medium.region)) {
+    directions.push_back(slab->normal);
+    middle += slab->normal * (0.5 * (slab->lo + slab->hi) - slab->normal.dot(middle));
+  }
+  double least = infinity;
+  for (const Vec3& d : directions)
+    least = std::min(least, scene::density_integral(medium, {middle, d}, {0, infinity}) +
+                                scene::density_integral(medium, {middle, -d}, {0, infinity}));
+  return least > 0 ? medium.sigma_t[c] * least : 0;
+}
+
+bool reflects_all(const scene::Material& material, int c) {
+  if (const auto* lambert = std::get_if<scene::Lambert>(&material)) return lambert->albedo[c] >= 1;
+  const auto& phong = std::get<scene::Phong>(material);
+  return phong.diffuse[c] + phong.specular[c] >= 1;
+}
+
+// Do all rays from the point end on surfaces that reflect everything in channel c?
+bool enclosed(const scene::Scene& scene, const Point3& from, int c) {
+  for (std::uint32_t i = 0; i < 4096; ++i) {
+    const RandomBlock block{philox4x32_10({i, 0, 0, 0}, {0, 0})};
+    const double z = 2 * block.fine(0) - 1, angle = 2 * pi * block.fine(1), r = std::sqrt(1 - z * z);
+    const auto hit = scene.geometry->first_hit({from, Vec3(r * std::cos(angle), r * std::sin(angle), z)});
+    if (!hit || !reflects_all(scene.surfaces[hit->surface].material, c)) return false;
+  }
+  return true;
+}
+
+bool white_room_with_light(const scene::Scene& scene) {
+  if (!scene.geometry) return false;
+  for (int c = 0; c < 3; ++c) {
+    bool absorbs = false;
+    for (const scene::Medium& medium : scene.media)
+      absorbs = absorbs || (medium.sigma_t[c] > 0 && medium.albedo[c] < 1);
+    if (absorbs) continue;
+    bool shines = false;
+    for (const scene::Light& light : scene.lights)
+      if (const auto ball = scene::ball(light)) shines = shines || enclosed(scene, ball->center, c);
+    if (shines && enclosed(scene, scene.camera.position, c)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> refusals(const scene::Scene& scene, const Options& options) {
+  std::vector<std::string> reasons;
+  if (options.max_order < 0)
+    for (const scene::Medium& medium : scene.media) {
+      double depth = 0;
+      for (int c = 0; c < 3; ++c)
+        if (all_scattered(medium, c)) depth = std::max(depth, thinnest_depth(medium, c));
+      if (depth > thickest)
+        reasons.push_back(fmt::format(
+            "medium '{}' scatters everything (albedo 1) and is {:.3g} optical depths thick, expected at most {:.3g}, "
+            "an albedo below 1, or a cap (max_order)",
+            medium.name, depth, thickest));
+    }
+  for (const scene::Light& light : scene.lights) {
+    const auto ball = scene::ball(light);
+    if (!ball || ball->radius > 0 || scene.camera.kind != scene::Camera::Kind::perspective) continue;
+    if (ball->center == scene.camera.position && (scene::extinction(scene.media, ball->center) > 0).any())
+      reasons.push_back(fmt::format(
+          "the {} light stands on the camera, in a medium: every pixel is infinite; expected a distance or a radius",
+          scene::light_name(light)));
+  }
+  if (white_room_with_light(scene))
+    reasons.push_back(
+        "the camera is in a closed room that reflects everything (albedo 1) with a light in it: there is no finite "
+        "answer; expected an albedo below 1 or an opening");
+  if (!options.column_transmittance)
+    for (const scene::Medium& medium : scene.media)
+      if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff())
+        reasons.push_back(
+            fmt::format("medium '{}' has coloured extinction, which transmittance=ratio cannot weight; "
+                        "expected transmittance=column",
+                        medium.name));
+  return reasons;
+}
+
+}  // namespace airlight::path_tracer

@@ -1,0 +1,91 @@
+#include "reference/path_tracer/renderer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "reference/path_tracer/accumulation.h"
+#include "reference/path_tracer/refusals.h"
+#include "reference/path_tracer/stopping.h"
+#include "scene/error.h"
+
+namespace airlight::path_tracer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+class PreparedTracer : public scene::Prepared {
+ public:
+  PreparedTracer(std::shared_ptr<const scene::Scene> scene, const Options& options)
+      : start_(Clock::now()), world_(std::move(scene), options), prepare_seconds_(seconds_since(start_)) {}
+
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return {{"supergrid", prepare_seconds_}}; }
+
+  scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    const auto start = Clock::now();
+    Accumulation accumulation = empty_accumulation(world_, view);
+    const bool whole = render_to_target(world_, view, execution, accumulation);
+    if (accumulation.least_samples() == 0) throw scene::Interrupted("interrupted before every pixel had a sample");
+    scene::Rendering rendering;
+    const auto traced = Clock::now();
+    rendering.film = to_film(world_, view, accumulation);
+    rendering.film.metadata["complete"] = whole ? "true" : "false";
+    rendering.times = {{"paths", std::chrono::duration<double>(traced - start).count()},
+                       {"film", seconds_since(traced)}};
+    rendering.counters = accumulation.counters.named();
+    return rendering;
+  }
+
+ private:
+  Clock::time_point start_;
+  World world_;
+  double prepare_seconds_;
+};
+
+std::vector<scene::Stage> PreparedTracer::stages() const {
+  const Options& o = world_.options();
+  const bool fog = !world_.media().empty();
+  bool heterogeneous = false;
+  for (const TrackedMedium& medium : world_.media().tracked()) heterogeneous = heterogeneous || !medium.homogeneous;
+  const bool geometry = world_.scene().geometry != nullptr;
+  const bool environment = !world_.lights().environments().empty();
+  return {
+      {"collisions", fog, fog ? "there is a medium" : "no medium has extinction"},
+      {"supergrid", heterogeneous && o.supergrid,
+       !heterogeneous ? "every medium is homogeneous: exact free flights"
+       : o.supergrid  ? "a medium varies in space"
+                      : "switched off: one majorant for each medium"},
+      {"spectral weights", !world_.media().grey(),
+       world_.media().grey() ? "extinction is the same in all channels" : "extinction depends on the channel"},
+      {"connections", world_.lights().any_connected(),
+       world_.lights().any_connected() ? "a point or spot light is inside or close to a medium"
+                                       : "no point or spot light is close to a medium"},
+      {"environment weights", environment, environment ? "there is an environment light" : "no environment light"},
+      {"surfaces", geometry, geometry ? "the scene has surfaces" : "the scene has no surfaces"},
+  };
+}
+
+}  // namespace
+
+std::string PathTracer::about() const {
+  return "unbiased volume path tracer: delta tracking, next-event estimation, all orders (references' specification, "
+         "R1)";
+}
+
+std::vector<scene::SettingSpec> PathTracer::settings() const { return setting_specs(); }
+
+std::vector<std::string> PathTracer::supports(const scene::Scene& scene, const scene::Settings& settings) const {
+  return refusals(scene, parse_options(settings));
+}
+
+std::unique_ptr<scene::Prepared> PathTracer::prepare(std::shared_ptr<const scene::Scene> scene,
+                                                     const scene::Settings& settings, const scene::Execution&) const {
+  const Options options = parse_options(settings);
+  if (const auto reasons = refusals(*scene, options); !reasons.empty())
+    throw Error(fmt::format("path_tracer: {}", reasons.front()));
+  return std::make_unique<PreparedTracer>(std::move(scene), options);
+}
+
+}  // namespace airlight::path_tracer

@@ -1,0 +1,17 @@
+// The unbiased reference as a renderer of scenes: "path_tracer".
+#pragma once
+#include "scene/renderer.h"
+
+namespace airlight::path_tracer {
+
+class PathTracer : public scene::Renderer {
+ public:
+  std::string name() const override { return "path_tracer"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                           const scene::Execution&) const override;
+};
+
+}  // namespace airlight::path_tracer

@@ -1,0 +1,85 @@
+// Upper bounds of a density field, constant on the cells of a coarse grid ("supergrid": Szirmay-Kalos et al. 2011).
+//
+// The grid spans a box; outside it, where the field is unbounded, one more bound holds. Bounds are floats rounded up.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "scene/math/types.h"
+
+namespace airlight::path_tracer {
+
+struct Supergrid {
+  Point3 lo = Point3::Zero();     // corner of the first cell
+  Vec3 cell = Vec3::Ones();       // [m] or samples: size of a cell
+  Eigen::Vector3i size{0, 0, 0};  // cells per axis; 0: no cells, `outside` holds everywhere
+  std::vector<float> majorants;   // x fastest
+  float outside = 0;              // bound of the density beyond the box
+
+  float at(int i, int j, int k) const { return majorants[i + std::size_t(size[0]) * (j + std::size_t(size[1]) * k)]; }
+  Box box() const { return {lo, lo + cell.cwiseProduct(size.cast<double>())}; }
+};
+
+// `bound` gives an upper bound of the density over a box; cells are widened by a few ulp of the box first, so that a
+// point which rounding puts on the wrong side of a face is still bounded.
+Supergrid make_supergrid(const Box& box, const Eigen::Vector3i& cells, double scale,
+                         const std::function<double(const Box&)>& bound);
+
+// The least float that is not below x.
+float round_up(double x);
+
+// Calls visit(t0, t1, majorant) for the pieces of [t.lo, t.hi] of the ray in order, each with its bound, until visit
+// returns true.
+template <class Visit>
+void walk(const Supergrid& grid, const Ray& ray, Interval t, Visit&& visit) {
+  double inside_begin = t.lo, inside_end = t.lo;
+  Vec3 inverse;
+  if (grid.size[0] > 0) {
+    const Box box = grid.box();
+    inside_end = t.hi;
+    for (int a = 0; a < 3; ++a) {
+      inverse[a] = 1 / ray.direction[a];
+      if (ray.direction[a] == 0) {
+        if (!(ray.origin[a] >= box.lo[a] && ray.origin[a] <= box.hi[a])) inside_end = -infinity;
+        continue;
+      }
+      const double t0 = (box.lo[a] - ray.origin[a]) * inverse[a];
+      const double t1 = (box.hi[a] - ray.origin[a]) * inverse[a];
+      inside_begin = std::max(inside_begin, std::min(t0, t1));
+      inside_end = std::min(inside_end, std::max(t0, t1));
+    }
+  }
+  if (!(inside_begin < inside_end)) {
+    visit(t.lo, t.hi, double(grid.outside));
+    return;
+  }
+  if (inside_begin > t.lo && visit(t.lo, inside_begin, double(grid.outside))) return;
+
+  int cell[3], step[3], last[3];
+  double next[3];
+  for (int a = 0; a < 3; ++a) {
+    const double x = (ray.origin[a] + inside_begin * ray.direction[a] - grid.lo[a]) / grid.cell[a];
+    cell[a] = std::clamp(int(x), 0, grid.size[a] - 1);
+    step[a] = ray.direction[a] > 0 ? 1 : -1;
+    last[a] = ray.direction[a] > 0 ? grid.size[a] - 1 : 0;
+    // The face ahead from its own coordinate every time: no drift.
+    next[a] = ray.direction[a] == 0
+                  ? infinity
+                  : (grid.lo[a] + (cell[a] + (step[a] > 0)) * grid.cell[a] - ray.origin[a]) * inverse[a];
+  }
+  double now = inside_begin;
+  for (;;) {
+    const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    const double exit = std::min(std::max(next[a], now), inside_end);
+    if (exit > now && visit(now, exit, double(grid.at(cell[0], cell[1], cell[2])))) return;
+    now = exit;
+    if (cell[a] == last[a] || !(now < inside_end)) break;
+    cell[a] += step[a];
+    next[a] = (grid.lo[a] + (cell[a] + (step[a] > 0)) * grid.cell[a] - ray.origin[a]) * inverse[a];
+  }
+  // Rounding may end the walk through the cells a few ulp early: the rest of the way in the box keeps the last bound.
+  if (now < inside_end && visit(now, inside_end, double(grid.at(cell[0], cell[1], cell[2])))) return;
+  if (inside_end < t.hi) visit(inside_end, t.hi, double(grid.outside));
+}
+
+}  // namespace airlight::path_tracer
