@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -11,29 +10,7 @@
 
 namespace fs = std::filesystem;
 
-namespace airlight::scene {
-namespace {
-
-std::string& chosen_folder() {
-  static std::string folder;
-  return folder;
-}
-
-}  // namespace
-
-std::string data_folder() {
-  if (!chosen_folder().empty()) return chosen_folder();
-  const char* variable = std::getenv("AIRLIGHT_DATA");
-  return variable ? variable : "";
-}
-
-void set_data_folder(const std::string& path) {
-  std::error_code code;
-  if (!fs::is_directory(path, code)) throw Error(fmt::format("{}: expected a data folder, found none", path));
-  chosen_folder() = path;
-}
-
-namespace load {
+namespace airlight::scene::load {
 
 std::string find_asset(const TableReader& reader, const std::string& key, const std::string& folder) {
   const std::string name = reader.text(key);
@@ -69,5 +46,4 @@ std::string read_whole_file(const std::string& path, std::size_t max_bytes) {
   return content;
 }
 
-}  // namespace load
-}  // namespace airlight::scene
+}  // namespace airlight::scene::load

@@ -102,6 +102,34 @@ void add(ContentHash& hash, const Medium& medium) {
   if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase)) hash.add(hg->g);
 }
 
+void add(ContentHash& hash, const TriangleMesh& mesh) {
+  hash.add(std::int64_t(mesh.vertices.size()));
+  for (const Point3& vertex : mesh.vertices) hash.add(vertex);
+  hash.add(std::int64_t(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles)
+    for (const int index : triangle) hash.add(index);
+}
+
+void add(ContentHash& hash, const Plane& plane) {
+  hash.add(plane.point);
+  hash.add(plane.normal);
+}
+
+void add(ContentHash& hash, const Lambert& material) { hash.add(material.albedo); }
+
+void add(ContentHash& hash, const Phong& material) {
+  hash.add(material.diffuse);
+  hash.add(material.specular);
+  hash.add(material.exponent);
+}
+
+void add(ContentHash& hash, const Surface& surface) {
+  hash.add(int(surface.shape.index()));
+  std::visit([&](const auto& shape) { add(hash, shape); }, surface.shape);
+  hash.add(int(surface.material.index()));
+  std::visit([&](const auto& material) { add(hash, material); }, surface.material);
+}
+
 std::string content_hash(const Scene& scene) {
   ContentHash hash;
   hash.tag("airlight scene 1");  // raised when the meaning of the values changes
@@ -118,11 +146,17 @@ std::string content_hash(const Scene& scene) {
   hash.tag("media");
   hash.add(std::int64_t(scene.media.size()));
   for (const Medium& medium : scene.media) add(hash, medium);
+  hash.tag("surfaces");
+  hash.add(std::int64_t(scene.surfaces.size()));
+  for (const Surface& surface : scene.surfaces) add(hash, surface);
   return hash.digits();
 }
 
 }  // namespace
 
-void finish(Scene& scene) { scene.hash = content_hash(scene); }
+void finish(Scene& scene) {
+  scene.geometry = scene.surfaces.empty() ? nullptr : std::make_shared<const Geometry>(scene.surfaces);
+  scene.hash = content_hash(scene);
+}
 
 }  // namespace airlight::scene

@@ -9,6 +9,7 @@ Camera read_camera(TableReader reader) {
   const Vec3 position = reader.vector("position");
   const Vec3 target = reader.vector("look_at");
   const Vec3 up = reader.direction("up", Vec3::UnitY());
+  if (position == target) reader.expected("look_at", "a point other than the camera's position");
   Camera camera;
   try {
     camera = look_at(position, target, up);

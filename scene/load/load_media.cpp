@@ -1,4 +1,5 @@
 #include "scene/load/parts.h"
+#include "scene/load/transform.h"
 
 namespace airlight::scene::load {
 namespace {
@@ -20,9 +21,7 @@ Region read_region(TableReader reader) {
   const std::string type = reader.type({"unbounded", "box", "sphere", "slab"});
   if (type == "box") {
     reader.allow({"type", "lo", "hi"});
-    const Box box{reader.vector("lo"), reader.vector("hi")};
-    if (!(box.lo.array() < box.hi.array()).all()) reader.expected("hi", "a corner above 'lo' on every axis");
-    return box;
+    return read_corners(reader);
   }
   if (type == "sphere") {
     reader.allow({"type", "center", "radius"});
@@ -42,6 +41,7 @@ Region read_region(TableReader reader) {
 // Allows the keys of this type and of every medium, for the reads that follow.
 DensityField read_field(const std::string& type, TableReader& reader, const std::string& folder) {
   if (type == "gaussians") return read_gaussian_sum(reader, folder);
+  if (type == "grid") return read_grid(reader, folder);
   reader.allow(medium_keys_and({"density"}));
   return Homogeneous{reader.number("density", not_negative, 1)};
 }
@@ -49,13 +49,13 @@ DensityField read_field(const std::string& type, TableReader& reader, const std:
 }  // namespace
 
 std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys) {
-  std::vector<std::string> all = medium_keys;
+  std::vector<std::string> all = {"name", "type", "sigma_t", "albedo", "phase", "region"};
   all.insert(all.end(), keys.begin(), keys.end());
   return all;
 }
 
 Medium read_medium(TableReader reader, const std::string& folder) {
-  const std::string type = reader.type({"homogeneous", "gaussians"});
+  const std::string type = reader.type({"homogeneous", "gaussians", "grid"});
   Medium medium;
   medium.field = read_field(type, reader, folder);
   medium.name = reader.text("name", "");

@@ -45,6 +45,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   scene.camera = read_camera(reader.required_table("camera"));
   for (const TableReader& light : reader.tables("light")) scene.lights.push_back(read_light(light, folder));
   for (const TableReader& medium : reader.tables("medium")) scene.media.push_back(read_medium(medium, folder));
+  for (const TableReader& surface : reader.tables("surface")) scene.surfaces.push_back(read_surface(surface, folder));
   finish(scene);
   return scene;
 }

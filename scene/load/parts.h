@@ -1,6 +1,9 @@
 // The parts of a scene file, each read from its table. scene/README.md is the user's description of all of them.
+//
+// `folder` is where the scene file lies: files that it names are looked for there first.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "scene/load/table_reader.h"
 #include "scene/scene.h"
@@ -10,13 +13,14 @@ namespace airlight::scene::load {
 Camera read_camera(TableReader);
 Light read_light(TableReader, const std::string& folder);
 Medium read_medium(TableReader, const std::string& folder);
+Surface read_surface(TableReader, const std::string& folder);
 
-// A field of each kind; the reader is the medium's. They allow their own keys beside those of every medium.
+// Fields of media. The reader is the medium's; they allow their own keys beside those of every medium.
 GaussianSum read_gaussian_sum(TableReader&, const std::string& folder);
+std::shared_ptr<const VoxelGrid> read_grid(TableReader&, const std::string& folder);
 
-// Keys that every medium has, whatever its type.
-inline const std::vector<std::string> medium_keys = {"name", "type", "sigma_t", "albedo", "phase", "region"};
-// The same and those of one type.
+// `keys` and those of every medium, of every surface.
 std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys);
+std::vector<std::string> surface_keys_and(const std::vector<std::string>& keys);
 
 }  // namespace airlight::scene::load

@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "scene/error.h"
@@ -18,53 +16,6 @@ namespace {
 std::string prefix(const std::string& where) { return where.empty() ? "" : where + ": "; }
 
 }  // namespace
-
-std::string location(const toml::source_region& source) {
-  const std::string path = source.path ? *source.path : "scene";
-  if (is_override(path)) return path;
-  return fmt::format("{}:{}:{}", path, source.begin.line, source.begin.column);
-}
-
-std::string written(const toml::node& node) {
-  std::ostringstream stream;
-  node.visit([&](const auto& value) {
-    if constexpr (toml::is_table<decltype(value)> || toml::is_array<decltype(value)>)
-      stream << toml::toml_formatter(value);
-    else
-      stream << toml::toml_formatter(toml::array{value});
-  });
-  std::string text = stream.str();
-  if (!node.is_table() && !node.is_array()) {  // the list of one that a lone value was printed as
-    const auto open = text.find('[');
-    const auto close = text.rfind(']');
-    if (open != std::string::npos && close != std::string::npos) text = text.substr(open + 1, close - open - 1);
-  }
-  if (node.is_table()) return "a table";
-  std::string line;
-  for (const char c : text) {
-    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
-    if (!blank)
-      line += c;
-    else if (!line.empty() && line.back() != ' ')
-      line += ' ';
-  }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  if (line.size() > 60) line = line.substr(0, 57) + "...";
-  return line;
-}
-
-bool Range::contains(double x) const {
-  if (!std::isfinite(x)) return infinite && x == infinity && greatest == infinity;
-  return (open_least ? x > least : x >= least) && (open_greatest ? x < greatest : x <= greatest);
-}
-
-std::string Range::words() const {
-  if (least == -infinity && greatest == infinity) return "a finite number";
-  if (greatest == infinity) return fmt::format("a number {} {}", open_least ? ">" : ">=", least);
-  if (least == -infinity) return fmt::format("a number {} {}", open_greatest ? "<" : "<=", greatest);
-  return fmt::format("a number in {}{:.6g}, {:.6g}{}", open_least ? '(' : '[', least, greatest,
-                     open_greatest ? ')' : ']');
-}
 
 TableReader::TableReader(const toml::table& table, std::string where) : table_(&table), where_(std::move(where)) {}
 
@@ -142,14 +93,27 @@ double TableReader::number(const std::string& key, const Range& range, std::opti
   return number_in(require(key, range.words()), key, range);
 }
 
+long long TableReader::integer_in(const toml::node& node, const std::string& name, long long least,
+                                  long long greatest) const {
+  const auto* value = node.as_integer();
+  if (!value || value->get() < least || value->get() > greatest)
+    wrong(node, name, fmt::format("an integer from {} to {}", least, greatest));
+  return value->get();
+}
+
 long long TableReader::integer(const std::string& key, long long least, long long greatest,
                                std::optional<long long> fallback) const {
   if (fallback && !has(key)) return *fallback;
-  const std::string what = fmt::format("an integer from {} to {}", least, greatest);
-  const toml::node& node = require(key, what);
-  const auto* value = node.as_integer();
-  if (!value || value->get() < least || value->get() > greatest) wrong(node, key, what);
-  return value->get();
+  return integer_in(require(key, fmt::format("an integer from {} to {}", least, greatest)), key, least, greatest);
+}
+
+std::vector<long long> TableReader::integers(const std::string& key, std::size_t length, long long least,
+                                             long long greatest) const {
+  const toml::array& array = list(key, "a list of integers", length);
+  std::vector<long long> values;
+  for (std::size_t i = 0; i < length; ++i)
+    values.push_back(integer_in(array[i], fmt::format("{}[{}]", key, i), least, greatest));
+  return values;
 }
 
 bool TableReader::flag(const std::string& key, bool fallback) const {
@@ -216,8 +180,9 @@ Vec3 TableReader::direction(const std::string& key, std::optional<Vec3> fallback
   return (v / largest).normalized();
 }
 
-std::vector<double> TableReader::numbers(const std::string& key, const Range& range) const {
-  const toml::array& array = list(key, "a list of numbers", {});
+std::vector<double> TableReader::numbers(const std::string& key, const Range& range,
+                                         std::optional<std::size_t> length) const {
+  const toml::array& array = list(key, "a list of numbers", length);
   std::vector<double> values(array.size());
   for (std::size_t i = 0; i < array.size(); ++i) {
     const toml::node& node = array[i];

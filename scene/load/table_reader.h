@@ -11,30 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "scene/load/values.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene::load {
-
-// "file:line:column", or "override medium.0.sigma_t = 3 of file" for a value that came from an override.
-std::string location(const toml::source_region&);
-
-// A value as the user wrote it, on one line and cut to 60 characters.
-std::string written(const toml::node&);
-
-// The numbers that a key takes.
-struct Range {
-  double least = -infinity;
-  double greatest = infinity;
-  bool open_least = false;     // least itself is out
-  bool open_greatest = false;  // greatest itself is out
-  bool infinite = false;       // inf is in (if greatest is infinite)
-  bool contains(double) const;
-  std::string words() const;  // "a number >= 0", "a number in [0, 1]", "a finite number"
-};
-inline constexpr Range any_number{};
-inline constexpr Range not_negative{0, infinity};
-inline constexpr Range positive{0, infinity, true};
-inline constexpr Range share{0, 1};  // 0 to 1 inclusive
 
 class TableReader {
  public:
@@ -64,8 +44,11 @@ class TableReader {
   Vec3 vector(const std::string& key, std::optional<Vec3> fallback = {}) const;
   // [x, y, z] of any length but zero, returned with length 1.
   Vec3 direction(const std::string& key, std::optional<Vec3> fallback = {}) const;
-  std::vector<double> numbers(const std::string& key, const Range&) const;  // a list of any length
-  std::vector<Rgb> colors(const std::string& key, const Range&) const;      // [[r, g, b], ...]
+  // A list of `length` numbers, or of any number of them.
+  std::vector<double> numbers(const std::string& key, const Range&, std::optional<std::size_t> length = {}) const;
+  std::vector<long long> integers(const std::string& key, std::size_t length, long long least,
+                                  long long greatest) const;
+  std::vector<Rgb> colors(const std::string& key, const Range&) const;  // [[r, g, b], ...]
 
   std::optional<TableReader> table(const std::string& key) const;  // nothing if there is none
   TableReader required_table(const std::string& key) const;
@@ -83,6 +66,7 @@ class TableReader {
   const toml::node& require(const std::string& key, const std::string& what) const;
   const toml::array& list(const std::string& key, const std::string& what, std::optional<std::size_t> length) const;
   [[noreturn]] void wrong(const toml::node&, const std::string& name, const std::string& expected) const;
+  long long integer_in(const toml::node&, const std::string& name, long long least, long long greatest) const;
   double number_in(const toml::node&, const std::string& name, const Range&) const;
 
   const toml::table* table_;
