@@ -1,0 +1,89 @@
+#include "methods/fogshop/fog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::fogshop {
+namespace {
+
+using scene::GaussianSum;
+using scene::Homogeneous;
+using scene::Medium;
+
+bool extinguishes(const Medium& medium) {
+  if (!(medium.sigma_t > 0).any()) return false;
+  if (const auto* fog = std::get_if<Homogeneous>(&medium.field)) return fog->density > 0;
+  if (const auto* sum = std::get_if<GaussianSum>(&medium.field)) return !sum->gaussians.empty() || sum->constant > 0;
+  return true;
+}
+
+std::string label(const std::vector<Medium>& media, std::size_t i) {
+  return media[i].name.empty() ? fmt::format("medium {}", i) : fmt::format("medium '{}'", media[i].name);
+}
+
+std::string objection_to_field(const Medium& medium) {
+  if (std::holds_alternative<Homogeneous>(medium.field)) return "";
+  const auto* sum = std::get_if<GaussianSum>(&medium.field);
+  if (!sum) return fmt::format("is a {}, not a sum of Gaussians", field_name(medium.field));
+  if (sum->cutoff < 6)
+    return fmt::format("cuts its Gaussians at {} widths, and this method's have no end", sum->cutoff);
+  if (std::any_of(sum->gaussians.begin(), sum->gaussians.end(), [](const auto& g) { return g.amplitude < 0; }))
+    return "has a Gaussian of negative amplitude, and densities here cannot be clamped at 0";
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> objections(const std::vector<Medium>& media) {
+  std::vector<std::string> reasons;
+  const Medium* first = nullptr;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    const Medium& medium = media[i];
+    if (!extinguishes(medium)) continue;
+    const auto object = [&](const std::string& why) { reasons.push_back(label(media, i) + " " + why); };
+    const std::string why = objection_to_field(medium);
+    if (!why.empty()) object(why);
+    if (!std::holds_alternative<scene::Unbounded>(medium.region))
+      object("is bounded, and the closed forms know no boundary");
+    if (!std::holds_alternative<scene::Isotropic>(medium.phase))
+      object(fmt::format("has phase function {}, expected isotropic", phase_name(medium.phase)));
+    if (!first) {
+      first = &medium;
+      continue;
+    }
+    if (((medium.albedo - first->albedo).abs() > 1e-12).any())
+      object("has another albedo than the first, and this method has one");
+    const Rgb hue = medium.sigma_t / medium.sigma_t.maxCoeff(), other = first->sigma_t / first->sigma_t.maxCoeff();
+    if (((hue - other).abs() > 1e-12).any()) object("extinguishes in another hue than the first");
+  }
+  return reasons;
+}
+
+Fog make_fog(const std::vector<Medium>& media) {
+  Fog fog;
+  bool first = true;
+  for (const Medium& medium : media) {
+    if (!extinguishes(medium)) continue;
+    const double strength = medium.sigma_t.maxCoeff();
+    if (first) {
+      fog.hue = medium.sigma_t / strength;
+      fog.albedo = medium.albedo;
+      first = false;
+    }
+    if (const auto* homogeneous = std::get_if<Homogeneous>(&medium.field)) {
+      fog.sum.constant += strength * homogeneous->density;
+      continue;
+    }
+    const GaussianSum& sum = std::get<GaussianSum>(medium.field);
+    fog.sum.constant += strength * sum.constant;
+    for (scene::Gaussian g : sum.gaussians) {
+      g.amplitude *= strength;
+      fog.sum.gaussians.push_back(g);
+    }
+  }
+  return fog;
+}
+
+}  // namespace airlight::fogshop

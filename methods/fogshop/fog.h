@@ -1,0 +1,30 @@
+// The medium of a scene in the form of Zhou et al. 2007, Eqs. 6 and 7: one constant and one list of Gaussians.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/media/gaussian_sum.h"
+#include "scene/scene.h"
+
+namespace airlight::fogshop {
+
+// extinction per channel = hue * (constant + sum of Gaussians). Channels of one colour differ only by that factor, so
+// every optical depth is computed once and scaled.
+struct Fog {
+  scene::GaussianSum sum;  // amplitudes and constant are extinctions [1/m] where the hue is 1; no cutoff
+  Rgb hue = Rgb::Ones();   // [-], the greatest is 1
+  Rgb albedo = Rgb::Ones();
+
+  bool grey() const { return (hue == 1).all(); }
+  bool empty() const { return sum.gaussians.empty() && !(sum.constant > 0); }
+};
+
+// Why these media are none such; empty if they are. Accepted: any number of homogeneous media and Gaussian sums, each
+// unbounded, isotropic, without negative amplitudes or a cutoff that shows (below 6 widths, e^-36 of the peak), all
+// with the same albedo and with sigma_t that differ by a factor. Media that do not extinguish are ignored.
+std::vector<std::string> objections(const std::vector<scene::Medium>&);
+
+// Requires that there are no objections.
+Fog make_fog(const std::vector<scene::Medium>&);
+
+}  // namespace airlight::fogshop

@@ -1,0 +1,202 @@
+#include "methods/fogshop/fogshop.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "methods/fogshop/airlight_pass.h"
+#include "methods/fogshop/stages.h"
+#include "methods/fogshop/surface_pass.h"
+#include "scene/error.h"
+
+namespace airlight::fogshop {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+class Stopwatch {
+ public:
+  // Seconds since the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// A light without extent at the camera, inside the medium, is infinitely bright.
+std::string blinding_light(const Fog& fog, const Options& options, const Scene& scene, const scene::Camera& camera) {
+  if (options.source_radius > 0 || camera.kind != scene::Camera::Kind::perspective) return "";
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto ball = scene::ball(scene.lights[i]);
+    if (ball && ball->center == camera.position && density(fog.sum, camera.position) > 0)
+      return fmt::format("light {} is at the camera inside the medium: its airlight is infinite (source_radius = 0)",
+                         i);
+  }
+  return "";
+}
+
+class PreparedFogshop final : public scene::Prepared {
+ public:
+  PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution);
+  std::vector<scene::Stage> stages() const override { return describe_stages(*scene_, model_); }
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  Model model_;
+  std::vector<scene::StageTime> times_;
+};
+
+PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
+    : scene_(std::move(scene)) {
+  Stopwatch watch;
+  model_.options = options;
+  model_.fog = make_fog(scene_->media);
+  CulledGaussians culled = make_arrays(model_.fog.sum.gaussians, options.cull, options.depth_threshold);
+  model_.gaussians = std::move(culled.arrays);
+  model_.dropped = culled.dropped;
+  for (const scene::Light& light : scene_->lights) {
+    const auto& point = std::get<scene::PointLight>(light);
+    if ((point.intensity > 0).any()) model_.lights.push_back({point.position, point.intensity, {}, nullptr});
+  }
+  times_.push_back({"gaussians", watch.lap()});
+  const Needs needs = needs_of(*scene_, model_);
+  if (needs.center_depths) {
+    for (LightModel& light : model_.lights)
+      light.center_depth = depths_to_centers(model_, light.position, execution, model_.evaluations);
+    times_.push_back({"depths to centres", watch.lap()});
+  }
+  if (needs.light_maps) {
+    for (LightModel& light : model_.lights) {
+      light.map = std::make_unique<LightMap>(model_.gaussians, light.position, options.map_directions,
+                                             options.map_edges, options.erf, execution);
+      model_.evaluations += light.map->evaluations();
+    }
+    times_.push_back({"light maps", watch.lap()});
+  }
+  if (needs.f_table) {
+    model_.f_table = std::make_unique<FTable>();
+    times_.push_back({"table of F", watch.lap()});
+  }
+}
+
+scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
+  const std::string blinding = blinding_light(model_.fog, model_.options, *scene_, view.camera);
+  if (!blinding.empty()) throw Error(scene_->name + ": " + blinding);
+  if (model_.paper() && view.camera.kind != scene::Camera::Kind::perspective)
+    throw Error(scene_->name + ": " + needs_view_point);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  scene::Film& film = result.film;
+  std::vector<float>&airlight = film.add("airlight"), &surface = film.add("surface"),
+  &transmittance = film.add("transmittance"), &mean = film.add("mean");
+  Stopwatch watch;
+  double evaluations = 0;
+
+  // Section 5.4, step 1: distances.
+  const std::size_t pixels = film.pixels();
+  std::vector<double> distance(pixels, infinity);
+  std::vector<SurfacePoint> points(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1});
+  const Needs needs = needs_of(*scene_, model_);
+  if (needs.distances) {
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t i = std::size_t(y) * view.width + x;
+        const scene::RayEnd end =
+            scene::ray_end(*scene_, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
+        distance[i] = end.t;
+        if (end.hit) points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
+      }
+    });
+    result.times.push_back({"distances", watch.lap()});
+  }
+
+  // Step 5: T(v,b_i) and T(s,v).
+  const ViewModel view_model = make_view_model(model_, view.camera.position, execution, evaluations);
+  if (needs.center_depths) result.times.push_back({"depths to centres", watch.lap()});
+
+  // Step 6: airlight and T(v,p).
+  if (needs.airlight) {
+    const AirlightImage image = airlight_pass(model_, view_model, view, distance, execution);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
+      for (int c = 0; c < 3; ++c) {
+        airlight[3 * i + c] = float(image.airlight[i][c]);
+        transmittance[3 * i + c] = model_.fog.hue[c] > 0 ? float(visible[c]) : 1.0f;
+      }
+    }
+    evaluations += image.evaluations;
+    result.counters["gaussians_crossed"] = image.crossed;
+    result.counters["gaussians_in_tiles"] = image.candidates;
+    result.times.push_back({"airlight", watch.lap()});
+  } else {
+    std::fill(transmittance.begin(), transmittance.end(), 1.0f);
+  }
+
+  // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
+  if (needs.surfaces) {
+    std::vector<double> calls(view.height, 0.0);
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      Crossings crossings;
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t i = std::size_t(y) * view.width + x;
+        if (points[i].surface < 0) continue;
+        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+        const Rgb reflected = direct_reflection(*scene_, model_, points[i], -ray.direction, crossings, calls[y]);
+        for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * reflected[c]);
+      }
+    });
+    for (double c : calls) evaluations += c;
+    result.times.push_back({"surfaces", watch.lap()});
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
+  result.counters["rays"] = double(pixels);
+  result.counters["erf_evaluations"] = evaluations;
+  result.counters["erf_evaluations_prepare"] = model_.evaluations;
+  result.counters["gaussians"] = model_.gaussians.count;
+  result.counters["gaussians_dropped"] = model_.dropped;
+  return result;
+}
+
+}  // namespace
+
+std::string Fogshop::about() const {
+  return "airlight of a sum of Gaussians in closed form (Zhou et al. 2007), and by slices with exact depths";
+}
+
+std::vector<scene::SettingSpec> Fogshop::settings() const { return setting_specs(); }
+
+std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Settings& settings) const {
+  const Options options = read_options(settings);
+  std::vector<std::string> reasons = objections(scene.media);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (!std::holds_alternative<scene::PointLight>(scene.lights[i]))
+      reasons.push_back(
+          fmt::format("light {} is a {} light, expected point lights only", i, scene::light_name(scene.lights[i])));
+  const bool perspective = scene.camera.kind == scene::Camera::Kind::perspective;
+  if (options.variant == Options::Variant::paper && !perspective) reasons.push_back(needs_view_point);
+  if (options.table && options.source_radius > 0)
+    reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
+  if (reasons.empty()) {
+    const std::string blinding = blinding_light(make_fog(scene.media), options, scene, scene.camera);
+    if (!blinding.empty()) reasons.push_back(blinding);
+  }
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> Fogshop::prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,
+                                                  const Execution& execution) const {
+  const std::vector<std::string> reasons = supports(*scene, settings);
+  if (!reasons.empty()) throw Error(fmt::format("{}: fogshop cannot render this: {}", scene->name, reasons.front()));
+  return std::make_unique<PreparedFogshop>(std::move(scene), read_options(settings), execution);
+}
+
+}  // namespace airlight::fogshop

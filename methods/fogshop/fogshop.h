@@ -1,0 +1,21 @@
+// "Fogshop": single scattering of point lights in a sum of Gaussians, in closed form. Zhou, Hou, Gong, Snyder, Guo,
+// Shum 2007. README.md says which equations, which variants, how accurate.
+//
+// Layers: airlight, surface, transmittance, mean = airlight + surface. Where the medium does not extinguish a colour
+// its transmittance is 1 and its airlight 0. An infinite ray in a constant medium ends in transmittance 0.
+#pragma once
+#include "scene/renderer.h"
+
+namespace airlight::fogshop {
+
+class Fogshop final : public scene::Renderer {
+ public:
+  std::string name() const override { return "fogshop"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                           const scene::Execution&) const override;
+};
+
+}  // namespace airlight::fogshop

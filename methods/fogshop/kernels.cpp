@@ -1,0 +1,239 @@
+#include "methods/fogshop/kernels.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "methods/fogshop/kernels.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "methods/fogshop/erf-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace airlight::fogshop::HWY_NAMESPACE {
+
+// Lanes never exceed the padding of the arrays.
+using D = hn::CappedTag<double, GaussianArrays::padding>;
+using V = hn::Vec<D>;
+constexpr D d;
+
+HWY_INLINE V load(const std::vector<double>& v, std::size_t i) { return hn::LoadU(d, v.data() + i); }
+HWY_INLINE V set(double x) { return hn::Set(d, x); }
+
+template <Erf kind>
+double ErrorFunction(double x) {
+  return hn::GetLane(Erf_<kind>(d, set(x)));
+}
+
+// exp for arguments that may be as low as -infinity.
+HWY_INLINE V exp_of(V x) { return hn::Exp(d, hn::Max(x, set(-700))); }
+
+template <Erf kind>
+void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
+  const V rx = set(line.direction.x()), ry = set(line.direction.y()), rz = set(line.direction.z());
+  const V ox = set(line.origin.x()), oy = set(line.origin.y()), oz = set(line.origin.z());
+  const V length = set(line.length), zero = hn::Zero(d);
+  const auto iota = hn::Iota(d, 0.0);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < g.x.size(); i += hn::Lanes(d)) {
+    const V qx = hn::Sub(load(g.x, i), ox), qy = hn::Sub(load(g.y, i), oy), qz = hn::Sub(load(g.z, i), oz);
+    const V m = hn::MulAdd(qx, rx, hn::MulAdd(qy, ry, hn::Mul(qz, rz)));
+    const V px = hn::NegMulAdd(m, rx, qx), py = hn::NegMulAdd(m, ry, qy), pz = hn::NegMulAdd(m, rz, qz);
+    const V pp = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+    const V chord_squared = hn::Sub(load(g.radius_squared, i), pp);
+    if (hn::AllFalse(d, hn::Ge(chord_squared, zero))) continue;
+    const V chord = hn::Sqrt(hn::Max(chord_squared, zero));
+    const auto met = hn::And(hn::Ge(chord_squared, zero),
+                             hn::And(hn::Ge(hn::Add(m, chord), zero), hn::Le(hn::Sub(m, chord), length)));
+    if (hn::AllFalse(d, met)) continue;
+    const V a = load(g.a, i);
+    const V depth = hn::Mul(load(g.half_depth, i), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp))));
+    hn::CompressStore(m, met, d, out.middle.data() + n);
+    hn::CompressStore(a, met, d, out.a.data() + n);
+    hn::CompressStore(depth, met, d, out.depth.data() + n);
+    hn::CompressStore(Erf_<kind>(d, hn::Mul(a, m)), met, d, out.base.data() + n);
+    hn::CompressStore(chord, met, d, out.chord.data() + n);
+    alignas(64) double place[GaussianArrays::padding] = {};
+    const std::size_t found = hn::CompressStore(hn::Add(iota, set(double(i))), met, d, place);
+    for (std::size_t k = 0; k < found; ++k) out.place[n + k] = int(place[k]);
+    n += found;
+  }
+  out.count = int(n);
+}
+
+template <Erf kind>
+double TotalDepth(const Crossings& c, double length) {
+  V sum = hn::Zero(d);
+  const V end = set(length);
+  for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
+    const V far = Erf_<kind>(d, hn::Mul(load(c.a, i), hn::Sub(end, load(c.middle, i))));
+    // The paper's polynomial is not monotone: depths below 0 are clamped.
+    const V depth = hn::Mul(load(c.depth, i), hn::Max(hn::Add(far, load(c.base, i)), hn::Zero(d)));
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), depth));
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+template <Erf kind>
+void DepthsAt(const Crossings& c, const double* t, int count, double* depth) {
+  for (int k = 0; k < count; k += int(hn::Lanes(d))) {
+    const V end = hn::LoadU(d, t + k);
+    V sum = hn::Zero(d);
+    for (int i = 0; i < c.count; ++i) {
+      const V far = Erf_<kind>(d, hn::Mul(set(c.a[i]), hn::Sub(end, set(c.middle[i]))));
+      sum = hn::MulAdd(set(c.depth[i]), hn::Max(hn::Add(far, set(c.base[i])), hn::Zero(d)), sum);
+    }
+    hn::StoreU(sum, d, depth + k);
+  }
+}
+
+template <Erf kind>
+void DepthsFromPoint(const GaussianArrays& g, const Point3& from, const Line& ray, const double* t, int count,
+                     double* depth) {
+  const Vec3 offset = ray.origin - from;
+  for (int k = 0; k < count; k += int(hn::Lanes(d))) {
+    const V tk = hn::LoadU(d, t + k);
+    const V sx = hn::MulAdd(tk, set(ray.direction.x()), set(offset.x()));
+    const V sy = hn::MulAdd(tk, set(ray.direction.y()), set(offset.y()));
+    const V sz = hn::MulAdd(tk, set(ray.direction.z()), set(offset.z()));
+    const V length = hn::Sqrt(hn::MulAdd(sx, sx, hn::MulAdd(sy, sy, hn::Mul(sz, sz))));
+    const V inverse = hn::Div(set(1), hn::Max(length, set(1e-300)));
+    const V rx = hn::Mul(sx, inverse), ry = hn::Mul(sy, inverse), rz = hn::Mul(sz, inverse);
+    V sum = hn::Zero(d);
+    for (int i = 0; i < g.count; ++i) {
+      const V qx = set(g.x[i] - from.x()), qy = set(g.y[i] - from.y()), qz = set(g.z[i] - from.z()), a = set(g.a[i]);
+      const V m = hn::MulAdd(qx, rx, hn::MulAdd(qy, ry, hn::Mul(qz, rz)));
+      const V px = hn::NegMulAdd(m, rx, qx), py = hn::NegMulAdd(m, ry, qy), pz = hn::NegMulAdd(m, rz, qz);
+      const V pp = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+      const V scale = hn::Mul(set(g.half_depth[i]), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp))));
+      const V ends = hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(length, m))), Erf_<kind>(d, hn::Mul(a, m)));
+      sum = hn::MulAdd(scale, hn::Max(ends, hn::Zero(d)), sum);
+    }
+    hn::StoreU(sum, d, depth + k);
+  }
+}
+
+// The slab around the triangle's plane, cut by the three half spaces outside its edges. Each plane is (normal, offset).
+void NearPrism(const GaussianArrays& g, const double planes[4][4], std::vector<int>& places) {
+  places.clear();
+  const auto distance = [&](std::size_t i, const double* p) {
+    return hn::MulAdd(load(g.x, i), set(p[0]),
+                      hn::MulAdd(load(g.y, i), set(p[1]), hn::MulAdd(load(g.z, i), set(p[2]), set(p[3]))));
+  };
+  for (std::size_t i = 0; i < g.x.size(); i += hn::Lanes(d)) {
+    V farthest = hn::Abs(distance(i, planes[0]));
+    for (int e = 1; e < 4; ++e) farthest = hn::Max(farthest, distance(i, planes[e]));
+    const auto near =
+        hn::Le(hn::Mul(hn::Max(farthest, hn::Zero(d)), hn::Max(farthest, hn::Zero(d))), load(g.radius_squared, i));
+    if (hn::AllFalse(d, near)) continue;
+    alignas(64) double place[GaussianArrays::padding] = {};
+    const std::size_t found = hn::CompressStore(hn::Iota(d, double(i)), near, d, place);
+    for (std::size_t k = 0; k < found; ++k) places.push_back(int(place[k]));
+  }
+}
+
+// The approximation of erf is chosen here, outside the loops.
+void CrossAny(const GaussianArrays& g, const Line& line, Erf erf, Crossings& out) {
+  if (erf == Erf::precise) return Cross<Erf::precise>(g, line, out);
+  if (erf == Erf::erf10) return Cross<Erf::erf10>(g, line, out);
+  return Cross<Erf::paper>(g, line, out);
+}
+
+double TotalDepthAny(const Crossings& c, double length, Erf erf) {
+  if (erf == Erf::precise) return TotalDepth<Erf::precise>(c, length);
+  if (erf == Erf::erf10) return TotalDepth<Erf::erf10>(c, length);
+  return TotalDepth<Erf::paper>(c, length);
+}
+
+void DepthsAtAny(const Crossings& c, const double* t, int count, double* depth, Erf erf) {
+  if (erf == Erf::precise) return DepthsAt<Erf::precise>(c, t, count, depth);
+  if (erf == Erf::erf10) return DepthsAt<Erf::erf10>(c, t, count, depth);
+  return DepthsAt<Erf::paper>(c, t, count, depth);
+}
+
+void DepthsFromPointAny(const GaussianArrays& g, const Point3& from, const Line& ray, const double* t, int count,
+                        double* depth, Erf erf) {
+  if (erf == Erf::precise) return DepthsFromPoint<Erf::precise>(g, from, ray, t, count, depth);
+  if (erf == Erf::erf10) return DepthsFromPoint<Erf::erf10>(g, from, ray, t, count, depth);
+  return DepthsFromPoint<Erf::paper>(g, from, ray, t, count, depth);
+}
+
+double ErrorFunctionAny(double x, Erf erf) {
+  if (erf == Erf::precise) return ErrorFunction<Erf::precise>(x);
+  if (erf == Erf::erf10) return ErrorFunction<Erf::erf10>(x);
+  return ErrorFunction<Erf::paper>(x);
+}
+
+}  // namespace airlight::fogshop::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace airlight::fogshop {
+
+HWY_EXPORT(CrossAny);
+HWY_EXPORT(TotalDepthAny);
+HWY_EXPORT(DepthsAtAny);
+HWY_EXPORT(DepthsFromPointAny);
+HWY_EXPORT(ErrorFunctionAny);
+HWY_EXPORT(NearPrism);
+
+double error_function(Erf erf, double x) { return HWY_DYNAMIC_DISPATCH(ErrorFunctionAny)(x, erf); }
+
+Line line_between(const Point3& from, const Point3& to) {
+  const Vec3 offset = to - from;
+  const double length = offset.norm();
+  return {from, length > 0 ? Vec3(offset / length) : Vec3(Vec3::UnitZ()), length};
+}
+
+void Crossings::reserve(int gaussians) {
+  const std::size_t room = std::size_t(gaussians) + GaussianArrays::padding;
+  if (middle.size() >= room) return;
+  for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord}) v->assign(room, 0.0);
+  place.assign(room, 0);
+}
+
+void cross(const GaussianArrays& gaussians, const Line& line, Erf erf, Crossings& out) {
+  out.reserve(int(gaussians.x.size()));
+  HWY_DYNAMIC_DISPATCH(CrossAny)(gaussians, line, erf, out);
+}
+
+double total_depth(const Crossings& crossings, double length, Erf erf) {
+  return HWY_DYNAMIC_DISPATCH(TotalDepthAny)(crossings, length, erf);
+}
+
+void depths_at(const Crossings& crossings, const double* t, int count, double* depth, Erf erf) {
+  HWY_DYNAMIC_DISPATCH(DepthsAtAny)(crossings, t, count, depth, erf);
+}
+
+void depths_from_point(const GaussianArrays& gaussians, const Point3& from, const Line& ray, const double* t, int count,
+                       double* depth, Erf erf) {
+  HWY_DYNAMIC_DISPATCH(DepthsFromPointAny)(gaussians, from, ray, t, count, depth, erf);
+}
+
+void near_triangle(const GaussianArrays& gaussians, const Point3& corner, const Line& ray, double lo, double hi,
+                   std::vector<int>& places) {
+  const Point3 start = ray.origin + lo * ray.direction, end = ray.origin + hi * ray.direction;
+  const Vec3 normal = ray.direction.cross(corner - start);
+  const double h = normal.norm();
+  double planes[4][4] = {};  // zero planes let everything pass: a flat triangle is not culled
+  if (h > 1e-9 * ((corner - start).norm() + (corner - end).norm())) {
+    const Vec3 up = normal / h;
+    const auto put = [&](double* plane, const Vec3& n, const Point3& through) {
+      plane[0] = n.x(), plane[1] = n.y(), plane[2] = n.z(), plane[3] = -n.dot(through);
+    };
+    put(planes[0], up, start);
+    const Point3 corners[3] = {start, end, corner};
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 edge = corners[(e + 1) % 3] - corners[e];
+      const double length = edge.norm();
+      if (length > 0) put(planes[e + 1], edge.cross(up) / length, corners[e]);
+    }
+  }
+  HWY_DYNAMIC_DISPATCH(NearPrism)(gaussians, planes, places);
+}
+
+}  // namespace airlight::fogshop
+#endif

@@ -1,0 +1,63 @@
+// The inner loops of the method, for vectors of doubles; the best instruction set is chosen at run time.
+//
+// Depths are those of the Gaussians alone, for a hue of 1 (see fog.h); the constant term is added by the callers.
+#pragma once
+#include <vector>
+
+#include "methods/fogshop/gaussian_arrays.h"
+
+namespace airlight::fogshop {
+
+// How the error function is evaluated. An error of e is an error of e times the depth of each Gaussian.
+enum class Erf {
+  precise,  // 1.2e-12
+  erf10,    // 3.8e-6, a polynomial
+  paper,    // 2.0e-4, the polynomial of the appendix; not monotone at its cut
+};
+
+// erf of one number by the named approximation.
+double error_function(Erf, double x);
+
+// A ray with an end; the length may be infinite.
+struct Line {
+  Point3 origin;
+  Vec3 direction;  // unit
+  double length;   // [m]
+};
+// From one point to another; any direction if they coincide.
+Line line_between(const Point3& from, const Point3& to);
+
+// What a line meets: for each Gaussian whose sphere the line crosses, its Eq. 31 along the line,
+// integral over [0, t] = depth (erf(a (t - middle)) + erf(a middle)). Arrays have room for whole vectors.
+struct Crossings {
+  int count = 0;
+  std::vector<double> middle;  // [m] along the line
+  std::vector<double> a;       // [1/m]
+  std::vector<double> depth;   // c sqrt(pi)/(2a) exp(-a^2 p^2) [-], p the distance of the line from the centre
+  std::vector<double> base;    // erf(a middle)
+  std::vector<double> chord;   // [m] half the length of the line inside the sphere
+  std::vector<int> place;      // in the arrays that were crossed
+
+  void reserve(int gaussians);
+};
+
+// Replaces the contents of the crossings. The order is that of the arrays.
+void cross(const GaussianArrays&, const Line&, Erf, Crossings&);
+
+// Optical depth over [0, length] of the crossed line [-].
+double total_depth(const Crossings&, double length, Erf);
+
+// The same at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
+void depths_at(const Crossings&, const double* t, int count, double* depth, Erf);
+
+// Optical depth from `from` to each of the points at parameters t of a ray; `t` and `depth` as above. All Gaussians are
+// summed: choose them first by `near_triangle`.
+void depths_from_point(const GaussianArrays&, const Point3& from, const Line& ray, const double* t, int count,
+                       double* depth, Erf);
+
+// Places of the Gaussians that may come within their radius of the triangle (corner, start and end of the stretch
+// [lo, hi] of the ray): all that do, and a few more.
+void near_triangle(const GaussianArrays&, const Point3& corner, const Line& ray, double lo, double hi,
+                   std::vector<int>& places);
+
+}  // namespace airlight::fogshop

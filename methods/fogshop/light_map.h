@@ -1,0 +1,40 @@
+// Optical depth of the Gaussians from a light to every point around it, tabulated: directions on a square map,
+// distances by edges, linear in between. The map is octahedral around a light in the midst of the Gaussians, and a
+// perspective view of them from a light that sees them within 70 degrees of one direction.
+#pragma once
+#include <vector>
+
+#include "methods/fogshop/kernels.h"
+#include "scene/renderer.h"
+
+namespace airlight::fogshop {
+
+class LightMap {
+ public:
+  // `directions` squared texels and `edges` + 1 distances; every texel holds exact depths at its centre. Calls of the
+  // error function are counted in `evaluations`.
+  LightMap(const GaussianArrays&, const Point3& light, int directions, int edges, Erf, const scene::Execution&);
+
+  // Depth between the light and x [-], for a hue of 1, without the constant term.
+  double depth(const Point3& x) const;
+
+  double evaluations() const { return evaluations_; }
+  std::size_t bytes() const { return depths_.size() * sizeof(float); }
+
+ private:
+  void frame(const GaussianArrays&);
+  Vec3 direction(int i, int j) const;  // of a texel; i, j from -1 to directions: a border of one texel
+  Eigen::Vector2d to_square(const Vec3& w) const;
+  double edge_of(double distance) const;
+  double distance_of(double edge) const;
+
+  Point3 light_;
+  int directions_, edges_;
+  double near_ = 0, far_ = 0;     // the Gaussians lie between these distances
+  double tangent_ = 0;            // half the width of the perspective view at distance 1; 0: octahedral
+  Mat3 axes_ = Mat3::Identity();  // of the view in its rows, its direction last
+  std::vector<float> depths_;     // [row][column][edge], with a border of one texel
+  double evaluations_ = 0;
+};
+
+}  // namespace airlight::fogshop

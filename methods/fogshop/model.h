@@ -1,0 +1,57 @@
+// What the method knows before it looks: settings, medium, lights, and the tables of `prepare`.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "methods/fogshop/f_table.h"
+#include "methods/fogshop/fog.h"
+#include "methods/fogshop/kernels.h"
+#include "methods/fogshop/light_map.h"
+#include "scene/renderer.h"
+
+namespace airlight::fogshop {
+
+struct Options {
+  enum class Variant { paper, slices };
+  Variant variant = Variant::slices;
+  int slices = 26;          // K
+  bool boxes = false;       // edge placement S3
+  bool map = true;          // depths from the light by its map, else by exact sums
+  int map_directions = 64;  // R
+  int map_edges = 48;       // N
+  bool table = false;       // F from the paper's table
+  Erf erf = Erf::precise;
+  Cull cull = Cull::depth;
+  double depth_threshold = 1e-4;  // eps_T
+  double source_radius = 0;       // [m]
+};
+std::vector<scene::SettingSpec> setting_specs();
+Options read_options(const scene::Settings&);
+
+struct LightModel {
+  Point3 position;
+  Rgb intensity;                     // [W/sr]
+  std::vector<double> center_depth;  // paper: T(s,b_i) - T_i(s,b_i) by place, the constant included [-], hue 1
+  std::unique_ptr<LightMap> map;     // slices, if asked for
+};
+
+struct Model {
+  Options options;
+  Fog fog;
+  GaussianArrays gaussians;
+  int dropped = 0;  // Gaussians that nothing would see
+  std::vector<LightModel> lights;
+  std::unique_ptr<FTable> f_table;
+  double evaluations = 0;  // of the error function
+
+  bool paper() const { return options.variant == Options::Variant::paper; }
+};
+
+// T(from, b_i) - T_i(from, b_i) for every Gaussian, the constant included [-], hue 1: n rays against n Gaussians, each
+// cut off at its radius. Adds to `evaluations`.
+std::vector<double> depths_to_centers(const Model&, const Point3& from, const scene::Execution&, double& evaluations);
+
+// The Gaussians' optical depth between two points [-], hue 1, without the constant.
+double gaussian_depth(const Model&, const Point3& a, const Point3& b, Crossings&, double& evaluations);
+
+}  // namespace airlight::fogshop

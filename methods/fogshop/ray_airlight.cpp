@@ -1,0 +1,139 @@
+#include "methods/fogshop/ray_airlight.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::fogshop {
+namespace {
+
+LightFromRay light_from_ray(const Point3& light, const Line& line) {
+  const Vec3 offset = light - line.origin;
+  return {offset.dot(line.direction), line.direction.cross(offset).norm()};
+}
+
+}  // namespace
+
+ViewModel make_view_model(const Model& model, const Point3& view, const scene::Execution& execution,
+                          double& evaluations) {
+  ViewModel result;
+  if (!model.paper() || model.lights.empty()) return result;
+  const std::vector<double> to_center = depths_to_centers(model, view, execution, evaluations);
+  Crossings crossings;
+  for (const LightModel& light : model.lights) {
+    PaperLight paper;
+    paper.position = light.position;
+    paper.softness = model.options.source_radius * model.options.source_radius;
+    paper.exponent.resize(model.gaussians.count);
+    for (int i = 0; i < model.gaussians.count; ++i) paper.exponent[i] = -(light.center_depth[i] + to_center[i]);
+    result.lights.push_back(std::move(paper));
+    result.shadow.push_back(gaussian_depth(model, light.position, view, crossings, evaluations));
+  }
+  return result;
+}
+
+void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& airlight, double& depth) {
+  cross(near, line, model_.options.erf, crossings_);
+  crossed += crossings_.count;
+  evaluations += 2.0 * crossings_.count;
+  depth = total_depth(crossings_, line.length, model_.options.erf);
+  if (model_.fog.sum.constant > 0) depth += model_.fog.sum.constant * line.length;
+  airlight.setZero();
+  if (model_.lights.empty()) return;
+  seen_.clear();
+  for (const LightModel& light : model_.lights) seen_.push_back(light_from_ray(light.position, line));
+  airlight = model_.fog.albedo * (model_.paper() ? paper(near, line) : slices(line));
+}
+
+// L_a^h per channel [W/m^2/sr] for 1 W/sr.
+Rgb RayAirlight::homogeneous(const LightFromRay& light, double length) const {
+  Rgb result;
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && model_.fog.grey()) {
+      result[c] = result[0];
+      continue;
+    }
+    const double beta = model_.fog.sum.constant * model_.fog.hue[c];
+    result[c] = model_.f_table ? model_.f_table->homogeneous_airlight(light, length, beta)
+                               : softened_homogeneous_airlight(light, length, beta, model_.options.source_radius);
+  }
+  return result;
+}
+
+// Section 5.3: L_0 by Eq. 17, then every Gaussian that the ray meets.
+Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
+  const bool coloured = !model_.fog.grey();
+  Rgb airlight = Rgb::Zero();
+  for (std::size_t k = 0; k < model_.lights.size(); ++k) {
+    Rgb sum = Rgb::Zero();
+    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured, sum);
+    evaluations += 4.0 * crossings_.count;
+    if (!coloured) sum = Rgb::Constant(sum[0]);
+    if (model_.fog.sum.constant > 0)
+      sum += (-model_.fog.hue * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);
+    airlight += model_.lights[k].intensity * sum;
+  }
+  return airlight;
+}
+
+Rgb RayAirlight::slices(const Line& line) {
+  const double constant = model_.fog.sum.constant;
+  const int slices = model_.options.slices;
+  Interval reach;  // of the Gaussians along the line
+  for (int i = 0; i < crossings_.count; ++i) {
+    reach.lo = std::min(reach.lo, crossings_.middle[i] - crossings_.chord[i]);
+    reach.hi = std::max(reach.hi, crossings_.middle[i] + crossings_.chord[i]);
+  }
+  double lo = std::max(0.0, reach.lo), hi = std::min(line.length, reach.hi);
+  if (constant > 0) {
+    // With a constant every part of the ray shines. The slices cover it until long after the last Gaussian and the
+    // lights, or until 40 more depths (of the clearest colour) than the straight way from the light have been passed;
+    // the rest of the ray is homogeneous and has a closed form.
+    const double clearest = (model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff();
+    double beyond = std::max(0.0, reach.hi), dark = 0;
+    for (const LightFromRay& light : seen_) {
+      beyond = std::max(beyond, std::abs(light.along) + light.h);
+      const double d_sv = std::hypot(light.along, light.h), c = d_sv + 40 / (constant * clearest);
+      dark = std::max(dark, 0.5 * (c - d_sv) * (c + d_sv) / (c - light.along));
+    }
+    lo = 0;
+    hi = std::min({line.length, beyond * (1 + slices / 16.0), dark});
+  }
+  Rgb airlight = Rgb::Zero();
+  if (!(lo < hi)) return airlight;
+
+  const int padded = (slices + 1 + GaussianArrays::padding - 1) / GaussianArrays::padding * GaussianArrays::padding;
+  t_.assign(padded + GaussianArrays::padding, hi);
+  view_depth_.resize(t_.size());
+  light_depth_.resize(t_.size());
+  place_edges(lo, hi, seen_, model_.options.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
+  depths_at(crossings_, t_.data(), padded, view_depth_.data(), model_.options.erf);
+  evaluations += double(crossings_.count) * (slices + 1);
+  for (int k = 0; k <= slices; ++k) view_depth_[k] += constant * t_[k];
+
+  const bool coloured = !model_.fog.grey();
+  for (std::size_t l = 0; l < model_.lights.size(); ++l) {
+    const LightModel& light = model_.lights[l];
+    if (light.map) {
+      for (int k = 0; k <= slices; ++k) light_depth_[k] = light.map->depth(line.origin + t_[k] * line.direction);
+    } else {
+      near_triangle(model_.gaussians, light.position, line, lo, hi, places_);
+      depths_from_point(subset(model_.gaussians, places_), light.position, line, t_.data(), padded, light_depth_.data(),
+                        model_.options.erf);
+      evaluations += 2.0 * double(places_.size()) * (slices + 1);
+    }
+    const double last_shadow = light_depth_[slices];
+    for (int k = 0; k <= slices; ++k) light_depth_[k] += constant * std::hypot(t_[k] - seen_[l].along, seen_[l].h);
+    Rgb sum = Rgb::Zero();
+    add_slices(t_.data(), view_depth_.data(), light_depth_.data(), slices, seen_[l], model_.options.source_radius,
+               model_.fog.hue, coloured, sum);
+    if (!coloured) sum = Rgb::Constant(sum[0]);
+    if (constant > 0 && hi < line.length)
+      sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
+             homogeneous({seen_[l].along - hi, seen_[l].h}, line.length - hi);
+    airlight += light.intensity * sum;
+  }
+  return airlight;
+}
+
+}  // namespace airlight::fogshop

@@ -1,0 +1,42 @@
+// Airlight and optical depth of single view rays, by the paper's formulas or by slices.
+#pragma once
+#include "methods/fogshop/model.h"
+#include "methods/fogshop/paper_ray.h"
+#include "methods/fogshop/slices.h"
+
+namespace airlight::fogshop {
+
+// What depends on the view point but not on the ray: paper variant only.
+struct ViewModel {
+  std::vector<PaperLight> lights;
+  std::vector<double> shadow;  // T(s,v) of the Gaussians alone, by light [-], hue 1
+};
+ViewModel make_view_model(const Model&, const Point3& view, const scene::Execution&, double& evaluations);
+
+// Evaluates rays one after another; one per thread.
+class RayAirlight {
+ public:
+  RayAirlight(const Model& model, const ViewModel& view) : model_(model), view_(view) {}
+
+  // `near` holds every Gaussian that the ray may meet. Sets the airlight [W/m^2/sr] with albedo and intensities, and
+  // the optical depth to the end of the line [-] for a hue of 1. The line may be infinite.
+  void evaluate(const GaussianArrays& near, const Line&, Rgb& airlight, double& depth);
+
+  double evaluations = 0;  // of the error function
+  double crossed = 0;      // pairs of ray and Gaussian
+
+ private:
+  Rgb paper(const GaussianArrays& near, const Line&);
+  Rgb slices(const Line&);
+  Rgb homogeneous(const LightFromRay&, double length) const;
+
+  const Model& model_;
+  const ViewModel& view_;
+  Crossings crossings_;
+  EdgeScratch scratch_;
+  std::vector<LightFromRay> seen_;
+  std::vector<int> places_;
+  std::vector<double> t_, view_depth_, light_depth_;
+};
+
+}  // namespace airlight::fogshop

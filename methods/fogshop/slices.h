@@ -1,0 +1,30 @@
+// Variant S-K, not in the paper: the ray is cut into K slices; the optical depth is exact at their edges, and inside a
+// slice the airlight is integrated in closed form with the depth, and 1/distance^2 in the angle, taken as linear. The
+// error falls as K^-2 for any number of Gaussians and any optical depth.
+#pragma once
+#include <vector>
+
+#include "methods/fogshop/homogeneous_airlight.h"
+#include "methods/fogshop/kernels.h"
+
+namespace airlight::fogshop {
+
+// Working memory of one thread.
+struct EdgeScratch {
+  std::vector<double> node, share, merged, box;
+};
+
+// Places slices + 1 edges t[0] = lo < ... < t[slices] = hi (edges may coincide) at equal steps of a mixture of
+// distributions over the ray: even in t; even in the angle as seen from each light; and, if `boxes` are given
+// (placement "S3"), even over a box of 1.6 widths to both sides of each crossed Gaussian, weighted with the light that
+// it takes away. Lights nearer than 1e-9 m to the ray count as 1e-9 m away.
+void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, const Crossings* boxes, int slices,
+                 EdgeScratch&, double* t);
+
+// Adds, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1. view_depth and light_depth are
+// the depths [-], hue 1, from the camera and from the light to the edges, the medium's constant included; all three
+// arrays hold slices + 1 values and room for 8 more. source_radius softens 1/d^2 [m].
+void add_slices(const double* t, const double* view_depth, const double* light_depth, int slices, const LightFromRay&,
+                double source_radius, const Rgb& hue, bool coloured, Rgb& airlight);
+
+}  // namespace airlight::fogshop

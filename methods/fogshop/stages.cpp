@@ -1,0 +1,78 @@
+#include "methods/fogshop/stages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace airlight::fogshop {
+namespace {
+
+bool has_ball(const scene::Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+    const auto ball = scene::ball(light);
+    return ball && ball->radius > 0;
+  });
+}
+
+}  // namespace
+
+Needs needs_of(const scene::Scene& scene, const Model& model) {
+  const bool lit = !model.lights.empty(), gaussians = model.gaussians.count > 0, constant = model.fog.sum.constant > 0;
+  Needs needs;
+  needs.distances = !scene.surfaces.empty() || has_ball(scene);
+  needs.center_depths = model.paper() && lit && gaussians;
+  needs.light_maps = !model.paper() && model.options.map && lit && gaussians;
+  needs.f_table = model.paper() && model.options.table && lit && constant;
+  needs.airlight = gaussians || constant;
+  needs.surfaces = !scene.surfaces.empty() && lit;
+  return needs;
+}
+
+std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model& model) {
+  const Needs needs = needs_of(scene, model);
+  const Options& o = model.options;
+  const std::string lights = fmt::format("{} point light{}", model.lights.size(), model.lights.size() == 1 ? "" : "s");
+  const std::string no_lights = "no light shines";
+  const std::string no_gaussians = "no Gaussian reaches the threshold";
+  const bool lit = !model.lights.empty(), constant = model.fog.sum.constant > 0, gaussians = model.gaussians.count > 0;
+  const auto unlit_or = [&](const std::string& otherwise) { return lit ? otherwise : no_lights; };
+  std::vector<scene::Stage> stages;
+  const auto stage = [&](const char* name, bool kept, const std::string& reason) {
+    stages.push_back({name, kept, reason});
+  };
+  stage("distances", needs.distances,
+        needs.distances ? fmt::format("{} surfaces and the balls of the lights end rays", scene.surfaces.size())
+                        : "no surface and no light with a radius: rays are infinite");
+  stage("gaussians", gaussians,
+        model.fog.sum.gaussians.empty() ? "the medium has none"
+                                        : fmt::format("{} of {}, the rest is below the threshold everywhere",
+                                                      model.gaussians.count, model.gaussians.count + model.dropped));
+  stage("homogeneous term", needs.airlight && constant && lit,
+        !constant ? "the constant is 0"
+                  : unlit_or(model.paper() ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
+                                           : "inside the slices, in closed form beyond them"));
+  if (model.paper())
+    stage("depths to centres", needs.center_depths,
+          !gaussians ? no_gaussians : unlit_or(fmt::format("T(s,b_i), T(v,b_i) for {}", lights)));
+  else
+    stage("light maps", needs.light_maps,
+          !gaussians ? no_gaussians
+                     : unlit_or(o.map ? fmt::format("{0}^2 directions x {1} distances for {2}", o.map_directions,
+                                                    o.map_edges, lights)
+                                      : "light_depth = exact: sums per edge instead"));
+  if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
+  stage("airlight", needs.airlight && lit,
+        !needs.airlight ? "no medium" : unlit_or(model.paper() ? "Eqs. 8 to 17" : fmt::format("{} slices", o.slices)));
+  stage("colour", !model.fog.grey(),
+        model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
+  stage("surfaces", needs.surfaces,
+        scene.surfaces.empty() ? "there are none" : unlit_or("direct light through the medium, Eq. 29"));
+  stage("shadows of surfaces in the medium", false,
+        scene.surfaces.empty() ? "there are no surfaces"
+                               : "the method does not know them: airlight behind an occluder is not darkened");
+  stage("airlight reflected by surfaces", false,
+        scene.surfaces.empty() ? "there are no surfaces" : "Eqs. 18 to 27 are not built yet");
+  return stages;
+}
+
+}  // namespace airlight::fogshop
