@@ -11,9 +11,10 @@ namespace airlight::scene {
 namespace {
 
 // Eight-point Gauss-Legendre rule on [0, 1], symmetric: four nodes and weights.
-constexpr double gauss_node[4] = {0.019855071751231884, 0.10166676129318664, 0.23723379504183550, 0.40828267875217510};
-constexpr double gauss_weight[4] = {0.050614268145188130, 0.11119051722668724, 0.15685332293894363,
-                                    0.18134189168918100};
+constexpr double gauss_node[4] = {0.01985507175123188416, 0.1016667612931866302, 0.2372337950418355071,
+                                  0.4082826787521750975};
+constexpr double gauss_weight[4] = {0.05061426814518812958, 0.1111905172266872353, 0.1568533229389436437,
+                                    0.1813418916891809915};
 
 const double half_sqrt_pi = 0.5 * std::sqrt(pi);
 
