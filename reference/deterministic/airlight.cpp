@@ -1,0 +1,309 @@
+#include "reference/deterministic/airlight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "reference/deterministic/density_along_ray.h"
+#include "reference/deterministic/gaussian_table.h"
+#include "reference/deterministic/light_plane.h"
+#include "reference/deterministic/shadow.h"
+#include "scene/math/quadrature.h"
+
+namespace airlight::deterministic {
+namespace {
+
+using scene::EquiangularMap;
+using scene::Medium;
+using scene::Panel;
+using scene::Scene;
+
+using Paths = std::vector<std::unique_ptr<DensityAlongRay>>;  // per medium; null where the ray misses it
+
+bool scatters(const Medium& medium) { return (medium.albedo * medium.sigma_t).maxCoeff() > 0; }
+
+// A stretch of the view ray, with u in [0, 1] as its coordinate.
+struct Chart {
+  const LightPlane* plane;
+  int light;
+  double lo, hi;       // ray parameters
+  EquiangularMap map;  // point and spot lights
+
+  Chart(const LightPlane& p, int l, double a, double b)
+      : plane(&p),
+        light(l),
+        lo(a),
+        hi(b),
+        map(p.directional ? EquiangularMap(0, 1, 1) : EquiangularMap(a - p.foot, b - p.foot, p.h)) {}
+
+  // dt/du of a directional light, or (dt/du) / distance^2.
+  struct Place {
+    double t, x, weight;
+  };
+  Place at(double u) const {
+    if (!plane->directional) {
+      const double x = map.x(u);
+      return {plane->foot + x, x, map.density()};
+    }
+    if (!std::isinf(hi)) return {lo + u * (hi - lo), 0, hi - lo};
+    const double scale = 1 + std::abs(lo);
+    return {lo + scale * u / (1 - u), 0, scale / ((1 - u) * (1 - u))};
+  }
+};
+
+// Sorted places to cut [range.lo, range.hi]: every sharp feature, and of the smooth ones no more than about one per
+// width.
+std::vector<double> cut(std::vector<Feature> features, Interval range) {
+  std::sort(features.begin(), features.end(), [](const Feature& a, const Feature& b) { return a.t < b.t; });
+  std::vector<double> cuts{range.lo};
+  for (const Feature& f : features) {
+    if (!(f.t > range.lo && f.t < range.hi)) continue;
+    const double gap = f.t - cuts.back();
+    if (gap > std::max(0.75 * f.width, 4e-16 * std::abs(f.t))) cuts.push_back(f.t);
+  }
+  cuts.push_back(range.hi);
+  return cuts;
+}
+
+}  // namespace
+
+struct AirlightIntegrator::Impl {
+  const Scene& scene;
+  Accuracy accuracy;
+  double depth_error;  // absolute, that many culled Gaussians may add up to
+  std::vector<std::optional<GaussianTable>> tables;
+  std::unique_ptr<ShadowFinder> shadows;
+
+  Impl(const Scene& s, const Accuracy& a)
+      : scene(s), accuracy(a), depth_error(1e-3 * std::max(a.relative_tolerance, 1e-13)), tables(s.media.size()) {
+    for (std::size_t m = 0; m < scene.media.size(); ++m)
+      if (const auto* sum = std::get_if<scene::GaussianSum>(&scene.media[m].field))
+        tables[m] = make_gaussian_table(*sum);
+    if (scene.geometry) shadows = std::make_unique<ShadowFinder>(*scene.geometry, 256);
+  }
+
+  double cull(std::size_t m) const {
+    return tables[m] ? depth_error / double(std::max<std::size_t>(1, tables[m]->size())) : depth_error;
+  }
+
+  // Density integral of one medium along a segment [m].
+  double segment(std::size_t m, const Ray& ray, Interval t) const {
+    const Medium& medium = scene.media[m];
+    if (!tables[m]) return scene::density_integral(medium, ray, t);
+    const double sigma = medium.sigma_t.maxCoeff();
+    if (!(sigma > 0)) return 0;
+    return density_integral(*tables[m], ray, scene::clip(medium.region, ray, t), cull(m) / sigma);
+  }
+
+  Rgb depth(const Ray& ray, Interval t) const {
+    Rgb sum = Rgb::Zero();
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+      const double length = segment(m, ray, t);
+      for (int c = 0; c < 3; ++c)
+        if (scene.media[m].sigma_t[c] > 0) sum[c] += scene.media[m].sigma_t[c] * length;  // never 0 * infinity
+    }
+    return sum;
+  }
+};
+
+namespace {
+
+// The integrand of one ray, over charts of all lights.
+struct Integrand {
+  const Scene& scene;
+  const Paths& paths;
+  const std::vector<Chart>& charts;
+  const std::function<Rgb(const Ray&, double)>& light_path;
+  const Ray& ray;
+  // Optical depth (camera to point to light) seen since the last reset: how steep the exponential is.
+  double least = infinity, greatest = -infinity, clearest = infinity;
+
+  void reset() { least = infinity, greatest = -infinity, clearest = infinity; }
+
+  Rgb operator()(int c, double u) {
+    const Chart& chart = charts[c];
+    const Chart::Place place = chart.at(u);
+    const LightPlane& plane = *chart.plane;
+    double cosine;
+    Vec3 to_light;
+    double distance = infinity;
+    if (plane.directional) {
+      to_light = plane.to_light;
+      cosine = to_light.dot(ray.direction);
+    } else {
+      distance = std::hypot(place.x, plane.h);
+      to_light = (plane.h * plane.normal_to_ray - place.x * ray.direction) / distance;
+      cosine = -place.x / distance;
+    }
+    Rgb depth = Rgb::Zero();
+    Rgb source = Rgb::Zero();
+    for (std::size_t m = 0; m < paths.size(); ++m) {
+      if (!paths[m]) continue;
+      const Medium& medium = scene.media[m];
+      depth += medium.sigma_t * paths[m]->integral(place.t);
+      if (place.t < paths[m]->extent().lo || place.t > paths[m]->extent().hi || !scatters(medium)) continue;
+      const double density = paths[m]->density(place.t);
+      if (density > 0)
+        source += medium.albedo * medium.sigma_t *
+                  (density * scene::phase_value(medium.phase, std::clamp(cosine, -1.0, 1.0)));
+    }
+    if (!(source.maxCoeff() > 0)) return Rgb::Zero();
+    const scene::Light& light = scene.lights[chart.light];
+    if (plane.directional)
+      source *= std::get<scene::DirectionalLight>(light).irradiance;
+    else
+      source *= scene::intensity_towards(light, -to_light);
+    if (!(source.maxCoeff() > 0)) return Rgb::Zero();
+    depth += plane.directional ? light_path({ray.at(place.t), to_light}, infinity)
+                               : light_path({plane.light, -to_light}, distance);
+    least = std::min(least, depth.maxCoeff());
+    greatest = std::max(greatest, depth.maxCoeff());
+    clearest = std::min(clearest, depth.minCoeff());
+    return source * (-depth).exp() * place.weight;
+  }
+};
+
+// Panels of one light, appended to charts and panels.
+void add_panels(const Scene& scene, const Paths& paths, const LightPlane& plane, int light,
+                const std::vector<Feature>& features, const std::vector<Interval>& lit, std::vector<Chart>& charts,
+                std::vector<Panel>& panels) {
+  for (const Interval& stretch : lit) {
+    const std::vector<double> cuts = cut(features, stretch);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const double lo = cuts[i], hi = cuts[i + 1];
+      if (!(hi > lo)) continue;
+      const double middle = std::isinf(hi) ? 2 * std::abs(lo) + 1 : 0.5 * (lo + hi);
+      bool inside = false;
+      for (std::size_t m = 0; m < paths.size(); ++m)
+        inside |=
+            paths[m] && scatters(scene.media[m]) && middle >= paths[m]->extent().lo && middle <= paths[m]->extent().hi;
+      if (!inside) continue;
+      charts.emplace_back(plane, light, lo, hi);
+      panels.push_back({0, 1, int(charts.size()) - 1});
+    }
+  }
+}
+
+}  // namespace
+
+AirlightIntegrator::AirlightIntegrator(const Scene& scene, const Accuracy& accuracy)
+    : impl_(std::make_unique<Impl>(scene, accuracy)) {}
+AirlightIntegrator::~AirlightIntegrator() = default;
+
+Rgb AirlightIntegrator::optical_depth(const Ray& ray, double t) const { return impl_->depth(ray, {0, t}); }
+
+Rgb AirlightIntegrator::light_depth(const Point3& x, int light) const {
+  const scene::Incident in = scene::incident(impl_->scene.lights[light], x);
+  return impl_->depth({x, in.to_light}, {0, in.distance});
+}
+
+Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
+  const Impl& impl = *impl_;
+  const Scene& scene = impl.scene;
+  Airlight result;
+
+  Paths paths(scene.media.size());
+  std::vector<Feature> view_features;
+  Interval range;  // hull of the scattering media
+  bool fine = false;
+  for (std::size_t m = 0; m < scene.media.size(); ++m) {
+    const auto& table = impl.tables[m];
+    paths[m] = density_along_ray(scene.media[m], table ? &*table : nullptr, ray, t_end, impl.cull(m));
+    if (!paths[m]) continue;
+    paths[m]->add_features(view_features);
+    fine |= paths[m]->fine();
+    if (!scatters(scene.media[m])) continue;
+    range = {std::min(range.lo, paths[m]->extent().lo), std::max(range.hi, paths[m]->extent().hi)};
+  }
+  if (range.empty()) return result;
+
+  std::vector<LightPlane> planes;
+  planes.reserve(scene.lights.size());
+  std::vector<Chart> charts;
+  std::vector<Panel> panels;
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const scene::Light& light = scene.lights[l];
+    if (!scene::is_delta(light)) continue;
+    const LightPlane& plane = planes.emplace_back(light_plane(ray, light));
+    std::vector<Feature> features = view_features;
+    std::vector<double> kinks;
+    for (std::size_t m = 0; m < scene.media.size(); ++m) {
+      const Medium& medium = scene.media[m];
+      if (!(medium.sigma_t.maxCoeff() > 0)) continue;
+      add_medium(plane, medium, kinks);
+      if (impl.tables[m])
+        add_gaussian_shadows(plane, *impl.tables[m], medium.sigma_t.maxCoeff(), impl.cull(m), features);
+    }
+    if (const auto* spot = std::get_if<scene::SpotLight>(&light)) add_cone(plane, *spot, kinks);
+    if (!plane.directional) {
+      kinks.push_back(plane.foot);
+      // The inverse square has the scale h; exp(-distance) and the media have theirs. Steps in between by powers.
+      const double reach = std::isinf(range.hi) ? 1e3 + std::abs(plane.foot) : std::max(range.hi, plane.foot);
+      if (plane.h > 0)
+        for (double step = 4 * plane.h; step < reach + std::abs(plane.foot); step *= 32)
+          kinks.insert(kinks.end(), {plane.foot - step, plane.foot + step});
+      if (plane.h == 0 && plane.foot >= range.lo && plane.foot <= range.hi)
+        for (std::size_t m = 0; m < scene.media.size(); ++m) {
+          if (!paths[m] || !scatters(scene.media[m])) continue;
+          const Interval extent = paths[m]->extent();
+          if (plane.foot < extent.lo || plane.foot > extent.hi || !(paths[m]->density(plane.foot) > 0)) continue;
+          // int dx/x^2 through the light: there is no finite answer.
+          result.radiance = result.error = Rgb::Constant(infinity);
+          result.converged = false;
+          return result;
+        }
+    }
+    for (const double t : kinks) features.push_back({t, 0});
+    const std::vector<Interval> lit = impl.shadows ? impl.shadows->lit(plane, range) : std::vector<Interval>{range};
+    add_panels(scene, paths, plane, int(l), features, lit, charts, panels);
+  }
+
+  const std::function<Rgb(const Ray&, double)> light_path = [&](const Ray& path, double distance) {
+    return impl.depth(path, {0, distance});
+  };
+  Integrand integrand{scene, paths, charts, light_path, ray};
+  scene::QuadratureOptions options;
+  options.relative_tolerance = impl.accuracy.relative_tolerance;
+  options.max_evaluations = impl.accuracy.max_evaluations;
+  options.rule = fine ? &scene::kronrod7() : &scene::kronrod15();
+  const double steepest = fine ? 6 : 12;  // e-folds that the rule resolves
+  const long per_panel = 2 * options.rule->half - 1;
+
+  // First estimates. A panel over which the depth changes by many e-folds would show the rule only zeros: it is halved
+  // until it does not, unless it is darker than the brightest place by exp(-300).
+  std::vector<Panel> estimated;
+  std::vector<Panel> open(panels.rbegin(), panels.rend());
+  double clearest = infinity;
+  bool spent = false;
+  while (!open.empty()) {
+    Panel p = open.back();
+    open.pop_back();
+    integrand.reset();
+    scene::estimate_panel(integrand, *options.rule, p);
+    result.evaluations += per_panel;
+    clearest = std::min(clearest, integrand.clearest);
+    const bool steep = integrand.greatest - integrand.least > steepest && integrand.clearest < clearest + 300;
+    if (steep && p.hi - p.lo > 1e-15) {
+      if (result.evaluations + 2 * per_panel <= options.max_evaluations) {
+        const double middle = 0.5 * (p.lo + p.hi);
+        open.push_back({middle, p.hi, p.chart});
+        open.push_back({p.lo, middle, p.chart});
+        continue;
+      }
+      spent = true;
+    }
+    estimated.push_back(p);
+  }
+  const scene::Integral integral = scene::refine_panels(integrand, estimated, options, result.evaluations);
+  result.radiance = integral.value;
+  result.error = integral.error;
+  result.evaluations = integral.evaluations;
+  result.converged = integral.converged && !spent;
+  return result;
+}
+
+Airlight airlight(const Scene& scene, const Ray& ray, double t_end, const Accuracy& accuracy) {
+  return AirlightIntegrator(scene, accuracy)(ray, t_end);
+}
+
+}  // namespace airlight::deterministic

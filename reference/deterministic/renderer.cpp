@@ -1,0 +1,182 @@
+#include "reference/deterministic/renderer.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "reference/deterministic/airlight.h"
+#include "reference/deterministic/surface_light.h"
+#include "scene/error.h"
+
+namespace airlight::deterministic {
+namespace {
+
+using scene::Scene;
+using scene::SettingSpec;
+
+const char* const no_finite_answer =
+    "a point or spot light of radius 0 sits on the camera inside a medium: its airlight is infinite";
+
+bool any_scattering(const Scene& scene) {
+  for (const scene::Medium& m : scene.media)
+    if ((m.sigma_t * m.albedo).maxCoeff() > 0) return true;
+  return false;
+}
+
+bool any(const Scene& scene, bool delta) {
+  for (const scene::Light& light : scene.lights)
+    if (scene::is_delta(light) == delta) return true;
+  return false;
+}
+
+// Counts of a render, added up over rows.
+struct Counts {
+  std::atomic<long> rays{0}, evaluations{0}, unmet{0}, infinite{0};
+};
+
+class DeterministicPrepared final : public scene::Prepared {
+ public:
+  DeterministicPrepared(std::shared_ptr<const Scene> scene, const scene::Settings& settings)
+      : scene_(std::move(scene)),
+        settings_(settings.canonical()),
+        integrator_(*scene_, {settings.real("relative_tolerance"), long(settings.integer("max_evaluations"))}) {}
+
+  std::vector<scene::Stage> stages() const override {
+    const bool delta = any(*scene_, true), scattering = any_scattering(*scene_);
+    const bool environment = any(*scene_, false);
+    std::vector<scene::Stage> stages;
+    stages.push_back({"airlight", airlight_kept(),
+                      !delta        ? "no point, spot or directional light"
+                      : !scattering ? "no medium scatters"
+                                    : "order (1, 0) from delta lights by quadrature"});
+    stages.push_back({"shadows", airlight_kept() && scene_->geometry,
+                      scene_->geometry ? "surfaces cast shadows into the medium" : "no surfaces"});
+    stages.push_back({"surface", surface_kept(),
+                      surface_kept() ? "surfaces under delta lights, background" : "neither surfaces nor background"});
+    stages.push_back({"ambient", ambient_kept(),
+                      ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero"});
+    if (environment)
+      stages.push_back({"environment as a light", false,
+                        "not a delta light: only the background is drawn, see the path tracer for the rest"});
+    stages.push_back({"higher orders", false, "this reference computes orders (1, 0) and (0, 1) only"});
+    return stages;
+  }
+
+  scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    if (view.camera.kind == scene::Camera::Kind::perspective && light_on_camera(*scene_, view.camera.position))
+      throw Error(fmt::format("{}: {}", scene_->name, no_finite_answer));
+    scene::Rendering out;
+    out.film = scene::Film(view.width, view.height);
+    scene::Film& film = out.film;
+    for (const char* layer : {"mean", "transmittance"}) film.add(layer);
+    if (airlight_kept()) film.add("airlight"), film.add("error");
+    if (surface_kept()) film.add("surface");
+    if (ambient_kept()) film.add("ambient");
+    Counts counts;
+    const auto begin = std::chrono::steady_clock::now();
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      for (int x = 0; x < view.width; ++x) pixel(view, x, y, film, counts);
+    });
+    out.times.push_back({"render", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+    out.counters = {{"rays", double(counts.rays)},
+                    {"evaluations", double(counts.evaluations)},
+                    {"pixels over tolerance", double(counts.unmet)},
+                    {"infinite pixels", double(counts.infinite)}};
+    film.metadata["method"] = "deterministic";
+    film.metadata["scene"] = scene_->name;
+    film.metadata["scene_hash"] = scene_->hash;
+    film.metadata["settings"] = settings_;
+    film.metadata["pixels_over_tolerance"] = std::to_string(counts.unmet);
+    film.metadata["infinite_pixels"] = std::to_string(counts.infinite);
+    if (any(*scene_, false)) film.metadata["left_out"] = "environment as a light of media and surfaces";
+    return out;
+  }
+
+ private:
+  bool airlight_kept() const { return any(*scene_, true) && any_scattering(*scene_); }
+  bool surface_kept() const { return scene_->geometry || any(*scene_, false); }
+  bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !scene_->media.empty(); }
+
+  void pixel(const scene::View& view, int x, int y, scene::Film& film, Counts& counts) const {
+    const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+    const scene::RayEnd end = scene::ray_end(*scene_, ray);
+    const Rgb depth = integrator_.optical_depth(ray, end.t);
+    const Rgb transmittance = (-depth).exp();
+    film.set("transmittance", x, y, transmittance);
+    Rgb mean = Rgb::Zero();
+    ++counts.rays;
+    if (airlight_kept()) {
+      const Airlight airlight = integrator_(ray, end.t);
+      counts.evaluations += airlight.evaluations;
+      if (!airlight.radiance.allFinite())
+        ++counts.infinite;
+      else if (!airlight.converged)
+        ++counts.unmet;
+      film.set("airlight", x, y, airlight.radiance);
+      film.set("error", x, y, airlight.error);
+      mean += airlight.radiance;
+    }
+    if (surface_kept() && transmittance.maxCoeff() > 0) {
+      const Rgb surface = transmittance * end_radiance(*scene_, integrator_, ray, end);
+      film.set("surface", x, y, surface);
+      mean += surface;
+    }
+    if (ambient_kept()) {
+      // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
+      const Rgb opacity = (-depth).unaryExpr([](double d) { return -std::expm1(d); });
+      film.set("ambient", x, y, scene_->ambient_in_scatter * opacity);
+      mean += scene_->ambient_in_scatter * opacity;
+    }
+    film.set("mean", x, y, mean);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  std::string settings_;
+  AirlightIntegrator integrator_;
+};
+
+class DeterministicRenderer final : public scene::Renderer {
+ public:
+  std::string name() const override { return "deterministic"; }
+  std::string about() const override {
+    return "noise-free single scattering by adaptive Gauss-Kronrod quadrature (reference)";
+  }
+  std::vector<SettingSpec> settings() const override {
+    return {{"relative_tolerance",
+             SettingSpec::Type::real,
+             "1e-10",
+             "of each pixel's airlight, per channel",
+             1e-14,
+             0.1,
+             {}},
+            {"max_evaluations", SettingSpec::Type::integer, "200000", "of the integrand, per pixel", 15, 1e9, {}}};
+  }
+  std::vector<std::string> supports(const Scene& scene, const scene::Settings&) const override {
+    if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
+      return {no_finite_answer};
+    return {};
+  }
+  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,
+                                           const scene::Execution&) const override {
+    if (const auto reasons = supports(*scene, settings); !reasons.empty())
+      throw Error(fmt::format("{}: {}", scene->name, reasons.front()));
+    return std::make_unique<DeterministicPrepared>(std::move(scene), settings);
+  }
+};
+
+}  // namespace
+
+bool light_on_camera(const Scene& scene, const Point3& origin) {
+  double density = 0;
+  for (const scene::Medium& m : scene.media)
+    if ((m.sigma_t * m.albedo).maxCoeff() > 0) density += scene::density(m, origin);
+  if (!(density > 0)) return false;
+  for (const scene::Light& light : scene.lights)
+    if (const auto ball = scene::ball(light); ball && ball->center == origin) return true;
+  return false;
+}
+
+std::unique_ptr<scene::Renderer> make_renderer() { return std::make_unique<DeterministicRenderer>(); }
+
+}  // namespace airlight::deterministic
