@@ -218,7 +218,9 @@ class FieldAlongRay final : public DensityAlongRay {
 std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const GaussianTable* table, const Ray& ray,
                                                    double t_end, double cull) {
   if (!(medium.sigma_t.maxCoeff() > 0)) return nullptr;
-  const Interval inside = scene::clip(medium.region, ray, {0, t_end});
+  // Beyond a sum of Gaussians' support its density counts as zero: a light there is in vacuum, and a ray through it
+  // finite.
+  const Interval inside = scene::extent(medium, ray, {0, t_end});
   if (inside.empty()) return nullptr;
   if (const auto* homogeneous = std::get_if<Homogeneous>(&medium.field)) {
     if (!(homogeneous->density > 0)) return nullptr;
@@ -228,11 +230,9 @@ std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const G
     if (table->size() == 0 && table->constant == 0) return nullptr;
     return std::make_unique<GaussiansAlongRay>(inside, *table, ray, cull, medium.sigma_t.maxCoeff());
   }
-  const Interval extent = scene::extent(medium, ray, {0, t_end});
-  if (extent.empty()) return nullptr;
   if (const auto* grid = std::get_if<std::shared_ptr<const VoxelGrid>>(&medium.field))
-    return std::make_unique<GridAlongRay>(extent, **grid, ray);
-  return std::make_unique<FieldAlongRay>(extent, medium, ray);
+    return std::make_unique<GridAlongRay>(inside, **grid, ray);
+  return std::make_unique<FieldAlongRay>(inside, medium, ray);
 }
 
 }  // namespace airlight::deterministic

@@ -1,0 +1,139 @@
+// Densities, line integrals, bounds and phase functions.
+#include <cmath>
+#include <memory>
+
+#include "experiments/verify/readers.h"
+#include "experiments/verify/vector_scene.h"
+
+namespace airlight::experiments::verification {
+namespace {
+
+// Samples ((7i + 13j + 31k + seed) mod 11) / 10. The grid holds the integers, which single precision keeps exactly; the
+// tenth goes into the extinction.
+std::shared_ptr<const scene::VoxelGrid> modular_grid(int n, int seed) {
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = Eigen::Vector3i::Constant(n);
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) grid->values.push_back(float((7 * i + 13 * j + 31 * k + seed) % 11));
+  return grid;
+}
+
+struct Segment {
+  Ray ray;
+  double length;
+};
+Segment segment_between(const Point3& p, const Point3& q) {
+  const double length = (q - p).norm();
+  return {{p, length > 0 ? Vec3((q - p) / length) : Vec3(Vec3::UnitZ())}, length};
+}
+
+}  // namespace
+
+Check read_line_integral(const Value& v) {
+  const Value in = v["in"];
+  const scene::Gaussian g{in["b"].vector(), 1 / in["a"].number(), in["c"].number()};
+  const Ray ray = ray_from(in["o"], in["dir"]);
+  const double d = in["d"].number_or_infinite(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) {
+            scene::GaussianSum sum;
+            sum.gaussians = {g};
+            // The specification of the vectors: 1e-12 relative, 1e-300 absolute.
+            return Outcome{{relative("one Gaussian", expected, scene::line_integral(g, ray, d), 1e-12),
+                            relative("sum of one", expected, scene::density_integral(sum, ray, {0, d}), 1e-12)}};
+          }};
+}
+
+Check read_depth(const Value& v) {
+  const Value in = v["in"];
+  const auto medium =
+      gaussian_fog(gaussians_from_objects(in["gaussians"]), in["beta0"].number(), 1, scene::Isotropic{});
+  const Segment s = segment_between(in["p"].vector(), in["q"].vector());
+  const double expected = v["value"].number();
+  return {"", [=](VerifyProfile) {
+            return Outcome{{relative("", expected, scene::optical_depth({medium}, s.ray, {0, s.length})[0], 1e-12)}};
+          }};
+}
+
+Check read_optical_depth(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  const Segment s = segment_between(in["p"].vector(), in["q"].vector());
+  if (in.has("F000")) {
+    expected["tau_raw"].number();
+    return not_yet("Legendre box");
+  }
+  if (in.has("degree")) {
+    expected["tau"].number();
+    return not_yet("fogmap");
+  }
+  scene::Medium medium = fog(scene::Unbounded{}, 0.1, 1, scene::Isotropic{});
+  medium.field = modular_grid(in["n"].integer(), in["seed"].integer());
+  const double tau = expected["tau"].number(), accuracy = v["accuracy"]["abs"].number();
+  return {"", [=](VerifyProfile) {
+            return Outcome{{absolute("tau", tau, scene::optical_depth({medium}, s.ray, {0, s.length})[0], accuracy)}};
+          }};
+}
+
+Check read_field_bounds(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  if (in.has("F000")) {
+    expected["bernstein_min"].number();
+    return not_yet("Legendre box");
+  }
+  if (in.has("cell")) {
+    expected["hull"].numbers();
+    return not_yet("fogmap");
+  }
+  const auto medium = gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), 1, scene::Isotropic{});
+  const Box box{in["lo"].vector(), in["hi"].vector()};
+  const double lower = expected["lower"].number(), upper = expected["upper"].number();
+  const std::vector<double> sampled = expected["sampled"].numbers();
+  const double accuracy = v["accuracy"]["abs"].number();
+  return {
+      "", [=](VerifyProfile) {
+        const Interval bounds = scene::density_bounds(medium, box);
+        return Outcome{{absolute("lower", lower, bounds.lo, accuracy), absolute("upper", upper, bounds.hi, accuracy),
+                        truth("contains samples", bounds.lo <= sampled.at(0) && bounds.hi >= sampled.at(1))}};
+      }};
+}
+
+Check read_phase_function(const Value& v) {
+  struct Row {
+    std::string name;
+    scene::PhaseFunction phase;
+    double k, g, forward, side, back, norm;
+  };
+  std::vector<Row> rows;
+  const Value expected = v["expected"];
+  for (const std::string& name : expected.fields()) {
+    if (name == "note") continue;
+    const Value e = expected[name];
+    scene::PhaseFunction phase = scene::Hazy{};
+    if (name == "murky")
+      phase = scene::Murky{};
+    else if (name != "hazy")
+      e.complain("hazy and murky");
+    rows.push_back({name, phase, e["K"].number(), e["g"].number(), e["p_fwd"].number(), e["p_side"].number(),
+                    e["p_back"].number(), e["paper_norm"].number()});
+  }
+  const double accuracy = v["accuracy"]["rel"].number();
+  return {"", [=](VerifyProfile) {
+            Outcome out;
+            for (const Row& r : rows) {
+              // The lobe vanishes at c = -1, which leaves K / (4 pi); the printed form is the normalised one over K.
+              const double k = 4 * pi * scene::phase_value(r.phase, -1);
+              const auto add = [&](const char* what, double e, double got) {
+                out.comparisons.push_back(relative(r.name + " " + what, e, got, accuracy));
+              };
+              add("K", r.k, k);
+              add("g", r.g, scene::mean_cosine(r.phase));
+              add("p(1)", r.forward, scene::phase_value(r.phase, 1));
+              add("p(0)", r.side, scene::phase_value(r.phase, 0));
+              add("p(-1)", r.back, scene::phase_value(r.phase, -1));
+              add("mean of printed form", r.norm, 1 / k);
+            }
+            return out;
+          }};
+}
+
+}  // namespace airlight::experiments::verification

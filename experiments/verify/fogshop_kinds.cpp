@@ -1,0 +1,29 @@
+// Closed forms and the paper's variant of methods/fogshop.
+#include "experiments/verify/readers.h"
+#include "experiments/verify/vector_scene.h"
+#include "methods/fogshop/homogeneous_airlight.h"
+
+namespace airlight::experiments::verification {
+
+Check read_f(const Value& v) {
+  const double u = v["in"]["u"].number(), limit = v["in"]["v"].number(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) { return Outcome{{relative("F", expected, fogshop::F(u, limit), 1e-12)}}; }};
+}
+
+Check read_airlight_homogeneous(const Value& v) {
+  const Value in = v["in"];
+  const double gamma = in["gamma"].number(), d_sv = in["d_sv"].number(), beta = in["beta"].number();
+  const double d_vp = in["d_vp"].number_or_infinite(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) {
+            return Outcome{{relative("L", expected, fogshop::homogeneous_airlight(gamma, d_sv, d_vp, beta), 1e-12)}};
+          }};
+}
+
+Check read_airlight_paper(const Value& v) {
+  const Value in = v["in"];
+  gaussians_from_objects(in["gaussians"]);
+  v["value"].number();
+  return not_yet("fogshop variant paper");
+}
+
+}  // namespace airlight::experiments::verification

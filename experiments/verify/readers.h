@@ -1,0 +1,31 @@
+// The readers of all kinds, grouped by the file that defines them; registry.cpp lists them.
+#pragma once
+#include "experiments/verify/check.h"
+
+namespace airlight::experiments::verification {
+
+// fields.cpp
+Check read_line_integral(const Value&);  // fogshop
+Check read_depth(const Value&);          // fogshop
+Check read_optical_depth(const Value&);
+Check read_field_bounds(const Value&);
+Check read_phase_function(const Value&);
+
+// single_scattering.cpp
+Check read_airlight_scene(const Value&);  // fogshop
+Check read_single_scattering_shape(const Value&);
+Check read_single_scattering_gaussians(const Value&);
+
+// fogshop_kinds.cpp
+Check read_f(const Value&);
+Check read_airlight_homogeneous(const Value&);
+Check read_airlight_paper(const Value&);
+
+// sampling_kinds.cpp
+Check read_sampling(const Value&);
+Check read_random_numbers(const Value&);
+
+// statistics_kinds.cpp
+Check read_statistics(const Value&);
+
+}  // namespace airlight::experiments::verification

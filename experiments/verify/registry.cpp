@@ -1,0 +1,193 @@
+// Which file says what of itself, and which reader serves which kind of it.
+#include <map>
+
+#include "experiments/verify/readers.h"
+
+namespace airlight::experiments::verification {
+namespace {
+
+using Kinds = std::map<std::string, Reader>;
+
+// A kind whose method is not built: its fields are checked, nothing is computed.
+Reader waiting(const std::string& what, std::vector<std::string> fields) {
+  return [=](const Value& v) {
+    for (const std::string& field : fields) v[field];
+    return not_yet(what);
+  };
+}
+
+Kinds references() {
+  return {
+      {"single_scattering_sphere", read_single_scattering_shape},
+      {"single_scattering_box", read_single_scattering_shape},
+      {"single_scattering_gaussians", read_single_scattering_gaussians},
+      {"single_scattering_environment", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"multiple_scattering_monte_carlo", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"slab_table", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"slab_point", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"slab_exit_radiance", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"slab_orders", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"halfspace", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"sphere_environment_all_orders", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"sphere_central_point", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"identity", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"optical_depth", read_optical_depth},
+      {"field_bounds", read_field_bounds},
+      {"phase_function", read_phase_function},
+      {"sampling", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"random_numbers", waiting("path tracer", {"input", "expected", "accuracy"})},
+      {"statistics", read_statistics},
+      {"fluid", waiting("fluid solver", {"input", "expected", "accuracy"})},
+  };
+}
+
+Kinds fogshop() {
+  return {
+      {"line_integral", read_line_integral},
+      {"depth", read_depth},
+      {"F", read_f},
+      {"airlight_homogeneous", read_airlight_homogeneous},
+      {"airlight_scene", read_airlight_scene},
+      {"airlight_paper", read_airlight_paper},
+      {"avg_depth", waiting("fogshop surface reflectance", {"in", "value"})},
+      {"npsf", waiting("fogshop surface reflectance", {"in", "value"})},
+      {"npsf_coef", waiting("fogshop surface reflectance", {"in", "value"})},
+  };
+}
+
+Kinds shadow_planes() {
+  Kinds kinds;
+  for (const char* kind : {"airlight", "taylor_coefficients", "taylor_integral", "spot", "shadow", "bounded"})
+    kinds[kind] = waiting("shadow planes", {"input", "expect"});
+  return kinds;
+}
+
+Kinds compensated_ray_marching() {
+  Kinds kinds;
+  for (const char* kind : {"sh_basis",
+                           "sh_triple_entry",
+                           "sh_triple_counts",
+                           "sh_triple_product",
+                           "hg_zh",
+                           "sh_convolution",
+                           "theta_of_d",
+                           "gaussian_optical_depth",
+                           "rbf_zh_optical_depth",
+                           "zh_rotation",
+                           "sh_exponential",
+                           "diffusion_point_source",
+                           "diffusion_uniform_source",
+                           "diffusion_slab_marshak",
+                           "halfspace_albedo_isotropic",
+                           "slab_albedo_mc",
+                           "ray_march_homogeneous",
+                           "fit_objective",
+                           "collocation_matrix",
+                           "psh_address",
+                           "single_scattering_source",
+                           "transmittance_environment",
+                           "march_single_scattering",
+                           "march_compensated",
+                           "ol_table",
+                           "sn_slab",
+                           "multiple_scattering_slab_hetero",
+                           "multiple_scattering_sphere",
+                           "trilinear_border",
+                           "hash_round_trip"})
+    kinds[kind] = waiting("compensated ray marching", {"input", "expected", "rtol", "atol"});
+  return kinds;
+}
+
+Kinds wavelet_fog() {
+  const std::map<std::string, std::vector<std::string>> fields = {
+      {"sequence",
+       {"chui_wang_q", "chui_wang_q_offset", "degree", "p", "p_offset", "restriction", "restriction_offset"}},
+      {"family", {"degree", "family", "offsets", "p", "p_tilde", "q", "q_tilde"}},
+      {"basis", {"degree", "expected", "u"}},
+      {"analysis1d", {"c", "expected", "family", "levels"}},
+      {"restrict1d", {"c", "degree", "expected"}},
+      {"l2proj1d", {"c", "degree", "expected"}},
+      {"analysis2d", {"c", "expected", "family", "levels"}},
+      {"optical_depth",
+       {"A", "B", "cell", "coef", "degree", "expected", "height", "origin", "profile", "sigma", "width"}},
+      {"multires",
+       {"A", "B", "cell", "coef", "degree", "expected", "family", "height", "levels", "mu", "origin", "profile"}},
+      {"composite", {"L_P", "L_fog", "expected", "optical_depth"}},
+      {"reject", {"coef", "degree", "expected", "height", "width"}},
+  };
+  Kinds kinds;
+  for (const auto& [kind, list] : fields) kinds[kind] = waiting("wavelet fog", list);
+  return kinds;
+}
+
+Kinds legendre_fluids() {
+  const std::vector<std::string> flow3 = {"a", "b", "c", "d", "n"};
+  const std::vector<std::string> light = {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"};
+  const std::map<std::string, std::vector<std::string>> fields = {
+      {"derivative", {"D[k][i]", "n"}},
+      {"integral", {"B[k][i]", "n"}},
+      {"derivative-samples", {"entries"}},
+      {"integral-samples", {"entries"}},
+      {"triple", {"entries"}},
+      {"triple-count", {"entries"}},
+      {"product", {"F", "G", "H_trunc_cheb", "d"}},
+      {"truncation", {"T", "m", "n"}},
+      {"phi-mass", {"M", "eigenvalues", "n"}},
+      {"project", {"a", "a_proj", "b", "b_proj", "n"}},
+      {"advect", {"a", "b", "rhs_a", "rhs_b", "n"}},
+      {"diffuse", {"a", "b", "implicit_a", "implicit_b", "n", "nu_dt"}},
+      {"taylor-green", {"energy", "nu", "points", "t"}},
+      {"scatter", light},
+      {"airlight", light},
+      {"upwind-galerkin", light},
+      {"image", light},
+      {"evaluate", flow3},
+      {"coefficients", flow3},
+      {"rk4", flow3},
+      {"step", flow3},
+      {"density-advect", flow3},
+      {"energy-identity", flow3},
+  };
+  Kinds kinds;
+  for (const auto& [kind, list] : fields) kinds[kind] = waiting("Legendre fluids", list);
+  return kinds;
+}
+
+const std::map<std::string, Kinds>& families() {
+  static const std::map<std::string, Kinds> all = {
+      {"references", references()},       {"fogshop", fogshop()},
+      {"shadow_planes", shadow_planes()}, {"compensated_ray_marching", compensated_ray_marching()},
+      {"wavelet_fog", wavelet_fog()},     {"legendre_fluids", legendre_fluids()},
+  };
+  return all;
+}
+
+bool says(const Value& file, const std::string& field, const std::string& text) {
+  return file.has(field) && file[field].text() == text;
+}
+
+}  // namespace
+
+std::string family_of(const Value& file) {
+  if (says(file, "part", "references")) return "references";
+  if (says(file, "format", "airlight-fogshop-vectors-1")) return "fogshop";
+  if (says(file, "format", "airlight/shadow_planes/1")) return "shadow_planes";
+  if (says(file, "format", "airlight-wavelet-fog-1")) return "wavelet_fog";
+  if (says(file, "paper", "compensated_ray_marching_2008")) return "compensated_ray_marching";
+  if (says(file, "topic", "legendre_fluids")) return "legendre_fluids";
+  file.complain("a file of vectors that says what it is in 'part', 'format', 'paper' or 'topic'");
+}
+
+Reader find_reader(const std::string& family, const std::string& kind) {
+  const Kinds& kinds = families().at(family);
+  const auto found = kinds.find(kind);
+  return found == kinds.end() ? Reader() : found->second;
+}
+
+std::vector<std::string> known_kinds(const std::string& family) {
+  std::vector<std::string> names;
+  for (const auto& [kind, reader] : families().at(family)) names.push_back(kind);
+  return names;
+}
+
+}  // namespace airlight::experiments::verification

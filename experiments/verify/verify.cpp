@@ -1,0 +1,132 @@
+#include "experiments/verify/verify.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "experiments/verify/check.h"
+#include "scene/error.h"
+#include "scene/settings.h"
+
+namespace airlight::experiments {
+namespace {
+
+using namespace verification;
+
+struct Work {
+  std::string id, kind;
+  Check check;
+};
+
+nlohmann::json read_json(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(fmt::format("{}: cannot be read", path));
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& e) {
+    // The library's message holds line and column; one line of it is enough.
+    std::string what = e.what();
+    what = what.substr(0, what.find('\n'));
+    throw Error(fmt::format("{}: not JSON: {}", path, what));
+  }
+}
+
+// Everything of a file is read before anything is computed: a malformed last entry is not found after minutes of work.
+std::vector<Work> read_file(const std::string& path) {
+  const nlohmann::json json = read_json(path);
+  const Value file(json, path);
+  const std::string family = family_of(file);
+  const Value vectors = file["vectors"];
+  std::vector<Work> work;
+  std::set<std::string> ids;
+  if (file.has("count") && file["count"].integer() != int(vectors.size()))
+    file["count"].complain(fmt::format("{}, the number of vectors", vectors.size()));
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const Value entry = vectors[i];
+    const std::string id = entry["id"].text();
+    const Value named(entry.json(), fmt::format("{}: vector {} '{}'", path, i, id));
+    if (!ids.insert(id).second) named["id"].complain("an id that no other vector has");
+    const std::string kind = named["kind"].text();
+    const Reader read = find_reader(family, kind);
+    if (!read) {
+      const std::vector<std::string> kinds = known_kinds(family);
+      throw Error(fmt::format("{}: unknown kind '{}', expected one of {} (nearest: {})", named.where(), kind,
+                              fmt::join(kinds, ", "), scene::nearest(kind, kinds)));
+    }
+    work.push_back({id, kind, read(named)});
+  }
+  return work;
+}
+
+double relative_error(const Comparison& c) {
+  if (c.expected == c.got) return 0;
+  return c.expected == 0 ? infinity : std::abs(c.got - c.expected) / std::abs(c.expected);
+}
+
+struct Totals {
+  int vectors = 0, numbers = 0, out = 0, not_yet = 0, left_out = 0;
+};
+
+}  // namespace
+
+int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile profile, std::ostream& out) {
+  std::vector<std::pair<std::string, std::vector<Work>>> all;
+  std::set<std::string> kinds;
+  for (const std::string& path : files) {
+    all.push_back({path, read_file(path)});
+    for (const Work& w : all.back().second) kinds.insert(w.kind);
+  }
+  if (!kind.empty() && !kinds.count(kind))
+    throw Error(fmt::format("no vector of kind '{}', expected one of {} (nearest: {})", kind, fmt::join(kinds, ", "),
+                            scene::nearest(kind, {kinds.begin(), kinds.end()})));
+
+  Totals totals;
+  std::map<std::string, int> waiting;
+  std::vector<std::string> failures;
+  for (const auto& [path, work] : all) {
+    out << path << "\n";
+    out << fmt::format("{:<42} {:<32} {:<22} {:>20} {:>20} {:>9}  {:<26} {}\n", "id", "kind", "number", "expected",
+                       "got", "rel.err", "tolerance", "");
+    for (const Work& w : work) {
+      if (!kind.empty() && w.kind != kind) continue;
+      if (!w.check.job) {
+        out << fmt::format("{:<42} {:<32} not yet: {}\n", w.id, w.kind, w.check.not_yet);
+        ++totals.not_yet;
+        ++waiting[w.check.not_yet];
+        continue;
+      }
+      const Outcome outcome = w.check.job(profile);
+      if (!outcome.comparisons.empty()) ++totals.vectors;
+      for (const Comparison& c : outcome.comparisons) {
+        const bool ok = c.ok();
+        out << fmt::format("{:<42} {:<32} {:<22} {:>20.13g} {:>20.13g} {:>9.1e}  {:<26} {}\n", w.id, w.kind, c.what,
+                           c.expected, c.got, relative_error(c), c.tolerance_text, ok ? "ok" : "OUT");
+        ++totals.numbers;
+        if (ok) continue;
+        ++totals.out;
+        failures.push_back(w.id + (c.what.empty() ? "" : " " + c.what));
+      }
+      if (outcome.left_out) {
+        out << fmt::format("{:<42} {:<32} {} numbers left out: {}\n", w.id, w.kind, outcome.left_out,
+                           outcome.left_out_because);
+        totals.left_out += outcome.left_out;
+      }
+      out.flush();
+    }
+  }
+  for (const auto& [what, count] : waiting) out << fmt::format("not yet: {} of {}\n", count, what);
+  for (const std::string& f : failures) out << "OUT: " << f << "\n";
+  out << fmt::format(
+      "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors not yet\n",
+      totals.vectors, totals.numbers, totals.numbers - totals.out, totals.out, totals.left_out, totals.not_yet);
+  return totals.out ? 1 : 0;
+}
+
+}  // namespace airlight::experiments

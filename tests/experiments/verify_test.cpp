@@ -1,0 +1,115 @@
+#include "experiments/verify/verify.h"
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scene/error.h"
+
+using namespace airlight;
+using airlight::experiments::verify;
+using airlight::experiments::VerifyProfile;
+
+namespace {
+
+const std::string vectors = AIRLIGHT_SOURCE_DIR "/tests/vectors/";
+
+// A file that goes away with the test.
+struct TemporaryFile {
+  std::string path;
+  explicit TemporaryFile(const std::string& text) {
+    path =
+        (std::filesystem::temp_directory_path() / ("airlight_verify_" + std::to_string(counter++) + ".json")).string();
+    std::ofstream(path) << text;
+  }
+  ~TemporaryFile() { std::remove(path.c_str()); }
+  static inline int counter = 0;
+};
+
+std::string complaint(const std::string& text) {
+  const TemporaryFile file(text);
+  std::ostringstream out;
+  try {
+    verify({file.path}, "", VerifyProfile::quick, out);
+  } catch (const Error& e) {
+    CHECK(e.exit_code() == 2);
+    CHECK(std::string(e.what()).find(file.path) != std::string::npos);
+    CHECK(std::string(e.what()).find('\n') == std::string::npos);
+    return e.what();
+  }
+  return "no complaint";
+}
+
+std::string fogshop_file(const std::string& entry) {
+  return R"({"format": "airlight-fogshop-vectors-1", "vectors": [)" + entry + "]}";
+}
+
+const std::string good = R"({"id": "a", "kind": "F", "in": {"u": 0.0, "v": 0.7}, "value": "0.7"})";
+
+}  // namespace
+
+TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify]") {
+  for (const char* kind : {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians",
+                           "optical_depth", "field_bounds", "phase_function", "statistics"}) {
+    std::ostringstream out;
+    CAPTURE(kind);
+    const int code = verify({vectors + "references.json"}, kind, VerifyProfile::quick, out);
+    CAPTURE(out.str());
+    CHECK(code == 0);
+  }
+  for (const char* kind : {"line_integral", "depth", "F", "airlight_homogeneous", "airlight_scene"}) {
+    std::ostringstream out;
+    CAPTURE(kind);
+    const int code = verify({vectors + "fogshop.json"}, kind, VerifyProfile::quick, out);
+    CAPTURE(out.str());
+    CHECK(code == 0);
+  }
+}
+
+TEST_CASE("a number out of tolerance is found", "[verify]") {
+  const TemporaryFile right(fogshop_file(good));
+  const TemporaryFile wrong(
+      fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0.0, "v": 0.7}, "value": "0.70000000001"})"));
+  std::ostringstream out;
+  CHECK(verify({right.path}, "", VerifyProfile::quick, out) == 0);
+  CHECK(verify({right.path, wrong.path}, "", VerifyProfile::quick, out) == 1);
+  CHECK(out.str().find("OUT: a F") != std::string::npos);
+}
+
+TEST_CASE("methods to come are listed and counted", "[verify]") {
+  std::ostringstream out;
+  CHECK(verify({vectors + "references.json"}, "fluid", VerifyProfile::quick, out) == 0);
+  CHECK(out.str().find("10 vectors not yet") != std::string::npos);
+}
+
+TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
+  using Catch::Contains;
+  CHECK_THAT(complaint(""), Contains("not JSON"));
+  CHECK_THAT(complaint(fogshop_file(good).substr(0, 70)), Contains("not JSON"));
+  CHECK_THAT(complaint("[1, 2]"), Contains("array"));
+  CHECK_THAT(complaint(R"({"vectors": []})"), Contains("'format'"));
+  CHECK_THAT(complaint(R"({"format": "airlight-fogshop-vectors-1"})"), Contains("missing field 'vectors'"));
+  CHECK_THAT(complaint(fogshop_file(R"({"kind": "F"})")), Contains("missing field 'id'"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a"})")), Contains("'a'") && Contains("missing field 'kind'"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "G"})")),
+             Contains("unknown kind 'G'") && Contains("nearest: F"));
+  CHECK_THAT(complaint(fogshop_file(good + "," + good)), Contains("an id that no other vector has"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0.0}, "value": "0.7"})")),
+             Contains("'a'.in: missing field 'v'"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0, "v": [1]}, "value": "0.7"})")),
+             Contains("in.v: found array [1], expected a finite number"));
+  for (const char* value : {R"("nan")", R"("0.7x")", R"("")", "null", R"("inf")", R"("1e999")"})
+    CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0, "v": 1}, "value": )" +
+                                      std::string(value) + "}")),
+               Contains("'a'.value") && Contains("expected a finite number"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0, "v": NaN}, "value": "1"})")),
+             Contains("not JSON"));
+}
+
+TEST_CASE("a kind that no file has is refused", "[verify]") {
+  std::ostringstream out;
+  CHECK_THROWS_AS(verify({vectors + "fogshop.json"}, "airlight_scenes", VerifyProfile::quick, out), Error);
+  CHECK_THROWS_AS(verify({vectors + "absent.json"}, "", VerifyProfile::quick, out), Error);
+}
