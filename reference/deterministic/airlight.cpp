@@ -22,44 +22,37 @@ using Paths = std::vector<std::unique_ptr<DensityAlongRay>>;  // per medium; nul
 
 bool scatters(const Medium& medium) { return (medium.albedo * medium.sigma_t).maxCoeff() > 0; }
 
-// A stretch of the view ray, with u in [0, 1] as its coordinate.
+// A stretch of the view ray, with u in [0, 1] as its coordinate. Places on the ray are x, the ray parameter less that
+// of the point nearest to the light (directional lights: less 0): a ray that passes a light at 1e-12 needs x in more
+// digits than t has.
 struct Chart {
   const LightPlane* plane;
   int light;
-  double lo, hi;       // ray parameters
+  double lo, hi;       // x
   EquiangularMap map;  // point and spot lights
 
   Chart(const LightPlane& p, int l, double a, double b)
-      : plane(&p),
-        light(l),
-        lo(a),
-        hi(b),
-        map(p.directional ? EquiangularMap(0, 1, 1) : EquiangularMap(a - p.foot, b - p.foot, p.h)) {}
+      : plane(&p), light(l), lo(a), hi(b), map(p.directional ? EquiangularMap(0, 1, 1) : EquiangularMap(a, b, p.h)) {}
 
-  // dt/du of a directional light, or (dt/du) / distance^2.
+  // The weight is dx/du for a directional light, (dx/du) / distance^2 for others.
   struct Place {
-    double t, x, weight;
+    double x, weight;
   };
   Place at(double u) const {
-    if (!plane->directional) {
-      const double x = map.x(u);
-      return {plane->foot + x, x, map.density()};
-    }
-    if (!std::isinf(hi)) return {lo + u * (hi - lo), 0, hi - lo};
+    if (!plane->directional) return {map.x(u), map.density()};
+    if (!std::isinf(hi)) return {lo + u * (hi - lo), hi - lo};
     const double scale = 1 + std::abs(lo);
-    return {lo + scale * u / (1 - u), 0, scale / ((1 - u) * (1 - u))};
+    return {lo + scale * u / (1 - u), scale / ((1 - u) * (1 - u))};
   }
 };
 
 // Sorted places to cut [range.lo, range.hi]: every sharp feature, and of the smooth ones no more than about one per
 // width.
-std::vector<double> cut(std::vector<Feature> features, Interval range) {
-  std::sort(features.begin(), features.end(), [](const Feature& a, const Feature& b) { return a.t < b.t; });
+std::vector<double> cut(const std::vector<Feature>& features, Interval range) {
   std::vector<double> cuts{range.lo};
   for (const Feature& f : features) {
     if (!(f.t > range.lo && f.t < range.hi)) continue;
-    const double gap = f.t - cuts.back();
-    if (gap > std::max(0.75 * f.width, 4e-16 * std::abs(f.t))) cuts.push_back(f.t);
+    if (f.t - cuts.back() > std::max(0.75 * f.width, 4e-16 * std::abs(f.t))) cuts.push_back(f.t);
   }
   cuts.push_back(range.hi);
   return cuts;
@@ -124,6 +117,7 @@ struct Integrand {
     const Chart& chart = charts[c];
     const Chart::Place place = chart.at(u);
     const LightPlane& plane = *chart.plane;
+    const double t = plane.foot + place.x;
     double cosine;
     Vec3 to_light;
     double distance = infinity;
@@ -140,9 +134,9 @@ struct Integrand {
     for (std::size_t m = 0; m < paths.size(); ++m) {
       if (!paths[m]) continue;
       const Medium& medium = scene.media[m];
-      depth += medium.sigma_t * paths[m]->integral(place.t);
-      if (place.t < paths[m]->extent().lo || place.t > paths[m]->extent().hi || !scatters(medium)) continue;
-      const double density = paths[m]->density(place.t);
+      depth += medium.sigma_t * paths[m]->integral(t);
+      if (t < paths[m]->extent().lo || t > paths[m]->extent().hi || !scatters(medium)) continue;
+      const double density = paths[m]->density(t);
       if (density > 0)
         source += medium.albedo * medium.sigma_t *
                   (density * scene::phase_value(medium.phase, std::clamp(cosine, -1.0, 1.0)));
@@ -154,7 +148,7 @@ struct Integrand {
     else
       source *= scene::intensity_towards(light, -to_light);
     if (!(source.maxCoeff() > 0)) return Rgb::Zero();
-    depth += plane.directional ? light_path({ray.at(place.t), to_light}, infinity)
+    depth += plane.directional ? light_path({ray.at(t), to_light}, infinity)
                                : light_path({plane.light, -to_light}, distance);
     least = std::min(least, depth.maxCoeff());
     greatest = std::max(greatest, depth.maxCoeff());
@@ -163,16 +157,16 @@ struct Integrand {
   }
 };
 
-// Panels of one light, appended to charts and panels.
+// Panels of one light, appended to charts and panels. Features are sorted, and like the charts in x.
 void add_panels(const Scene& scene, const Paths& paths, const LightPlane& plane, int light,
                 const std::vector<Feature>& features, const std::vector<Interval>& lit, std::vector<Chart>& charts,
                 std::vector<Panel>& panels) {
   for (const Interval& stretch : lit) {
-    const std::vector<double> cuts = cut(features, stretch);
+    const std::vector<double> cuts = cut(features, {stretch.lo - plane.foot, stretch.hi - plane.foot});
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const double lo = cuts[i], hi = cuts[i + 1];
       if (!(hi > lo)) continue;
-      const double middle = std::isinf(hi) ? 2 * std::abs(lo) + 1 : 0.5 * (lo + hi);
+      const double middle = plane.foot + (std::isinf(hi) ? 2 * std::abs(lo) + 1 : 0.5 * (lo + hi));
       bool inside = false;
       for (std::size_t m = 0; m < paths.size(); ++m)
         inside |=
@@ -182,6 +176,39 @@ void add_panels(const Scene& scene, const Paths& paths, const LightPlane& plane,
       panels.push_back({0, 1, int(charts.size()) - 1});
     }
   }
+}
+
+// Where a ray passes through a light of radius 0: is there scattering density?
+bool meets_light(const Scene& scene, const Paths& paths, const LightPlane& plane) {
+  if (plane.directional || plane.h > 0) return false;
+  for (std::size_t m = 0; m < paths.size(); ++m) {
+    if (!paths[m] || !scatters(scene.media[m])) continue;
+    const Interval extent = paths[m]->extent();
+    if (plane.foot >= extent.lo && plane.foot <= extent.hi && paths[m]->density(plane.foot) > 0) return true;
+  }
+  return false;
+}
+
+// Everything that cuts the ray for one light, sorted, in x.
+std::vector<Feature> features_for(const LightPlane& plane, const scene::Light& light, std::vector<Feature> features,
+                                  const std::vector<double>& kinks, Interval range) {
+  for (const double t : kinks) features.push_back({t, 0});
+  if (const auto* spot = std::get_if<scene::SpotLight>(&light)) {
+    std::vector<double> cone;
+    add_cone(plane, *spot, cone);
+    for (const double t : cone) features.push_back({t, 0});
+  }
+  for (Feature& f : features) f.t -= plane.foot;
+  if (!plane.directional) {
+    features.push_back({0, 0});
+    // The inverse square has the scale h; exp(-distance) and the media have theirs. Steps in between by powers.
+    const double reach = std::isinf(range.hi) ? 1e3 + 2 * std::abs(plane.foot) : range.hi + std::abs(plane.foot);
+    if (plane.h > 0)
+      for (double step = 4 * plane.h; step < reach; step *= 32)
+        features.insert(features.end(), {{-step, 0}, {step, 0}});
+  }
+  std::sort(features.begin(), features.end(), [](const Feature& a, const Feature& b) { return a.t < b.t; });
+  return features;
 }
 
 }  // namespace
@@ -234,28 +261,15 @@ Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
       if (impl.tables[m])
         add_gaussian_shadows(plane, *impl.tables[m], medium.sigma_t.maxCoeff(), impl.cull(m), features);
     }
-    if (const auto* spot = std::get_if<scene::SpotLight>(&light)) add_cone(plane, *spot, kinks);
-    if (!plane.directional) {
-      kinks.push_back(plane.foot);
-      // The inverse square has the scale h; exp(-distance) and the media have theirs. Steps in between by powers.
-      const double reach = std::isinf(range.hi) ? 1e3 + std::abs(plane.foot) : std::max(range.hi, plane.foot);
-      if (plane.h > 0)
-        for (double step = 4 * plane.h; step < reach + std::abs(plane.foot); step *= 32)
-          kinks.insert(kinks.end(), {plane.foot - step, plane.foot + step});
-      if (plane.h == 0 && plane.foot >= range.lo && plane.foot <= range.hi)
-        for (std::size_t m = 0; m < scene.media.size(); ++m) {
-          if (!paths[m] || !scatters(scene.media[m])) continue;
-          const Interval extent = paths[m]->extent();
-          if (plane.foot < extent.lo || plane.foot > extent.hi || !(paths[m]->density(plane.foot) > 0)) continue;
-          // int dx/x^2 through the light: there is no finite answer.
-          result.radiance = result.error = Rgb::Constant(infinity);
-          result.converged = false;
-          return result;
-        }
+    if (meets_light(scene, paths, plane)) {
+      // int dx/x^2 through the light: there is no finite answer.
+      result.radiance = result.error = Rgb::Constant(infinity);
+      result.converged = false;
+      return result;
     }
-    for (const double t : kinks) features.push_back({t, 0});
     const std::vector<Interval> lit = impl.shadows ? impl.shadows->lit(plane, range) : std::vector<Interval>{range};
-    add_panels(scene, paths, plane, int(l), features, lit, charts, panels);
+    add_panels(scene, paths, plane, int(l), features_for(plane, light, std::move(features), kinks, range), lit, charts,
+               panels);
   }
 
   const std::function<Rgb(const Ray&, double)> light_path = [&](const Ray& path, double distance) {
