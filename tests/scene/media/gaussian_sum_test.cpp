@@ -1,8 +1,8 @@
 #include "scene/media/gaussian_sum.h"
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tests/scene/media/random_points.h"
 
@@ -196,8 +196,8 @@ TEST_CASE("bounds of sums of Gaussians hold under random probing", "[media]") {
   CHECK(tight == total);
 }
 
-// Stress 26: one pass over the Gaussians, so that ten times as many take about ten times as long. Twenty times would
-// show a quadratic term; the margin is for a noisy machine.
+// Stress 26: one pass over the Gaussians, so that ten times as many take about ten times as long; slower memory may
+// cost a factor of three more. A quadratic term would show as a hundred times. Processor time, best of five.
 TEST_CASE("stress 26: 1e5 Gaussians in one cell", "[media]") {
   RandomPoints random(7);
   const Box cell{Point3::Zero(), Point3::Constant(0.1)};
@@ -205,13 +205,13 @@ TEST_CASE("stress 26: 1e5 Gaussians in one cell", "[media]") {
     GaussianSum sum;
     for (int i = 0; i < n; ++i) sum.gaussians.push_back({random.in(cell), 0.05, 1.0 / n});
     double best = infinity;
-    for (int repeat = 0; repeat < 3; ++repeat) {
-      const auto begin = std::chrono::steady_clock::now();
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      const std::clock_t begin = std::clock();
       bounds = density_bounds(sum, cell);
       greatest = 0;
       for (int i = 0; i < 8; ++i) greatest = std::max(greatest, density(sum, random.in(cell)));
       integral = density_integral(sum, {{0.05, 0.05, -1}, Vec3::UnitZ()}, {0, infinity});
-      best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      best = std::min(best, double(std::clock() - begin) / CLOCKS_PER_SEC);
     }
     return best;
   };
@@ -226,7 +226,7 @@ TEST_CASE("stress 26: 1e5 Gaussians in one cell", "[media]") {
   // them.
   const double side = 0.5 * std::sqrt(pi) * std::erf(1.0);
   CHECK(integral == Approx(side * side * std::sqrt(pi) * 0.05).epsilon(5e-3));
-  CHECK(large < 20 * small);
+  CHECK(large < 50 * small);
 }
 
 // Stress 2: a million far away, total depth 1e-4: the sum of single ones, each too small to see.
