@@ -2,6 +2,7 @@
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
 #include "methods/fogshop/homogeneous_airlight.h"
+#include "methods/fogshop/paper_airlight.h"
 
 namespace airlight::experiments::verification {
 
@@ -21,9 +22,15 @@ Check read_airlight_homogeneous(const Value& v) {
 
 Check read_airlight_paper(const Value& v) {
   const Value in = v["in"];
-  gaussians_from_objects(in["gaussians"]);
-  v["value"].number();
-  return not_yet("fogshop variant paper");
+  scene::GaussianSum fog{{}, in["beta0"].number(), infinity};
+  for (const RawGaussian& g : gaussians_from_objects(in["gaussians"])) fog.gaussians.push_back({g.b, 1 / g.a, g.c});
+  const Point3 light = in["light"].vector();
+  const Ray ray = ray_from(in["view"], in["dir"]);
+  const double intensity = in["I0"].number(), end = in["d_r"].number_or_infinite(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) {
+            const double got = fogshop::paper_airlight(fog, light, intensity, ray, end);
+            return Outcome{{relative("L", expected, got, 1e-12)}};
+          }};
 }
 
 }  // namespace airlight::experiments::verification

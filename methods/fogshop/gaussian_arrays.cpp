@@ -1,5 +1,6 @@
 #include "methods/fogshop/gaussian_arrays.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace airlight::fogshop {
@@ -31,6 +32,9 @@ double cull_radius(double a, double c, Cull cull, double threshold) {
 
 CulledGaussians make_arrays(const std::vector<scene::Gaussian>& gaussians, Cull cull, double threshold) {
   CulledGaussians result;
+  double deepest = 0;
+  for (const scene::Gaussian& g : gaussians) deepest = std::max(deepest, std::sqrt(pi) * g.amplitude * g.width);
+  threshold *= std::min(1.0, deepest);
   for (const scene::Gaussian& g : gaussians) {
     const double a = 1 / g.width;
     const double radius = cull_radius(a, g.amplitude, cull, threshold);

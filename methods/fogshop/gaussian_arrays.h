@@ -11,7 +11,7 @@ namespace airlight::fogshop {
 // How far a Gaussian reaches.
 enum class Cull {
   // R_i = sqrt(ln(c_i sqrt(pi) / (a_i threshold))) / a_i: no line integral loses more than `threshold` [-] of optical
-  // depth. The same at every scale of the scene.
+  // depth; the same at every scale of the scene.
   depth,
   // Zhou et al. 2007, Eq. 30: R_i = sqrt(ln c_i + 9) / a_i, where the density falls to e^-9 per metre. That is a
   // density, not a depth: the loss grows with the scale of the scene.
@@ -35,7 +35,8 @@ struct GaussianArrays {
   Point3 center(int i) const { return {x[i], y[i], z[i]}; }
 };
 
-// All Gaussians whose radius is not 0; the rest is counted.
+// All Gaussians whose radius is not 0; the rest is counted. Under Cull::depth the threshold is taken relative to the
+// optical depth of the deepest Gaussian where that is below 1: a thin medium loses no greater share than a thick one.
 struct CulledGaussians {
   GaussianArrays arrays;
   int dropped = 0;

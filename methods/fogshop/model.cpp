@@ -53,7 +53,13 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        0,
        {"depth", "paper"}},
-      {"eps_T", Type::real, "1e-4", "optical depth that a culled Gaussian may cost a ray [-]", 1e-15, 1, {}},
+      {"eps_T",
+       Type::real,
+       "1e-4",
+       "optical depth [-] that culling may cost per Gaussian, relative to the deepest one if that is below 1",
+       1e-15,
+       1,
+       {}},
       {"source_radius", Type::real, "0", "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)", 0, 1e300, {}},
   };
 }

@@ -99,6 +99,16 @@ TEST_CASE("culling by depth loses what it says", "[fogshop]") {
   }
 }
 
+// A medium of depth 1e-8 keeps its Gaussians.
+TEST_CASE("culling by depth is relative in thin media", "[fogshop]") {
+  const CulledGaussians thin = make_arrays({{Point3(0, 0, 4), 1, 5e-9}}, Cull::depth, 1e-4);
+  CHECK(thin.arrays.count == 1);
+  CHECK(std::sqrt(thin.arrays.radius_squared[0]) == Approx(std::sqrt(std::log(1e4))).epsilon(1e-12));
+  const CulledGaussians mixed = make_arrays({{Point3(0, 0, 4), 1, 5e-9}, {Point3(0, 0, 4), 1, 2}}, Cull::depth, 1e-4);
+  CHECK(mixed.arrays.count == 1);
+  CHECK(mixed.dropped == 1);
+}
+
 TEST_CASE("the paper's cull depends on the scale", "[fogshop]") {
   // R = sqrt(ln c + 9)/a: a hundred times larger and thinner, the same Gaussian is cut nearer in widths.
   CHECK(cull_radius(1, 1, Cull::paper, 0) == Approx(3).epsilon(1e-15));
