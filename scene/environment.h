@@ -27,32 +27,39 @@ struct EnvironmentLight {
   Mat3 to_map = Mat3::Identity();             // world direction to map direction (a rotation)
   std::shared_ptr<const EnvironmentMap> map;  // null: no map
   std::vector<Rgb> sh;                        // (order)^2 coefficients; empty: none. With neither: the constant `scale`
-  struct Tables;                              // luminance table mixed with 5 % uniform
+  struct Tables;                              // null for a constant, which is sampled uniformly
   std::shared_ptr<const Tables> tables;
   std::string source;  // file, or "constant", or "sh"
 };
 
+// All three throw Error if a value is not finite, `to_map` is no rotation, or (constant, map) radiance is negative.
 EnvironmentLight make_constant_environment(const Rgb& radiance);
 EnvironmentLight make_map_environment(std::shared_ptr<const EnvironmentMap>, const Mat3& to_map, const Rgb& scale,
                                       std::string source);
-// `coefficients.size()` must be a square. Throws Error otherwise.
+// `coefficients.size()` must be a square, at most max_sh_order^2. Throws Error otherwise.
 EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& to_map, const Rgb& scale);
 
-// Reads a lat-long RGB map; Error on NaN, infinity or a negative value (with the pixel).
+// Reads a lat-long RGB map from OpenEXR (any compression); Error on NaN, infinity or a negative value (with
+// the pixel). Negative values below 1 % of the mean, which lossy compression leaves where a map is dark, become 0.
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& path);
 
 // Radiance from direction w [W/m^2/sr].
 Rgb radiance(const EnvironmentLight&, const Vec3& w);
 
-// A direction for two uniforms, and its density over solid angle [1/sr], positive wherever the radiance is not zero.
+// A direction for two uniforms in [0, 1), and its density over solid angle [1/sr]: 5 % uniform, 95 % proportional to
+// the luminance of the map, bilinear as the map itself (lat_long_density.h), or for spherical harmonics to that of the
+// absolute radiance on a grid. Positive everywhere; a constant or black environment is sampled uniformly.
 Vec3 sample_environment(const EnvironmentLight&, double u1, double u2);
 double pdf_environment(const EnvironmentLight&, const Vec3& w);
 
-// Projection on real spherical harmonics of `order` bands (order^2 coefficients), by quadrature over the texels.
+// Projection on real spherical harmonics of `order` bands (order^2 coefficients) over world directions. A constant and
+// an SH light are projected exactly; a map by Gauss points within every stretch between texel centres, relative error
+// below 1e-6 (1e-9 for 1024 x 512 texels and order 6).
 std::vector<Rgb> project_environment(const EnvironmentLight&, int order);
 
-// Integral of the luminance over the sphere [W/m^2]; and the share of the sphere where an SH light is negative.
+// Integral of the luminance over the sphere [W/m^2], exact for the bilinear map.
 double environment_power(const EnvironmentLight&);
+// Share of the sphere, in [0, 1], where an SH light is negative in at least one channel, to about 1e-3.
 double negative_fraction(const EnvironmentLight&);
 
 }  // namespace airlight::scene

@@ -1,0 +1,87 @@
+#include "scene/lat_long_density.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/lat_long.h"
+
+namespace airlight::scene {
+namespace {
+
+// Cumulates in place: sums[0] = 0, sums[i + 1] = sum of what was in 1..i+1; then as shares of the total, which is
+// returned. All zero stays all zero.
+double cumulate(double* sums, int count) {
+  sums[0] = 0;
+  for (int i = 0; i < count; ++i) sums[i + 1] += sums[i];
+  const double total = sums[count];
+  if (total > 0)
+    for (int i = 0; i <= count; ++i) sums[i] /= total;
+  return total;
+}
+
+// The bin that u falls into, never an empty one; u becomes the position within the bin, in [0, 1].
+int choose(const double* shares, int count, double& u) {
+  // The last bin that begins at or before u; empty bins begin where the next one does.
+  int bin = int(std::upper_bound(shares, shares + count + 1, u) - shares) - 1;
+  bin = std::clamp(bin, 0, count - 1);
+  while (bin > 0 && !(shares[bin + 1] > shares[bin])) --bin;  // u at the very end
+  u = std::clamp((u - shares[bin]) / (shares[bin + 1] - shares[bin]), 0.0, 1.0);
+  return bin;
+}
+
+// x in [0, 1] with density proportional to a + (b - a) x; the form without cancellation.
+double sample_linear(double a, double b, double u) {
+  const double denominator = a + std::sqrt(a * a + u * (b - a) * (b + a));
+  return denominator > 0 ? std::min(1.0, u * (a + b) / denominator) : u;
+}
+
+}  // namespace
+
+LatLongDensity::LatLongDensity(int width, int height, std::vector<double> values)
+    : width_(width), height_(height), values_(std::move(values)) {
+  // Scaled so that no square or sum of them overflows or vanishes.
+  const double largest = *std::max_element(values_.begin(), values_.end());
+  if (largest > 0)
+    for (double& value : values_) value /= largest;
+  cosine_.resize(std::size_t(height) + 2);
+  for (int j = 0; j <= height + 1; ++j) cosine_[j] = std::cos(strip_begin(j, height));
+  strips_.resize(std::size_t(height) + 2);
+  cells_.resize(std::size_t(height + 1) * (width + 1));
+  for (int j = 0; j <= height; ++j) {
+    const double* top = &values_[std::size_t(std::max(j - 1, 0)) * width];
+    const double* bottom = &values_[std::size_t(std::min(j, height - 1)) * width];
+    double* cells = &cells_[std::size_t(j) * (width + 1)];
+    for (int i = 0; i < width; ++i) {
+      const int next = i + 1 == width ? 0 : i + 1;
+      cells[i + 1] = 0.25 * ((top[i] + top[next]) + (bottom[i] + bottom[next]));
+    }
+    strips_[j + 1] = cumulate(cells, width) * (cosine_[j] - cosine_[j + 1]) * 2 * pi / width;
+  }
+  total_ = cumulate(strips_.data(), height + 1);
+}
+
+double LatLongDensity::pdf(const Vec3& direction) const {
+  const LatLongCell cell = find_cell(to_lat_long(direction), width_, height_);
+  const double* top = &values_[std::size_t(cell.top) * width_];
+  const double* bottom = &values_[std::size_t(cell.bottom) * width_];
+  const double above = top[cell.left] + (top[cell.right] - top[cell.left]) * cell.x;
+  const double below = bottom[cell.left] + (bottom[cell.right] - bottom[cell.left]) * cell.x;
+  const double y = (cosine_[cell.strip] - direction[1]) / (cosine_[cell.strip] - cosine_[cell.strip + 1]);
+  return (above + (below - above) * std::clamp(y, 0.0, 1.0)) / total_;
+}
+
+Vec3 LatLongDensity::sample(double u1, double u2) const {
+  const int strip = choose(strips_.data(), height_ + 1, u1);
+  const double* top = &values_[std::size_t(std::max(strip - 1, 0)) * width_];
+  const double* bottom = &values_[std::size_t(std::min(strip, height_ - 1)) * width_];
+  const int left = choose(&cells_[std::size_t(strip) * (width_ + 1)], width_, u2);
+  const int right = left + 1 == width_ ? 0 : left + 1;
+  const double y = sample_linear(top[left] + top[right], bottom[left] + bottom[right], u1);
+  const double x =
+      sample_linear(top[left] + (bottom[left] - top[left]) * y, top[right] + (bottom[right] - top[right]) * y, u2);
+  const double height = cosine_[strip] + (cosine_[strip + 1] - cosine_[strip]) * y;
+  const double sine = std::sqrt(std::max(0.0, (1 - height) * (1 + height)));
+  return from_lat_long((left + 0.5 + x) / width_, height, sine);
+}
+
+}  // namespace airlight::scene
