@@ -5,10 +5,69 @@
 
 namespace airlight::ray_marcher {
 
+namespace {
+
+std::shared_ptr<const GaussianField> make_gaussian_field(const scene::GaussianSum& sum, const Box& box) {
+  auto field = std::make_shared<GaussianField>();
+  const Point3 center = box.center();
+  for (int i = 0; i < 3; ++i) {
+    field->frame.b[i] = -center[i];
+    field->lo[i] = float(box.lo[i] - center[i]);
+    field->hi[i] = float(box.hi[i] - center[i]);
+  }
+  field->constant = float(sum.constant);
+  for (const scene::Gaussian& g : sum.gaussians) {
+    const Point3 local = g.center - center;
+    field->x.push_back(float(local[0]));
+    field->y.push_back(float(local[1]));
+    field->z.push_back(float(local[2]));
+    field->inverse_width.push_back(float(1 / g.width));
+    field->amplitude.push_back(float(g.amplitude));
+    field->reach.push_back(float(g.width * std::min(sum.cutoff, std::sqrt(32.0))));  // exp(-32) = 1e-14
+    field->any_negative = field->any_negative || g.amplitude < 0;
+  }
+  field->count = sum.gaussians.size();
+  return field;
+}
+
+// A region in a frame of its own, around its middle, where float has digits to spare.
+void set_shape(Layer& layer) {
+  if (const auto* box = std::get_if<Box>(&layer.medium->region)) {
+    layer.shape.kind = LocalShape::box;
+    for (int i = 0; i < 3; ++i) {
+      layer.shape_frame.b[i] = -box->center()[i];
+      layer.shape.half[i] = float(0.5 * box->size()[i]);
+    }
+  } else if (const auto* sphere = std::get_if<scene::Sphere>(&layer.medium->region)) {
+    layer.shape.kind = LocalShape::sphere;
+    for (int i = 0; i < 3; ++i) {
+      layer.shape_frame.m[4 * i] = 1 / sphere->radius;
+      layer.shape_frame.b[i] = -sphere->center[i] / sphere->radius;
+    }
+  } else if (const auto* slab = std::get_if<scene::Slab>(&layer.medium->region)) {
+    layer.shape.kind = LocalShape::slab;
+    for (int i = 0; i < 3; ++i) layer.shape_frame.m[i] = slab->normal[i];
+    layer.shape_frame.b[0] = -0.5 * (slab->lo + slab->hi);
+    layer.shape.half[0] = float(0.5 * (slab->hi - slab->lo));
+  }
+}
+
+}  // namespace
+
+bool is_visible(const scene::Medium& medium) {
+  if ((medium.sigma_t <= 0).all()) return false;
+  if (const auto* uniform = std::get_if<scene::Homogeneous>(&medium.field)) return uniform->density > 0;
+  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
+    return sum->constant > 0 || !sum->gaussians.empty();
+  return !support(medium.field).empty();
+}
+
 std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
   std::vector<Layer> layers;
   for (const scene::Medium& medium : media) {
-    Layer layer{&medium, 0, true, scene::Unbounded{}};
+    if (!is_visible(medium)) continue;
+    Layer layer{&medium, 0, true, scene::Unbounded{}, nullptr, nullptr, {}, {}};
+    set_shape(layer);
     if (const auto* uniform = std::get_if<scene::Homogeneous>(&medium.field)) {
       layer.constant = uniform->density;
       layer.varies = false;
@@ -18,15 +77,16 @@ std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
       if (layer.varies) {
         scene::GaussianSum varied = *sum;
         varied.constant = 0;
-        layer.varied = support(varied);
+        const Box box = support(varied);
+        layer.varied = box;
+        layer.gaussians = make_gaussian_field(*sum, box);
       }
     } else {
-      const Box box = support(medium.field);
-      layer.varies = !box.empty();
-      layer.varied = box;
+      layer.varied = support(medium.field);
+      if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
+        layer.grid = make_grid_field(**grid);
     }
-    if ((medium.sigma_t <= 0).all() || (layer.constant == 0 && !layer.varies)) continue;
-    layers.push_back(layer);
+    layers.push_back(std::move(layer));
   }
   return layers;
 }
@@ -39,7 +99,11 @@ Interval constant_extent(const Layer& layer, const Ray& ray, Interval t) {
 Interval varied_extent(const Layer& layer, const Ray& ray, Interval t) {
   if (!layer.varies) return {};
   const Interval inside = clip(layer.medium->region, ray, t);
-  return inside.empty() ? inside : clip(layer.varied, ray, inside);
+  if (inside.empty() || !layer.grid) return inside.empty() ? inside : clip(layer.varied, ray, inside);
+  // A grid may be rotated: its box is straight in its own frame.
+  const GridField& grid = *layer.grid;
+  const Box box{Point3(grid.lo[0], grid.lo[1], grid.lo[2]), Point3(grid.hi[0], grid.hi[1], grid.hi[2])};
+  return scene::clip(box, {grid.frame.point(ray.origin), grid.frame.vector(ray.direction)}, inside);
 }
 
 double varied_density(const Layer& layer, const Point3& x) { return density(layer.medium->field, x) - layer.constant; }

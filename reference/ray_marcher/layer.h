@@ -3,8 +3,10 @@
 // The constant of a homogeneous medium, or of a sum of Gaussians, contributes length * constant to an optical depth in
 // closed form; what is left is sampled, and only where it can be different from zero.
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "reference/ray_marcher/kernels.h"
 #include "scene/media/medium.h"
 
 namespace airlight::ray_marcher {
@@ -14,9 +16,16 @@ struct Layer {
   double constant = 0;   // [-] density in the whole region
   bool varies = false;   // is there anything besides the constant
   scene::Region varied;  // the varying part is zero (or negligible) outside this, or outside the medium's region
+  // What varies, laid out for the kernels; neither for a field that has no kernel and is marched by plain loops.
+  std::shared_ptr<const GridField> grid;
+  std::shared_ptr<const GaussianField> gaussians;
+  LocalShape shape;  // the region for the kernels
+  Frame shape_frame;
 };
 
+// Media that can be seen at all: some extinction, some density.
 std::vector<Layer> make_layers(const std::vector<scene::Medium>&);
+bool is_visible(const scene::Medium&);
 
 // Where a ray meets the region; and where it meets the varying part, empty if there is none.
 Interval constant_extent(const Layer&, const Ray&, Interval t);

@@ -8,6 +8,7 @@
 
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/scalar.h"
+#include "reference/ray_marcher/tile.h"
 #include "scene/error.h"
 
 namespace airlight::ray_marcher {
@@ -75,15 +76,22 @@ class PreparedMarch final : public scene::Prepared {
     Counters total;
     std::mutex mutex;
     const double start = now();
-    scene::parallel_rows(view.height, execution, [&](int y) {
+    const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
+    scene::parallel_rows(columns * rows, execution, [&](int tile) {
+      const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
+      const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
+      std::vector<Ray> rays;
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x)
+          rays.push_back(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       Counters counters;
-      for (int x = 0; x < view.width; ++x) {
-        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-        const Pixel pixel = march_ray(plan_, ray, counters);
-        result.film.set("mean", x, y, pixel.airlight + pixel.surface);
-        result.film.set("airlight", x, y, pixel.airlight);
-        result.film.set("surface", x, y, pixel.surface);
-        result.film.set("transmittance", x, y, pixel.transmittance);
+      const std::vector<Pixel> pixels = plan_.options.simd ? march_tile(plan_, rays, counters) : plain(rays, counters);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const int x = x0 + int(i) % (x1 - x0), y = y0 + int(i) / (x1 - x0);
+        result.film.set("mean", x, y, pixels[i].airlight + pixels[i].surface);
+        result.film.set("airlight", x, y, pixels[i].airlight);
+        result.film.set("surface", x, y, pixels[i].surface);
+        result.film.set("transmittance", x, y, pixels[i].transmittance);
       }
       const std::lock_guard lock(mutex);
       total.add(counters);
@@ -98,6 +106,13 @@ class PreparedMarch final : public scene::Prepared {
   }
 
  private:
+  std::vector<Pixel> plain(const std::vector<Ray>& rays, Counters& counters) const {
+    std::vector<Pixel> pixels;
+    for (const Ray& ray : rays) pixels.push_back(march_ray(plan_, ray, counters));
+    return pixels;
+  }
+
+  static constexpr int tile_side = 8;
   Plan plan_;
   std::string settings_;
   double prepare_seconds_;
@@ -113,9 +128,9 @@ std::vector<scene::SettingSpec> RayMarcher::settings() const { return option_spe
 
 std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings&) const {
   std::vector<std::string> reasons;
-  if (make_layers(scene.media).size() > most_layers)
-    reasons.push_back(
-        fmt::format("more than {} media with extinction: {}", most_layers, make_layers(scene.media).size()));
+  const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
+  if (visible > std::ptrdiff_t(most_layers))
+    reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));
   return reasons;
 }
 

@@ -1,5 +1,6 @@
 #include "reference/ray_marcher/scalar.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace airlight::ray_marcher {
@@ -22,12 +23,11 @@ void sample_densities(const Plan& plan, const Ray& ray, const Step& step, std::v
   }
 }
 
-// In-scattered radiance per length at x towards -direction [W/m^3/sr], one light.
+// In-scattered radiance per length at x towards -direction [W/m^3/sr], for light that comes as `from`.
 Rgb in_scattered(const Plan& plan, const std::vector<double>& densities, const Point3& x, const Vec3& direction,
-                 const scene::Light& light, Counters& counters) {
-  const scene::Incident from = incident(light, x);
+                 const scene::Incident& from, Counters& counters) {
   if ((from.irradiance == 0).all()) return Rgb::Zero();
-  const double cosine = from.to_light.dot(direction);
+  const double cosine = std::clamp(from.to_light.dot(direction), -1.0, 1.0);
   Rgb scattering = Rgb::Zero();
   for (std::size_t k = 0; k < plan.layers.size(); ++k) {
     if (densities[k] == 0) continue;
@@ -36,6 +36,17 @@ Rgb in_scattered(const Plan& plan, const std::vector<double>& densities, const P
   }
   if ((scattering == 0).all()) return Rgb::Zero();
   return scattering * from.irradiance * transmittance_to_light(plan, x, from, counters);
+}
+
+// What a light sends to a step: as to its midpoint, but with the mean of the inverse square over the step.
+scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, const Step& step) {
+  const auto ball = scene::ball(light);
+  if (!ball) return incident(light, ray.at(step.t));
+  const Vec3 offset = ball->center - ray.at(step.t);
+  const double distance = offset.norm();
+  const Vec3 to_light = distance > 0 ? Vec3(offset / distance) : Vec3(-ray.direction);
+  return {to_light, distance,
+          intensity_towards(light, -to_light) * mean_inverse_square(approach(ray, ball->center), step)};
 }
 
 }  // namespace
@@ -96,12 +107,9 @@ Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& coun
       const Rgb depth_of_step = extinction * step.length;
       const Rgb weight = before * step.length * depth_of_step.unaryExpr(&mean_over_step);
       const Point3 x = ray.at(step.t);
-      for (const int light : pass.lights) {
-        const auto ball = scene::ball(plan.lights[light]);
-        const double factor = ball ? inverse_square_factor(approach(ray, ball->center), step) : 1;
-        pixel.airlight +=
-            weight * factor * in_scattered(plan, densities, x, ray.direction, plan.lights[light], counters);
-      }
+      for (const int light : pass.lights)
+        pixel.airlight += weight * in_scattered(plan, densities, x, ray.direction,
+                                                incident_on_step(plan.lights[light], ray, step), counters);
       depth += depth_of_step;
     }
     if (first)

@@ -147,6 +147,40 @@ bool grade_light(std::vector<Part>& parts, const Approach& light) {
   return met;
 }
 
+// Walks a part in equal steps, over the free space of its grids; false if the part has anything else in it.
+bool skip_through(const std::vector<Layer>& layers, const Ray& ray, const Part& part, int n, std::vector<Step>& steps) {
+  struct Walk {
+    const GridField* grid;
+    Point3 origin;
+    Vec3 step;
+    double pace;  // steps per cell
+  };
+  const double h = (part.hi - part.lo) / n;
+  Walk walks[most_layers];
+  int count = 0;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    if (in_constant(part.inside, k)) return false;
+    if (!in_varied(part.inside, k)) continue;
+    if (!layers[k].grid) return false;
+    const GridField& grid = *layers[k].grid;
+    const Vec3 step = h * grid.frame.vector(ray.direction);
+    walks[count++] = {&grid, grid.frame.point(ray.at(part.lo)) + 0.5 * step, step, 1 / step.cwiseAbs().maxCoeff()};
+  }
+  for (int i = 0; i < n;) {
+    double free_steps = infinity;
+    for (int w = 0; w < count; ++w) {
+      const double distance = walks[w].grid->free_at(walks[w].origin + i * walks[w].step);
+      free_steps = distance < 0 ? -1 : std::min(free_steps, std::floor(distance * walks[w].pace));
+      if (free_steps < 0) break;
+    }
+    if (free_steps < 0)
+      steps.push_back({part.lo + (i + 0.5) * h, h, part.inside}), ++i;
+    else
+      i += 1 + int(std::min(free_steps, double(n)));
+  }
+  return true;
+}
+
 }  // namespace
 
 Approach approach(const Ray& ray, const Point3& light) {
@@ -155,12 +189,11 @@ Approach approach(const Ray& ray, const Point3& light) {
   return {t, (to_light - t * ray.direction).norm()};
 }
 
-double inverse_square_factor(const Approach& light, const Step& step) {
+double mean_inverse_square(const Approach& light, const Step& step) {
   // A ray through the light itself has no finite airlight; this keeps it finite, and the rest of the picture alive.
   const double h = std::max(light.h, 1e-12 * step.length);
   const double x = step.t - light.t, half = 0.5 * step.length;
-  const double angle = std::atan2(h * step.length, h * h + (x - half) * (x + half));
-  return angle / (h * step.length) * (h * h + x * x);
+  return std::atan2(h * step.length, h * h + (x - half) * (x + half)) / (h * step.length);
 }
 
 Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, const Ray& ray, double t_end,
@@ -185,6 +218,8 @@ Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, c
     const double share = p.measure();
     const int n = options.step > 0 ? steps_through({0, share}, 0, options.step)
                                    : std::max(1, int(std::lround(options.steps * (share / total))));
+    const bool equal = !p.light && p.rate == 0;
+    if (equal && options.skip_empty && skip_through(layers, ray, p, n, spacing.steps)) continue;
     double from = p.lo;
     for (int i = 1; i <= n; ++i) {
       const double to = i == n ? p.hi : p.at(double(i) / n);

@@ -42,11 +42,12 @@ struct Approach {
 };
 Approach approach(const Ray&, const Point3& light);
 
-// Mean of 1/distance^2 to the light over a step, times the square of the distance at its midpoint: what makes the
-// inverse square exact in a step. In closed form, 1/(h length) times the angle under which the light sees the step.
-double inverse_square_factor(const Approach&, const Step&);
+// Mean of 1/distance^2 to the light over a step [1/m^2], in closed form: the angle under which the light sees the step
+// over h * length. What makes the inverse square exact in a step.
+double mean_inverse_square(const Approach&, const Step&);
 
-// Steps of the ray over [0, t_end]; `light`: grade around it too.
+// Steps of the ray over [0, t_end]; `light`: grade around it too. With Options::skip_empty, steps whose midpoint lies
+// in an empty brick of every grid that is there are left out; the others are where they would be.
 Spacing make_spacing(const std::vector<Layer>&, const Options&, const Ray&, double t_end,
                      const std::optional<Approach>& light);
 

@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "reference/ray_marcher/samples.h"
+
+namespace airlight::ray_marcher {
+namespace {
+
+// Stands for an endless column: any extinction makes it black, and zero extinction times it is zero.
+constexpr float endless = 1e30f;
+
+}  // namespace
+
+void Columns::march(const Plan& plan, std::size_t n, const Points& points, const Arrivals& to, Counters& counters) {
+  columns_.resize(plan.layers.size());
+  for (auto* v : {&ox_, &oy_, &oz_, &dx_, &dy_, &dz_, &t0_, &t1_}) resize_padded(*v, n);
+  const LocalRays rays{ox_.data(), oy_.data(), oz_.data(), dx_.data(), dy_.data(), dz_.data(), t0_.data(), t1_.data()};
+  const auto enter = [&](const Frame& frame) {
+    to_local(frame, n, points.x.data(), points.y.data(), points.z.data(), ox_.data(), oy_.data(), oz_.data());
+    rotate_to_local(frame, n, to.to_x.data(), to.to_y.data(), to.to_z.data(), dx_.data(), dy_.data(), dz_.data());
+  };
+  const StepRule rule{plan.options.shadow_steps, float(plan.options.shadow_step)};
+  counters.shadow_rays += n;
+  for (std::size_t k = 0; k < plan.layers.size(); ++k) {
+    const Layer& layer = plan.layers[k];
+    std::vector<float>& column = columns_[k];
+    column.assign(padded(n), 0.0f);
+    const bool plain = layer.varies && !layer.grid && !layer.gaussians;
+    if (plan.options.exact_shadow || plain) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const Ray ray{points.at(i), Vec3(to.to_x[i], to.to_y[i], to.to_z[i]).normalized()};
+        const Interval t{0, to.distance[i]};
+        const double value = plan.options.exact_shadow
+                                 ? density_integral(*layer.medium, ray, t)
+                                 : marched_column(layer, ray, t, plan.options.shadow_steps, plan.options.shadow_step,
+                                                  counters.shadow_steps);
+        column[i] = float(std::min(value, double(endless)));
+      }
+      continue;
+    }
+    std::fill(t0_.begin(), t0_.end(), 0.0f);
+    std::copy(to.distance.begin(), to.distance.begin() + n, t1_.begin());
+    if (layer.shape.kind != LocalShape::everything) {
+      enter(layer.shape_frame);
+      clip_rays(layer.shape, n, rays);
+    }
+    if (layer.constant > 0)
+      for (std::size_t i = 0; i < n; ++i)
+        column[i] = std::min(float(layer.constant) * std::max(0.0f, t1_[i] - t0_[i]), endless);
+    if (layer.grid) {
+      enter(layer.grid->frame);
+      clip_rays(layer.grid->lo, layer.grid->hi, n, rays);
+      counters.shadow_steps += grid_columns(*layer.grid, rule, plan.options.skip_empty, n, rays, column.data());
+    } else if (layer.gaussians) {
+      enter(layer.gaussians->frame);
+      clip_rays(layer.gaussians->lo, layer.gaussians->hi, n, rays);
+      counters.shadow_steps += gaussian_columns(*layer.gaussians, rule, n, rays, column.data());
+    }
+  }
+}
+
+}  // namespace airlight::ray_marcher

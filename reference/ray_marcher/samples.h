@@ -1,0 +1,62 @@
+// Arrays of the tile path: points with what belongs to them.
+#pragma once
+#include <numeric>
+#include <vector>
+
+#include "reference/ray_marcher/kernels.h"
+#include "reference/ray_marcher/plan.h"
+
+namespace airlight::ray_marcher {
+
+// Grows to the padded size; never shrinks its memory.
+template <class T>
+void resize_padded(std::vector<T>& v, std::size_t n) {
+  v.resize(padded(n));
+}
+
+template <class T>
+void gather(const std::vector<T>& from, const std::vector<int>& index, std::vector<T>& to) {
+  resize_padded(to, index.size());
+  for (std::size_t i = 0; i < index.size(); ++i) to[i] = from[index[i]];
+}
+
+// Points in double, world.
+struct Points {
+  std::vector<double> x, y, z;
+  void resize(std::size_t n) { resize_padded(x, n), resize_padded(y, n), resize_padded(z, n); }
+  void set(std::size_t i, const Vec3& p) { x[i] = p[0], y[i] = p[1], z[i] = p[2]; }
+  Point3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void select(const Points& from, const std::vector<int>& index) {
+    gather(from.x, index, x), gather(from.y, index, y), gather(from.z, index, z);
+  }
+};
+
+// What reaches points from one light.
+struct Arrivals {
+  std::vector<float> to_x, to_y, to_z, distance, minus, plus, strength;
+  void resize(std::size_t n) {
+    for (auto* v : {&to_x, &to_y, &to_z, &distance, &minus, &plus, &strength}) resize_padded(*v, n);
+  }
+  void select(const Arrivals& from, const std::vector<int>& index) {
+    gather(from.to_x, index, to_x), gather(from.to_y, index, to_y), gather(from.to_z, index, to_z);
+    gather(from.distance, index, distance), gather(from.strength, index, strength);
+    gather(from.minus, index, minus), gather(from.plus, index, plus);
+  }
+  Incidence view() {
+    return {to_x.data(), to_y.data(), to_z.data(), distance.data(), minus.data(), plus.data(), strength.data()};
+  }
+};
+
+// Integrals of every layer's density from points towards a light; scratch arrays kept between calls.
+class Columns {
+ public:
+  // After this, column(k)[i] is the column of layer k from point i [m].
+  void march(const Plan&, std::size_t n, const Points&, const Arrivals&, Counters&);
+  const std::vector<float>& column(std::size_t layer) const { return columns_[layer]; }
+
+ private:
+  std::vector<std::vector<float>> columns_;
+  std::vector<float> ox_, oy_, oz_, dx_, dy_, dz_, t0_, t1_;
+};
+
+}  // namespace airlight::ray_marcher
