@@ -39,11 +39,12 @@ DirectionalLight read_directional(TableReader reader) {
 
 }  // namespace
 
-Light read_light(TableReader reader, const std::string&) {
-  const std::string type = reader.type({"point", "spot", "directional"});
+Light read_light(TableReader reader, const std::string& folder) {
+  const std::string type = reader.type({"point", "spot", "directional", "environment"});
   if (type == "point") return read_point(reader);
   if (type == "spot") return read_spot(reader);
-  return read_directional(reader);
+  if (type == "directional") return read_directional(reader);
+  return read_environment(reader, folder);
 }
 
 }  // namespace airlight::scene::load

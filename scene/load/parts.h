@@ -12,6 +12,7 @@ namespace airlight::scene::load {
 
 Camera read_camera(TableReader);
 Light read_light(TableReader, const std::string& folder);
+EnvironmentLight read_environment(TableReader, const std::string& folder);
 Medium read_medium(TableReader, const std::string& folder);
 Surface read_surface(TableReader, const std::string& folder);
 

@@ -55,6 +55,17 @@ TEST_CASE("a transform is scale, then rotation, then translation", "[load]") {
     }
 }
 
+TEST_CASE("Euler angles turn about x, then y, then z", "[load]") {
+  // A quarter about x takes +y to +z; then a quarter about z takes nothing of z: +y ends at +z, +x at +y.
+  const std::string quarter = "1.5707963267948966";
+  const Scene scene = load("[[light]]\ntype = 'environment'\nsh = [[1, 1, 1]]\nrotation = { euler = [" + quarter +
+                           ", 0, " + quarter + "] }\n");
+  // The rotation turns the map in the world: its inverse takes directions of the world to the map.
+  const Mat3& to_map = std::get<EnvironmentLight>(scene.lights.at(0)).to_map;
+  CHECK((to_map * Vec3::UnitZ() - Vec3::UnitY()).norm() < 1e-15);
+  CHECK((to_map * Vec3::UnitY() - Vec3::UnitX()).norm() < 1e-15);
+}
+
 TEST_CASE("defaults are those of the documentation", "[load]") {
   const Scene scene = load("[[medium]]\ntype = 'homogeneous'\n[[surface]]\ntype = 'plane'\npoint = [0, -1, 0]\n");
   CHECK(scene.name == "s");
