@@ -1,8 +1,3 @@
-// The command line `airlight`: see experiments/cli.h.
-#include <CLI/CLI.hpp>
+#include "experiments/cli/program.h"
 
-int main(int argc, char** argv) {
-  CLI::App app{"airlight: fog and smoke in real time, judged against references"};
-  CLI11_PARSE(app, argc, argv);
-  return 0;
-}
+int main(int argc, char** argv) { return airlight::experiments::cli::run(argc, argv); }

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "methods/fogshop/fogshop.h"
+#include "reference/deterministic/renderer.h"
+#include "reference/path_tracer/renderer.h"
+#include "reference/ray_marcher/ray_marcher.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
@@ -10,6 +14,10 @@ namespace airlight::experiments {
 const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
   static const auto renderers = [] {
     std::vector<std::unique_ptr<scene::Renderer>> list;
+    list.push_back(deterministic::make_renderer());
+    list.push_back(std::make_unique<path_tracer::PathTracer>());
+    list.push_back(std::make_unique<ray_marcher::RayMarcher>());
+    list.push_back(std::make_unique<fogshop::Fogshop>());
     return list;
   }();
   return renderers;

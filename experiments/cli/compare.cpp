@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "experiments/cli/commands.h"
+#include "experiments/equality.h"
+#include "experiments/metrics.h"
+#include "scene/error.h"
+#include "scene/renderer.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+double bound(const std::string& metric, const std::string& text) {
+  check_metric_name(metric, "--max");
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !(value >= 0))
+    throw Error(fmt::format("--max {}={}: expected a number >= 0", metric, text));
+  return value;
+}
+
+// The least size that the error certainly has.
+double certain(const Measure& m) {
+  if (m.low <= 0 && m.high >= 0) return 0;
+  return std::min(std::abs(m.low), std::abs(m.high));
+}
+
+}  // namespace
+
+int compare(const CompareOptions& options) {
+  std::map<std::string, double> bounds;
+  for (const auto& [metric, text] : options.most) bounds[metric] = bound(metric, text);
+  for (const std::string& metric : options.metrics) check_metric_name(metric, "--metric");
+  const scene::Film image = scene::read_exr(options.image);
+  const scene::Film reference = scene::read_exr(options.reference);
+  Masks masks;
+  masks.foreground = foreground_mask(reference);
+  if (!options.scene.empty()) {
+    const scene::Scene scene = scene::load_scene(options.scene);
+    const scene::View view = scene::view_of(scene);
+    if (view.width != reference.width || view.height != reference.height)
+      throw Error(fmt::format("{}: film is {}x{}, and the reference {}x{}", options.scene, view.width, view.height,
+                              reference.width, reference.height));
+    masks.left_out = scene::ball_mask(scene, view);
+  }
+  std::vector<std::string> names = options.metrics.empty() ? metric_names() : options.metrics;
+  for (const auto& [metric, value] : bounds)
+    if (std::find(names.begin(), names.end(), metric) == names.end()) names.push_back(metric);
+
+  int code = 0;
+  for (const Measure& m : measure(names, image, reference, options.layer, masks)) {
+    std::string line = fmt::format("{:24} {}", m.name, text(m));
+    if (m.floor > 0) line += fmt::format("  (floor {:.3g})", m.floor);
+    if (const auto found = bounds.find(m.name); found != bounds.end()) {
+      // An undefined metric meets no bound.
+      const bool good = !std::isnan(m.value) && certain(m) <= found->second;
+      line += fmt::format("  {} {:g}", good ? "ok, bound" : "ABOVE", found->second);
+      if (!good) code = 1;
+    }
+    fmt::print("{}\n", line);
+  }
+  if (options.alpha > 0) {
+    const Equality e = compare_equal(image, reference, options.layer, masks.left_out, options.alpha);
+    fmt::print("{}\n", text(e));
+    if (!e.equal) code = 1;
+  }
+  return code;
+}
+
+}  // namespace airlight::experiments::cli

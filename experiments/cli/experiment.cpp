@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "experiments/cli/commands.h"
+#include "experiments/driver/junit.h"
+#include "experiments/driver/plots.h"
+#include "experiments/driver/run.h"
+#include "experiments/folders.h"
+#include "scene/error.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+void check_profile(const ExperimentOptions& options) {
+  if (options.profile != "quick" && options.profile != "paper")
+    throw Error(fmt::format("--profile '{}': expected quick or paper", options.profile));
+}
+
+}  // namespace
+
+int list_experiments(const ExperimentOptions& options) {
+  check_profile(options);
+  const auto root = project_root(options.root);
+  for (const std::string& id : choose_experiments(root, options.names)) {
+    const Experiment e = read_experiment(root, id, options.profile);
+    fmt::print("{:28} {}{}{}\n", id, e.title, e.paper.empty() ? "" : "; ", e.paper);
+  }
+  return 0;
+}
+
+int run_experiments(const ExperimentOptions& options) {
+  check_profile(options);
+  const auto root = project_root(options.root);
+  std::vector<Experiment> experiments;  // all files are read before anything is computed
+  for (const std::string& id : choose_experiments(root, options.names))
+    experiments.push_back(read_experiment(root, id, options.profile));
+  std::optional<Error> failure;
+  for (const Experiment& e : experiments) {
+    fmt::print("{} ({})\n", e.id, e.profile);
+    std::fflush(stdout);
+    try {
+      const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true});
+      const auto failed =
+          std::count_if(outcome.gates.begin(), outcome.gates.end(), [](const auto& g) { return !g.passed; });
+      fmt::print("  {} rows in {:.1f} s, {} of {} gates ok: results/{}/table.md\n", outcome.rows.size(),
+                 outcome.seconds, outcome.gates.size() - std::size_t(failed), outcome.gates.size(), e.id);
+    } catch (const Error& error) {
+      // The others are worth having.
+      fmt::print(stderr, "airlight: {}: {}\n", e.id, error.what());
+      if (!failure || error.exit_code() < failure->exit_code()) failure = error;
+    }
+  }
+  return failure ? failure->exit_code() : 0;
+}
+
+int plot_experiments(const ExperimentOptions& options) {
+  const auto root = project_root(options.root);
+  for (const std::string& id : choose_experiments(root, options.names)) {
+    const auto folder = root / "results" / id / "plots";
+    std::vector<std::string> scripts;
+    if (!std::filesystem::is_directory(folder)) continue;
+    for (const auto& file : std::filesystem::directory_iterator(folder))
+      if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
+    run_gnuplot(folder, scripts);
+    fmt::print("{}: {} plots\n", id, scripts.size());
+  }
+  return 0;
+}
+
+int gates(const ExperimentOptions& options) {
+  check_profile(options);
+  const auto root = project_root(options.root);
+  std::vector<Experiment> experiments;
+  for (const std::string& id : choose_experiments(root, options.names))
+    if (Experiment e = read_experiment(root, id, options.profile); !e.gates.empty()) experiments.push_back(e);
+  std::vector<GateResult> results;
+  for (const Experiment& e : experiments) {
+    try {
+      // What an earlier run of this very program finished is not computed again.
+      const Outcome outcome = run_experiment(e, {root, true, options.threads, false});
+      results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
+    } catch (const Error& error) {
+      results.push_back({e.id, fmt::format("{} fails: {}", e.id, error.what()), false});
+    }
+    for (std::size_t i = 0; i < results.size(); ++i)
+      if (results[i].name.rfind(e.id + ":", 0) == 0 || results[i].name == e.id)
+        fmt::print("{}  {}\n", results[i].passed ? "ok    " : "FAILED", results[i].text);
+    std::fflush(stdout);
+  }
+  if (!options.junit.empty()) write_junit(options.junit, results);
+  const auto failed = std::count_if(results.begin(), results.end(), [](const auto& g) { return !g.passed; });
+  fmt::print("{} of {} gates ok\n", results.size() - std::size_t(failed), results.size());
+  for (const GateResult& g : results)
+    if (!g.passed) fmt::print(stderr, "airlight: gate failed: {}\n", g.name);
+  return failed ? 1 : 0;
+}
+
+}  // namespace airlight::experiments::cli

@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include "experiments/cli/commands.h"
+#include "experiments/progress.h"
+#include "experiments/renderers.h"
+#include "scene/scene.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+std::string range(const scene::SettingSpec& spec) {
+  using Type = scene::SettingSpec::Type;
+  switch (spec.type) {
+    case Type::flag:
+      return "true or false";
+    case Type::choice: {
+      std::string all;
+      for (const std::string& choice : spec.choices) all += (all.empty() ? "" : ", ") + choice;
+      return all;
+    }
+    default:
+      return spec.greatest >= 1e300 ? fmt::format(">= {:g}", spec.least)
+                                    : fmt::format("{:g} to {:g}", spec.least, spec.greatest);
+  }
+}
+
+void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
+  fmt::print("\n{}: {}\n", renderer.name(), renderer.about());
+  const scene::Settings settings(renderer.settings(), given, renderer.name());
+  fmt::print("  settings (name = value here; range; meaning)\n");
+  for (const scene::SettingSpec& spec : renderer.settings())
+    fmt::print("    {} = {}; {}; {}\n", spec.name, settings.text(spec.name), range(spec), spec.doc);
+  const auto reasons = renderer.supports(*scene, settings);
+  if (!reasons.empty()) {
+    fmt::print("  cannot render this scene:\n");
+    for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
+    return;
+  }
+  Progress progress("preparing " + renderer.name());
+  const auto prepared = renderer.prepare(scene, settings, progress.execution(0));
+  fmt::print("  stages\n");
+  for (const scene::Stage& stage : prepared->stages())
+    fmt::print("    {:9} {}: {}\n", stage.kept ? "computes" : "leaves out", stage.name, stage.reason);
+  for (const scene::StageTime& time : prepared->prepare_times())
+    fmt::print("    prepared  {} in {:.3g} s\n", time.name, time.seconds);
+}
+
+}  // namespace
+
+int explain(const ExplainOptions& options) {
+  if (!options.method.empty()) find_renderer(options.method, "--method");
+  const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
+  fmt::print("{}: {}x{} pixels\n", scene->name, scene->width, scene->height);
+  for (const scene::Light& light : scene->lights) fmt::print("  light    {}\n", scene::light_name(light));
+  for (const scene::Medium& medium : scene->media)
+    fmt::print("  medium   {}, {}, phase {}\n", medium.name, scene::field_name(medium.field),
+               scene::phase_name(medium.phase));
+  for (const scene::Surface& surface : scene->surfaces) fmt::print("  surface  {}\n", surface.name);
+  for (const auto& renderer : all_renderers())
+    if (options.method.empty() || renderer->name() == options.method) explain_one(*renderer, scene, options.settings);
+  return 0;
+}
+
+}  // namespace airlight::experiments::cli

@@ -1,0 +1,249 @@
+#include "experiments/cli/program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "experiments/build_info.h"
+#include "experiments/cli/commands.h"
+#include "experiments/interrupt.h"
+#include "experiments/renderers.h"
+#include "experiments/verify/verify.h"
+#include "scene/data_folder.h"
+#include "scene/error.h"
+#include "scene/settings.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+// key=value, several times.
+void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const std::string& doc) {
+  command
+      ->add_option_function<std::vector<std::string>>(
+          flag,
+          [&pairs, flag](const std::vector<std::string>& given) {
+            for (const std::string& text : given) {
+              const std::size_t equals = text.find('=');
+              if (equals == std::string::npos || equals == 0)
+                throw Error(fmt::format("{} '{}': expected name=value", flag, text));
+              pairs[text.substr(0, equals)] = text.substr(equals + 1);
+            }
+          },
+          doc)
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void require(const std::string& value, const std::string& what) {
+  if (value.empty()) throw Error(fmt::format("{} is missing; see --help", what));
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+// The command that was chosen, at any depth.
+const CLI::App& chosen(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : chosen(*commands.front());
+}
+
+void refuse_extras(const CLI::App& app) {
+  const CLI::App& command = chosen(app);
+  const auto extras = app.remaining(true);
+  const auto commands = command_names(command);
+  if (!extras.empty()) {
+    const std::string& word = extras.front();
+    const bool option = word.size() > 1 && word[0] == '-';
+    const auto candidates = option ? option_names(command) : commands;
+    if (candidates.empty())
+      throw Error(fmt::format("unexpected argument '{}'; see {} --help", word, command.get_name()));
+    throw Error(fmt::format("unknown {} '{}' (nearest: {})", option ? "option" : "command", word,
+                            scene::nearest(word.substr(0, word.find('=')), candidates)));
+  }
+  if (!commands.empty()) throw Error(fmt::format("expected a command: {}", fmt::join(commands, ", ")));
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"airlight: fog and smoke in real time, judged against references", "airlight"};
+  app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
+  app.option_defaults()->always_capture_default(false);
+  std::string data;
+  std::function<int()> action;
+  const auto command = [&](CLI::App& parent, const std::string& name, const std::string& doc) {
+    CLI::App* c = parent.add_subcommand(name, doc);
+    c->allow_extras();
+    c->fallthrough(false);
+    return c;
+  };
+  const auto data_option = [&](CLI::App* c) {
+    c->add_option("--data", data, "folder of large inputs (default: the variable AIRLIGHT_DATA)");
+  };
+  app.allow_extras();
+
+  RenderOptions render_options;
+  CLI::App* c = command(app, "render", "render a scene with a method or a reference");
+  c->add_option("SCENE", render_options.scene, "scene file (scene/README.md)");
+  c->add_option("--method,-m", render_options.method, fmt::format("one of {}", fmt::join(renderer_names(), ", ")));
+  c->add_option("--out,-o", render_options.out, "OpenEXR file to write");
+  c->add_option("--png", render_options.png, "also write an 8-bit preview");
+  c->add_option("--exposure", render_options.exposure, "of the preview, in powers of two");
+  c->add_option("--threads", render_options.threads, "0: all");
+  c->add_option("--samples", render_options.samples, "N or A..B: number or range of samples per pixel (path_tracer)");
+  add_pairs(c, "--set", render_options.settings, "a setting of the method (airlight explain lists them)");
+  add_pairs(c, "--override", render_options.overrides, "a value of the scene file, e.g. film.width=64");
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(render_options.scene, "SCENE");
+      require(render_options.method, "--method");
+      require(render_options.out, "--out");
+      return render(render_options);
+    };
+  });
+
+  CompareOptions compare_options;
+  c = command(app, "compare", "errors of an image against a reference");
+  c->add_option("IMAGE", compare_options.image, "OpenEXR file");
+  c->add_option("REFERENCE", compare_options.reference, "OpenEXR file; its batches, if any, say how noisy it is");
+  c->add_option("--layer", compare_options.layer, "default mean");
+  c->add_option("--metric", compare_options.metrics, "named metrics (default: all)");
+  c->add_option("--scene", compare_options.scene, "scene file: leave out pixels that touch a light's ball");
+  add_pairs(c, "--max", compare_options.most, "metric=bound: exit 1 if the error is certainly larger");
+  c->add_option("--equal", compare_options.alpha, "test for equality but for noise, at this false-alarm rate (1e-4)");
+  c->final_callback([&] {
+    action = [&] {
+      require(compare_options.image, "IMAGE");
+      require(compare_options.reference, "REFERENCE");
+      return compare(compare_options);
+    };
+  });
+
+  ConvertOptions convert_options;
+  c = command(app, "convert", "a layer of an OpenEXR file as PNG or PFM");
+  c->add_option("IN", convert_options.in, "OpenEXR file");
+  c->add_option("OUT", convert_options.out, ".png (8-bit sRGB) or .pfm (linear floats)");
+  c->add_option("--layer", convert_options.layer, "default mean");
+  c->add_option("--exposure", convert_options.exposure, "of a PNG, in powers of two");
+  c->final_callback([&] {
+    action = [&] {
+      require(convert_options.in, "IN");
+      require(convert_options.out, "OUT");
+      return convert(convert_options);
+    };
+  });
+
+  ExperimentOptions experiment_options;
+  const auto experiment_flags = [&](CLI::App* e, bool names) {
+    if (names) e->add_option("NAME", experiment_options.names, "group/name, or a group; none: all");
+    e->add_option("--root", experiment_options.root, "the project's folder (default: found from here upwards)");
+    e->add_option("--profile", experiment_options.profile, "quick (default) or paper");
+    e->add_option("--threads", experiment_options.threads, "0: all");
+    data_option(e);
+  };
+  CLI::App* experiment = command(app, "experiment", "tables and plots of the papers");
+  CLI::App* e = command(*experiment, "list", "what there is");
+  experiment_flags(e, true);
+  e->final_callback([&] { action = [&] { return list_experiments(experiment_options); }; });
+  e = command(*experiment, "run", "compute tables, plots and pictures into results/");
+  experiment_flags(e, true);
+  e->add_flag("--resume", experiment_options.resume, "keep rows that an earlier run of the same program finished");
+  e->final_callback([&] { action = [&] { return run_experiments(experiment_options); }; });
+  e = command(*experiment, "plot", "draw the plots again from their data");
+  experiment_flags(e, true);
+  e->final_callback([&] { action = [&] { return plot_experiments(experiment_options); }; });
+
+  c = command(app, "gates", "accuracy gates of the experiments; exit 1 if one fails");
+  experiment_flags(c, true);
+  c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
+  c->final_callback([&] { action = [&] { return gates(experiment_options); }; });
+
+  ExplainOptions explain_options;
+  c = command(app, "explain", "what each renderer would compute or leave out in a scene, and why");
+  c->add_option("SCENE", explain_options.scene, "scene file");
+  c->add_option("--method,-m", explain_options.method, "only this one");
+  add_pairs(c, "--set", explain_options.settings, "a setting of the method");
+  add_pairs(c, "--override", explain_options.overrides, "a value of the scene file");
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(explain_options.scene, "SCENE");
+      return explain(explain_options);
+    };
+  });
+
+  std::vector<std::string> vector_files;
+  std::string kind, verify_profile = "quick";
+  c = command(app, "verify", "recompute oracle vectors");
+  c->add_option("FILE", vector_files, "JSON files");
+  c->add_option("--kind", kind, "only vectors of this kind");
+  c->add_option("--profile", verify_profile, "quick (default) or paper");
+  c->final_callback([&] {
+    action = [&] {
+      if (vector_files.empty()) throw Error("FILE is missing; see --help");
+      if (verify_profile != "quick" && verify_profile != "paper")
+        throw Error(fmt::format("--profile '{}': expected quick or paper", verify_profile));
+      return verify(vector_files, kind, verify_profile == "quick" ? VerifyProfile::quick : VerifyProfile::paper,
+                    std::cout);
+    };
+  });
+
+  c = command(app, "doctor", "versions, processor, graphics devices");
+  c->final_callback([&] { action = [] { return doctor(); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForVersion& wanted) {
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    std::string line = error.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    throw Error(line);
+  }
+  refuse_extras(app);
+  if (!action) throw Error(fmt::format("expected a command: {}", fmt::join(command_names(app), ", ")));
+  if (!data.empty()) scene::set_data_folder(data);
+  catch_interrupts();
+  return action();
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  const auto say = [](const std::string& line) { fmt::print(stderr, "airlight: {}\n", line); };
+  try {
+    const int code = dispatch(argc, argv);
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || !std::cout) throw Error("standard output could not be written");
+    return code;
+  } catch (const Error& error) {
+    say(error.what());
+    return error.exit_code();
+  } catch (const scene::Interrupted&) {
+    say("interrupted");
+    return 130;
+  } catch (const std::bad_alloc&) {
+    say("out of memory");
+    return 2;
+  } catch (const std::exception& error) {
+    say(fmt::format("unexpected failure: {}", error.what()));
+    return 2;
+  }
+}
+
+}  // namespace airlight::experiments::cli

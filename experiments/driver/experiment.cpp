@@ -1,0 +1,327 @@
+#include "experiments/driver/experiment.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "experiments/driver/toml_values.h"
+#include "experiments/metrics.h"
+#include "experiments/renderers.h"
+#include "scene/error.h"
+#include "scene/load/table_reader.h"
+#include "scene/settings.h"
+
+namespace airlight::experiments {
+namespace fs = std::filesystem;
+using scene::load::TableReader;
+namespace {
+
+class Reader {
+ public:
+  Reader(const fs::path& root, const std::string& id, const std::string& profile) : root_(root) {
+    experiment_.id = id;
+    experiment_.profile = profile;
+    file_ = (root / "experiments" / (id + ".toml")).string();
+    try {
+      toml_ = toml::parse_file(file_);
+    } catch (const toml::parse_error& e) {
+      std::string what(e.description());
+      std::replace(what.begin(), what.end(), '\n', ' ');
+      throw Error(fmt::format("{}:{}:{}: {}", file_, e.source().begin.line, e.source().begin.column, what));
+    }
+  }
+
+  Experiment read() {
+    TableReader top(toml_, "");
+    const bool oracles = toml_["kind"].value_or(std::string()) == "oracles";
+    top.allow(oracles
+                  ? std::vector<std::string>{"kind", "title", "paper", "about", "vectors"}
+                  : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "scene", "method",
+                                             "reference", "timing", "plot", "gate", "speed_up", "expected", "profile"});
+    experiment_.kind = top.choice("kind", {"images", "oracles"}, "images");
+    experiment_.title = top.text("title");
+    experiment_.paper = top.text("paper", "");
+    experiment_.about = top.text("about", "");
+    if (experiment_.kind == "oracles") {
+      for (const std::string& file : strings(toml_, "vectors", top)) experiment_.vector_files.push_back(root_ / file);
+      return experiment_;
+    }
+    experiment_.layer = top.text("layer", "mean");
+    experiment_.metrics = strings(toml_, "metrics", top);
+    for (const std::string& metric : experiment_.metrics) check_metric_name(metric, position("metrics"));
+    Pairs overrides, reference_settings;
+    profile(top, overrides, reference_settings);
+    reference(top, reference_settings);
+    scenes(top, overrides);
+    methods(top);
+    plots(top);
+    checks(top);
+    return experiment_;
+  }
+
+ private:
+  std::string position(const std::string& key) const {
+    const toml::node* node = toml_.get(key);
+    return scene::load::location(node ? node->source() : toml_.source());
+  }
+
+  // The tables of [[key]], each with its reader.
+  std::vector<std::pair<const toml::table*, TableReader>> lists(const TableReader& top, const std::string& key) const {
+    std::vector<std::pair<const toml::table*, TableReader>> all;
+    if (!top.has(key)) return all;
+    const toml::array* array = toml_.get(key)->as_array();
+    if (!array) top.expected(key, fmt::format("tables [[{}]]", key));
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const toml::table* table = array->get_as<toml::table>(i);
+      if (!table) top.expected(key, fmt::format("tables [[{}]]", key));
+      all.emplace_back(table, TableReader(*table, fmt::format("{} {}", key, i)));
+    }
+    return all;
+  }
+
+  bool in_profile(const toml::table& table, const TableReader& reader) const {
+    const auto profiles = strings(table, "profiles", reader);
+    for (const std::string& p : profiles)
+      if (p != "quick" && p != "paper") reader.expected("profiles", "a list of \"quick\" and \"paper\"");
+    return profiles.empty() || std::find(profiles.begin(), profiles.end(), experiment_.profile) != profiles.end();
+  }
+
+  void profile(const TableReader& top, Pairs& scene_overrides, Pairs& reference_settings) {
+    TimingRule& rule = experiment_.timing;
+    if (experiment_.profile == "paper") rule = {31, 2, 60, 0};  // spec/references.md section 7
+    if (auto timing = top.table("timing")) {
+      timing->allow({"threads"});
+      rule.threads = int(timing->integer("threads", 0, 4096, 0));
+    }
+    auto profiles = top.table("profile");
+    if (!profiles) return;
+    profiles->allow({"quick", "paper"});
+    for (const std::string name : {"quick", "paper"}) {
+      const auto table = profiles->table(name);
+      if (!table) continue;
+      TableReader reader = *table;
+      reader.allow({"overrides", "reference", "runs", "budget"});
+      const toml::table& raw = *toml_.get("profile")->as_table()->get(name)->as_table();
+      const Pairs changed = overrides(raw, "overrides", reader);
+      const Pairs finer = settings(raw, "reference", reader);
+      const int runs = int(reader.integer("runs", 1, 10000, rule.runs));
+      const double budget = reader.number("budget", scene::load::not_negative, rule.budget);
+      if (name != experiment_.profile) continue;
+      scene_overrides = changed;
+      reference_settings = finer;
+      rule.runs = runs;
+      rule.budget = budget;
+    }
+  }
+
+  void check_renderer(const TableReader& reader, const std::string& name, const Pairs& given) const {
+    const scene::Renderer* renderer = nullptr;
+    try {
+      renderer = &find_renderer(name, reader.where());
+      scene::Settings(renderer->settings(), given, reader.where() + ": settings");
+    } catch (const Error& error) {
+      reader.fail(renderer ? "settings" : "renderer", std::string(error.what()).substr(reader.where().size() + 2));
+    }
+  }
+
+  void reference(const TableReader& top, const Pairs& finer) {
+    auto reader = top.table("reference");
+    if (!reader) {
+      if (!experiment_.metrics.empty()) top.fail("metrics", "there are metrics and no [reference]");
+      return;
+    }
+    reader->allow({"renderer", "settings"});
+    experiment_.reference.renderer = reader->text("renderer");
+    experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
+    for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
+    check_renderer(*reader, experiment_.reference.renderer, experiment_.reference.settings);
+  }
+
+  void scenes(const TableReader& top, const Pairs& of_profile) {
+    for (auto& [table, reader] : lists(top, "scene")) {
+      reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
+      SceneCase scene;
+      scene.file = root_ / "experiments" / reader.text("file");
+      scene.name = reader.text("name", scene.file.stem().string());
+      scene.overrides = of_profile;
+      for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
+      if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
+      const bool wanted = in_profile(*table, reader);
+      std::vector<SceneCase> cases{scene};
+      if (auto sweep = reader.table("sweep")) {
+        sweep->allow({"key", "values"});
+        cases.clear();
+        const std::string key = sweep->text("key");
+        for (const double value : sweep->numbers("values", scene::load::any_number)) {
+          cases.push_back(scene);
+          cases.back().overrides[key] = fmt::format("{}", value);
+          cases.back().parameter = value;
+          cases.back().name = fmt::format("{} {:g}", scene.name, value);
+        }
+      }
+      if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());
+    }
+    if (experiment_.scenes.empty()) top.fail("", "there is no [[scene]] in this profile");
+  }
+
+  void methods(const TableReader& top) {
+    for (auto& [table, reader] : lists(top, "method")) {
+      reader.allow(
+          {"name", "renderer", "settings", "sweep", "layer", "picture_only", "count_noise", "profiles", "scenes"});
+      MethodCase method;
+      method.renderer = reader.text("renderer");
+      method.name = reader.text("name", method.renderer);
+      method.settings = settings(*table, "settings", reader);
+      method.layer = reader.text("layer", experiment_.layer);
+      method.picture_only = reader.flag("picture_only", false);
+      method.count_noise = reader.flag("count_noise", false);
+      method.scenes = strings(*table, "scenes", reader);
+      std::vector<MethodCase> cases{method};
+      if (auto sweep = reader.table("sweep")) {
+        sweep->allow({"key", "values"});
+        cases.clear();
+        const std::string key = sweep->text("key");
+        const toml::array* values = table->get("sweep")->as_table()->get_as<toml::array>("values");
+        if (!values || values->empty()) sweep->expected("values", "a list of values");
+        for (const toml::node& value : *values) {
+          cases.push_back(method);
+          cases.back().setting = plain(value);
+          cases.back().settings[key] = cases.back().setting;
+        }
+      }
+      for (const MethodCase& c : cases) check_renderer(reader, c.renderer, c.settings);
+      if (in_profile(*table, reader)) experiment_.methods.insert(experiment_.methods.end(), cases.begin(), cases.end());
+    }
+  }
+
+  void plots(const TableReader& top) {
+    for (auto& [table, reader] : lists(top, "plot")) {
+      reader.allow({"name", "title", "x", "y", "x_label", "y_label", "per_scene", "methods"});
+      PlotCase plot;
+      plot.x = reader.text("x");
+      plot.y = reader.text("y");
+      plot.name = reader.text("name", plot.y + "_against_" + plot.x);
+      plot.title = reader.text("title", experiment_.title);
+      plot.x_label = reader.text("x_label", "");
+      plot.y_label = reader.text("y_label", "");
+      plot.per_scene = reader.flag("per_scene", plot.x != "parameter");
+      plot.methods = strings(*table, "methods", reader);
+      for (const std::string key : {"x", "y"}) {
+        const std::string& axis = key == "x" ? plot.x : plot.y;
+        const std::vector<std::string> axes = {"seconds", "prepare_seconds", "parameter", "setting"};
+        const bool known =
+            std::find(axes.begin(), axes.end(), axis) != axes.end() || axis.rfind("counter.", 0) == 0 ||
+            std::find(experiment_.metrics.begin(), experiment_.metrics.end(), axis) != experiment_.metrics.end();
+        if (!known)
+          reader.expected(key, fmt::format("one of {}, counter.NAME, {}", fmt::join(axes, ", "),
+                                           fmt::join(experiment_.metrics, ", ")));
+      }
+      experiment_.plots.push_back(plot);
+    }
+  }
+
+  // A name that gates and the like refer to must exist in some profile; here: in this file.
+  void known(const TableReader& reader, const std::string& key, const std::string& value,
+             const std::string& list) const {
+    std::vector<std::string> names;
+    if (list == "metric") {
+      names = experiment_.metrics;
+      names.push_back("seconds");
+    } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
+      for (const toml::node& node : *array) {
+        const toml::table& table = *node.as_table();
+        const std::string source = list == "scene" ? "file" : "renderer";
+        const std::string fallback = table[source].value_or(std::string());
+        names.push_back(table["name"].value_or(list == "scene" ? fs::path(fallback).stem().string() : fallback));
+      }
+      if (list == "scene")
+        for (const SceneCase& scene : experiment_.scenes) names.push_back(scene.name);
+    }
+    if (std::find(names.begin(), names.end(), value) == names.end())
+      reader.expected(key,
+                      fmt::format("one of {} (nearest: {})", fmt::join(names, ", "), scene::nearest(value, names)));
+  }
+
+  void checks(const TableReader& top) {
+    for (auto& [table, reader] : lists(top, "gate")) {
+      reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "why", "profiles"});
+      GateCase gate;
+      gate.scene = reader.text("scene", "");
+      gate.method = reader.text("method");
+      gate.metric = reader.text("metric");
+      if (reader.has("setting")) gate.setting = plain(*table->get("setting"));
+      gate.why = reader.text("why", "");
+      if (!gate.scene.empty()) known(reader, "scene", gate.scene, "scene");
+      known(reader, "method", gate.method, "method");
+      known(reader, "metric", gate.metric, "metric");
+      reader.one_of({"at_most", "at_least"});
+      if (reader.has("at_most")) gate.at_most = reader.number("at_most", scene::load::any_number);
+      if (reader.has("at_least")) gate.at_least = reader.number("at_least", scene::load::any_number);
+      if (in_profile(*table, reader)) experiment_.gates.push_back(gate);
+    }
+    for (auto& [table, reader] : lists(top, "speed_up")) {
+      reader.allow({"baseline", "method", "metric"});
+      experiment_.speed_ups.push_back({reader.text("baseline"), reader.text("method"), reader.text("metric")});
+      known(reader, "baseline", experiment_.speed_ups.back().baseline, "method");
+      known(reader, "method", experiment_.speed_ups.back().method, "method");
+      known(reader, "metric", experiment_.speed_ups.back().metric, "metric");
+    }
+    for (auto& [table, reader] : lists(top, "expected")) {
+      reader.allow({"what", "paper", "scene", "method", "setting", "metric"});
+      ExpectedCase e;
+      e.what = reader.text("what");
+      e.paper = reader.text("paper");
+      if (reader.has("method")) {
+        e.scene = reader.text("scene");
+        e.method = reader.text("method");
+        e.metric = reader.text("metric");
+        if (reader.has("setting")) e.setting = plain(*table->get("setting"));
+        known(reader, "scene", e.scene, "scene");
+        known(reader, "method", e.method, "method");
+        known(reader, "metric", e.metric, "metric");
+      }
+      experiment_.expected.push_back(e);
+    }
+  }
+
+  fs::path root_;
+  std::string file_;
+  toml::table toml_;
+  Experiment experiment_;
+};
+
+}  // namespace
+
+Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
+  return Reader(root, id, profile).read();
+}
+
+std::vector<std::string> experiment_ids(const fs::path& root) {
+  std::vector<std::string> ids;
+  for (const auto& group : fs::directory_iterator(root / "experiments")) {
+    const std::string name = group.path().filename().string();
+    if (!group.is_directory() || name == "scenes" || name == "data") continue;
+    for (const auto& file : fs::directory_iterator(group.path()))
+      if (file.path().extension() == ".toml") ids.push_back(name + "/" + file.path().stem().string());
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+std::vector<std::string> choose_experiments(const fs::path& root, const std::vector<std::string>& names) {
+  const auto all = experiment_ids(root);
+  if (names.empty()) return all;
+  std::vector<std::string> chosen;
+  for (const std::string& name : names) {
+    const std::size_t before = chosen.size();
+    for (const std::string& id : all)
+      if (id == name || id.rfind(name + "/", 0) == 0) chosen.push_back(id);
+    if (chosen.size() == before)
+      throw Error(fmt::format("unknown experiment '{}' (nearest: {}); airlight experiment list names them", name,
+                              scene::nearest(name, all)));
+  }
+  return chosen;
+}
+
+}  // namespace airlight::experiments

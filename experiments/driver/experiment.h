@@ -1,0 +1,96 @@
+// An experiment as data: what experiments/<group>/<name>.toml says (experiments/README.md documents the format).
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace airlight::experiments {
+
+using Pairs = std::map<std::string, std::string>;
+
+struct SceneCase {
+  std::string name;
+  std::filesystem::path file;
+  Pairs overrides;                  // with those of the profile
+  std::optional<double> parameter;  // abscissa of plots over scenes
+};
+
+struct MethodCase {
+  std::string name;
+  std::string renderer;
+  Pairs settings;
+  std::string setting;              // the swept setting's value, as text; empty without a sweep
+  std::string layer;                // compared with the reference's layer
+  bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
+  bool picture_only = false;        // rendered and timed, not compared
+  std::vector<std::string> scenes;  // empty: all
+};
+
+struct ReferenceCase {
+  std::string renderer;  // empty: nothing is compared
+  Pairs settings;
+};
+
+struct TimingRule {
+  int runs = 5;              // at least, beside the warm-up
+  double least_seconds = 0;  // of warm-up
+  double budget = 2;         // [s] per row for all runs; one run is always made
+  int threads = 0;           // 0: all
+};
+
+struct PlotCase {
+  std::string name, title, x, y, x_label, y_label;  // x: "seconds", "prepare_seconds", "parameter", "setting",
+                                                    // "counter.NAME"; y: those or a metric
+  bool per_scene = true;
+  std::vector<std::string> methods;  // empty: all
+};
+
+struct GateCase {
+  std::string scene, method, setting, metric;  // empty scene, setting: every one
+  double at_most = infinity;
+  double at_least = -infinity;
+  std::string why;
+};
+
+struct SpeedUpCase {
+  std::string baseline, method, metric;
+};
+
+struct ExpectedCase {
+  std::string what, paper, scene, method, setting, metric;
+};
+
+struct Experiment {
+  std::string id;  // "group/name"
+  std::string title, paper, about;
+  std::string kind;     // "images" or "oracles"
+  std::string profile;  // "quick" or "paper"
+  std::vector<SceneCase> scenes;
+  std::vector<MethodCase> methods;
+  ReferenceCase reference;
+  std::string layer = "mean";
+  std::vector<std::string> metrics;
+  TimingRule timing;
+  std::vector<PlotCase> plots;
+  std::vector<GateCase> gates;
+  std::vector<SpeedUpCase> speed_ups;
+  std::vector<ExpectedCase> expected;
+  std::vector<std::filesystem::path> vector_files;  // kind "oracles"
+};
+
+// Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers
+// and names that refer to one another are checked here, scenes when they are loaded.
+Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
+
+// All ids below root/experiments, sorted. A file is an experiment if it lies in experiments/<group>/ and group is
+// neither `scenes` nor `data`.
+std::vector<std::string> experiment_ids(const std::filesystem::path& root);
+
+// The ids that `names` stand for: ids, or groups; none means all. Throws Error with the nearest id.
+std::vector<std::string> choose_experiments(const std::filesystem::path& root, const std::vector<std::string>& names);
+
+}  // namespace airlight::experiments

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/driver/outcome.h"
+
+namespace airlight::experiments {
+namespace {
+
+std::string figure(const Row& row, const std::string& metric) {
+  for (const Measure& m : row.measures)
+    if (m.name == metric) return text(m);
+  if (const auto e = quantity(row, metric)) return fmt::format("{:.4g} [{:.4g}, {:.4g}]", e->value, e->low, e->high);
+  return row.note.empty() ? "undefined" : row.note;
+}
+
+GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& row) {
+  const bool upper = std::isfinite(gate.at_most);
+  const double bound = upper ? gate.at_most : gate.at_least;
+  const auto e = quantity(row, gate.metric);
+  GateResult result;
+  result.passed = e && (upper ? e->low <= bound : e->high >= bound);
+  result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
+                            row.setting.empty() ? "" : " " + row.setting, gate.metric);
+  result.text = fmt::format("{} {} {:g}{} {}", result.name, upper ? "<=" : ">=", bound,
+                            result.passed ? ":" : " fails:", figure(row, gate.metric));
+  if (!gate.why.empty()) result.text += fmt::format(" ({})", gate.why);
+  return result;
+}
+
+}  // namespace
+
+std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
+  std::vector<GateResult> results;
+  for (const GateCase& gate : experiment.gates) {
+    const std::size_t before = results.size();
+    for (const Row& row : rows) {
+      // A swept scene is called "name value": a gate on the name means all of them.
+      const bool scene = gate.scene.empty() || row.scene == gate.scene || row.scene.rfind(gate.scene + " ", 0) == 0;
+      if (scene && row.method == gate.method && (gate.setting.empty() || row.setting == gate.setting))
+        results.push_back(judge(experiment, gate, row));
+    }
+    if (results.size() == before) {
+      const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
+                                           gate.method, gate.setting, gate.metric);
+      results.push_back({name, name + " fails: there is no such row", false});
+    }
+  }
+  return results;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,52 @@
+#include "experiments/driver/journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "experiments/driver/content_key.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+
+Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
+  std::error_code failure;
+  std::filesystem::create_directories(file.parent_path(), failure);
+  if (failure) throw Error(fmt::format("{}: {}", file.parent_path().string(), failure.message()));
+  if (!resume) {
+    std::filesystem::remove(file, failure);
+    return;
+  }
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t space = line.find(' ');
+    if (space != 32 || content_key(std::string_view(line).substr(33)) != line.substr(0, 32)) continue;
+    const Row row = row_from_json(nlohmann::json::parse(line.substr(33)));
+    rows_[row.key] = row;
+  }
+}
+
+const Row* Journal::find(const std::string& key) const {
+  const auto found = rows_.find(key);
+  return found == rows_.end() ? nullptr : &found->second;
+}
+
+void Journal::add(const Row& row) {
+  rows_[row.key] = row;
+  const std::string text = to_json(row).dump();
+  // A torn line before this one must not swallow it: begin on a new line.
+  const std::string line = fmt::format("\n{} {}\n", content_key(std::string_view(text)), text);
+  const int handle = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const bool written =
+      handle >= 0 && write(handle, line.data(), line.size()) == ssize_t(line.size()) && fsync(handle) == 0;
+  const int reason = errno;
+  if (handle >= 0) close(handle);
+  if (!written) throw Error(fmt::format("{}: {}", file_.string(), std::strerror(reason)));
+}
+
+}  // namespace airlight::experiments

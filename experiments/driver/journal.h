@@ -1,0 +1,29 @@
+// Rows that are finished, kept line by line in results/cache so that a run that was killed can be resumed.
+//
+// Every line ends with a checksum; a torn or damaged line counts as not there.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "experiments/driver/row.h"
+
+namespace airlight::experiments {
+
+class Journal {
+ public:
+  // Reads what is there, or with `resume` false begins anew.
+  Journal(const std::filesystem::path& file, bool resume);
+
+  // The row of that key, if it was finished.
+  const Row* find(const std::string& key) const;
+
+  // Appends and flushes to the disk. Throws Error.
+  void add(const Row&);
+
+ private:
+  std::filesystem::path file_;
+  std::map<std::string, Row> rows_;
+};
+
+}  // namespace airlight::experiments

@@ -1,0 +1,207 @@
+#include "experiments/driver/plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+struct PlotPoint {
+  Estimate x, y;
+  bool bound = false;  // below the noise floor: only y.high is known
+};
+
+struct Curve {
+  std::string name;
+  std::vector<PlotPoint> points;
+};
+
+std::string slug(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
+  return out;
+}
+
+const Measure* measure_of(const Row& row, const std::string& name) {
+  for (const Measure& m : row.measures)
+    if (m.name == name) return &m;
+  return nullptr;
+}
+
+struct Drawing {
+  std::vector<Curve> curves;
+  double floor = 0;
+};
+
+Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string& scene) {
+  Drawing drawing;
+  for (const Row& row : outcome.rows) {
+    if (!scene.empty() && row.scene != scene) continue;
+    if (!plot.methods.empty() && std::find(plot.methods.begin(), plot.methods.end(), row.method) == plot.methods.end())
+      continue;
+    const auto x = quantity(row, plot.x), y = quantity(row, plot.y);
+    if (!x || !y || !(x->value > 0)) continue;
+    PlotPoint point{*x, *y, false};
+    if (const Measure* m = measure_of(row, plot.y)) {
+      // That of the reference alone: the quietest image shows it.
+      if (m->floor > 0) drawing.floor = drawing.floor > 0 ? std::min(drawing.floor, m->floor) : m->floor;
+      point.bound = m->below_floor;
+      if (plot.y == "bias" || plot.y.find(".bias") != std::string::npos) {
+        // Signed: its size is drawn.
+        point.y = {std::abs(y->value), std::min(std::abs(y->low), std::abs(y->high)),
+                   std::max(std::abs(y->low), std::abs(y->high))};
+      }
+    }
+    if (!(point.bound ? point.y.high > 0 : point.y.value > 0)) continue;
+    std::string name = row.method;
+    if (plot.x == "parameter" && !row.setting.empty()) name += " " + row.setting;
+    if (scene.empty() && plot.x != "parameter") name += ", " + row.scene;
+    auto curve =
+        std::find_if(drawing.curves.begin(), drawing.curves.end(), [&](const Curve& c) { return c.name == name; });
+    if (curve == drawing.curves.end()) curve = drawing.curves.insert(curve, {name, {}});
+    curve->points.push_back(point);
+  }
+  for (Curve& curve : drawing.curves)
+    std::stable_sort(curve.points.begin(), curve.points.end(),
+                     [](const PlotPoint& a, const PlotPoint& b) { return a.x.value < b.x.value; });
+  return drawing;
+}
+
+// Blocks separated by two empty lines, as gnuplot counts them: per curve its values, then its upper bounds.
+std::string data_csv(const Drawing& drawing) {
+  std::string out = "# curve,x,x_low,x_high,y,y_low,y_high,floor\n";
+  for (const Curve& curve : drawing.curves)
+    for (const bool bound : {false, true}) {
+      bool empty = true;
+      for (const PlotPoint& p : curve.points) {
+        if (p.bound != bound) continue;
+        empty = false;
+        const double y = bound ? p.y.high : p.y.value;
+        // On a logarithmic axis an interval that reaches 0 ends a decade below its value.
+        const double low = bound ? y : std::max(p.y.low, 0.1 * y);
+        out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", csv_field(curve.name), p.x.value,
+                           p.x.low, p.x.high, y, low, p.y.high, drawing.floor);
+      }
+      if (empty) out += csv_field(curve.name) + ",,,,,,,\n";
+      out += "\n\n";
+    }
+  return out;
+}
+
+std::string axis_label(const std::string& given, const std::string& axis) {
+  if (!given.empty()) return given;
+  if (axis == "seconds") return "time of one render [s]";
+  if (axis == "prepare_seconds") return "time of preparation [s]";
+  return axis.rfind("counter.", 0) == 0 ? axis.substr(8) : axis;
+}
+
+std::string escaped(std::string text) {
+  std::replace(text.begin(), text.end(), '"', '\'');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string script(const PlotCase& plot, const std::string& title, const std::string& name, const Drawing& drawing) {
+  // Colours that the colour-blind tell apart (Okabe and Ito).
+  static const char* colors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
+  static const int shapes[] = {7, 5, 9, 13, 11, 6, 4};
+  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  for (const Curve& curve : drawing.curves)
+    for (const PlotPoint& p : curve.points) {
+      least = std::min(least, p.x.value);
+      greatest = std::max(greatest, p.x.value);
+    }
+  const bool log_x = greatest > 4 * least;
+  std::string lines;
+  const auto add = [&](const std::string& text) { lines += (lines.empty() ? "" : ", \\\n     ") + text; };
+  for (std::size_t i = 0; i < drawing.curves.size(); ++i) {
+    const std::string style = fmt::format("lc rgb \"{}\" pt {} ps 0.7 lw 1.6", colors[i % 7], shapes[i % 7]);
+    add(fmt::format("data index {} using 2:5 with linespoints {} title \"{}\"", 2 * i, style,
+                    escaped(drawing.curves[i].name)));
+    add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
+                    colors[i % 7]));
+    const auto& points = drawing.curves[i].points;
+    if (std::any_of(points.begin(), points.end(), [](const PlotPoint& p) { return p.bound; }))
+      add(fmt::format("data index {} using 2:5 with points lc rgb \"{}\" pt 10 ps 0.9 notitle", 2 * i + 1,
+                      colors[i % 7]));
+  }
+  if (drawing.floor > 0)
+    add(fmt::format("{:.6g} with lines dt 2 lw 1 lc rgb \"#888888\" title \"noise floor\"", drawing.floor));
+  std::string out = fmt::format(
+      "# Draws {0}.svg and {0}.png from {0}.csv: run gnuplot on this file in its folder.\n"
+      "data = \"{0}.csv\"\n"
+      "set datafile separator comma\n"
+      "set title \"{1}\" noenhanced\nset xlabel \"{2}\" noenhanced\nset ylabel \"{3}\" noenhanced\n"
+      "set key outside below center horizontal noenhanced\nset grid xtics ytics lc rgb \"#dddddd\"\nset border 3 lc "
+      "rgb \"#444444\"\n"
+      "set tics nomirror\nset logscale y\nset format y \"%g\"\n{4}"
+      "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
+      name, escaped(title), escaped(axis_label(plot.x_label, plot.x)), escaped(axis_label(plot.y_label, plot.y)),
+      log_x ? "set logscale x\nset format x \"%g\"\n" : "");
+  for (const auto& [terminal, file] :
+       {std::pair<const char*, const char*>{"svg size 640,480 dynamic font \"sans-serif,13\"", "svg"},
+        {"pngcairo size 960,720 font \"Sans,13\"", "png"}})
+    out += fmt::format("set terminal {}\nset output \"{}.{}\"\nplot {}\n", terminal, name, file, lines);
+  return out;
+}
+
+}  // namespace
+
+bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
+
+void run_gnuplot(const fs::path& folder, const std::vector<std::string>& scripts) {
+  if (!has_gnuplot()) throw Unavailable("gnuplot is not installed: no plots (Debian: gnuplot-nox)");
+  for (const std::string& name : scripts) {
+    const fs::path log = folder / (name + ".log");
+
+    const std::string command =
+        fmt::format("cd '{}' && gnuplot '{}' >'{}' 2>&1", folder.string(), name, log.filename().string());
+    if (std::system(command.c_str()) != 0)
+      throw Error(fmt::format("gnuplot failed on {}; see {}", (folder / name).string(), log.string()));
+    fs::remove(log);
+  }
+}
+
+std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder) {
+  const fs::path plots = folder / "plots";
+  std::vector<PlotFile> drawn;
+  std::vector<std::string> scripts;
+  fs::remove_all(plots);
+  for (const PlotCase& plot : outcome.experiment.plots) {
+    std::vector<std::string> scenes;
+    if (plot.per_scene) {
+      for (const Row& row : outcome.rows)
+        if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
+    } else {
+      scenes = {""};
+    }
+    for (const std::string& scene : scenes) {
+      const Drawing drawing = collect(outcome, plot, scene);
+      if (drawing.curves.empty()) continue;
+      const std::string name = slug(scene.empty() ? plot.name : plot.name + "." + scene);
+      const std::string title = scene.empty() ? plot.title : plot.title + ": " + scene;
+      fs::create_directories(plots);
+      scene::write_file_atomically((plots / (name + ".csv")).string(), data_csv(drawing));
+      scene::write_file_atomically((plots / (name + ".gp")).string(), script(plot, title, name, drawing));
+      scripts.push_back(name + ".gp");
+      drawn.push_back({"plots/" + name + ".svg", title});
+    }
+  }
+  if (scripts.empty()) return {};
+  if (!has_gnuplot()) {
+    fmt::print(stderr, "airlight: gnuplot is not installed: no plots (Debian: gnuplot-nox)\n");
+    return {};
+  }
+  run_gnuplot(plots, scripts);
+  return drawn;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,19 @@
+// Plots: a CSV file and a gnuplot script beside it, drawn as SVG and PNG. Drawing reads the CSV only.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "experiments/driver/outcome.h"
+#include "experiments/driver/tables.h"
+
+namespace airlight::experiments {
+
+// Writes results/<id>/plots/<name>.csv and .gp and runs gnuplot on them. Without gnuplot: the list is empty and one
+// line on standard error says so. A plot without points is left out.
+std::vector<PlotFile> draw_plots(const Outcome&, const std::filesystem::path& folder);
+
+// Runs gnuplot on every script in folder/plots. Throws Unavailable without gnuplot, Error if it fails.
+void run_gnuplot(const std::filesystem::path& folder, const std::vector<std::string>& scripts);
+bool has_gnuplot();
+
+}  // namespace airlight::experiments

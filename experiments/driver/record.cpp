@@ -1,0 +1,85 @@
+#include <nlohmann/json.hpp>
+
+#include "experiments/build_info.h"
+#include "experiments/driver/tables.h"
+#include "experiments/machine.h"
+
+namespace airlight::experiments {
+using nlohmann::json;
+namespace {
+
+// Pictures of one scene: the reference, then the last setting of every method.
+json pictures(const Outcome& outcome) {
+  const std::string up = "../../images/";
+  json groups = json::array();
+  for (const ReferenceInfo& reference : outcome.references) {
+    json list = json::array();
+    list.push_back({{"label", "reference: " + reference.renderer},
+                    {"file", up + reference.image + ".exr"},
+                    {"layer", outcome.experiment.layer},
+                    {"exposure", reference.exposure}});
+    for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+      const Row& row = outcome.rows[i];
+      if (row.scene != reference.scene || row.image.empty()) continue;
+      const bool last = i + 1 == outcome.rows.size() || outcome.rows[i + 1].scene != row.scene ||
+                        outcome.rows[i + 1].method != row.method;
+      if (last)
+        list.push_back({{"label", row.setting.empty() ? row.method : row.method + " " + row.setting},
+                        {"file", up + row.image + ".exr"},
+                        {"layer", row.layer},
+                        {"exposure", row.exposure}});
+    }
+    groups.push_back({{"title", reference.scene}, {"pictures", list}});
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+  const Experiment& e = outcome.experiment;
+  const Machine machine = this_machine();
+  json j = {{"experiment", e.id},
+            {"title", e.title},
+            {"paper", e.paper},
+            {"about", e.about},
+            {"profile", e.profile},
+            {"complete", outcome.complete},
+            {"seconds", outcome.seconds},
+            {"date", utc_now()},
+            {"commit", commit()},
+            {"version", version()},
+            {"compiler", compiler()},
+            {"command", "airlight experiment run " + e.id + " --profile " + e.profile},
+            {"layer", e.layer},
+            {"timing", {{"runs", e.timing.runs}, {"budget_seconds", e.timing.budget}, {"threads", e.timing.threads}}},
+            {"machine",
+             {{"cpu", machine.cpu},
+              {"threads", machine.threads},
+              {"memory_gib", machine.memory_gib},
+              {"simd", machine.simd},
+              {"system", machine.system},
+              {"load_average_at_end", machine.load_average}}}};
+  j["libraries"] = json::object();
+  for (const auto& [name, number] : libraries()) j["libraries"][name] = number;
+  j["references"] = json::array();
+  for (const ReferenceInfo& r : outcome.references)
+    j["references"].push_back({{"scene", r.scene},
+                               {"key", r.key},
+                               {"renderer", r.renderer},
+                               {"settings", r.settings},
+                               {"seconds", r.seconds},
+                               {"from_cache", r.cached}});
+  j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
+  j["plots"] = json::array();
+  for (const PlotFile& plot : plots) j["plots"].push_back({{"file", plot.file}, {"title", plot.title}});
+  j["pictures"] = pictures(outcome);
+  j["gates"] = json::array();
+  for (const GateResult& gate : outcome.gates)
+    j["gates"].push_back({{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}});
+  j["rows"] = json::array();
+  for (const Row& row : outcome.rows) j["rows"].push_back(to_json(row));
+  return j.dump(1) + "\n";
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,77 @@
+#include "experiments/driver/reference_cache.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "experiments/build_info.h"
+#include "experiments/driver/content_key.h"
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+std::string file_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool load(const fs::path& image, const fs::path& record, Reference& reference) {
+  if (!fs::exists(image) || !fs::exists(record)) return false;
+  const json j = json::parse(file_bytes(record), nullptr, false);
+  if (j.is_discarded() || !j.contains("checksum") || !j.contains("seconds")) return false;
+  if (content_key(std::string_view(file_bytes(image))) != j["checksum"].get<std::string>()) {
+    fmt::print(stderr, "airlight: {}: checksum differs, computing it anew\n", image.string());
+    return false;
+  }
+  reference.film = scene::read_exr(image.string());
+  reference.seconds = j["seconds"];
+  reference.cached = true;
+  return true;
+}
+
+}  // namespace
+
+std::string reference_key(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings) {
+  return content_key({scene.hash, fmt::format("{}x{}", scene.width, scene.height), renderer.name(),
+                      settings.canonical(), reference_id()});
+}
+
+Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scene> scene,
+                        const scene::Renderer& renderer, const scene::Settings& settings,
+                        const scene::Execution& execution) {
+  Reference reference;
+  reference.key = reference_key(*scene, renderer, settings);
+  const fs::path image = cache / (reference.key + ".exr"), record = cache / (reference.key + ".json");
+  if (load(image, record, reference)) return reference;
+
+  const auto reasons = renderer.supports(*scene, settings);
+  if (!reasons.empty())
+    throw Error(fmt::format("reference {} cannot render {}: {}", renderer.name(), scene->name, reasons.front()));
+  const auto start = std::chrono::steady_clock::now();
+  reference.film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
+  reference.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  // A renderer may keep what it has when it is stopped: that is no reference.
+  if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
+
+  fs::create_directories(cache);
+  fs::remove(record);  // never a record beside another image
+  scene::write_exr(image.string(), reference.film);
+  const json j = {{"scene", scene->name},
+                  {"scene_hash", scene->hash},
+                  {"renderer", renderer.name()},
+                  {"settings", settings.canonical()},
+                  {"seconds", reference.seconds},
+                  {"commit", commit()},
+                  {"checksum", content_key(std::string_view(file_bytes(image)))}};
+  scene::write_file_atomically(record.string(), j.dump(1) + "\n");
+  return reference;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,27 @@
+// Reference images, computed once: results/cache/references/<key>.exr with its checksum in <key>.json.
+//
+// The key is the content of scene, renderer, settings and of the sources of scene/ and reference/: another program that
+// computes the same is served, a changed reference is not. A damaged or half-copied file is computed anew.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "scene/renderer.h"
+
+namespace airlight::experiments {
+
+struct Reference {
+  scene::Film film;
+  std::string key;
+  double seconds = 0;  // that it took when it was computed
+  bool cached = false;
+};
+
+std::string reference_key(const scene::Scene&, const scene::Renderer&, const scene::Settings&);
+
+// Throws Error if the renderer cannot render the scene, Interrupted if stopped (nothing is stored then).
+Reference reference_for(const std::filesystem::path& cache, std::shared_ptr<const scene::Scene>, const scene::Renderer&,
+                        const scene::Settings&, const scene::Execution&);
+
+}  // namespace airlight::experiments

@@ -1,0 +1,104 @@
+#include "experiments/driver/row.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace airlight::experiments {
+using nlohmann::json;
+namespace {
+
+// NaN and infinity are null in JSON.
+double number(const json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+}  // namespace
+
+json to_json(const Row& row) {
+  json measures = json::array();
+  for (const Measure& m : row.measures)
+    measures.push_back({{"metric", m.name},
+                        {"value", m.value},
+                        {"low", m.low},
+                        {"high", m.high},
+                        {"noise_floor", m.floor},
+                        {"below_noise_floor", m.below_floor}});
+  json stages = json::array();
+  for (const auto& [name, seconds] : row.stages) stages.push_back({{"stage", name}, {"seconds", seconds}});
+  json j = {{"key", row.key},
+            {"scene", row.scene},
+            {"method", row.method},
+            {"setting", row.setting},
+            {"renderer", row.renderer},
+            {"settings", row.settings},
+            {"layer", row.layer},
+            {"scene_hash", row.scene_hash},
+            {"reference", row.reference_key},
+            {"errors", measures},
+            {"note", row.note},
+            {"runs", row.runs},
+            {"seconds", {row.seconds.value, row.seconds.low, row.seconds.high}},
+            {"seconds_interval_coverage", row.coverage},
+            {"seconds_mad", row.mad},
+            {"prepare_seconds", row.prepare_seconds},
+            {"stages", stages},
+            {"counters", row.counters},
+            {"image", row.image},
+            {"exposure", row.exposure}};
+  if (row.parameter) j["parameter"] = *row.parameter;
+  return j;
+}
+
+Row row_from_json(const json& j) {
+  Row row;
+  const auto text = [&](const char* name, std::string& out) { j.at(name).get_to(out); };
+  text("key", row.key);
+  text("scene", row.scene);
+  text("method", row.method);
+  text("setting", row.setting);
+  text("renderer", row.renderer);
+  text("settings", row.settings);
+  text("layer", row.layer);
+  text("scene_hash", row.scene_hash);
+  text("reference", row.reference_key);
+  text("note", row.note);
+  text("image", row.image);
+  for (const json& m : j.at("errors"))
+    row.measures.push_back({m.at("metric"), number(m.at("value")), number(m.at("low")), number(m.at("high")),
+                            number(m.at("noise_floor")), m.at("below_noise_floor")});
+  row.runs = j.at("runs");
+  row.seconds = {j.at("seconds").at(0), j.at("seconds").at(1), j.at("seconds").at(2)};
+  row.coverage = j.at("seconds_interval_coverage");
+  row.mad = j.at("seconds_mad");
+  row.prepare_seconds = j.at("prepare_seconds");
+  for (const json& s : j.at("stages")) row.stages.emplace_back(s.at("stage"), s.at("seconds"));
+  for (const auto& [name, value] : j.at("counters").items()) row.counters[name] = number(value);
+  row.exposure = number(j.at("exposure"));
+  if (j.contains("parameter")) row.parameter = j.at("parameter").get<double>();
+  return row;
+}
+
+std::optional<Estimate> quantity(const Row& row, const std::string& name) {
+  const auto plain = [](double x) { return Estimate{x, x, x}; };
+  if (row.runs == 0) return std::nullopt;
+  if (name == "seconds") return row.seconds;
+  if (name == "prepare_seconds") return plain(row.prepare_seconds);
+  if (name == "parameter") return row.parameter ? std::optional(plain(*row.parameter)) : std::nullopt;
+  if (name == "setting") {
+    double value = 0;
+    const auto [end, code] = std::from_chars(row.setting.data(), row.setting.data() + row.setting.size(), value);
+    const bool good = code == std::errc() && end == row.setting.data() + row.setting.size();
+    return good ? std::optional(plain(value)) : std::nullopt;
+  }
+  if (name.rfind("counter.", 0) == 0) {
+    const auto found = row.counters.find(name.substr(8));
+    return found == row.counters.end() ? std::nullopt : std::optional(plain(found->second));
+  }
+  for (const Measure& m : row.measures)
+    if (m.name == name && !std::isnan(m.value)) return Estimate{m.value, m.low, m.high};
+  return std::nullopt;
+}
+
+}  // namespace airlight::experiments

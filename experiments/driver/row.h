@@ -1,0 +1,38 @@
+// One line of a table: one method at one setting on one scene, with its errors, times and counts.
+#pragma once
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/metrics.h"
+#include "experiments/statistics.h"
+
+namespace airlight::experiments {
+
+struct Row {
+  std::string key;  // content of everything that the row depends on
+  std::string scene, method, setting, renderer, settings, layer;
+  std::string scene_hash, reference_key;
+  std::optional<double> parameter;
+  std::vector<Measure> measures;
+  std::string note;           // why there are no figures: the method cannot render this scene
+  int runs = 0;               // timed runs; 0: not rendered
+  Estimate seconds{0, 0, 0};  // median wall time of one render, interval by ranks
+  double coverage = 0;        // of that interval
+  double mad = 0;             // [s], times 1.4826
+  double prepare_seconds = 0;
+  std::vector<std::pair<std::string, double>> stages;  // [s] of one render
+  std::map<std::string, double> counters;
+  std::string image;  // file below results/images, without extension
+  double exposure = 0;
+};
+
+nlohmann::json to_json(const Row&);
+Row row_from_json(const nlohmann::json&);
+
+// A metric, "seconds", "prepare_seconds", "parameter", "setting" or "counter.NAME"; nothing where the row has none.
+std::optional<Estimate> quantity(const Row&, const std::string& name);
+
+}  // namespace airlight::experiments

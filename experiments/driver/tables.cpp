@@ -1,0 +1,218 @@
+#include "experiments/driver/tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "experiments/build_info.h"
+#include "experiments/front.h"
+#include "experiments/machine.h"
+
+namespace airlight::experiments {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.9g}", x) : ""; }
+
+std::string csv_line(const Cells& cells) {
+  Cells fields;
+  for (const std::string& cell : cells) fields.push_back(csv_field(cell));
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+std::string duration(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
+  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  return fmt::format("{:.3g} s", seconds);
+}
+
+std::string time_text(const Row& row) {
+  if (row.runs == 0) return "";
+  if (row.runs == 1) return duration(row.seconds.value) + " (1 run)";
+  return fmt::format("{} [{}, {}]", duration(row.seconds.value), duration(row.seconds.low), duration(row.seconds.high));
+}
+
+bool any(const Outcome& outcome, bool (*has)(const Row&)) {
+  return std::any_of(outcome.rows.begin(), outcome.rows.end(), has);
+}
+
+// The table for people, header first.
+std::vector<Cells> summary(const Outcome& outcome) {
+  const bool parameter = any(outcome, [](const Row& r) { return r.parameter.has_value(); });
+  const bool setting = any(outcome, [](const Row& r) { return !r.setting.empty(); });
+  const bool note = any(outcome, [](const Row& r) { return !r.note.empty(); });
+  Cells head{"scene"};
+  if (parameter) head.push_back("parameter");
+  head.push_back("method");
+  if (setting) head.push_back("setting");
+  for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
+  head.insert(head.end(), {"time of one render", "prepared once in"});
+  if (note) head.push_back("note");
+  std::vector<Cells> lines{head};
+  for (const Row& row : outcome.rows) {
+    Cells line{row.scene};
+    if (parameter) line.push_back(row.parameter ? fmt::format("{:g}", *row.parameter) : "");
+    line.push_back(row.method);
+    if (setting) line.push_back(row.setting);
+    for (const std::string& metric : outcome.experiment.metrics) {
+      const auto found =
+          std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& m) { return m.name == metric; });
+      line.push_back(found == row.measures.end() ? "" : text(*found));
+    }
+    line.push_back(time_text(row));
+    line.push_back(row.runs ? duration(row.prepare_seconds) : "");
+    if (note) line.push_back(row.note);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::string markdown(const std::vector<Cells>& lines) {
+  std::string out;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    out += fmt::format("| {} |\n", fmt::join(lines[i], " | "));
+    if (i == 0) out += fmt::format("|{}|\n", fmt::join(Cells(lines[0].size(), "---"), "|"));
+  }
+  return out;
+}
+
+std::string ours(const Outcome& outcome, const ExpectedCase& e) {
+  if (e.method.empty()) return "";
+  for (const Row& row : outcome.rows)
+    if (row.scene == e.scene && row.method == e.method && (e.setting.empty() || row.setting == e.setting)) {
+      for (const Measure& m : row.measures)
+        if (m.name == e.metric) return text(m);
+      if (e.metric == "seconds") return time_text(row);
+    }
+  return "not in this profile";
+}
+
+std::vector<Point> curve(const Outcome& outcome, const std::string& scene, const std::string& method,
+                         const std::string& metric) {
+  std::vector<Point> points;
+  for (const Row& row : outcome.rows)
+    if (row.scene == scene && row.method == method) {
+      const auto time = quantity(row, "seconds"), error = quantity(row, metric);
+      const auto below = std::any_of(row.measures.begin(), row.measures.end(),
+                                     [&](const Measure& m) { return m.name == metric && m.below_floor; });
+      if (time && error && !below) points.push_back({*time, *error});
+    }
+  return points;
+}
+
+std::vector<Cells> speed_ups(const Outcome& outcome) {
+  std::vector<Cells> lines{
+      {"scene", "faster", "than", "at equal", "factor (geometric mean)", "least", "greatest", "over errors"}};
+  std::vector<std::string> scenes;
+  for (const Row& row : outcome.rows)
+    if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
+  for (const SpeedUpCase& s : outcome.experiment.speed_ups)
+    for (const std::string& scene : scenes) {
+      const auto ratio =
+          speed_up(curve(outcome, scene, s.baseline, s.metric), curve(outcome, scene, s.method, s.metric));
+      if (ratio)
+        lines.push_back({scene, s.method, s.baseline, s.metric, fmt::format("{:.3g}", ratio->geometric_mean),
+                         fmt::format("{:.3g}", ratio->least), fmt::format("{:.3g}", ratio->greatest),
+                         fmt::format("{:.2g} to {:.2g}", ratio->error_low, ratio->error_high)});
+      else
+        lines.push_back({scene, s.method, s.baseline, s.metric, "no common error", "", "", ""});
+    }
+  return lines;
+}
+
+}  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string table_csv(const Outcome& outcome) {
+  std::set<std::string> counters;
+  for (const Row& row : outcome.rows)
+    for (const auto& [name, value] : row.counters) counters.insert(name);
+  Cells head{"scene", "parameter", "method", "setting", "renderer", "settings", "layer"};
+  for (const std::string& metric : outcome.experiment.metrics)
+    for (const char* suffix : {"", "_low", "_high", "_noise_floor"}) head.push_back(metric + suffix);
+  head.insert(head.end(), {"seconds", "seconds_low", "seconds_high", "seconds_mad", "runs", "prepare_seconds"});
+  for (const std::string& counter : counters) head.push_back("counter." + counter);
+  head.push_back("note");
+  std::string out = csv_line(head);
+  for (const Row& row : outcome.rows) {
+    Cells line{
+        row.scene, row.parameter ? number(*row.parameter) : "", row.method, row.setting, row.renderer, row.settings,
+        row.layer};
+    for (const std::string& metric : outcome.experiment.metrics) {
+      const auto m =
+          std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& x) { return x.name == metric; });
+      if (m == row.measures.end())
+        line.insert(line.end(), 4, "");
+      else
+        line.insert(line.end(), {number(m->value), number(m->low), number(m->high), number(m->floor)});
+    }
+    if (row.runs == 0)
+      line.insert(line.end(), 6, "");
+    else
+      line.insert(line.end(), {number(row.seconds.value), number(row.seconds.low), number(row.seconds.high),
+                               number(row.mad), std::to_string(row.runs), number(row.prepare_seconds)});
+    for (const std::string& counter : counters) {
+      const auto found = row.counters.find(counter);
+      line.push_back(found == row.counters.end() ? "" : number(found->second));
+    }
+    line.push_back(row.note);
+    out += csv_line(line);
+  }
+  return out;
+}
+
+std::string summary_csv(const Outcome& outcome) {
+  std::string out;
+  for (const Cells& line : summary(outcome)) out += csv_line(line);
+  return out;
+}
+
+std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+  const Experiment& e = outcome.experiment;
+  std::string out = fmt::format("# {}\n\n", e.title);
+  if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
+  if (!e.about.empty()) out += e.about + "\n\n";
+  if (!outcome.complete) out += "This run was interrupted: rows are missing.\n\n";
+  out += markdown(summary(outcome)) + "\n";
+  if (!e.expected.empty()) {
+    out += "## Printed and measured\n\n";
+    std::vector<Cells> lines{{"what", "printed", "ours"}};
+    for (const ExpectedCase& x : e.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
+    out += markdown(lines) + "\n";
+  }
+  if (!e.speed_ups.empty()) out += "## Speed at equal error\n\n" + markdown(speed_ups(outcome)) + "\n";
+  for (const PlotFile& plot : plots) out += fmt::format("![{}]({})\n", plot.title, plot.file);
+  if (!plots.empty()) out += "\n";
+  if (!outcome.gates.empty()) {
+    out += "## Gates\n\n";
+    for (const GateResult& gate : outcome.gates)
+      out += fmt::format("- {}: {}\n", gate.passed ? "ok" : "FAILED", gate.text);
+    out += "\n";
+  }
+  const Machine machine = this_machine();
+  out += "## Conditions\n\n";
+  for (const ReferenceInfo& r : outcome.references)
+    out +=
+        fmt::format("- Reference of {}: `{}`, `{}`, {} once.\n", r.scene, r.renderer, r.settings, duration(r.seconds));
+  out += fmt::format(
+      "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
+      "precomputation apart.\n- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n",
+      e.profile, machine.cpu, e.timing.threads ? e.timing.threads : machine.threads, machine.threads, version(),
+      commit());
+  return out;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,217 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "experiments/driver/content_key.h"
+#include "experiments/driver/journal.h"
+#include "experiments/driver/junit.h"
+#include "experiments/driver/run.h"
+#include "experiments/driver/tables.h"
+#include "experiments/driver/timing.h"
+#include "tests/temporary_folder.h"
+
+using namespace airlight::experiments;
+using airlight::read_bytes;
+using airlight::TemporaryFolder;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string scene_file = R"([film]
+width = 16
+height = 12
+[camera]
+position = [0, 0, 4]
+look_at = [0, 0, 0]
+vertical_fov = 0.7
+[[light]]
+type = "point"
+position = [1.5, 2, 1]
+intensity = 5
+[[medium]]
+type = "homogeneous"
+sigma_t = 0.5
+region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
+)";
+
+const std::string experiment_file = R"(title = "Steps"
+layer = "airlight"
+metrics = ["rel_l2", "bias"]
+[[scene]]
+file = "scenes/one.toml"
+[reference]
+renderer = "deterministic"
+[[method]]
+name = "marcher"
+renderer = "ray_marcher"
+settings = { kernel = "scalar" }
+sweep = { key = "steps", values = [4, 64] }
+[[method]]
+renderer = "fogshop"
+[profile.quick]
+runs = 2
+[[plot]]
+x = "setting"
+y = "rel_l2"
+[[gate]]
+method = "marcher"
+setting = 64
+metric = "rel_l2"
+at_most = 0.01
+[[gate]]
+method = "marcher"
+setting = 4
+metric = "rel_l2"
+at_most = 1e-9
+)";
+
+struct Project {
+  TemporaryFolder folder;
+  Project() {
+    folder.write("experiments/README.md", "");
+    folder.write("experiments/scenes/one.toml", scene_file);
+    folder.write("experiments/g/e.toml", experiment_file);
+  }
+  Outcome run(bool resume) const {
+    return run_experiment(read_experiment(folder.path(), "g/e", "quick"), {folder.path(), resume, 1, false});
+  }
+  fs::path journal() const { return folder.path() / "results/cache/rows/g/e.quick.jsonl"; }
+};
+
+double metric(const Row& row, const std::string& name) { return quantity(row, name).value().value; }
+
+Row named_row(const std::string& scene, const std::string& method, double value, double low, double high) {
+  Row row;
+  row.scene = scene;
+  row.method = method;
+  row.runs = 1;
+  row.measures = {{"rel_l2", value, low, high, 0.01, low <= 0}};
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("an experiment leaves its table, plots, pictures and record", "[driver]") {
+  const Project project;
+  const Outcome outcome = project.run(false);
+  REQUIRE(outcome.rows.size() == 3);
+  CHECK(outcome.complete);
+  // The marcher's error is of second order or better in the step: sixteen times as many steps, at least 50 times less
+  // (not 256: the reference is stored in single precision).
+  CHECK(metric(outcome.rows[1], "rel_l2") < metric(outcome.rows[0], "rel_l2") / 50);
+  CHECK(outcome.rows[0].runs == 2);
+  CHECK_THAT(outcome.rows[2].note, Catch::StartsWith("not supported: "));
+  CHECK(outcome.gates.at(0).passed);
+  CHECK_FALSE(outcome.gates.at(1).passed);
+
+  const fs::path results = project.folder.path() / "results/g/e";
+  const auto record = nlohmann::json::parse(read_bytes((results / "run.json").string()));
+  for (const auto& table : record["tables"]) CHECK(fs::exists(results / table["file"].get<std::string>()));
+  for (const auto& plot : record["plots"]) CHECK(fs::exists(results / plot["file"].get<std::string>()));
+  REQUIRE(record["pictures"].size() == 1);
+  REQUIRE(record["pictures"][0]["pictures"].size() == 2);  // reference and the last setting of the marcher
+  for (const auto& picture : record["pictures"][0]["pictures"])
+    CHECK(fs::exists(results / picture["file"].get<std::string>()));
+  CHECK(record["profile"] == "quick");
+  CHECK(record["complete"] == true);
+  CHECK(record["gates"].size() == 2);
+  CHECK_THAT(read_bytes((results / "table.md").string()),
+             Catch::Contains("| marcher | 64 |") && Catch::Contains("FAILED"));
+  CHECK_THAT(read_bytes((results / "table.csv").string()), Catch::StartsWith("scene,parameter,method,setting"));
+}
+
+TEST_CASE("a run that was killed goes on where it was", "[driver]") {
+  const Project project;
+  const Outcome whole = project.run(false);
+  const std::string journal = read_bytes(project.journal().string());
+  // Torn in the middle of the second row.
+  std::ofstream(project.journal(), std::ios::trunc) << journal.substr(0, journal.find('\n', 1) + 300);
+  const Outcome resumed = project.run(true);
+  REQUIRE(resumed.rows.size() == 3);
+  CHECK(resumed.rows[0].seconds.value == whole.rows[0].seconds.value);  // kept
+  CHECK(metric(resumed.rows[1], "rel_l2") == metric(whole.rows[1], "rel_l2"));
+  CHECK(resumed.references.at(0).cached);
+  // Complete now: a third run keeps the times of the second.
+  const Outcome third = project.run(true);
+  CHECK(third.rows[1].seconds.value == resumed.rows[1].seconds.value);
+  // Without resume everything is measured anew; the reference is still served.
+  const Outcome anew = project.run(false);
+  CHECK(anew.references.at(0).cached);
+  CHECK(anew.rows[1].seconds.value != third.rows[1].seconds.value);
+}
+
+TEST_CASE("a damaged cached reference is computed anew", "[driver]") {
+  const Project project;
+  const Outcome first = project.run(false);
+  const fs::path image = project.folder.path() / "results/cache/references" / (first.references.at(0).key + ".exr");
+  std::string bytes = read_bytes(image.string());
+  bytes[bytes.size() - 10] ^= 1;
+  std::ofstream(image, std::ios::binary | std::ios::trunc) << bytes;
+  const Outcome second = project.run(false);
+  CHECK_FALSE(second.references.at(0).cached);
+  CHECK(metric(second.rows[0], "rel_l2") == metric(first.rows[0], "rel_l2"));
+}
+
+TEST_CASE("gates fail only beyond the interval", "[driver]") {
+  Experiment e;
+  e.id = "g/e";
+  GateCase most;
+  most.method = "m";
+  most.metric = "rel_l2";
+  most.at_most = 0.1;
+  GateCase least = most;
+  least.at_most = airlight::infinity;
+  least.at_least = 0.5;
+  const auto passed = [&](const GateCase& gate, const Row& row) {
+    e.gates = {gate};
+    const auto results = judge(e, {row});
+    REQUIRE(results.size() == 1);
+    return results[0].passed;
+  };
+  CHECK(passed(most, named_row("s", "m", 0.12, 0.09, 0.15)));
+  CHECK_FALSE(passed(most, named_row("s", "m", 0.12, 0.11, 0.13)));
+  CHECK(passed(most, named_row("s", "m", 0.12, 0, 0.3)));
+  CHECK(passed(least, named_row("s", "m", 0.45, 0.4, 0.51)));
+  CHECK_FALSE(passed(least, named_row("s", "m", 0.45, 0.4, 0.49)));
+  CHECK_FALSE(passed(most, named_row("s", "other", 0, 0, 0)));  // no such row
+  Row unsupported = named_row("s", "m", 0, 0, 0);
+  unsupported.runs = 0;
+  unsupported.measures.clear();
+  CHECK_FALSE(passed(most, unsupported));
+  CHECK_FALSE(passed(most, named_row("s", "m", std::nan(""), std::nan(""), std::nan(""))));
+}
+
+TEST_CASE("rows survive their record", "[driver]") {
+  Row row = named_row("s, with \"quotes\"", "m", 0.1, 0.05, 0.2);
+  row.parameter = 0.3;
+  row.seconds = {1, 0.5, 2};
+  row.counters = {{"rays", 12}};
+  row.stages = {{"slices", 0.25}};
+  row.measures.push_back({"p95", std::nan(""), std::nan(""), std::nan(""), 0, false});
+  const Row back = row_from_json(nlohmann::json::parse(to_json(row).dump()));
+  CHECK(to_json(back).dump() == to_json(row).dump());
+  CHECK(std::isnan(back.measures[1].value));
+  CHECK(csv_field(row.scene) == "\"s, with \"\"quotes\"\"\"");
+}
+
+TEST_CASE("timed runs follow the rule", "[driver]") {
+  int count = 0;
+  const Timing five = time_runs({5, 0, 2, 0}, 1e-6, [&] { ++count; });
+  CHECK(five.runs == 5);
+  CHECK(count == 5);
+  CHECK(five.coverage == Approx(0.9375));
+  const Timing none = time_runs({5, 0, 0.5, 0}, 0.6, [&] { FAIL("the budget is spent"); });
+  CHECK(none.runs == 1);
+  CHECK(none.seconds.value == 0.6);
+  count = 0;
+  const Timing warmed = time_runs({31, 0.02, 60, 0}, 0, [&] { ++count; });
+  CHECK(warmed.runs == 31);
+  CHECK(count > 31);  // warm-up runs are not counted
+}
+
+TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "gates.xml";
+  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true}, {"g/e: b", "b fails", false}});
+  const std::string text = read_bytes(file.string());
+  CHECK_THAT(text, Catch::Contains("tests=\"2\" failures=\"1\"") && Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;"));
+}

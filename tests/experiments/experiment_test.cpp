@@ -1,0 +1,104 @@
+#include "experiments/driver/experiment.h"
+
+#include <catch2/catch.hpp>
+
+#include "scene/error.h"
+#include "tests/temporary_folder.h"
+
+using namespace airlight::experiments;
+using airlight::TemporaryFolder;
+using Catch::Contains;
+
+namespace {
+
+const std::string good = R"(title = "t"
+layer = "airlight"
+metrics = ["rel_l2", "bias"]
+[[scene]]
+file = "scenes/one.toml"
+overrides = { "film.width" = 8, camera = { vertical_fov = 0.5 } }
+sweep = { key = "medium.0.sigma_t", values = [0.5, 2] }
+[reference]
+renderer = "deterministic"
+[[method]]
+name = "marcher"
+renderer = "ray_marcher"
+sweep = { key = "steps", values = [8, 16, 32] }
+[profile.quick]
+overrides = { "film.height" = 6 }
+runs = 3
+[[plot]]
+x = "setting"
+y = "rel_l2"
+[[gate]]
+scene = "one"
+method = "marcher"
+setting = 32
+metric = "rel_l2"
+at_most = 0.1
+)";
+
+std::string failure(const std::string& text, const std::string& profile = "quick") {
+  const TemporaryFolder folder;
+  folder.write("experiments/README.md", "");
+  folder.write("experiments/g/e.toml", text);
+  try {
+    read_experiment(folder.path(), "g/e", profile);
+  } catch (const airlight::Error& error) {
+    return error.what();
+  }
+  return "no failure";
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  const std::size_t at = text.find(old);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, old.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[experiment]") {
+  const TemporaryFolder folder;
+  folder.write("experiments/README.md", "");
+  folder.write("experiments/g/e.toml", good);
+  folder.write("experiments/scenes/not_an_experiment.toml", "");
+  folder.write("experiments/scenes/more/neither.toml", "");
+  const Experiment e = read_experiment(folder.path(), "g/e", "quick");
+  REQUIRE(e.scenes.size() == 2);
+  CHECK(e.scenes[0].name == "one 0.5");
+  CHECK(e.scenes[1].parameter.value() == 2);
+  CHECK(e.scenes[1].overrides ==
+        Pairs{{"film.width", "8"}, {"film.height", "6"}, {"camera.vertical_fov", "0.5"}, {"medium.0.sigma_t", "2"}});
+  REQUIRE(e.methods.size() == 3);
+  CHECK(e.methods[2].setting == "32");
+  CHECK(e.methods[2].settings == Pairs{{"steps", "32"}});
+  CHECK(e.timing.runs == 3);
+  CHECK(e.gates.at(0).setting == "32");
+  CHECK(e.plots.at(0).name == "rel_l2_against_setting");
+  CHECK(read_experiment(folder.path(), "g/e", "paper").timing.runs == 31);
+  CHECK(read_experiment(folder.path(), "g/e", "paper").scenes[0].overrides.count("film.height") == 0);
+  CHECK(experiment_ids(folder.path()) == std::vector<std::string>{"g/e"});
+  CHECK(choose_experiments(folder.path(), {"g"}) == std::vector<std::string>{"g/e"});
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/f"}), Contains("nearest: g/e"));
+}
+
+TEST_CASE("mistakes in an experiment file are one line with position and nearest name", "[experiment]") {
+  CHECK_THAT(failure(good), Contains("no failure"));
+  CHECK_THAT(failure("title = "), Contains("e.toml:1:"));
+  CHECK_THAT(failure(replaced(good, "layer", "layr")), Contains("e.toml:2:1") && Contains("layr") && Contains("layer"));
+  CHECK_THAT(failure(replaced(good, "\"bias\"", "\"biass\"")), Contains("e.toml:3:") && Contains("nearest: bias"));
+  CHECK_THAT(failure(replaced(good, "metrics = [\"rel_l2\", \"bias\"]", "metrics = 3")),
+             Contains("e.toml:3:11") && Contains("a list of strings"));
+  CHECK_THAT(failure(replaced(good, "ray_marcher", "raymarcher")),
+             Contains("e.toml:12:") && Contains("nearest: ray_marcher"));
+  CHECK_THAT(failure(replaced(good, "\"steps\"", "\"stepz\"")), Contains("e.toml") && Contains("nearest: step"));
+  CHECK_THAT(failure(replaced(good, "[8, 16, 32]", "[8, \"many\"]")), Contains("many"));
+  CHECK_THAT(failure(replaced(good, "scene = \"one\"", "scene = \"on\"")), Contains("nearest: one"));
+  CHECK_THAT(failure(replaced(good, "method = \"marcher\"", "method = \"marchr\"")), Contains("nearest: marcher"));
+  CHECK_THAT(failure(replaced(good, "y = \"rel_l2\"", "y = \"rel_l3\"")), Contains("e.toml") && Contains("rel_l3"));
+  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "")), Contains("at_most"));
+  CHECK_THAT(failure(replaced(good, "[[scene]]", "[scene]")), Contains("[[scene]]"));
+  CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 0")), Contains("runs = 0"));
+  CHECK_THAT(failure(replaced(good, "[reference]\nrenderer = \"deterministic\"", "")), Contains("no [reference]"));
+}
