@@ -185,6 +185,8 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   if (options.variant == Options::Variant::paper && !perspective) reasons.push_back(needs_view_point);
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
+  if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)
+    reasons.push_back(fmt::format("K = {} is odd: extrapolation needs an even number of slices", options.slices));
   if (reasons.empty()) {
     const std::string blinding = blinding_light(make_fog(scene.media), options, scene, scene.camera);
     if (!blinding.empty()) reasons.push_back(blinding);

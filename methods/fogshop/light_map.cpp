@@ -5,18 +5,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "methods/fogshop/light_map_lookup.h"
+
 namespace airlight::fogshop {
 namespace {
 
 // Octahedral map of the sphere to the square [-1, 1]^2: the lower half is folded over the diagonals.
 Eigen::Vector2d fold(double x, double y) {
   return {(1 - std::abs(y)) * (x >= 0 ? 1 : -1), (1 - std::abs(x)) * (y >= 0 ? 1 : -1)};
-}
-
-Eigen::Vector2d to_octahedron(const Vec3& w) {
-  const double sum = std::abs(w.x()) + std::abs(w.y()) + std::abs(w.z());
-  const double x = w.x() / sum, y = w.y() / sum;
-  return w.z() >= 0 ? Eigen::Vector2d(x, y) : fold(x, y);
 }
 
 Vec3 from_octahedron(double x, double y) {
@@ -91,12 +87,6 @@ Vec3 LightMap::direction(int i, int j) const {
   return from_octahedron(2 * (i + 0.5) / directions_ - 1, 2 * (j + 0.5) / directions_ - 1);
 }
 
-Eigen::Vector2d LightMap::to_square(const Vec3& w) const {
-  if (!(tangent_ > 0)) return to_octahedron(w);
-  const Vec3 seen = axes_ * w;
-  return seen.z() > 0 ? Eigen::Vector2d(seen.x(), seen.y()) / (tangent_ * seen.z()) : Eigen::Vector2d(2, 2);
-}
-
 // Edges grow with the square of the distance from a light inside the medium, where the depth changes fastest per
 // solid angle close by; they are even across a medium that the light is outside of.
 double LightMap::distance_of(double edge) const {
@@ -104,28 +94,25 @@ double LightMap::distance_of(double edge) const {
   return near_ + (far_ - near_) * (near_ > 0 ? s : s * s);
 }
 
-double LightMap::edge_of(double distance) const {
-  if (!(far_ > near_)) return 0;
-  const double s = std::clamp((distance - near_) / (far_ - near_), 0.0, 1.0);
-  return edges_ * (near_ > 0 ? s : std::sqrt(s));
+double LightMap::depth(const Point3& x) const {
+  const double t[GaussianArrays::padding] = {};
+  double depth[GaussianArrays::padding];
+  depths({x, Vec3::UnitX(), 0}, t, GaussianArrays::padding, depth);
+  return depth[0];
 }
 
-double LightMap::depth(const Point3& x) const {
-  const Vec3 offset = x - light_;
-  const double distance = offset.norm();
-  if (!(distance > near_) || far_ == 0) return 0;
-  const Eigen::Vector2d p = to_square(offset);
-  if (!(p.cwiseAbs().maxCoeff() <= 1)) return 0;  // outside the view: no Gaussian there
-  const double u = (p.x() + 1) * 0.5 * directions_ + 0.5, v = (p.y() + 1) * 0.5 * directions_ + 0.5;
-  const double e = edge_of(distance);
-  const int side = directions_ + 2;
-  const int i = std::clamp(int(u), 0, side - 2), j = std::clamp(int(v), 0, side - 2), k = std::min(int(e), edges_ - 1);
-  const double fu = u - i, fv = v - j, fe = e - k;
-  const std::size_t stride = std::size_t(edges_) + 1, row = stride * side;
-  const float* c = &depths_[std::size_t(j) * row + std::size_t(i) * stride + k];
-  const auto along = [&](const float* at) { return (1 - fe) * at[0] + fe * at[1]; };
-  return (1 - fv) * ((1 - fu) * along(c) + fu * along(c + stride)) +
-         fv * ((1 - fu) * along(c + row) + fu * along(c + row + stride));
+void LightMap::depths(const Line& ray, const double* t, int count, double* depth) const {
+  const Vec3 offset = ray.origin - light_;
+  MapLookup map;
+  map.depths = depths_.data();
+  map.directions = directions_;
+  map.edges = edges_;
+  map.near = near_;
+  map.far = far_;
+  map.tangent = tangent_;
+  // The axes turn the ray, not every point of it.
+  const Vec3 start = axes_ * offset, step = axes_ * ray.direction;
+  look_up(map, start.data(), step.data(), t, count, depth);
 }
 
 }  // namespace airlight::fogshop

@@ -15,7 +15,11 @@ class LightMap {
   // error function are counted in `evaluations`.
   LightMap(const GaussianArrays&, const Point3& light, int directions, int edges, Erf, const scene::Execution&);
 
-  // Depth between the light and x [-], for a hue of 1, without the constant term.
+  // Depths between the light and the points at parameters t of a ray [-], for a hue of 1, without the constant term;
+  // `t` and `depth` hold a multiple of 8 values.
+  void depths(const Line& ray, const double* t, int count, double* depth) const;
+
+  // At one point.
   double depth(const Point3& x) const;
 
   double evaluations() const { return evaluations_; }
@@ -24,8 +28,6 @@ class LightMap {
  private:
   void frame(const GaussianArrays&);
   Vec3 direction(int i, int j) const;  // of a texel; i, j from -1 to directions: a border of one texel
-  Eigen::Vector2d to_square(const Vec3& w) const;
-  double edge_of(double distance) const;
   double distance_of(double edge) const;
 
   Point3 light_;

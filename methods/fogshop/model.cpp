@@ -15,7 +15,14 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        0,
        {"paper", "S"}},
-      {"K", Type::integer, "26", "slices of variant S; the error falls as K^-2", 1, 4096, {}},
+      {"K", Type::integer, "26", "slices of variant S", 1, 4096, {}},
+      {"extrapolate",
+       Type::flag,
+       "true",
+       "S: extrapolate from K/2 and K slices (error K^-4, else K^-2); K even",
+       0,
+       0,
+       {}},
       {"edges",
        Type::choice,
        "plain",
@@ -68,6 +75,7 @@ Options read_options(const scene::Settings& settings) {
   Options o;
   o.variant = settings.text("variant") == "paper" ? Options::Variant::paper : Options::Variant::slices;
   o.slices = int(settings.integer("K"));
+  o.extrapolate = settings.flag("extrapolate");
   o.boxes = settings.text("edges") == "S3";
   o.map = settings.text("light_depth") == "map";
   o.map_directions = int(settings.integer("map_directions"));

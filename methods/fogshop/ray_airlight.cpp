@@ -76,61 +76,88 @@ Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
   return airlight;
 }
 
-Rgb RayAirlight::slices(const Line& line) {
-  const double constant = model_.fog.sum.constant;
-  const int slices = model_.options.slices;
+// The part of the ray that is sliced; empty if there is nothing to see.
+Interval RayAirlight::stretch(const Line& line) const {
   Interval reach;  // of the Gaussians along the line
   for (int i = 0; i < crossings_.count; ++i) {
     reach.lo = std::min(reach.lo, crossings_.middle[i] - crossings_.chord[i]);
     reach.hi = std::max(reach.hi, crossings_.middle[i] + crossings_.chord[i]);
   }
-  double lo = std::max(0.0, reach.lo), hi = std::min(line.length, reach.hi);
-  if (constant > 0) {
-    // With a constant every part of the ray shines. The slices cover it until long after the last Gaussian and the
-    // lights, or until 40 more depths (of the clearest colour) than the straight way from the light have been passed;
-    // the rest of the ray is homogeneous and has a closed form.
-    const double clearest = (model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff();
-    double beyond = std::max(0.0, reach.hi), dark = 0;
-    for (const LightFromRay& light : seen_) {
-      beyond = std::max(beyond, std::abs(light.along) + light.h);
-      const double d_sv = std::hypot(light.along, light.h), c = d_sv + 40 / (constant * clearest);
-      dark = std::max(dark, 0.5 * (c - d_sv) * (c + d_sv) / (c - light.along));
-    }
-    lo = 0;
-    hi = std::min({line.length, beyond * (1 + slices / 16.0), dark});
+  const double constant = model_.fog.sum.constant;
+  if (!(constant > 0)) return intersect(reach, Interval{0, line.length});
+  // With a constant every part of the ray shines. The slices cover it until long after the last Gaussian and the
+  // lights, or until 40 more depths (of the clearest colour) than the straight way from the light have been passed; the
+  // rest of the ray is homogeneous and has a closed form.
+  const double clearest = (model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff();
+  double beyond = std::max(0.0, reach.hi), dark = 0;
+  for (const LightFromRay& light : seen_) {
+    beyond = std::max(beyond, std::abs(light.along) + light.h);
+    const double d_sv = std::hypot(light.along, light.h), c = d_sv + 40 / (constant * clearest);
+    dark = std::max(dark, 0.5 * (c - d_sv) * (c + d_sv) / (c - light.along));
   }
-  Rgb airlight = Rgb::Zero();
-  if (!(lo < hi)) return airlight;
+  return {0, std::min({line.length, beyond * (1 + model_.options.slices / 16.0), dark})};
+}
 
-  const int padded = (slices + 1 + GaussianArrays::padding - 1) / GaussianArrays::padding * GaussianArrays::padding;
-  t_.assign(padded + GaussianArrays::padding, hi);
+// From the edges and depths at hand; per channel, for 1 W/sr.
+Rgb RayAirlight::sum_of_slices(const LightFromRay& light) {
+  const Options& o = model_.options;
+  const bool coloured = !model_.fog.grey();
+  Rgb sum = Rgb::Zero();
+  add_slices(t_.data(), view_depth_.data(), light_depth_.data(), o.slices, light, o.source_radius, model_.fog.hue,
+             coloured, sum);
+  if (o.extrapolate) {
+    // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
+    every_other(light_depth_, o.slices, half_light_depth_);
+    Rgb half = Rgb::Zero();
+    add_slices(half_t_.data(), half_view_depth_.data(), half_light_depth_.data(), o.slices / 2, light, o.source_radius,
+               model_.fog.hue, coloured, half);
+    sum = (sum + (sum - half) / 3).max(0.0);
+  }
+  return coloured ? sum : Rgb::Constant(sum[0]);
+}
+
+Rgb RayAirlight::slices(const Line& line) {
+  const double constant = model_.fog.sum.constant;
+  const int slices = model_.options.slices;
+  const Interval range = stretch(line);
+  Rgb airlight = Rgb::Zero();
+  if (range.empty()) return airlight;
+
+  // The first edge is on its own, so that a multiple of 8 slices fills whole vectors.
+  const auto padded = [](int n) { return (n + GaussianArrays::padding - 1) & -GaussianArrays::padding; };
+  t_.assign(padded(slices + 1) + GaussianArrays::padding, range.hi);
   view_depth_.resize(t_.size());
   light_depth_.resize(t_.size());
-  place_edges(lo, hi, seen_, model_.options.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
-  depths_at(crossings_, t_.data(), padded, view_depth_.data(), model_.options.erf);
+  place_edges(range.lo, range.hi, seen_, model_.options.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
+  view_depth_[0] = range.lo > 0 ? total_depth(crossings_, range.lo, model_.options.erf) : 0;
+  depths_at(crossings_, &t_[1], padded(slices), &view_depth_[1], model_.options.erf);
   evaluations += double(crossings_.count) * (slices + 1);
   for (int k = 0; k <= slices; ++k) view_depth_[k] += constant * t_[k];
+  if (model_.options.extrapolate) {
+    every_other(t_, slices, half_t_);
+    every_other(view_depth_, slices, half_view_depth_);
+  }
 
-  const bool coloured = !model_.fog.grey();
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];
     if (light.map) {
-      for (int k = 0; k <= slices; ++k) light_depth_[k] = light.map->depth(line.origin + t_[k] * line.direction);
+      light.map->depths(line, t_.data(), padded(slices + 1), light_depth_.data());
     } else {
-      near_triangle(model_.gaussians, light.position, line, lo, hi, places_);
-      depths_from_point(subset(model_.gaussians, places_), light.position, line, t_.data(), padded, light_depth_.data(),
-                        model_.options.erf);
+      near_triangle(model_.gaussians, light.position, line, range.lo, range.hi, places_);
+      depths_from_point(subset(model_.gaussians, places_), light.position, line, t_.data(), padded(slices + 1),
+                        light_depth_.data(), model_.options.erf);
       evaluations += 2.0 * double(places_.size()) * (slices + 1);
     }
     const double last_shadow = light_depth_[slices];
-    for (int k = 0; k <= slices; ++k) light_depth_[k] += constant * std::hypot(t_[k] - seen_[l].along, seen_[l].h);
-    Rgb sum = Rgb::Zero();
-    add_slices(t_.data(), view_depth_.data(), light_depth_.data(), slices, seen_[l], model_.options.source_radius,
-               model_.fog.hue, coloured, sum);
-    if (!coloured) sum = Rgb::Constant(sum[0]);
-    if (constant > 0 && hi < line.length)
+    const double h2 = seen_[l].h * seen_[l].h;
+    for (int k = 0; constant > 0 && k <= slices; ++k) {
+      const double x = t_[k] - seen_[l].along;
+      light_depth_[k] += constant * std::sqrt(x * x + h2);
+    }
+    Rgb sum = sum_of_slices(seen_[l]);
+    if (constant > 0 && range.hi < line.length)
       sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
-             homogeneous({seen_[l].along - hi, seen_[l].h}, line.length - hi);
+             homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
     airlight += light.intensity * sum;
   }
   return airlight;

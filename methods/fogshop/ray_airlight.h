@@ -29,6 +29,8 @@ class RayAirlight {
   Rgb paper(const GaussianArrays& near, const Line&);
   Rgb slices(const Line&);
   Rgb homogeneous(const LightFromRay&, double length) const;
+  Interval stretch(const Line&) const;
+  Rgb sum_of_slices(const LightFromRay&);
 
   const Model& model_;
   const ViewModel& view_;
@@ -37,6 +39,7 @@ class RayAirlight {
   std::vector<LightFromRay> seen_;
   std::vector<int> places_;
   std::vector<double> t_, view_depth_, light_depth_;
+  std::vector<double> half_t_, half_view_depth_, half_light_depth_;  // at every other edge
 };
 
 }  // namespace airlight::fogshop

@@ -171,6 +171,11 @@ void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, 
   t[slices] = hi;
 }
 
+void every_other(const std::vector<double>& all, int slices, std::vector<double>& half) {
+  half.assign(std::size_t(slices) / 2 + 1 + GaussianArrays::padding, all[slices]);
+  for (int k = 0; k <= slices / 2; ++k) half[k] = all[2 * k];
+}
+
 void add_slices(const double* t, const double* view_depth, const double* light_depth, int slices,
                 const LightFromRay& light, double source_radius, const Rgb& hue, bool coloured, Rgb& airlight) {
   const double h = std::max(std::hypot(light.h, source_radius), least_h);

@@ -1,6 +1,7 @@
 // Variant S-K, not in the paper: the ray is cut into K slices; the optical depth is exact at their edges, and inside a
 // slice the airlight is integrated in closed form with the depth, and 1/distance^2 in the angle, taken as linear. The
-// error falls as K^-2 for any number of Gaussians and any optical depth.
+// error falls as K^-2 for any number of Gaussians and any optical depth; extrapolated from K/2 and K slices, which
+// share their edges and so all depths, as K^-4.
 #pragma once
 #include <vector>
 
@@ -20,6 +21,10 @@ struct EdgeScratch {
 // it takes away. Lights nearer than 1e-9 m to the ray count as 1e-9 m away.
 void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, const Crossings* boxes, int slices,
                  EdgeScratch&, double* t);
+
+// Every other edge of an even number of slices, with the padding that add_slices wants: what is left is the same
+// placement with half the slices.
+void every_other(const std::vector<double>& all, int slices, std::vector<double>& half);
 
 // Adds, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1. view_depth and light_depth are
 // the depths [-], hue 1, from the camera and from the light to the edges, the medium's constant included; all three

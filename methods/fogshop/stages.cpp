@@ -62,7 +62,10 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                       : "light_depth = exact: sums per edge instead"));
   if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
   stage("airlight", needs.airlight && lit,
-        !needs.airlight ? "no medium" : unlit_or(model.paper() ? "Eqs. 8 to 17" : fmt::format("{} slices", o.slices)));
+        !needs.airlight ? "no medium"
+                        : unlit_or(model.paper() ? "Eqs. 8 to 17"
+                                                 : fmt::format("{} slices{}", o.slices,
+                                                               o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
   stage("surfaces", needs.surfaces,

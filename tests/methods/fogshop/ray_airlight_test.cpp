@@ -43,6 +43,7 @@ Options exact(Options::Variant variant, int slices) {
   Options o;
   o.variant = variant;
   o.slices = slices;
+  o.extrapolate = false;
   o.map = false;
   o.depth_threshold = 1e-14;
   return o;
@@ -81,6 +82,24 @@ TEST_CASE("slices converge to the exact airlight", "[fogshop]") {
       CHECK(fine <= 2.6e-4);
       CHECK(finest <= std::max(1e-8, fine / 10));
     }
+  }
+}
+
+// Extrapolated, as K^-4: the factor of 256 between K = 64 and 256 is asked for as 50 or more, down to 1e-9.
+TEST_CASE("extrapolated slices converge faster", "[fogshop]") {
+  for (const auto& v : fogshop_test::vectors_of("airlight_scene")) {
+    INFO(v["id"]);
+    const auto& in = v["in"];
+    const Line line{vec(in["view"]), vec(in["dir"]).normalized(), number(in["d_r"])};
+    const auto error = [&](int slices) {
+      Options o = exact(Options::Variant::slices, slices);
+      o.extrapolate = true;
+      const Rgb got = ray_airlight(o, grey_fog(fogshop_test::fog_of(in)), vec(in["light"]), Rgb::Ones(), line);
+      return relative_error(got[0], number(v["value"]));
+    };
+    const double coarse = error(64), fine = error(256);
+    CHECK(coarse <= 1e-4);
+    CHECK(fine <= std::max(1e-9, coarse / 50));
   }
 }
 

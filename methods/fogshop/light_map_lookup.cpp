@@ -1,0 +1,111 @@
+#include "methods/fogshop/light_map_lookup.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "methods/fogshop/light_map_lookup.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace airlight::fogshop::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<double, 8>;
+using DI = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+constexpr D d;
+constexpr DI di;
+
+HWY_INLINE V set(double x) { return hn::Set(d, x); }
+
+struct Pair {
+  V first, second;
+};
+
+// Two neighbouring floats at each place.
+HWY_INLINE Pair load_pair(const float* depths, VI place) {
+  const auto both = hn::GatherOffset(di, reinterpret_cast<const int64_t*>(depths), hn::ShiftLeft<2>(place));
+  const hn::Rebind<float, D> single;
+  const auto low = hn::TruncateTo(hn::Rebind<uint32_t, D>(), hn::BitCast(hn::RebindToUnsigned<D>(), both));
+  const auto high =
+      hn::TruncateTo(hn::Rebind<uint32_t, D>(), hn::ShiftRight<32>(hn::BitCast(hn::RebindToUnsigned<D>(), both)));
+  return {hn::PromoteTo(d, hn::BitCast(single, low)), hn::PromoteTo(d, hn::BitCast(single, high))};
+}
+
+HWY_INLINE V lerp(V a, V b, V s) { return hn::MulAdd(hn::Sub(b, a), s, a); }
+
+// x = whole + rest with whole in [0, last].
+HWY_INLINE VI split(V x, int last, V& rest) {
+  const V whole = hn::Min(hn::Max(hn::Floor(x), hn::Zero(d)), set(last));
+  rest = hn::Sub(x, whole);
+  return hn::ConvertTo(di, whole);
+}
+
+void LookUp(const MapLookup& map, const double* start, const double* step, const double* t, int count, double* depth) {
+  const V zero = hn::Zero(d), one = set(1);
+  const int side = map.directions + 2;
+  const int64_t stride = map.edges + 1, row = stride * side;
+  const bool even = map.near > 0;
+  const V to_edge = set(map.far > map.near ? 1 / (map.far - map.near) : 0);
+  for (int n = 0; n < count; n += int(hn::Lanes(d))) {
+    const V tn = hn::LoadU(d, t + n);
+    const V x = hn::MulAdd(tn, set(step[0]), set(start[0])), y = hn::MulAdd(tn, set(step[1]), set(start[1])),
+            z = hn::MulAdd(tn, set(step[2]), set(start[2]));
+    const V distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    V px, py;
+    auto seen = hn::Gt(distance, set(map.near));
+    if (map.tangent > 0) {
+      seen = hn::And(seen, hn::Gt(z, zero));
+      const V scale = hn::Div(set(1 / map.tangent), hn::IfThenElse(hn::Gt(z, zero), z, one));
+      px = hn::Mul(x, scale);
+      py = hn::Mul(y, scale);
+      seen = hn::And(seen, hn::Le(hn::Max(hn::Abs(px), hn::Abs(py)), one));
+    } else {
+      const V sum = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
+      const V scale = hn::Div(one, hn::Max(sum, set(1e-300)));
+      px = hn::Mul(x, scale);
+      py = hn::Mul(y, scale);
+      // The lower half is folded over the diagonals.
+      const auto lower = hn::Lt(z, zero);
+      const V fx = hn::CopySign(hn::Sub(one, hn::Abs(py)), px), fy = hn::CopySign(hn::Sub(one, hn::Abs(px)), py);
+      px = hn::IfThenElse(lower, fx, px);
+      py = hn::IfThenElse(lower, fy, py);
+    }
+    const V share = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(map.near)), to_edge), zero), one);
+    const V half = set(0.5 * map.directions);
+    V fu, fv, fe;
+    const VI i = split(hn::MulAdd(hn::Add(px, one), half, set(0.5)), side - 2, fu);
+    const VI j = split(hn::MulAdd(hn::Add(py, one), half, set(0.5)), side - 2, fv);
+    const VI k = split(hn::Mul(set(map.edges), even ? share : hn::Sqrt(share)), map.edges - 1, fe);
+    alignas(64) int64_t ii[8], jj[8], kk[8];
+    hn::Store(i, di, ii);
+    hn::Store(j, di, jj);
+    hn::Store(k, di, kk);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) ii[lane] = jj[lane] * row + ii[lane] * stride + kk[lane];
+    const auto mask = hn::RebindMask(di, seen);
+    const VI place = hn::IfThenElseZero(mask, hn::Load(di, ii));
+    const auto along = [&](int64_t offset) {
+      const Pair pair = load_pair(map.depths, hn::Add(place, hn::Set(di, offset)));
+      return lerp(pair.first, pair.second, fe);
+    };
+    const V value = lerp(lerp(along(0), along(stride), fu), lerp(along(row), along(row + stride), fu), fv);
+    hn::StoreU(hn::IfThenElseZero(seen, value), d, depth + n);
+  }
+}
+
+}  // namespace airlight::fogshop::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace airlight::fogshop {
+
+HWY_EXPORT(LookUp);
+
+void look_up(const MapLookup& map, const double start[3], const double step[3], const double* t, int count,
+             double* depth) {
+  HWY_DYNAMIC_DISPATCH(LookUp)(map, start, step, t, count, depth);
+}
+
+}  // namespace airlight::fogshop
+#endif
