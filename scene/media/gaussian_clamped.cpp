@@ -20,8 +20,8 @@ struct Term {
   Interval reach;  // where it is not zero
 
   double value(double t) const {
-    const double u = line.a * (t - line.middle);
-    return line.amplitude * std::exp(-line.exponent - u * u);
+    const double u = (t - line.middle) / line.width;
+    return line.amplitude * exp_minus(line.exponent + u * u);
   }
   // Range over a piece that lies within the reach.
   Interval bounds(Interval t) const {
@@ -47,13 +47,14 @@ double positive_part(const std::vector<Term>& terms, double constant, Interval t
   if (hi <= 0) return 0;
   if (lo >= 0) {
     double integral = constant * (t.hi - t.lo);
-    for (const Term& term : near) integral += term.line.integral(t);
+    for (const Term& term : near) integral += scene::integral(term.line, t);
     return integral;
   }
   // A term much smaller than the rest need not be resolved.
   for (const Term& term : near) {
     const Interval bounds = term.bounds(t);
-    if (std::max(-bounds.lo, bounds.hi) > 1e-15 * magnitude) smooth &= (t.hi - t.lo) * term.line.a <= polynomial_widths;
+    if (std::max(-bounds.lo, bounds.hi) > 1e-15 * magnitude)
+      smooth &= t.hi - t.lo <= polynomial_widths * term.line.width;
   }
   const double middle = 0.5 * (t.lo + t.hi);
   if (!smooth && middle > t.lo && middle < t.hi)
@@ -74,7 +75,7 @@ double clamped_line_integral(const GaussianSum& sum, const Ray& ray, Interval t)
   std::vector<double> edges;
   for (const Gaussian& g : sum.gaussians) {
     const GaussianLine line = gaussian_line(g, ray);
-    const Interval reach = line.clip(std::min(sum.cutoff, underflow_widths), t);
+    const Interval reach = within_cutoff(line, std::min(sum.cutoff, underflow_widths), t);
     if (reach.empty() || g.amplitude == 0) continue;
     terms.push_back({line, reach});
     edges.push_back(reach.lo);
