@@ -1,0 +1,57 @@
+#include "scene/geometry/mesh_check.h"
+
+#include <fmt/format.h>
+
+#include "scene/geometry/text_lines.h"
+
+namespace airlight::scene {
+namespace {
+
+void check_vertex(TextLines& lines) {
+  for (const char* what : {"a coordinate x", "a coordinate y", "a coordinate z"}) lines.number(what);
+}
+
+}  // namespace
+
+void check_off(const std::string& path, const std::string& content) {
+  TextLines lines(path, content);
+  if (!lines.next()) lines.fail("found an empty file, expected OFF");
+  const std::string_view header = lines.word();
+  if (header != "OFF" && header != "COFF" && header != "NOFF" && header != "CNOFF" && header != "STOFF")
+    lines.fail("found another header, expected OFF in text form");
+  // The counts stand on the next line, or beside the header.
+  if (lines.at_end() && !lines.next()) lines.fail("found the end of the file, expected the counts");
+  // A vertex takes 6 bytes at least and a face 8: a larger count cannot be true, and would only cost memory.
+  const auto vertices = lines.integer("the number of vertices", 1, (long long)content.size() / 5);
+  const auto faces = lines.integer("the number of faces", 1, (long long)content.size() / 6);
+  for (long long i = 0; i < vertices; ++i) {
+    if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} vertices, expected {}", i, vertices));
+    check_vertex(lines);
+  }
+  for (long long i = 0; i < faces; ++i) {
+    if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} faces, expected {}", i, faces));
+    const auto corners = lines.integer("the number of corners", 3, 1000000);
+    for (long long k = 0; k < corners; ++k) lines.integer("the index of a vertex", 0, vertices - 1);
+  }
+  if (lines.next()) lines.fail(fmt::format("found more after the {} faces that the header announces", faces));
+}
+
+void check_obj(const std::string& path, const std::string& content) {
+  TextLines lines(path, content);
+  long long faces = 0;
+  while (lines.next()) {
+    const std::string_view kind = lines.word();
+    if (kind == "v") check_vertex(lines);
+    if (kind != "f") continue;
+    ++faces;
+    int corners = 0;
+    for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
+      if (word == "\\" && !lines.next()) break;  // the face goes on in the next line
+      corners += word != "\\";
+    }
+    if (corners < 3) lines.fail(fmt::format("found a face of {} corners, expected at least 3", corners));
+  }
+  if (faces == 0) lines.fail("found the end of the file without a face, expected lines 'f ...'");
+}
+
+}  // namespace airlight::scene

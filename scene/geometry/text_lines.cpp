@@ -1,0 +1,84 @@
+#include "scene/geometry/text_lines.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "scene/error.h"
+
+namespace airlight::scene {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+std::string shown(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  for (char& c : text)
+    if (c < 32 || c > 126) c = '?';
+  return text;
+}
+
+}  // namespace
+
+bool TextLines::next_raw(std::string_view& line) {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find('\n');
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  ++line_;
+  return true;
+}
+
+bool TextLines::next() {
+  std::string_view line;
+  while (next_raw(line)) {
+    words_ = line.substr(0, line.find('#'));
+    if (words_.find_first_not_of(blanks) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
+std::string_view TextLines::word() {
+  const std::size_t begin = words_.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return words_ = {};
+  words_.remove_prefix(begin);
+  const std::string_view found = words_.substr(0, words_.find_first_of(blanks));
+  words_.remove_prefix(found.size());
+  return found;
+}
+
+bool TextLines::at_end() const { return words_.find_first_not_of(blanks) == std::string_view::npos; }
+
+double TextLines::number(const char* what) {
+  std::string_view found = word();
+  if (found.empty()) fail(fmt::format("found the end of the line, expected {}", what));
+  const std::string_view digits = found[0] == '+' ? found.substr(1) : found;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    fail(fmt::format("found '{}', expected {}", shown(found), what));
+  // Out of the range of double: too small is as good as zero, too large is not.
+  if (error == std::errc::result_out_of_range && digits.find("e-") == digits.npos && digits.find("E-") == digits.npos)
+    value = std::numeric_limits<double>::infinity();
+  if (!(std::abs(value) <= std::numeric_limits<float>::max()))
+    fail(fmt::format("found '{}', expected {} that is finite in single precision", shown(found), what));
+  return value;
+}
+
+long long TextLines::integer(const char* what, long long least, long long greatest) {
+  const std::string_view found = word();
+  if (found.empty()) fail(fmt::format("found the end of the line, expected {}", what));
+  long long value = 0;
+  const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
+  if (error != std::errc() || end != found.data() + found.size() || value < least || value > greatest)
+    fail(fmt::format("found '{}', expected {} from {} to {}", shown(found), what, least, greatest));
+  return value;
+}
+
+void TextLines::fail(const std::string& found_and_expected) const {
+  throw Error(fmt::format("{}:{}: {}", path_, line_, found_and_expected));
+}
+
+}  // namespace airlight::scene

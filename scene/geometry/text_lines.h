@@ -1,0 +1,35 @@
+// Lines and words of a text format, with line numbers for messages.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace airlight::scene {
+
+class TextLines {
+ public:
+  TextLines(std::string path, std::string_view text) : path_(std::move(path)), rest_(text) {}
+
+  // Moves to the next line that holds anything but blanks and comments (from '#'); false at the end.
+  bool next();
+  // The next line as it is; false at the end.
+  bool next_raw(std::string_view& line);
+  // The next word of the line; empty at its end.
+  std::string_view word();
+  bool at_end() const;  // no more words in this line
+  // The next word as a number. Throws if it is none, or not finite in single precision.
+  double number(const char* what);
+  // The next word as an integer in [least, greatest].
+  long long integer(const char* what, long long least, long long greatest);
+
+  [[noreturn]] void fail(const std::string& found_and_expected) const;
+  std::string_view rest() const { return rest_; }  // what follows the line
+  int line() const { return line_; }
+
+ private:
+  std::string path_;
+  std::string_view rest_;
+  std::string_view words_;
+  int line_ = 0;
+};
+
+}  // namespace airlight::scene
