@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/geometry/mesh_io.h"
 #include "scene/geometry/shapes.h"
+#include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/transform.h"
 
@@ -35,6 +37,18 @@ TriangleMesh transformed(TriangleMesh mesh, const TableReader& reader) {
     if (!vertex.allFinite()) reader.fail("transform", "transform sends a vertex to infinity, expected a finite place");
   }
   return mesh;
+}
+
+TriangleMesh read_mesh_file(TableReader& reader, const std::string& folder) {
+  reader.allow(surface_keys_and({"file", "transform"}));
+  const std::string path = find_asset(reader, "file", folder);
+  TriangleMesh mesh;
+  try {
+    mesh = read_mesh(path);
+  } catch (const Error& e) {
+    reader.fail("file", e.what());
+  }
+  return transformed(std::move(mesh), reader);
 }
 
 TriangleMesh read_box(TableReader& reader) {
@@ -79,7 +93,8 @@ TriangleMesh read_height_field(TableReader& reader) {
   return transformed(make_height_field(field), reader);
 }
 
-Shape read_shape(const std::string& type, TableReader& reader) {
+Shape read_shape(const std::string& type, TableReader& reader, const std::string& folder) {
+  if (type == "mesh") return read_mesh_file(reader, folder);
   if (type == "box") return read_box(reader);
   if (type == "height_field") return read_height_field(reader);
   if (type == "sphere") {
@@ -98,10 +113,10 @@ std::vector<std::string> surface_keys_and(const std::vector<std::string>& keys) 
   return all;
 }
 
-Surface read_surface(TableReader reader, const std::string&) {
-  const std::string type = reader.type({"sphere", "box", "plane", "height_field"});
+Surface read_surface(TableReader reader, const std::string& folder) {
+  const std::string type = reader.type({"mesh", "sphere", "box", "plane", "height_field"});
   Surface surface;
-  surface.shape = read_shape(type, reader);
+  surface.shape = read_shape(type, reader, folder);
   surface.name = reader.text("name", "");
   if (const auto material = reader.table("material")) surface.material = read_material(*material);
   return surface;

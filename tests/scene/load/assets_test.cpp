@@ -1,0 +1,146 @@
+// Files that a scene names: where they are looked for, and what is said of damaged ones.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "scene/data_folder.h"
+#include "scene/error.h"
+#include "scene/scene.h"
+
+using namespace airlight;
+using namespace airlight::scene;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string root = AIRLIGHT_SOURCE_DIR;
+const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+
+// A folder of its own, removed at the end.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / "airlight_assets_test";
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string message(const std::string& text, const std::string& folder) {
+  try {
+    parse_scene(camera + text, "s.toml", folder);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("files are looked for beside the scene, then in the data folder", "[load]") {
+  const Folder folder;
+  const std::string text = camera + "[[medium]]\ntype = 'gaussians'\nfile = 'data/g.csv'\n";
+  const auto scene = [&] { return parse_scene(text, "s.toml", (folder.path / "scenes").string()); };
+  const auto write = [&](const std::string& name, int count) {
+    fs::create_directories((folder.path / name).parent_path());
+    std::ofstream stream((folder.path / name).string());
+    stream << "center_x,center_y,center_z,width,amplitude\n";
+    for (int i = 0; i < count; ++i) stream << "0,0,0,1,1\n";
+  };
+  const auto count = [](const Scene& s) { return std::get<GaussianSum>(s.media[0].field).gaussians.size(); };
+
+  CHECK_THROWS_WITH(scene(), Catch::Contains("s.toml:6:8") && Catch::Contains("there is n"));
+  CHECK_THROWS_AS(set_data_folder((folder.path / "nowhere").string()), Error);
+  write("shared/data/g.csv", 2);
+  set_data_folder((folder.path / "shared").string());
+  CHECK(count(scene()) == 2);
+  write("scenes/data/g.csv", 3);
+  CHECK(count(scene()) == 3);
+  set_data_folder(root);  // for the tests that follow, a folder that stays
+}
+
+// Each is told with the place in the scene, the file, and in one line; what precisely is wrong with it is for the tests
+// of its reader.
+TEST_CASE("damaged files are named together with the place that names them", "[load]") {
+  const Folder folder;
+  const struct {
+    const char* name;
+    const char* source;
+    const char* text;
+  } kinds[] = {
+      {"a.vdb", "plume_0024.vdb", "[[medium]]\ntype = 'grid'\nfile = 'a.vdb'\n"},
+      {"a.exr", "courtyard.exr", "[[light]]\ntype = 'environment'\nfile = 'a.exr'\n"},
+      {"a.off", "oblong.off", "[[surface]]\ntype = 'mesh'\nfile = 'a.off'\n"},
+  };
+  for (const auto& kind : kinds) {
+    const std::string whole = bytes_of(root + "/experiments/data/" + kind.source);
+    REQUIRE(whole.size() > 1000);
+    const std::string path = (folder.path / kind.name).string();
+    const auto with = [&](const std::string& content) {
+      std::ofstream(path, std::ios::binary) << content;
+      return message(kind.text, folder.path.string());
+    };
+    CAPTURE(kind.name);
+    CHECK(with(whole) == "");
+    for (const std::string& content : {std::string(), whole.substr(0, 10), whole.substr(0, whole.size() / 2),
+                                       std::string(1000, 'x'), std::string(1000, '\0'), camera}) {
+      const std::string what = with(content);
+      CAPTURE(content.size(), what);
+      CHECK(what.rfind("s.toml:6:8: ", 0) == 0);
+      CHECK(what.find(kind.name) != std::string::npos);
+      CHECK(what.find('\n') == std::string::npos);
+      CHECK(what.size() < 600);
+    }
+    fs::remove(path);
+    fs::create_directory(path);
+    CHECK(message(kind.text, folder.path.string()).rfind("s.toml:6:8: ", 0) == 0);
+    fs::remove_all(path);
+  }
+}
+
+TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
+  const Folder folder;
+  const std::string header = "center_x,center_y,center_z,width,amplitude\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "found an empty file"},
+      {"x,y,z\n", ":1:1: found 'x,y,z', expected the header center_x"},
+      {header + "0,0,0,1,1\n0,0,0,1\n", ":3:8: found 4 values, expected 5"},
+      {header + "0,0,0,1,1,1\n", ":2:10: found more than 5 values"},
+      {header + "\n# note\n0,zero,0,1,1\n", ":4:3: center_y = zero, expected a finite number"},
+      {header + "0,0,0,0,1\n", ":2:7: width = 0, expected a number > 0"},
+      {header + "0,0,0,1,nan\n", ":2:9: amplitude = nan, expected a finite number"},
+      {header + "0,0,0,1,1e999\n", ":2:9: amplitude = 1e999, expected a finite number"},
+      {header + "0,0,\xff\x01,1,1\n", ":2:5: center_z = ??, expected a finite number"},
+  };
+  for (const auto& [content, expected] : cases) {
+    std::ofstream((folder.path / "g.csv").string(), std::ios::binary) << content;
+    const std::string what = message("[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", folder.path.string());
+    CAPTURE(content, what);
+    CHECK(what.find(expected) != std::string::npos);
+    CHECK(what.find("g.csv") != std::string::npos);
+    CHECK(what.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a scene file that cannot be read says why", "[load]") {
+  const auto what = [](const std::string& path) {
+    try {
+      load_scene(path);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const Folder folder;
+  const std::string empty = (folder.path / "empty.toml").string();
+  std::ofstream{empty};
+  CHECK(what("/no/such/scene.toml") == "/no/such/scene.toml: no such file");
+  CHECK(what(folder.path.string()) == folder.path.string() + ": found a folder, expected a file");
+  CHECK(what(empty) == empty + ": found an empty file");
+  // A picture in the place of a scene.
+  CHECK(what(std::string(AIRLIGHT_SOURCE_DIR) + "/experiments/data/courtyard.exr").find("expected a text file") !=
+        std::string::npos);
+}
