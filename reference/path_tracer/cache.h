@@ -1,0 +1,36 @@
+// References kept on disk: one range file per picture, named by the content of scene, view, settings, seed and build.
+//
+// A picture that is there with fewer samples than asked for is refined: only the missing samples are computed, and the
+// bits are those of a render in one go. With more, all of them are used. What is done is written every few seconds,
+// atomically, so that a process killed at any moment loses those seconds and nothing else.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "reference/path_tracer/accumulation.h"
+
+namespace airlight::path_tracer {
+
+struct CachedRendering {
+  scene::Film film;                // as to_film; metadata "complete" is "false" after an interruption
+  Counters counters;               // of all samples, also those that were there
+  double seconds = 0;              // wall clock that all the samples took
+  std::uint64_t found = 0;         // samples of every pixel that were there already
+  std::vector<std::string> notes;  // a damaged file that was set aside, one line each
+  bool complete = true;
+};
+
+// Where the samples of a picture are kept.
+std::string cache_file(const std::string& folder, const Identity&);
+
+// Renders options().samples per pixel, or to its target error, through the folder (created if needed). Where progress
+// returns false it keeps and writes what is done; throws Interrupted if there is a pixel without any. A file that
+// cannot be read is renamed to *.damaged, noted and not used. `save_every` is in seconds.
+CachedRendering render_cached(const World&, const scene::View&, const std::string& folder, const scene::Execution&,
+                              double save_every = 10);
+// The same from a scene and settings; throws Error as PathTracer::prepare.
+CachedRendering render_cached(std::shared_ptr<const scene::Scene>, const scene::Settings&, const scene::View&,
+                              const std::string& folder, const scene::Execution&);
+
+}  // namespace airlight::path_tracer

@@ -1,0 +1,103 @@
+#include "reference/path_tracer/supergrid.h"
+
+#include <catch2/catch.hpp>
+
+#include "reference/path_tracer/media.h"
+#include "scene/math/random.h"
+#include "tests/reference/path_tracer/scenes.h"
+
+using namespace airlight;
+using namespace airlight::path_tracer;
+using namespace airlight::path_tracer::test;
+
+namespace {
+
+double linear_bound(const Box& box) { return 1 + box.hi[0] + 2 * box.hi[1] + 4 * box.hi[2]; }
+
+Ray random_ray(int i) {
+  const RandomBlock a = SampleRandom(2, 1, 0, i).block(0, Purpose::camera);
+  const RandomBlock b = SampleRandom(2, 1, 0, i).block(1, Purpose::camera);
+  Vec3 d(b.coarse(0) - 0.5, b.coarse(1) - 0.5, b.coarse(2) - 0.5);
+  if (i % 5 == 0) d[i % 3] = 0;
+  if (i % 7 == 0) d[(i + 1) % 3] = 0;
+  if (d.norm() == 0) d = Vec3(0, 0, 1);
+  return {Point3(4 * a.coarse(0) - 1.5, 4 * a.coarse(1) - 1.5, 4 * a.coarse(2) - 1.5), d.normalized()};
+}
+
+}  // namespace
+
+TEST_CASE("a walk covers the ray once, in order, with a bound of every point", "[path_tracer]") {
+  Supergrid grid = make_supergrid({{0, 0, 0}, {1, 1, 1}}, {5, 3, 4}, 1, linear_bound);
+  grid.outside = 9;
+  for (int i = 0; i < 3000; ++i) {
+    const Ray ray = random_ray(i);
+    for (const Interval t : {Interval{0, 5}, Interval{0.3, 0.9}, Interval{0, infinity}}) {
+      double at = t.lo;
+      bool bounded = true;
+      walk(grid, ray, t, [&](double begin, double end, double majorant) {
+        CHECK(begin == at);
+        CHECK(end >= begin);
+        at = end;
+        for (const double s : {0.001, 0.5, 0.999}) {
+          const Point3 x = ray.at(begin + s * (std::min(end, 10.0) - begin));
+          const bool inside = (x.array() > 1e-12).all() && (x.array() < 1 - 1e-12).all();
+          bounded = bounded && (!inside || majorant >= 1 + x[0] + 2 * x[1] + 4 * x[2] - 1e-6);
+        }
+        return false;
+      });
+      CHECK(at == t.hi);
+      CHECK(bounded);
+    }
+  }
+}
+
+TEST_CASE("a ray in a face of the cells is bounded by one of its sides", "[path_tracer]") {
+  const Supergrid grid = make_supergrid({{0, 0, 0}, {1, 1, 1}}, {4, 4, 4}, 1, linear_bound);
+  double length = 0;
+  walk(grid, {{-1, 0.5, 0.25}, {1, 0, 0}}, {0, 3}, [&](double begin, double end, double majorant) {
+    if (majorant > 0) length += end - begin;
+    return false;
+  });
+  CHECK(length == Approx(1));
+}
+
+TEST_CASE("majorants are rounded up", "[path_tracer]") {
+  for (const double x : {0.1, 1.0, 1e-30, 3.14159265358979, 1e30}) {
+    CHECK(double(round_up(x)) >= x);
+    CHECK(double(round_up(x)) <= x * (1 + 1.2e-7));
+  }
+}
+
+TEST_CASE("majorants of media bound them everywhere, also beyond the grid", "[path_tracer]") {
+  scene::GaussianSum sum;
+  sum.constant = 0.3;
+  sum.gaussians = {{{0.2, 0.1, 0}, 0.5, 2}, {{1, 1, 1}, 0.3, 5}, {{-1, 0.5, 0}, 0.7, -0.2}};
+  scene::Medium gaussians;
+  gaussians.field = sum;
+  scene::Medium sphere = gaussians;
+  sphere.region = scene::Sphere{{0.5, 0.5, 0.5}, 1};
+  auto voxels = std::make_shared<scene::VoxelGrid>();
+  voxels->size = {9, 7, 5};
+  voxels->voxel_size = 0.25;
+  voxels->translation = {-0.5, -0.5, -0.5};
+  voxels->rotation = (Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).toRotationMatrix();
+  for (int i = 0; i < 9 * 7 * 5; ++i) voxels->values.push_back(float((7 * i) % 11) / 10);
+  scene::Medium grid;
+  grid.field = std::shared_ptr<const scene::VoxelGrid>(voxels);
+  for (const scene::Medium& medium : {gaussians, sphere, grid}) {
+    const Media media({medium}, Options{});
+    int looked = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Ray ray = random_ray(i);
+      walk(media.tracked()[0].majorants, ray, {0, 6}, [&](double begin, double end, double majorant) {
+        for (const double s : {0.0, 0.3, 0.7, 1.0}) {
+          const double density = scene::density(medium, ray.at(begin + s * (end - begin)));
+          if (density > 0) ++looked;
+          if (density > majorant * (1 + 1e-6)) FAIL("density " << density << " above its majorant " << majorant);
+        }
+        return false;
+      });
+    }
+    CHECK(looked > 1000);
+  }
+}
