@@ -1,0 +1,121 @@
+#include "reference/path_tracer/cache.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <set>
+
+#include "reference/path_tracer/stopping.h"
+#include "scene/error.h"
+#include "tests/reference/path_tracer/scenes.h"
+
+using namespace airlight;
+using namespace airlight::path_tracer;
+using namespace airlight::path_tracer::test;
+
+namespace {
+
+std::shared_ptr<scene::Scene> ball() { return scene_of({medium(scene::Sphere{{0, 0, 0}, 1}, 2, 0.9)}, {white()}); }
+
+scene::View view_of_ball() {
+  scene::View view;
+  view.camera = scene::look_at({0, 0, 4}, {0, 0, 0}, Vec3::UnitY());
+  view.width = 20;
+  view.height = 10;
+  return view;
+}
+
+World world_of(std::uint64_t samples) {
+  Options options;
+  options.samples = samples;
+  return World(ball(), options);
+}
+
+// An empty folder of its own.
+std::string folder(const std::string& name) {
+  const auto path = std::filesystem::temp_directory_path() / "airlight_path_tracer_cache" / name;
+  std::filesystem::remove_all(path);
+  return path.string();
+}
+
+scene::Film direct(std::uint64_t samples) {
+  const World world = world_of(samples);
+  Accumulation a = empty_accumulation(world, view_of_ball());
+  render_range(world, view_of_ball(), 0, samples, {}, a);
+  return to_film(world, view_of_ball(), a);
+}
+
+}  // namespace
+
+TEST_CASE("a cached picture is reused and refined to the same bits", "[path_tracer]") {
+  const std::string cache = folder("refine");
+  const auto first = render_cached(world_of(100), view_of_ball(), cache, {});
+  CHECK(first.found == 0);
+  CHECK(first.film.layers == direct(100).layers);
+  const auto again = render_cached(world_of(100), view_of_ball(), cache, {});
+  CHECK(again.found == 100);
+  CHECK(again.counters.paths == first.counters.paths);
+  CHECK(again.film.layers == first.film.layers);
+  const auto refined = render_cached(world_of(512), view_of_ball(), cache, {});
+  CHECK(refined.found == 100);
+  CHECK(refined.film.layers == direct(512).layers);
+}
+
+TEST_CASE("what an interrupted render has done is kept and completed", "[path_tracer]") {
+  const std::string cache = folder("interrupt");
+  int calls = 0;
+  scene::Execution stopping;
+  stopping.threads = 1;
+  stopping.progress = [&](double) { return ++calls < 9; };
+  const auto part = render_cached(world_of(512), view_of_ball(), cache, stopping);
+  CHECK_FALSE(part.complete);
+  CHECK(part.film.metadata.at("complete") == "false");
+  CHECK(part.counters.paths > 0);
+  CHECK(part.counters.paths < 512u * 200u);
+  const auto whole = render_cached(world_of(512), view_of_ball(), cache, {});
+  CHECK(whole.complete);
+  CHECK(whole.counters.paths == 512u * 200u);
+  CHECK(whole.film.layers == direct(512).layers);
+}
+
+TEST_CASE("frequent saving does not change the bits", "[path_tracer]") {
+  const auto saved = render_cached(world_of(256), view_of_ball(), folder("often"), {}, 0.0);
+  CHECK(saved.complete);
+  CHECK(saved.film.layers == direct(256).layers);
+}
+
+TEST_CASE("a damaged cache file is reported, set aside and not used", "[path_tracer]") {
+  const std::string cache = folder("damage");
+  const World world = world_of(64);
+  render_cached(world, view_of_ball(), cache, {});
+  const std::string file = cache_file(cache, empty_accumulation(world, view_of_ball()).identity);
+  REQUIRE(std::filesystem::exists(file));
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const auto result = render_cached(world, view_of_ball(), cache, {});
+  CHECK(result.found == 0);
+  REQUIRE(result.notes.size() == 1);
+  CHECK_THAT(result.notes[0], Catch::Contains("damaged"));
+  CHECK(std::filesystem::exists(file + ".damaged"));
+  CHECK(result.film.layers == direct(64).layers);
+  CHECK(render_cached(world, view_of_ball(), cache, {}).found == 64);
+}
+
+TEST_CASE("a cache folder that cannot be made is an error with its name", "[path_tracer]") {
+  CHECK_THROWS_WITH(render_cached(world_of(64), view_of_ball(), "/dev/null/cache", {}),
+                    Catch::Contains("/dev/null/cache"));
+}
+
+TEST_CASE("a target error stops tiles one by one", "[path_tracer]") {
+  Options options;
+  options.samples = 4096;
+  options.target_error = 0.004;
+  const World world(ball(), options);
+  Accumulation a = empty_accumulation(world, view_of_ball());
+  render_to_target(world, view_of_ball(), {}, a);
+  const scene::Film film = to_film(world, view_of_ball(), a);
+  std::set<double> counts;
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 20; ++x) counts.insert(film.get("n", x, y)[0]);
+  CHECK(counts.size() > 1);  // the corners see nothing but the sky, the middle needs more
+  for (const double n : counts) CHECK(std::exp2(std::round(std::log2(n))) == n);
+  CHECK(*counts.begin() == 64);
+}
