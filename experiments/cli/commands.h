@@ -15,8 +15,19 @@ struct RenderOptions {
   int threads = 0;
   double exposure = 0;
 };
-// Writes the film with its record in the metadata; with `png` a preview too.
+// Writes the film with its record in the metadata; with `png` a preview too. A range of samples A..B also leaves
+// `out`.samples for merging. Interrupted, a path tracer keeps the samples it has: the film is written, and the exit
+// code is 130 all the same.
 int render(const RenderOptions&);
+
+struct MergeOptions {
+  std::string scene, out;
+  std::vector<std::string> parts;
+  Pairs overrides;
+};
+// Joins ranges of samples of one picture, whoever computed them, to the bits of a render in one go. Refuses overlaps,
+// gaps, and parts of another scene, view, setting, seed or build. Leaves `out`.samples too.
+int merge(const MergeOptions&);
 
 struct CompareOptions {
   std::string image, reference, scene;

@@ -102,7 +102,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--png", render_options.png, "also write an 8-bit preview");
   c->add_option("--exposure", render_options.exposure, "of the preview, in powers of two");
   c->add_option("--threads", render_options.threads, "0: all");
-  c->add_option("--samples", render_options.samples, "N or A..B: number or range of samples per pixel (path_tracer)");
+  c->add_option("--samples", render_options.samples, "N, or A..B: a range to be merged (path_tracer)");
   add_pairs(c, "--set", render_options.settings, "a setting of the method (airlight explain lists them)");
   add_pairs(c, "--override", render_options.overrides, "a value of the scene file, e.g. film.width=64");
   data_option(c);
@@ -112,6 +112,22 @@ int dispatch(int argc, char** argv) {
       require(render_options.method, "--method");
       require(render_options.out, "--out");
       return render(render_options);
+    };
+  });
+
+  MergeOptions merge_options;
+  c = command(app, "merge", "join ranges of samples to one picture");
+  c->add_option("SCENE", merge_options.scene, "scene file that the parts were rendered from");
+  c->add_option("PART", merge_options.parts, "files written by render --samples A..B: OUT.samples");
+  c->add_option("--out,-o", merge_options.out, "OpenEXR file to write");
+  add_pairs(c, "--override", merge_options.overrides, "a value of the scene file, as for the parts");
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(merge_options.scene, "SCENE");
+      require(merge_options.out, "--out");
+      if (merge_options.parts.empty()) throw Error("PART is missing; see --help");
+      return merge(merge_options);
     };
   });
 

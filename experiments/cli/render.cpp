@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/samples.h"
+#include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
 #include "scene/error.h"
@@ -20,30 +22,29 @@ void require_folder(const std::string& file) {
     throw Error(fmt::format("{}: there is no folder {}", file, folder.string()));
 }
 
-// "N" or "A..B" as the settings `samples` and `first_sample`.
-void put_samples(const std::string& text, Pairs& settings) {
-  if (text.empty()) return;
-  const std::size_t dots = text.find("..");
-  const auto number = [&](const std::string& part) {
-    long long value = -1;
-    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (code != std::errc() || end != part.data() + part.size() || value < 0)
-      throw Error(fmt::format("--samples '{}': expected N or A..B, whole numbers >= 0", text));
-    return value;
-  };
-  const long long first = dots == std::string::npos ? 0 : number(text.substr(0, dots));
-  const long long end = number(dots == std::string::npos ? text : text.substr(dots + 2));
-  if (end <= first) throw Error(fmt::format("--samples '{}': expected a range that is not empty", text));
-  settings["samples"] = std::to_string(end - first);
-  if (first > 0) settings["first_sample"] = std::to_string(first);
+// Film with its record, and preview.
+void write(const RenderOptions& options, const scene::Renderer& renderer, const scene::Scene& scene,
+           const scene::Settings& settings, double seconds, scene::Film& film) {
+  auto& metadata = film.metadata;
+  metadata["scene"] = scene.name;
+  metadata["scene_hash"] = scene.hash;
+  metadata["renderer"] = renderer.name();
+  metadata["settings"] = settings.canonical();
+  metadata["commit"] = commit();
+  metadata.try_emplace("seconds", fmt::format("{:.3f}", seconds));
+  scene::write_exr(options.out, film);
+  if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure);
 }
 
 }  // namespace
 
 int render(const RenderOptions& options) {
   const scene::Renderer& renderer = find_renderer(options.method, "--method");
+  const std::optional<SampleRange> range = sample_range(options.samples);
   Pairs given = options.settings;
-  put_samples(options.samples, given);
+  if (range) given["samples"] = std::to_string(range->end - range->begin);
+  if (range && range->explicit_range && renderer.name() != "path_tracer")
+    throw Error(fmt::format("--samples {}: only path_tracer computes ranges of samples", options.samples));
   const scene::Settings settings(renderer.settings(), given, options.method);
   require_folder(options.out);
   if (!options.png.empty()) require_folder(options.png);
@@ -55,19 +56,14 @@ int render(const RenderOptions& options) {
   Progress progress(fmt::format("{} {}", options.method, scene->name));
   const scene::Execution execution = progress.execution(options.threads);
   const auto start = std::chrono::steady_clock::now();
-  const auto prepared = renderer.prepare(scene, settings, execution);
-  scene::Rendering rendering = prepared->render(scene::view_of(*scene), execution);
+  scene::Film film;
+  if (range && range->explicit_range)
+    film = render_samples(scene, settings, *range, execution, options.out + ".samples");
+  else
+    film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-
-  auto& metadata = rendering.film.metadata;
-  metadata["scene"] = scene->name;
-  metadata["scene_hash"] = scene->hash;
-  metadata["renderer"] = renderer.name();
-  metadata["settings"] = settings.canonical();
-  metadata["commit"] = commit();
-  metadata["seconds"] = fmt::format("{:.3f}", seconds);
-  scene::write_exr(options.out, rendering.film);
-  if (!options.png.empty()) scene::write_png(options.png, rendering.film, "mean", options.exposure);
+  write(options, renderer, *scene, settings, seconds, film);
+  check_interrupted();
   return 0;
 }
 

@@ -70,6 +70,8 @@ TEST_CASE("usage errors are one line, exit code 2, and name the nearest", "[cli]
           "nearest: width");
   refused("render " + scenes + "constant_homogeneous.toml -m path_tracer -o a.exr --samples 9..3", "not empty");
   refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr --threads many", "threads");
+  refused("render " + scenes + "constant_homogeneous.toml -m path_tracer -o a.exr --samples 1..3", "multiple of 64");
+  refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr --samples 0..3", "path_tracer");
   refused("compare a.exr", "REFERENCE is missing");
   refused("compare a.exr b.exr", "a.exr");
   refused("compare a.exr b.exr --max rel_l3=1", "nearest: rel_l2");
@@ -113,6 +115,36 @@ TEST_CASE("render, compare and convert", "[cli]") {
   CHECK(std::filesystem::file_size(folder.path() / "truth.pfm") ==
         std::string("PF\n16 12\n-1.0\n").size() + 16 * 12 * 12);
   CHECK(run("convert truth.exr again.png --layer nothing", folder).code == 2);
+}
+
+TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string small = scenes + "constant_homogeneous.toml --override film.width=16 --override film.height=12 ";
+  const auto part = [&](const std::string& samples, const std::string& out) {
+    REQUIRE(run("render " + small + "-m path_tracer --set seed=7 --samples " + samples + " -o " + out, folder).code ==
+            0);
+  };
+  part("0..192", "whole.exr");
+  part("0..64", "a.exr");
+  part("64..192", "b.exr");
+  REQUIRE(run("merge " + small + "b.exr.samples a.exr.samples -o merged.exr", folder).code == 0);
+  const auto whole = airlight::scene::read_exr(folder.file("whole.exr"));
+  const auto merged = airlight::scene::read_exr(folder.file("merged.exr"));
+  CHECK(whole.layers == merged.layers);
+  CHECK(merged.metadata.at("sample_ranges") == "0..192");
+
+  const auto refused = [&](const std::string& arguments, const std::string& says) {
+    const Result r = run("merge " + arguments, folder);
+    CAPTURE(arguments, r.err);
+    CHECK(r.code == 2);
+    CHECK_THAT(r.err, Contains(says));
+  };
+  part("128..192", "c.exr");
+  refused(small + "a.exr.samples a.exr.samples -o x.exr", "a.exr.samples");
+  refused(small + "a.exr.samples c.exr.samples -o x.exr", "128");  // a gap
+  refused(scenes + "constant_grid.toml a.exr.samples b.exr.samples -o x.exr", "do not belong together");
+  refused(small + "a.exr -o x.exr", "not a file of path tracer samples");
+  CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
 }
 
 TEST_CASE("explain and doctor", "[cli]") {

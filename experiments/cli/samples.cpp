@@ -1,0 +1,73 @@
+#include "experiments/cli/samples.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <sstream>
+
+#include "experiments/build_info.h"
+#include "experiments/cli/commands.h"
+#include "reference/path_tracer/accumulation.h"
+#include "scene/error.h"
+
+namespace airlight::experiments::cli {
+
+std::optional<SampleRange> sample_range(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t dots = text.find("..");
+  const auto number = [&](const std::string& part) {
+    std::uint64_t value = 0;
+    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (code != std::errc() || end != part.data() + part.size())
+      throw Error(fmt::format("--samples '{}': expected N or A..B, whole numbers >= 0", text));
+    return value;
+  };
+  SampleRange range;
+  range.explicit_range = dots != std::string::npos;
+  if (range.explicit_range) range.begin = number(text.substr(0, dots));
+  range.end = number(range.explicit_range ? text.substr(dots + 2) : text);
+  if (range.end <= range.begin) throw Error(fmt::format("--samples '{}': expected a range that is not empty", text));
+  if (range.begin % 64 != 0)
+    throw Error(fmt::format("--samples '{}': found the first sample {}, expected a multiple of 64", text, range.begin));
+  return range;
+}
+
+scene::Film render_samples(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+                           const SampleRange& range, const scene::Execution& execution,
+                           const std::string& samples_file) {
+  const path_tracer::World world(scene, path_tracer::parse_options(settings));
+  const scene::View view = scene::view_of(*scene);
+  path_tracer::Accumulation samples = path_tracer::empty_accumulation(world, view);
+  const bool whole = path_tracer::render_range(world, view, range.begin, range.end, execution, samples);
+  if (!whole && samples.least_samples() == 0) throw scene::Interrupted("interrupted before every pixel had a sample");
+  path_tracer::write_range_file(samples_file, samples);
+  scene::Film film = path_tracer::to_film(world, view, samples);
+  film.metadata["complete"] = whole ? "true" : "false";
+  return film;
+}
+
+int merge(const MergeOptions& options) {
+  const path_tracer::Accumulation samples = path_tracer::merge_range_files(options.parts);
+  // The parts say with which settings they were made: "name=value name=value ...".
+  Pairs given{{"seed", std::to_string(samples.identity.seed)}, {"stream", std::to_string(samples.identity.stream)}};
+  std::istringstream words(samples.identity.settings);
+  for (std::string word; words >> word;) {
+    const std::size_t equals = word.find('=');
+    given[word.substr(0, equals)] = equals == std::string::npos ? "" : word.substr(equals + 1);
+  }
+  const scene::Settings settings(path_tracer::setting_specs(), given, options.parts.front());
+  const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
+  const path_tracer::World world(scene, path_tracer::parse_options(settings));
+  const scene::View view = scene::view_of(*scene);
+  const std::string differs = path_tracer::difference(
+      samples.identity, path_tracer::identity_of(*scene, view, path_tracer::parse_options(settings)));
+  if (!differs.empty())
+    throw Error(fmt::format("{} and {} do not belong together: {}", options.parts.front(), options.scene, differs));
+  scene::Film film = path_tracer::to_film(world, view, samples);
+  film.metadata["commit"] = commit();
+  scene::write_exr(options.out, film);
+  path_tracer::write_range_file(options.out + ".samples", samples);
+  return 0;
+}
+
+}  // namespace airlight::experiments::cli
