@@ -10,6 +10,7 @@
 #include "experiments/build_info.h"
 #include "experiments/driver/content_key.h"
 #include "experiments/driver/journal.h"
+#include "experiments/driver/oracles.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/reference_cache.h"
 #include "experiments/driver/tables.h"
@@ -253,6 +254,7 @@ class Run {
 }  // namespace
 
 Outcome run_experiment(Experiment experiment, const RunOptions& options) {
+  if (experiment.kind == "oracles") return run_oracles(std::move(experiment), options);
   return Run(std::move(experiment), options).run();
 }
 

@@ -180,13 +180,13 @@ std::string summary_csv(const Outcome& outcome) {
   return out;
 }
 
-std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots, const std::string& table) {
   const Experiment& e = outcome.experiment;
   std::string out = fmt::format("# {}\n\n", e.title);
   if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
   if (!e.about.empty()) out += e.about + "\n\n";
   if (!outcome.complete) out += "This run was interrupted: rows are missing.\n\n";
-  out += markdown(summary(outcome)) + "\n";
+  out += (table.empty() ? markdown(summary(outcome)) : table) + "\n";
   if (!e.expected.empty()) {
     out += "## Printed and measured\n\n";
     std::vector<Cells> lines{{"what", "printed", "ours"}};

@@ -16,7 +16,8 @@ struct PlotFile {
 
 std::string table_csv(const Outcome&);
 std::string summary_csv(const Outcome&);
-std::string table_markdown(const Outcome&, const std::vector<PlotFile>&);
+// `table` replaces the table of rows if it is not empty.
+std::string table_markdown(const Outcome&, const std::vector<PlotFile>&, const std::string& table = "");
 std::string run_record(const Outcome&, const std::vector<PlotFile>&);
 
 // A field of a CSV file, quoted where it must be.

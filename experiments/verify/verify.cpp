@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -70,13 +71,39 @@ double relative_error(const Comparison& c) {
   return c.expected == 0 ? infinity : std::abs(c.got - c.expected) / std::abs(c.expected);
 }
 
+// The line of a table for this file and kind, made if it is not there.
+VerifyKind& line_of(std::vector<VerifyKind>& table, const std::string& file, const std::string& kind) {
+  for (VerifyKind& line : table)
+    if (line.file == file && line.kind == kind) return line;
+  VerifyKind line;
+  line.file = file;
+  line.kind = kind;
+  return table.emplace_back(line);
+}
+
+void count(VerifyKind& line, const std::string& id, const Outcome& outcome) {
+  line.vectors += !outcome.comparisons.empty();
+  line.left_out += outcome.left_out;
+  for (const Comparison& c : outcome.comparisons) {
+    ++line.numbers;
+    line.out += !c.ok();
+    line.worst_relative_error = std::max(line.worst_relative_error, relative_error(c));
+    const double share = c.expected == c.got ? 0 : std::abs(c.got - c.expected) / c.tolerance;
+    if (!(share <= line.worst_share)) {
+      line.worst_share = share;
+      line.worst = c.what.empty() ? id : id + " " + c.what;
+    }
+  }
+}
+
 struct Totals {
   int vectors = 0, numbers = 0, out = 0, not_yet = 0, left_out = 0;
 };
 
 }  // namespace
 
-int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile profile, std::ostream& out) {
+int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile profile, std::ostream& out,
+           std::vector<VerifyKind>* table) {
   std::vector<std::pair<std::string, std::vector<Work>>> all;
   std::set<std::string> kinds;
   for (const std::string& path : files) {
@@ -87,6 +114,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     throw Error(fmt::format("no vector of kind '{}', expected one of {} (nearest: {})", kind, fmt::join(kinds, ", "),
                             scene::nearest(kind, {kinds.begin(), kinds.end()})));
 
+  std::vector<VerifyKind> kinds_found;
   Totals totals;
   std::map<std::string, int> waiting;
   std::vector<std::string> failures;
@@ -100,9 +128,14 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
         out << fmt::format("{:<42} {:<32} not yet: {}\n", w.id, w.kind, w.check.not_yet);
         ++totals.not_yet;
         ++waiting[w.check.not_yet];
+        ++line_of(kinds_found, path, w.kind).not_yet;
         continue;
       }
+      const auto start = std::chrono::steady_clock::now();
       const Outcome outcome = w.check.job(profile);
+      VerifyKind& line = line_of(kinds_found, path, w.kind);
+      line.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      count(line, w.id, outcome);
       if (!outcome.comparisons.empty()) ++totals.vectors;
       for (const Comparison& c : outcome.comparisons) {
         const bool ok = c.ok();
@@ -126,6 +159,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
   out << fmt::format(
       "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors not yet\n",
       totals.vectors, totals.numbers, totals.numbers - totals.out, totals.out, totals.left_out, totals.not_yet);
+  if (table) *table = kinds_found;
   return totals.out ? 1 : 0;
 }
 

@@ -11,6 +11,20 @@ enum class VerifyProfile {
   paper,  // everything
 };
 
+// What became of the vectors of one kind in one file.
+struct VerifyKind {
+  std::string file, kind;
+  int vectors = 0;   // with at least one number compared
+  int numbers = 0;   // compared
+  int out = 0;       // beyond their tolerance
+  int left_out = 0;  // numbers that the profile does not reach
+  int not_yet = 0;   // vectors of methods that are not built
+  double worst_relative_error = 0;
+  double worst_share = 0;  // largest |got - expected| / tolerance
+  std::string worst;       // the number with that share
+  double seconds = 0;
+};
+
 // Reads every vector of the files, whatever their schema, and prints one line per compared number:
 //   id, kind, what, expected, got, relative error, tolerance, ok or OUT
 // then the counts. Kinds of methods that are not built are listed as "not yet" and counted. With `kind`, only vectors
@@ -18,7 +32,8 @@ enum class VerifyProfile {
 //
 // Returns 0 if all compared numbers are within tolerance, 1 if any is out. Throws Error (exit code 2) naming file and
 // entry for a file that cannot be parsed, an unknown format or kind, or a malformed entry; and if no vector has the
-// wanted kind.
-int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile, std::ostream&);
+// wanted kind. `kinds` receives the figures per file and kind, in their order of appearance.
+int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile, std::ostream&,
+           std::vector<VerifyKind>* kinds = nullptr);
 
 }  // namespace airlight::experiments
