@@ -67,7 +67,7 @@ toml::table parse_value(const Walk& walk, const std::string& text) {
   try {
     table = toml::parse("value = " + text, walk.label);
   } catch (const toml::parse_error& e) {
-    walk.fail(std::string(e.description()));
+    walk.fail(fmt::format("{}; expected a TOML value, texts in quotes", e.description()));
   }
   if (table.size() != 1 || !table.contains("value")) walk.fail("expected one TOML value");
   return table;

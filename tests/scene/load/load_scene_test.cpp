@@ -69,6 +69,16 @@ TEST_CASE("overrides change values before they are read", "[load]") {
 
   CHECK(error_of(fog, {{"medium.0.sigma_t", "-1"}}) ==
         "override medium.0.sigma_t = -1 of fog.toml: medium 0: sigma_t = -1, expected a number >= 0");
+  CHECK(
+      error_of(fog, {{"light.0.type", "spot"}}) ==
+      "override light.0.type = spot of fog.toml: Error while parsing value: could not determine value type; expected a "
+      "TOML value, texts in quotes");
+  CHECK(error_of(fog, {{"film.width", "1\nheight = 2"}}) ==
+        "override film.width = 1 height = 2 of fog.toml: expected one TOML value");
+  CHECK(error_of(fog, {{"film..width", "1"}}).find("empty part") != std::string::npos);
+  CHECK(error_of(fog, {{"camera.position.3", "1"}}).find("expected an index below 3") != std::string::npos);
+  CHECK(error_of(fog, {{"film.width.x", "1"}}).find("'film.width' is 32, expected a table or a list") !=
+        std::string::npos);
   CHECK(error_of(fog, {{"medium.0.sigma", "1"}}) ==
         "override medium.0.sigma = 1 of fog.toml: medium 0: unknown key 'sigma', expected one of name, type, sigma_t, "
         "albedo, phase, region, constant, cutoff, gaussians, file (nearest: sigma_t)");
