@@ -30,14 +30,14 @@ void chebyshev_distance(const int n[3], std::vector<int>& distance) {
       for (int x = n[0]; x-- > 0;) relax(x, y, z, 1);
 }
 
-void map_free_space(GridField& field) {
+void map_free_space(GridField& field, const std::vector<float>& values) {
   constexpr int brick = 1 << GridField::brick_shift;
   const int* n = field.bricks;
   std::vector<int> distance(std::size_t(n[0]) * n[1] * n[2], n[0] + n[1] + n[2]);
   for (int z = 0; z < field.size[2]; ++z)
     for (int y = 0; y < field.size[1]; ++y)
       for (int x = 0; x < field.size[0]; ++x) {
-        if (field.values[x + std::size_t(field.size[0]) * (y + std::size_t(field.size[1]) * z)] == 0) continue;
+        if (values[x + std::size_t(field.size[0]) * (y + std::size_t(field.size[1]) * z)] == 0) continue;
         // A sample on a brick's face belongs to the cells on both sides of it.
         for (int k = std::max(0, z - 1) / brick; k <= z / brick; ++k)
           for (int j = std::max(0, y - 1) / brick; j <= y / brick; ++j)
@@ -73,8 +73,9 @@ std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid& grid) {
     field->lo[i] = padding - reach;
     field->hi[i] = padding + grid.size[i] - 1 + reach;
   }
-  field->values.assign(std::size_t(field->size[0]) * field->size[1] * field->size[2], 0.0f);
-  float* out = field->values.data();
+  const std::size_t slice = std::size_t(field->size[0]) * field->size[1];
+  std::vector<float> values(slice * field->size[2], 0.0f);
+  float* out = values.data();
   for (int z = 0; z < field->size[2]; ++z)
     for (int y = 0; y < field->size[1]; ++y)
       for (int x = 0; x < field->size[0]; ++x, ++out) {
@@ -83,7 +84,12 @@ std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid& grid) {
                   ck = std::clamp(k, 0, grid.size[2] - 1);
         if (grid.clamp_border || (i == ci && j == cj && k == ck)) *out = grid.at(ci, cj, ck);
       }
-  map_free_space(*field);
+  field->pairs.assign(2 * values.size(), 0.0f);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    field->pairs[2 * i] = values[i];
+    if (i >= slice) field->pairs[2 * (i - slice) + 1] = values[i];
+  }
+  map_free_space(*field, values);
   return field;
 }
 

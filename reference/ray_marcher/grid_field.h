@@ -24,16 +24,17 @@ struct Frame {
 
 struct GridField {
   Frame frame;
-  int size[3];                // padded samples per axis
-  std::vector<float> values;  // x fastest
+  int size[3];  // padded samples per axis
+  // Each sample with its neighbour along z, x fastest: four corners of a cell are then 16 bytes in a row.
+  std::vector<float> pairs;
   int bricks[3];
   std::vector<float> free_distance;  // per brick, x fastest
   float lo[3], hi[3];                // the support, local
 
   static constexpr int padding = 2, brick_shift = 2;
   // Of the brick around a local point inside the padded grid.
-  float free_at(const Point3& local) const {
-    const int x = int(local[0]) >> brick_shift, y = int(local[1]) >> brick_shift, z = int(local[2]) >> brick_shift;
+  float free_at(double px, double py, double pz) const {
+    const int x = int(px) >> brick_shift, y = int(py) >> brick_shift, z = int(pz) >> brick_shift;
     return free_distance[x + std::size_t(bricks[0]) * (y + std::size_t(bricks[1]) * z)];
   }
 };

@@ -4,6 +4,8 @@
 // Above: this file is compiled once per instruction set.
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 #include "reference/ray_marcher/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,23 +20,55 @@ using VI = hn::Vec<I>;
 
 // The field as lanes need it.
 struct View {
-  const float* values;
+  const float* pairs;
   const float* free_distance;
   VI row, slice;  // strides of the samples
   VI brick_row, brick_slice;
-  std::ptrdiff_t next_row, next_slice;
+  std::ptrdiff_t next_row;
 };
 
 View view_of(const GridField& field) {
   const I i;
-  return {field.values.data(),
+  return {field.pairs.data(),
           field.free_distance.data(),
           hn::Set(i, field.size[0]),
           hn::Set(i, field.size[0] * field.size[1]),
           hn::Set(i, field.bricks[0]),
           hn::Set(i, field.bricks[0] * field.bricks[1]),
-          field.size[0],
-          std::ptrdiff_t(field.size[0]) * field.size[1]};
+          2 * std::ptrdiff_t(field.size[0])};
+}
+
+// 128 bits from each of base + 2 * at[0], at[4], at[8], ..: one block per four lanes.
+HWY_INLINE VF load_blocks(const float* base, const std::uint32_t* at) {
+  const hn::CappedTag<float, 4> block;
+  const auto load = [&](int lane) HWY_ATTR { return hn::LoadU(block, base + 2 * std::size_t(at[lane])); };
+#if HWY_MAX_BYTES == 64
+  const hn::Half<F> half;
+  return hn::Combine(F(), hn::Combine(half, load(12), load(8)), hn::Combine(half, load(4), load(0)));
+#elif HWY_MAX_BYTES == 32
+  return hn::Combine(F(), load(4), load(0));
+#else
+  return load(0);
+#endif
+}
+
+// Values at x and x + 1 of one row of samples, each linear in z. Plain loads and a 4x4 transposition in each block of
+// four lanes: twice as fast as gathering.
+HWY_INLINE void row_ends(const float* base, const std::uint32_t* at, VF fz, VF& left, VF& right) {
+  const F f;
+  const hn::RepartitionToWide<hn::RebindToUnsigned<F>> wide;
+  const VF v0 = load_blocks(base, at), v1 = load_blocks(base, at + 1), v2 = load_blocks(base, at + 2),
+           v3 = load_blocks(base, at + 3);
+  const auto a = hn::BitCast(wide, hn::InterleaveLower(f, v0, v1)),
+             b = hn::BitCast(wide, hn::InterleaveUpper(f, v0, v1));
+  const auto c = hn::BitCast(wide, hn::InterleaveLower(f, v2, v3)),
+             d = hn::BitCast(wide, hn::InterleaveUpper(f, v2, v3));
+  const VF near_left = hn::BitCast(f, hn::InterleaveLower(wide, a, c)),
+           far_left = hn::BitCast(f, hn::InterleaveUpper(wide, a, c));
+  const VF near_right = hn::BitCast(f, hn::InterleaveLower(wide, b, d)),
+           far_right = hn::BitCast(f, hn::InterleaveUpper(wide, b, d));
+  left = hn::MulAdd(fz, hn::Sub(far_left, near_left), near_left);
+  right = hn::MulAdd(fz, hn::Sub(far_right, near_right), near_right);
 }
 
 HWY_INLINE VF trilinear(const View& view, VF x, VF y, VF z) {
@@ -44,17 +78,14 @@ HWY_INLINE VF trilinear(const View& view, VF x, VF y, VF z) {
   const VI ix = hn::ConvertTo(i, x), iy = hn::ConvertTo(i, y), iz = hn::ConvertTo(i, z);
   const VF fx = hn::Sub(x, hn::ConvertTo(f, ix)), fy = hn::Sub(y, hn::ConvertTo(f, iy)),
            fz = hn::Sub(z, hn::ConvertTo(f, iz));
-  const VI at = hn::Add(ix, hn::Add(hn::Mul(iy, view.row), hn::Mul(iz, view.slice)));
-  const auto edge = [&](const float* base) HWY_ATTR {
-    const VF a = hn::GatherIndex(f, base, at), b = hn::GatherIndex(f, base + 1, at);
-    return hn::MulAdd(fx, hn::Sub(b, a), a);
-  };
-  const auto face = [&](const float* base) HWY_ATTR {
-    const VF a = edge(base), b = edge(base + view.next_row);
-    return hn::MulAdd(fy, hn::Sub(b, a), a);
-  };
-  const VF a = face(view.values), b = face(view.values + view.next_slice);
-  return hn::MulAdd(fz, hn::Sub(b, a), a);
+  const hn::RebindToUnsigned<F> u;
+  HWY_ALIGN std::uint32_t at[HWY_MAX_BYTES / sizeof(std::uint32_t)];
+  hn::Store(hn::BitCast(u, hn::Add(ix, hn::Add(hn::Mul(iy, view.row), hn::Mul(iz, view.slice)))), u, at);
+  VF a, b, c, d;
+  row_ends(view.pairs, at, fz, a, b);
+  row_ends(view.pairs + view.next_row, at, fz, c, d);
+  const VF left = hn::MulAdd(fy, hn::Sub(c, a), a), right = hn::MulAdd(fy, hn::Sub(d, b), b);
+  return hn::MulAdd(fx, hn::Sub(right, left), left);
 }
 
 HWY_INLINE VF free_distance(const View& view, VF x, VF y, VF z) {
@@ -91,17 +122,21 @@ long long GridColumns(const GridField& field, const StepRule& rule, bool skip, s
     if (rule.length > 0)
       steps = hn::Min(hn::Max(one, hn::Ceil(hn::Div(length, hn::Set(f, rule.length)))), hn::Set(f, 1048576.0f));
     const VF h = hn::Div(length, steps);
-    const VF dx = hn::LoadU(f, rays.dx + i), dy = hn::LoadU(f, rays.dy + i), dz = hn::LoadU(f, rays.dz + i);
-    const VF ox = hn::MulAdd(t0, dx, hn::LoadU(f, rays.ox + i)), oy = hn::MulAdd(t0, dy, hn::LoadU(f, rays.oy + i)),
-             oz = hn::MulAdd(t0, dz, hn::LoadU(f, rays.oz + i));
-    // Steps per cell of the largest component: how many steps a free distance is worth.
-    const VF pace = hn::Div(one, hn::Mul(h, hn::Max(hn::Abs(dx), hn::Max(hn::Abs(dy), hn::Abs(dz)))));
-    VF step = zero, sum = zero;
     auto running = hn::And(hn::Gt(length, zero), hn::FirstN(f, n - i));
-    const auto position = [&](VF o, VF d) HWY_ATTR { return hn::MulAdd(hn::Mul(hn::Add(step, half), h), d, o); };
+    const auto delta = [&](const float* d) HWY_ATTR { return hn::Mul(h, hn::LoadU(f, d + i)); };
+    const VF dx = delta(rays.dx), dy = delta(rays.dy), dz = delta(rays.dz);
+    // Midpoint of the first step. Lanes that do not run stay there, and it must be within the grid.
+    const VF start = hn::MulAdd(half, h, t0);
+    const auto first = [&](const float* o, const float* d) HWY_ATTR {
+      return hn::IfThenElseZero(running, hn::MulAdd(start, hn::LoadU(f, d + i), hn::LoadU(f, o + i)));
+    };
+    const VF ox = first(rays.ox, rays.dx), oy = first(rays.oy, rays.dy), oz = first(rays.oz, rays.dz);
+    // Steps per cell of the largest component: how many steps a free distance is worth.
+    const VF pace = hn::Div(one, hn::Max(hn::Abs(dx), hn::Max(hn::Abs(dy), hn::Abs(dz))));
+    VF step = zero, sum = zero;
     while (!hn::AllFalse(f, running)) {
-      const VF x = hn::IfThenElseZero(running, position(ox, dx)), y = hn::IfThenElseZero(running, position(oy, dy)),
-               z = hn::IfThenElseZero(running, position(oz, dz));
+      const VF at = hn::IfThenElseZero(running, step);
+      const VF x = hn::MulAdd(at, dx, ox), y = hn::MulAdd(at, dy, oy), z = hn::MulAdd(at, dz, oz);
       const VF value = hn::IfThenElseZero(running, trilinear(view, x, y, z));
       sum = hn::Add(sum, value);
       evaluations += hn::CountTrue(f, running);

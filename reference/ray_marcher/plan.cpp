@@ -27,7 +27,7 @@ Rgb background(const scene::Scene& scene, const Vec3& direction) {
 }
 
 Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
-  Plan plan{scene, options, make_layers(scene->media), {}};
+  Plan plan{scene, options, make_layers(scene->media), {}, false};
   for (const scene::Light& light : scene->lights) {
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
       for (const auto& l : environment_as_lights(*environment, options.environment_directions))
@@ -36,25 +36,32 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
       plan.lights.push_back(light);
     }
   }
+  for (const Layer& layer : plan.layers)
+    if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
   return plan;
 }
 
-RaySteps ray_steps(const Plan& plan, const Ray& ray, double t_end) {
-  RaySteps result;
-  result.passes.push_back({make_spacing(plan.layers, plan.options, ray, t_end, {}), {}});
-  if (result.passes[0].spacing.steps.empty()) return result;
+void add_passes(const Plan& plan, int ray_number, const Ray& ray, double t_end, std::vector<Pass>& passes,
+                std::vector<Step>& steps) {
+  passes.push_back({ray_number, -1, make_spacing(plan.layers, plan.options, ray, t_end, {}, steps)});
+  if (!plan.scatters || !plan.options.graded) return;
   for (int i = 0; i < int(plan.lights.size()); ++i) {
-    const auto ball = plan.options.graded ? scene::ball(plan.lights[i]) : std::nullopt;
-    if (ball) {
-      Spacing own = make_spacing(plan.layers, plan.options, ray, t_end, approach(ray, ball->center));
-      if (own.around_light) {
-        result.passes.push_back({std::move(own), {i}});
-        continue;
-      }
-    }
-    result.passes[0].lights.push_back(i);
+    const auto ball = scene::ball(plan.lights[i]);
+    if (!ball) continue;
+    const std::size_t before = steps.size();
+    const Spacing own = make_spacing(plan.layers, plan.options, ray, t_end, approach(ray, ball->center), steps);
+    if (own.around_light)
+      passes.push_back({ray_number, i, own});
+    else
+      steps.resize(before);
   }
-  return result;
+}
+
+bool serves(const std::vector<Pass>& passes, std::size_t pass, int light) {
+  if (passes[pass].own_light >= 0) return passes[pass].own_light == light;
+  for (std::size_t p = pass + 1; p < passes.size() && passes[p].ray == passes[pass].ray; ++p)
+    if (passes[p].own_light == light) return false;
+  return true;
 }
 
 void Counters::add(const Counters& other) {

@@ -15,6 +15,7 @@ struct Plan {
   Options options;
   std::vector<Layer> layers;
   std::vector<scene::Light> lights;  // delta lights only: an environment is replaced by directional lights
+  bool scatters = false;             // some medium has an albedo, and there is light for it
 };
 
 Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
@@ -28,16 +29,17 @@ std::vector<scene::DirectionalLight> environment_as_lights(const scene::Environm
 // What the environments send along a camera ray that meets nothing [W/m^2/sr].
 Rgb background(const scene::Scene&, const Vec3& direction);
 
-// The steps of one camera ray: `common` serves the lights in `lights`, and the transmittance; each light that grades
-// the ray around itself has steps of its own.
-struct RaySteps {
-  struct Pass {
-    Spacing spacing;
-    std::vector<int> lights;  // indices into Plan::lights
-  };
-  std::vector<Pass> passes;  // passes[0] is the common one
+// One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
+// march of its own. A light that grades the ray around itself has one.
+struct Pass {
+  int ray;
+  int own_light;  // -1: common
+  Spacing spacing;
 };
-RaySteps ray_steps(const Plan&, const Ray&, double t_end);
+// Appends the passes of a ray, and their steps.
+void add_passes(const Plan&, int ray_number, const Ray&, double t_end, std::vector<Pass>&, std::vector<Step>&);
+// Is that pass the one for this light?
+bool serves(const std::vector<Pass>&, std::size_t pass, int light);
 
 struct Counters {
   long long rays = 0;            // camera rays

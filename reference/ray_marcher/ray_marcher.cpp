@@ -70,7 +70,8 @@ class PreparedMarch final : public scene::Prepared {
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
     scene::Rendering result;
     result.film = scene::Film(view.width, view.height);
-    for (const char* layer : {"mean", "airlight", "surface", "transmittance"}) result.film.add(layer);
+    float *mean = result.film.add("mean").data(), *airlight = result.film.add("airlight").data(),
+          *surface = result.film.add("surface").data(), *transmittance = result.film.add("transmittance").data();
     result.film.metadata = {
         {"method", "ray_marcher"}, {"settings", settings_}, {"scene", plan_.scene->name}, {"hash", plan_.scene->hash}};
     Counters total;
@@ -80,18 +81,23 @@ class PreparedMarch final : public scene::Prepared {
     scene::parallel_rows(columns * rows, execution, [&](int tile) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
       const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
-      std::vector<Ray> rays;
+      static thread_local std::vector<Ray> rays;
+      static thread_local TileMarcher marcher;
+      rays.clear();
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x)
           rays.push_back(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       Counters counters;
-      const std::vector<Pixel> pixels = plan_.options.simd ? march_tile(plan_, rays, counters) : plain(rays, counters);
+      const std::vector<Pixel> slow = plan_.options.simd ? std::vector<Pixel>() : plain(rays, counters);
+      const std::vector<Pixel>& pixels = plan_.options.simd ? marcher.march(plan_, rays, counters) : slow;
       for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const int x = x0 + int(i) % (x1 - x0), y = y0 + int(i) / (x1 - x0);
-        result.film.set("mean", x, y, pixels[i].airlight + pixels[i].surface);
-        result.film.set("airlight", x, y, pixels[i].airlight);
-        result.film.set("surface", x, y, pixels[i].surface);
-        result.film.set("transmittance", x, y, pixels[i].transmittance);
+        const std::size_t at = 3 * ((y0 + i / (x1 - x0)) * view.width + x0 + i % (x1 - x0));
+        for (int c = 0; c < 3; ++c) {
+          mean[at + c] = float(pixels[i].airlight[c] + pixels[i].surface[c]);
+          airlight[at + c] = float(pixels[i].airlight[c]);
+          surface[at + c] = float(pixels[i].surface[c]);
+          transmittance[at + c] = float(pixels[i].transmittance[c]);
+        }
       }
       const std::lock_guard lock(mutex);
       total.add(counters);

@@ -31,6 +31,24 @@ struct Points {
   }
 };
 
+// Steps of a tile.
+struct StepArrays {
+  Points at, direction;  // midpoint; direction of the camera ray
+  std::vector<float> length;
+  // [layer * channels + channel of the transport]: weight * sigma_t * density, what the step scatters per unit of phase
+  // function and irradiance
+  std::vector<std::vector<float>> amount;
+
+  void resize(std::size_t n) { at.resize(n), direction.resize(n), resize_padded(length, n); }
+  void select(const StepArrays& from, const std::vector<int>& index) {
+    at.select(from.at, index);
+    direction.select(from.direction, index);
+    gather(from.length, index, length);
+    amount.resize(from.amount.size());
+    for (std::size_t a = 0; a < amount.size(); ++a) gather(from.amount[a], index, amount[a]);
+  }
+};
+
 // What reaches points from one light.
 struct Arrivals {
   std::vector<float> to_x, to_y, to_z, distance, minus, plus, strength;

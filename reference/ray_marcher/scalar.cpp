@@ -88,18 +88,19 @@ Rgb lit_surface(const Plan& plan, const scene::Hit& hit, const Vec3& direction, 
 
 Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& counters) {
   Pixel pixel;
-  const RaySteps steps = ray_steps(plan, ray, t_end);
+  std::vector<Step> steps;
+  std::vector<Pass> passes;
+  add_passes(plan, 0, ray, t_end, passes, steps);
   std::vector<double> densities(plan.layers.size());
-  bool first = true;
-  for (const RaySteps::Pass& pass : steps.passes) {
+  for (std::size_t p = 0; p < passes.size(); ++p) {
+    const Spacing& spacing = passes[p].spacing;
     Rgb depth = Rgb::Zero();
     bool ended = false;
-    for (const Step& step : pass.spacing.steps) {
+    for (std::size_t i = spacing.begin; i < spacing.end; ++i) {
+      const Step& step = steps[i];
       const Rgb before = (-depth).exp();
-      if ((before < plan.options.early_exit).all()) {
-        ended = true;
-        break;
-      }
+      ended = (before < plan.options.early_exit).all();
+      if (ended) break;
       sample_densities(plan, ray, step, densities, counters);
       Rgb extinction = Rgb::Zero();
       for (std::size_t k = 0; k < plan.layers.size(); ++k) extinction += plan.layers[k].medium->sigma_t * densities[k];
@@ -107,14 +108,14 @@ Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& coun
       const Rgb depth_of_step = extinction * step.length;
       const Rgb weight = before * step.length * depth_of_step.unaryExpr(&mean_over_step);
       const Point3 x = ray.at(step.t);
-      for (const int light : pass.lights)
-        pixel.airlight += weight * in_scattered(plan, densities, x, ray.direction,
-                                                incident_on_step(plan.lights[light], ray, step), counters);
+      for (int light = 0; plan.scatters && light < int(plan.lights.size()); ++light)
+        if (serves(passes, p, light))
+          pixel.airlight += weight * in_scattered(plan, densities, x, ray.direction,
+                                                  incident_on_step(plan.lights[light], ray, step), counters);
       depth += depth_of_step;
     }
-    if (first)
-      for (int c = 0; c < 3; ++c) pixel.transmittance[c] = pass.spacing.endless[c] || ended ? 0 : std::exp(-depth[c]);
-    first = false;
+    if (passes[p].own_light < 0)
+      for (int c = 0; c < 3; ++c) pixel.transmittance[c] = spacing.endless[c] || ended ? 0 : std::exp(-depth[c]);
   }
   return pixel;
 }

@@ -68,17 +68,19 @@ bool any_varies(const std::vector<Layer>& layers, unsigned long long inside) {
 }
 
 // The ray between all cuts, without the parts that no medium touches.
-std::vector<Part> cut(const std::vector<Layer>& layers, const Ray& ray, double t_end) {
-  std::vector<Interval> extents(2 * layers.size());
-  std::vector<double> cuts;
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    extents[2 * k] = constant_extent(layers[k], ray, {0, t_end});
-    extents[2 * k + 1] = varied_extent(layers[k], ray, {0, t_end});
+void cut(const std::vector<Layer>& layers, const Ray& ray, double t_end, std::vector<Part>& parts) {
+  static thread_local std::vector<Interval> extents;
+  static thread_local std::vector<double> cuts;
+  extents.clear();
+  cuts.clear();
+  parts.clear();
+  for (const Layer& layer : layers) {
+    extents.push_back(constant_extent(layer, ray, {0, t_end}));
+    extents.push_back(varied_extent(layer, ray, {0, t_end}));
   }
   for (const Interval& e : extents)
     if (!e.empty()) cuts.insert(cuts.end(), {e.lo, e.hi});
   std::sort(cuts.begin(), cuts.end());
-  std::vector<Part> parts;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     if (!(cuts[i] < cuts[i + 1])) continue;
     unsigned long long inside = 0;
@@ -86,7 +88,6 @@ std::vector<Part> cut(const std::vector<Layer>& layers, const Ray& ray, double t
       if (extents[e].lo <= cuts[i] && extents[e].hi >= cuts[i + 1]) inside |= 1ull << e;
     if (inside) parts.push_back({cuts[i], cuts[i + 1], inside});
   }
-  return parts;
 }
 
 // The endless part, from the light on (from its beginning without one), gets steps that grow.
@@ -147,38 +148,64 @@ bool grade_light(std::vector<Part>& parts, const Approach& light) {
   return met;
 }
 
-// Walks a part in equal steps, over the free space of its grids; false if the part has anything else in it.
-bool skip_through(const std::vector<Layer>& layers, const Ray& ray, const Part& part, int n, std::vector<Step>& steps) {
-  struct Walk {
-    const GridField* grid;
-    Point3 origin;
-    Vec3 step;
-    double pace;  // steps per cell
-  };
+// A ray through a grid's map of free space, in steps.
+struct Walk {
+  const GridField* grid;
+  double x[3], dx[3];  // local midpoint of step 0, and from one to the next
+  double per_cell;     // steps per cell of the largest component
+
+  Walk(const GridField& field, const Point3& start, const Vec3& step) : grid(&field) {
+    const Point3 local = field.frame.point(start);
+    const Vec3 delta = field.frame.vector(step);
+    for (int a = 0; a < 3; ++a) x[a] = local[a] + 0.5 * delta[a], dx[a] = delta[a];
+    per_cell = 1 / delta.cwiseAbs().maxCoeff();
+  }
+
+  // From step i on, how many steps lie in free space; negative: how many may not.
+  double run(double i) const {
+    const double px = x[0] + i * dx[0], py = x[1] + i * dx[1], pz = x[2] + i * dx[2];
+    const double free = grid->free_at(px, py, pz);
+    if (free >= 0) return 1 + std::floor(free * per_cell);
+    // To the face of the brick; a step too many or too few changes no result.
+    const double p[3] = {px, py, pz};
+    double steps = infinity;
+    for (int a = 0; a < 3; ++a) {
+      if (dx[a] == 0) continue;
+      constexpr int shift = GridField::brick_shift;
+      const double face = double(((int(p[a]) >> shift) + (dx[a] > 0)) << shift);
+      steps = std::min(steps, (face - p[a]) / dx[a]);
+    }
+    return -1 - std::floor(std::max(steps, 0.0));
+  }
+};
+
+// Equal steps through a part, less those in the free space of its grids if it has nothing but grids.
+void step_evenly(const std::vector<Layer>& layers, const Ray& ray, const Part& part, int n, bool skip,
+                 std::vector<Step>& steps) {
   const double h = (part.hi - part.lo) / n;
-  Walk walks[most_layers];
-  int count = 0;
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    if (in_constant(part.inside, k)) return false;
-    if (!in_varied(part.inside, k)) continue;
-    if (!layers[k].grid) return false;
-    const GridField& grid = *layers[k].grid;
-    const Vec3 step = h * grid.frame.vector(ray.direction);
-    walks[count++] = {&grid, grid.frame.point(ray.at(part.lo)) + 0.5 * step, step, 1 / step.cwiseAbs().maxCoeff()};
+  static thread_local std::vector<Walk> walks;
+  walks.clear();
+  for (std::size_t k = 0; skip && k < layers.size(); ++k) {
+    skip = !in_constant(part.inside, k) && !(in_varied(part.inside, k) && !layers[k].grid);
+    if (skip && in_varied(part.inside, k)) walks.emplace_back(*layers[k].grid, ray.at(part.lo), h * ray.direction);
   }
   for (int i = 0; i < n;) {
-    double free_steps = infinity;
-    for (int w = 0; w < count; ++w) {
-      const double distance = walks[w].grid->free_at(walks[w].origin + i * walks[w].step);
-      free_steps = distance < 0 ? -1 : std::min(free_steps, std::floor(distance * walks[w].pace));
-      if (free_steps < 0) break;
+    double free = infinity, taken = skip ? 0 : n;
+    for (const Walk& walk : walks) {
+      if (!skip) break;
+      const double run = walk.run(i);
+      if (run < 0)
+        taken = std::max(taken, -run);
+      else
+        free = std::min(free, run);
     }
-    if (free_steps < 0)
-      steps.push_back({part.lo + (i + 0.5) * h, h, part.inside}), ++i;
-    else
-      i += 1 + int(std::min(free_steps, double(n)));
+    if (taken > 0) {
+      const int end = int(std::min(i + taken, double(n)));
+      for (; i < end; ++i) steps.push_back({part.lo + (i + 0.5) * h, h, part.inside});
+    } else {
+      i += int(std::min(free, double(n)));
+    }
   }
-  return true;
 }
 
 }  // namespace
@@ -197,9 +224,11 @@ double mean_inverse_square(const Approach& light, const Step& step) {
 }
 
 Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, const Ray& ray, double t_end,
-                     const std::optional<Approach>& light) {
+                     const std::optional<Approach>& light, std::vector<Step>& steps) {
   Spacing spacing;
-  std::vector<Part> parts = cut(layers, ray, t_end);
+  spacing.begin = spacing.end = steps.size();
+  static thread_local std::vector<Part> parts;
+  cut(layers, ray, t_end, parts);
   if (parts.empty()) return spacing;
   if (Part& last = parts.back(); last.hi == infinity) {
     for (std::size_t k = 0; k < layers.size(); ++k)
@@ -218,15 +247,18 @@ Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, c
     const double share = p.measure();
     const int n = options.step > 0 ? steps_through({0, share}, 0, options.step)
                                    : std::max(1, int(std::lround(options.steps * (share / total))));
-    const bool equal = !p.light && p.rate == 0;
-    if (equal && options.skip_empty && skip_through(layers, ray, p, n, spacing.steps)) continue;
+    if (!p.light && p.rate == 0) {
+      step_evenly(layers, ray, p, n, options.skip_empty, steps);
+      continue;
+    }
     double from = p.lo;
     for (int i = 1; i <= n; ++i) {
       const double to = i == n ? p.hi : p.at(double(i) / n);
-      if (to > from) spacing.steps.push_back({0.5 * (from + to), to - from, p.inside});
+      if (to > from) steps.push_back({0.5 * (from + to), to - from, p.inside});
       from = std::max(from, to);
     }
   }
+  spacing.end = steps.size();
   return spacing;
 }
 

@@ -28,8 +28,9 @@ constexpr std::size_t most_layers = 32;
 inline bool in_constant(unsigned long long inside, std::size_t layer) { return inside >> (2 * layer) & 1; }
 inline bool in_varied(unsigned long long inside, std::size_t layer) { return inside >> (2 * layer + 1) & 1; }
 
+// Steps [begin, end) of an array, in order of t.
 struct Spacing {
-  std::vector<Step> steps;  // in order of t
+  std::size_t begin = 0, end = 0;
   // Per channel: true where the medium behind the last step goes on for ever, so that nothing beyond it is seen.
   Eigen::Array<bool, 3, 1> endless = Eigen::Array<bool, 3, 1>::Constant(false);
   bool around_light = false;  // graded around the light: different from what it is without the light
@@ -46,9 +47,9 @@ Approach approach(const Ray&, const Point3& light);
 // over h * length. What makes the inverse square exact in a step.
 double mean_inverse_square(const Approach&, const Step&);
 
-// Steps of the ray over [0, t_end]; `light`: grade around it too. With Options::skip_empty, steps whose midpoint lies
-// in an empty brick of every grid that is there are left out; the others are where they would be.
+// Appends the steps of the ray over [0, t_end]; `light`: grade around it too. With Options::skip_empty, equal steps
+// whose midpoint lies in an empty brick of every grid that is there are left out; the others are where they would be.
 Spacing make_spacing(const std::vector<Layer>&, const Options&, const Ray&, double t_end,
-                     const std::optional<Approach>& light);
+                     const std::optional<Approach>& light, std::vector<Step>& steps);
 
 }  // namespace airlight::ray_marcher

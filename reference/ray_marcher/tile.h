@@ -6,11 +6,49 @@
 // behind.
 #pragma once
 #include "reference/ray_marcher/plan.h"
+#include "reference/ray_marcher/samples.h"
 #include "reference/ray_marcher/scalar.h"
 
 namespace airlight::ray_marcher {
 
-// Pixels of the rays, in their order; thread-safe. `Ray`s near each other make the kernels more efficient.
-std::vector<Pixel> march_tile(const Plan&, const std::vector<Ray>&, Counters&);
+// Works on one tile after another and keeps its memory; one per thread.
+class TileMarcher {
+ public:
+  // Pixels of the rays, in their order. Rays near each other make the kernels more efficient.
+  const std::vector<Pixel>& march(const Plan&, const std::vector<Ray>&, Counters&);
+
+ private:
+  void lay_steps();
+  void sample_densities();
+  void weigh_steps();
+  void scatter_light(int light);
+  void keep_lit(int light);
+  void collect();
+  void shade_behind();
+  void light_surfaces();
+  std::size_t slot(std::size_t layer, int channel) const { return layer * channels_ + channel; }
+
+  const Plan* plan_ = nullptr;
+  const std::vector<Ray>* rays_ = nullptr;
+  Counters* counters_ = nullptr;
+  int channels_ = 1;  // of the transport: 1 where every extinction is grey
+  std::vector<Pixel> pixels_;
+  std::vector<scene::RayEnd> ends_;
+  std::vector<Pass> passes_;
+  std::vector<Step> plain_steps_;
+  std::size_t count_ = 0;                    // of steps
+  std::vector<std::vector<float>> density_;  // [layer][step]
+  StepArrays all_, steps_, lit_, less_;      // all; those that scatter; those that a light reaches
+  std::vector<float> before_[3], depth_[3], weight_;
+  std::vector<float> sums_[3], lit_sums_[3];  // what steps_, lit_ send to the camera
+  std::vector<int> live_, index_, kept_;
+  std::vector<float> local_[3], value_;
+  Points points_;
+  Arrivals to_, fewer_;
+  Columns columns_;
+  std::vector<Scatterer> scatterers_;
+  std::vector<int> hit_;
+  std::vector<Rgb> reflected_;
+};
 
 }  // namespace airlight::ray_marcher
