@@ -1,16 +1,21 @@
 // Reading and writing OpenVDB files: the only source that sees OpenVDB.
 //
-// OpenVDB reads past the end of a file without an error and leaves what it did not find at zero. So the file is read
-// here through a stream that throws at its end, and every grid must end where its descriptor says; the counts of active
-// voxels that writers store are compared with what was found.
+// A file is checked by vdb_layout.h before OpenVDB reads it. Then what it holds is compared with what its metadata
+// says: the number and the box of active voxels (stored by every writer that uses the library) and the checksum of the
+// samples (stored by ours). Damage within the compressed samples of other writers can go unseen: a checksum beside the
+// file, PATH.xxh128 as `xxh128sum` prints it, closes that gap where there is one.
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
+#include <xxhash.h>
 
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -18,6 +23,7 @@
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/media/vdb_layout.h"
 #include "scene/media/voxel_grid.h"
 
 namespace airlight::scene {
@@ -27,10 +33,15 @@ namespace {
 // zero.
 const char* const origin_key = "airlight_origin_index";
 const char* const size_key = "airlight_size";
+const char* const checksum_key = "airlight_xxh128";
 
 void initialize_once() {
   static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
+  std::call_once(once, [] {
+    openvdb::initialize();
+    // The table for lazy loading, which we do not use, is read without checks; as an unknown type it is skipped.
+    openvdb::Metadata::unregisterType("__delayedload");
+  });
 }
 
 // One line of at most 200 characters: messages of damaged files can hold anything.
@@ -40,10 +51,33 @@ void initialize_once() {
   throw Error(where + ": " + line);
 }
 
-// What io::File does, with the stream in our hands.
+// Minus zero is kept: what is written comes back bit for bit.
+bool is_plain_zero(float value) { return value == 0 && !std::signbit(value); }
+
+std::string hex128(XXH128_hash_t hash) { return fmt::format("{:016x}{:016x}", hash.high64, hash.low64); }
+
+// Of the samples and their box.
+std::string checksum(const VoxelGrid& grid) {
+  const std::int32_t box[6] = {grid.size[0],         grid.size[1],         grid.size[2],
+                               grid.origin_index[0], grid.origin_index[1], grid.origin_index[2]};
+  const XXH64_hash_t seed = XXH3_64bits(box, sizeof box);
+  return hex128(XXH3_128bits_withSeed(grid.values.data(), grid.values.size() * sizeof(float), seed));
+}
+
+// The checksum beside the file, if there is one.
+void check_sidecar(const std::string& path, std::string_view file) {
+  std::ifstream stream(path + ".xxh128");
+  std::string expected;
+  if (!stream || !(stream >> expected)) return;
+  const std::string found = hex128(XXH3_128bits(file.data(), file.size()));
+  if (found != expected)
+    fail(path, fmt::format("damaged: its checksum is {}, {}.xxh128 says {}", found, path, expected.substr(0, 32)));
+}
+
+// What io::File does, on bytes that have been checked.
 class Reader : public openvdb::io::Archive {
  public:
-  openvdb::GridBase::Ptr read(std::istream& stream, std::int64_t bytes, const std::string& name, std::string& names) {
+  openvdb::GridBase::Ptr read(std::istream& stream, const VdbEntry& entry) {
     readHeader(stream);
     openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
     metadata->setSeekable(true);
@@ -51,37 +85,15 @@ class Reader : public openvdb::io::Archive {
     setFormatVersion(stream);
     setLibraryVersion(stream);
     setDataCompression(stream);
-    openvdb::MetaMap file_metadata;
-    file_metadata.readMeta(stream);
-
-    openvdb::GridBase::Ptr found;
-    const std::int32_t count = readGridCount(stream);
-    for (std::int32_t i = 0; i < count; ++i) {
-      openvdb::io::GridDescriptor descriptor;
-      openvdb::GridBase::Ptr grid = descriptor.read(stream);
-      names += (names.empty() ? "" : ", ") + descriptor.gridName();
-      const bool wanted = !found && descriptor.gridName() == name;
-      if (inputHasGridOffsets()) {
-        const std::int64_t begin = descriptor.getGridPos(), end = descriptor.getEndPos();
-        if (end > bytes)
-          OPENVDB_THROW(openvdb::IoError,
-                        fmt::format("truncated: its grids end at byte {}, the file at {}", end, bytes));
-        if (begin < stream.tellg() || end < begin || descriptor.getBlockPos() < begin || descriptor.getBlockPos() > end)
-          OPENVDB_THROW(openvdb::IoError, "damaged: its grid offsets are out of order");
-        if (wanted) {
-          descriptor.seekToGrid(stream);
-          readGrid(grid, descriptor, stream);
-          if (stream.tellg() != end)
-            OPENVDB_THROW(openvdb::IoError, fmt::format("damaged: the grid ended at byte {}, expected {}",
-                                                        std::int64_t(stream.tellg()), end));
-        }
-        descriptor.seekToEnd(stream);
-      } else {
-        readGrid(grid, descriptor, stream);
-      }
-      if (wanted) found = grid;
-    }
-    return found;
+    stream.seekg(entry.descriptor);
+    openvdb::io::GridDescriptor descriptor;
+    openvdb::GridBase::Ptr grid = descriptor.read(stream);
+    stream.seekg(entry.begin);
+    readGrid(grid, descriptor, stream);
+    if (stream.tellg() != std::streamoff(entry.end))
+      throw std::runtime_error(
+          fmt::format("damaged: read to byte {}, expected {}", std::int64_t(stream.tellg()), entry.end));
+    return grid;
   }
 };
 
@@ -164,7 +176,7 @@ openvdb::CoordBBox sample_box(const openvdb::FloatGrid& grid, const openvdb::Coo
 
 void copy_values(VoxelGrid& grid, const openvdb::FloatGrid& source, const openvdb::CoordBBox& box) {
   for (auto value = source.cbeginValueAll(); value; ++value) {
-    if (*value == 0) continue;
+    if (is_plain_zero(*value)) continue;
     openvdb::CoordBBox here;
     value.getBoundingBox(here);
     here.intersect(box);
@@ -177,27 +189,43 @@ void copy_values(VoxelGrid& grid, const openvdb::FloatGrid& source, const openvd
   }
 }
 
-openvdb::FloatGrid::Ptr open_grid(const std::string& path, const std::string& name) {
-  const std::string where = fmt::format("{}: grid '{}'", path, name);
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  if (!stream || std::filesystem::is_directory(path)) fail(path, "cannot be read, expected an OpenVDB file");
-  const std::int64_t bytes = stream.tellg();
-  if (bytes == 0) fail(path, "is empty, expected an OpenVDB file");
-  stream.seekg(0);
-  stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-  openvdb::GridBase::Ptr grid;
-  std::string names;
+std::string read_bytes(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!stream || std::filesystem::is_directory(path) || !(bytes << stream.rdbuf()))
+    fail(path,
+         fmt::format("cannot be read ({}), expected an OpenVDB file", std::filesystem::is_directory(path) ? "a folder"
+                                                                      : stream                            ? "empty"
+                                                                               : std::strerror(errno)));
+  return std::move(bytes).str();
+}
+
+openvdb::FloatGrid::Ptr open_grid(const std::string& path, const std::string& name, const std::string& where) {
+  std::istringstream stream(read_bytes(path));
+  stream.exceptions(std::ios::failbit | std::ios::badbit);
+  const std::string_view file = stream.view();
+  check_sidecar(path, file);
+  std::string subject = path;
   try {
-    grid = Reader().read(stream, bytes, name, names);
+    const std::vector<VdbEntry> entries = vdb_grids(file);
+    std::string names;
+    for (const VdbEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
+    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& e) { return e.name == name; });
+    if (entry == entries.end())
+      throw std::runtime_error(fmt::format("has no grid '{}', only: {}", name, names.empty() ? "(none)" : names));
+    subject = where;
+    if (!is_float_grid(*entry))
+      throw std::runtime_error(fmt::format("is of type {}, expected Tree_float_5_4_3", entry->type));
+    if (entry->is_instance) throw std::runtime_error("shares the samples of another grid, expected its own");
+    check_float_grid(file, *entry);
+    auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(Reader().read(stream, *entry));
+    if (!grid) throw std::runtime_error("is not a float grid");
+    return grid;
   } catch (const std::ios_base::failure&) {
-    fail(path, "truncated or damaged: it ends in the middle of a grid, expected an OpenVDB file");
+    fail(subject, "damaged: OpenVDB reads beyond its end");
   } catch (const std::exception& e) {
-    fail(path, fmt::format("{}, expected an OpenVDB file", std::string(e.what()).substr(0, 150)));
+    fail(subject, e.what());
   }
-  if (!grid) fail(path, fmt::format("has no grid '{}', expected one of: {}", name, names.empty() ? "(none)" : names));
-  const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-  if (!floats) fail(where, fmt::format("is of type {}, expected a float grid", grid->valueType()));
-  return floats;
 }
 
 }  // namespace
@@ -205,7 +233,7 @@ openvdb::FloatGrid::Ptr open_grid(const std::string& path, const std::string& na
 VoxelGrid read_vdb(const std::string& path, const std::string& name, std::size_t max_voxels) {
   initialize_once();
   const std::string where = fmt::format("{}: grid '{}'", path, name);
-  const openvdb::FloatGrid::Ptr source = open_grid(path, name);
+  const openvdb::FloatGrid::Ptr source = open_grid(path, name, where);
   VoxelGrid grid;
   set_transform(grid, source->transform(), where);
   if (source->background() != 0)
@@ -222,6 +250,8 @@ VoxelGrid read_vdb(const std::string& path, const std::string& name, std::size_t
     grid.origin_index = {box.min().x(), box.min().y(), box.min().z()};
     grid.values.assign(std::size_t(all), 0.0f);
     copy_values(grid, *source, box);
+    const auto noted = source->getMetadata<openvdb::StringMetadata>(checksum_key);
+    if (noted && noted->value() != checksum(grid)) fail(where, "damaged: its samples do not match their checksum");
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
@@ -243,11 +273,13 @@ void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string
   target->insertMeta(origin_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.origin_index.data())));
   target->insertMeta(size_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.size.data())));
 
+  target->insertMeta(checksum_key, openvdb::StringMetadata(checksum(grid)));
+
   auto accessor = target->getAccessor();
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
       for (int i = 0; i < grid.size[0]; ++i)
-        if (const float value = grid.at(i, j, k); value != 0)
+        if (const float value = grid.at(i, j, k); !is_plain_zero(value))
           accessor.setValue(
               openvdb::Coord(grid.origin_index[0] + i, grid.origin_index[1] + j, grid.origin_index[2] + k), value);
 

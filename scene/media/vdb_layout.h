@@ -1,0 +1,32 @@
+// The layout of OpenVDB files (format versions 222 to 224, since 2013), byte by byte: does a file hold whole grids?
+//
+// OpenVDB trusts what it reads: past the end of a file it leaves values at zero without an error, and a damaged length
+// makes it write beyond its buffers. Here every length is checked before OpenVDB sees the file; nothing is decoded. All
+// functions throw std::runtime_error that says what is wrong.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace airlight::scene {
+
+struct VdbEntry {
+  std::string name;
+  std::string type;            // as OpenVDB calls it: "Tree_float_5_4_3", "Tree_vec3s_5_4_3_HalfFloat", ...
+  bool is_instance = false;    // shares another grid's samples
+  std::size_t descriptor = 0;  // byte where its entry begins
+  std::size_t begin = 0;       // of its metadata, transform and samples
+  std::size_t end = 0;
+};
+
+// The grids of a file, in its order; their byte ranges lie within it.
+std::vector<VdbEntry> vdb_grids(std::string_view file);
+
+// "Tree_float_5_4_3", stored as float or half.
+bool is_float_grid(const VdbEntry&);
+
+// Walks through a float grid: it must end exactly where its entry says, and its two copies of every mask of active
+// voxels must agree.
+void check_float_grid(std::string_view file, const VdbEntry&);
+
+}  // namespace airlight::scene
