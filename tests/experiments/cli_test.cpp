@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 
 #include "scene/film.h"
 #include "tests/temporary_folder.h"
@@ -14,7 +15,10 @@ using Catch::Contains;
 
 namespace {
 
-const std::string scenes = AIRLIGHT_SOURCE_DIR "/experiments/scenes/";
+// The program runs in a folder of its own, so everything is named from the root of the file system.
+const std::string root = std::filesystem::absolute(AIRLIGHT_SOURCE_DIR).string();
+const std::string program = std::filesystem::absolute(AIRLIGHT_PROGRAM).string();
+const std::string scenes = root + "/experiments/scenes/";
 
 struct Result {
   int code;
@@ -25,7 +29,7 @@ struct Result {
 Result run(const std::string& arguments, const TemporaryFolder& folder) {
   const std::string out = (folder.path() / "stdout").string(), err = (folder.path() / "stderr").string();
   const int status = std::system(
-      ("cd '" + folder.path().string() + "' && " AIRLIGHT_PROGRAM " " + arguments + " >'" + out + "' 2>'" + err + "'")
+      ("cd '" + folder.path().string() + "' && '" + program + "' " + arguments + " >'" + out + "' 2>'" + err + "'")
           .c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), read_bytes(err)};
 }
@@ -77,8 +81,8 @@ TEST_CASE("usage errors are one line, exit code 2, and name the nearest", "[cli]
   refused("compare a.exr b.exr --max rel_l3=1", "nearest: rel_l2");
   refused("convert a.exr b.gif", ".png or .pfm");
   refused("experiment list --root .", "experiments/README.md");
-  refused("experiment list --root " AIRLIGHT_SOURCE_DIR " nothing_like_it", "unknown experiment");
-  refused("gates --root " AIRLIGHT_SOURCE_DIR " --profile fast", "quick or paper");
+  refused("experiment list --root '" + root + "' nothing_like_it", "unknown experiment");
+  refused("gates --root '" + root + "' --profile fast", "quick or paper");
   CHECK_FALSE(std::filesystem::exists(folder.path() / "a.exr"));
 }
 
