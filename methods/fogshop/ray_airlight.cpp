@@ -42,7 +42,11 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   if (model_.lights.empty()) return;
   seen_.clear();
   for (const LightModel& light : model_.lights) seen_.push_back(light_from_ray(light.position, line));
-  airlight = model_.fog.albedo * (model_.paper() ? paper(near, line) : slices(line));
+  if (model_.gaussians.count == 0)
+    airlight = constant_alone(line.length);
+  else
+    airlight = model_.paper() ? paper(near, line) : slices(line);
+  airlight *= model_.fog.albedo;
 }
 
 // L_a^h per channel [W/m^2/sr] for 1 W/sr.
@@ -58,6 +62,13 @@ Rgb RayAirlight::homogeneous(const LightFromRay& light, double length) const {
                                : softened_homogeneous_airlight(light, length, beta, model_.options.source_radius);
   }
   return result;
+}
+
+Rgb RayAirlight::constant_alone(double length) const {
+  Rgb airlight = Rgb::Zero();
+  for (std::size_t k = 0; k < model_.lights.size(); ++k)
+    airlight += model_.lights[k].intensity * homogeneous(seen_[k], length);
+  return airlight;
 }
 
 // Section 5.3: L_0 by Eq. 17, then every Gaussian that the ray meets.

@@ -28,6 +28,7 @@ class RayAirlight {
  private:
   Rgb paper(const GaussianArrays& near, const Line&);
   Rgb slices(const Line&);
+  Rgb constant_alone(double length) const;  // of a medium without Gaussians, where both variants are exact
   Rgb homogeneous(const LightFromRay&, double length) const;
   Interval stretch(const Line&) const;
   Rgb sum_of_slices(const LightFromRay&);

@@ -49,8 +49,9 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                                       model.gaussians.count, model.gaussians.count + model.dropped));
   stage("homogeneous term", needs.airlight && constant && lit,
         !constant ? "the constant is 0"
-                  : unlit_or(model.paper() ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
-                                           : "inside the slices, in closed form beyond them"));
+                  : unlit_or(model.paper()
+                                 ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
+                                 : (gaussians ? "inside the slices, in closed form beyond them" : "in closed form")));
   if (model.paper())
     stage("depths to centres", needs.center_depths,
           !gaussians ? no_gaussians : unlit_or(fmt::format("T(s,b_i), T(v,b_i) for {}", lights)));
@@ -61,15 +62,18 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                                     o.map_edges, lights)
                                       : "light_depth = exact: sums per edge instead"));
   if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
-  stage("airlight", needs.airlight && lit,
-        !needs.airlight ? "no medium"
-                        : unlit_or(model.paper() ? "Eqs. 8 to 17"
-                                                 : fmt::format("{} slices{}", o.slices,
-                                                               o.extrapolate ? ", extrapolated from half" : "")));
+  stage("airlight of Gaussians", gaussians && lit,
+        !gaussians ? no_gaussians
+                   : unlit_or(model.paper() ? "Eqs. 8 to 17"
+                                            : fmt::format("{} slices{}", o.slices,
+                                                          o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
   stage("surfaces", needs.surfaces,
         scene.surfaces.empty() ? "there are none" : unlit_or("direct light through the medium, Eq. 29"));
+  stage("ambient in-scatter", false,
+        (scene.ambient_in_scatter > 0).any() ? "the method has none: its airlight is that of the lights"
+                                             : "the scene has none");
   stage("shadows of surfaces in the medium", false,
         scene.surfaces.empty() ? "there are no surfaces"
                                : "the method does not know them: airlight behind an occluder is not darkened");

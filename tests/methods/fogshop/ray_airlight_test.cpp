@@ -3,53 +3,17 @@
 #include <catch2/catch.hpp>
 
 #include "methods/fogshop/paper_airlight.h"
+#include "tests/methods/fogshop/ray_model.h"
 #include "tests/methods/fogshop/vectors.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
+using fogshop_test::exact;
+using fogshop_test::grey_fog;
 using fogshop_test::number;
+using fogshop_test::ray_airlight;
 using fogshop_test::relative_error;
 using fogshop_test::vec;
-
-namespace {
-
-// Airlight of one ray through the same path as a picture.
-Rgb ray_airlight(const Options& options, const Fog& fog, const Point3& light, const Rgb& intensity, const Line& line) {
-  Model model;
-  model.options = options;
-  model.fog = fog;
-  model.gaussians = make_arrays(fog.sum.gaussians, options.cull, options.depth_threshold).arrays;
-  model.lights.push_back({light, intensity, {}, nullptr});
-  double evaluations = 0;
-  if (model.paper()) model.lights[0].center_depth = depths_to_centers(model, light, {}, evaluations);
-  if (!model.paper() && options.map)
-    model.lights[0].map = std::make_unique<LightMap>(model.gaussians, light, options.map_directions, options.map_edges,
-                                                     options.erf, scene::Execution{});
-  const ViewModel view = make_view_model(model, line.origin, {}, evaluations);
-  RayAirlight rays(model, view);
-  Rgb airlight;
-  double depth;
-  rays.evaluate(model.gaussians, line, airlight, depth);
-  return airlight;
-}
-
-Fog grey_fog(const scene::GaussianSum& sum) {
-  Fog fog;
-  fog.sum = sum;
-  return fog;
-}
-
-Options exact(Options::Variant variant, int slices) {
-  Options o;
-  o.variant = variant;
-  o.slices = slices;
-  o.extrapolate = false;
-  o.map = false;
-  o.depth_threshold = 1e-14;
-  return o;
-}
-
-}  // namespace
 
 // The vector path of the paper variant against its oracle vectors: the error function is good to 1.2e-12 of each depth.
 TEST_CASE("paper variant on vectors", "[fogshop]") {

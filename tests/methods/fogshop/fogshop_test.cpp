@@ -1,0 +1,253 @@
+#include "methods/fogshop/fogshop.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "methods/fogshop/homogeneous_airlight.h"
+#include "reference/deterministic/renderer.h"
+#include "scene/error.h"
+#include "scene/scene.h"
+
+using namespace airlight;
+using scene::Film;
+using scene::Scene;
+using Pairs = std::map<std::string, std::string>;
+
+namespace {
+
+const fogshop::Fogshop method;
+
+scene::Settings settings(const Pairs& given) { return {method.settings(), given}; }
+
+std::vector<std::string> reasons(const Scene& scene, const Pairs& given = {}) {
+  return method.supports(scene, settings(given));
+}
+
+scene::Rendering render(const Scene& scene, const Pairs& given = {}, int threads = 1) {
+  const auto prepared = method.prepare(std::make_shared<const Scene>(scene), settings(given), {threads, {}});
+  return prepared->render(view_of(scene), {threads, {}});
+}
+
+// A camera at the origin that looks along -z, a small film, one light.
+Scene small_scene() {
+  Scene scene;
+  scene.name = "small";
+  scene.width = 12;
+  scene.height = 9;
+  scene.lights.push_back(scene::PointLight{Point3(1, 2, -3), Rgb(3, 2, 1), 0});
+  finish(scene);
+  return scene;
+}
+
+scene::Medium gaussians(const std::vector<scene::Gaussian>& list, double constant = 0) {
+  scene::Medium medium;
+  medium.name = "fog";
+  medium.field = scene::GaussianSum{list, constant, infinity};
+  return medium;
+}
+
+scene::Medium homogeneous(double density) {
+  scene::Medium medium;
+  medium.field = scene::Homogeneous{density};
+  return medium;
+}
+
+bool kept(const std::vector<scene::Stage>& stages, const std::string& name) {
+  for (const auto& stage : stages)
+    if (stage.name == name) return stage.kept;
+  FAIL("no stage " << name);
+  return false;
+}
+
+double relative_l2(const std::vector<float>& a, const std::vector<float>& r) {
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += (double(a[i]) - r[i]) * (double(a[i]) - r[i]);
+    norm += double(r[i]) * r[i];
+  }
+  return std::sqrt(difference / norm);
+}
+
+}  // namespace
+
+TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
+  Scene scene = small_scene();
+  CHECK(reasons(scene).empty());
+  scene.media = {gaussians({{Point3(0, 0, -4), 1, 0.5}}, 0.1), homogeneous(0.2)};
+  CHECK(reasons(scene).empty());
+
+  const auto refused = [&](auto&& change, const std::string& word, const Pairs& given = {}) {
+    Scene changed = scene;
+    change(changed);
+    const auto why = reasons(changed, given);
+    INFO(word);
+    REQUIRE(why.size() == 1);
+    CHECK(why[0].find(word) != std::string::npos);
+    CHECK_THROWS_AS(method.prepare(std::make_shared<const Scene>(changed), settings(given), {}), Error);
+  };
+  refused([](Scene& s) { s.media[0].region = scene::Sphere{Point3::Zero(), 3}; }, "bounded");
+  refused([](Scene& s) { s.media[0].phase = scene::HenyeyGreenstein{0.5}; }, "isotropic");
+  refused([](Scene& s) { s.media[1].albedo = Rgb::Constant(0.5); }, "albedo");
+  refused([](Scene& s) { s.media[1].sigma_t = Rgb(1, 2, 3); }, "hue");
+  refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).gaussians[0].amplitude = -1; }, "negative");
+  refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).cutoff = 3; }, "widths");
+  refused([](Scene& s) { s.lights.push_back(scene::SpotLight{}); }, "spot");
+  refused([](Scene& s) { s.lights.push_back(scene::DirectionalLight{}); }, "directional");
+  refused([](Scene& s) { std::get<scene::PointLight>(s.lights[0]).position = s.camera.position; }, "infinite");
+  refused([](Scene& s) { s.camera.kind = scene::Camera::Kind::orthographic; }, "perspective", {{"variant", "paper"}});
+  refused([](Scene&) {}, "even", {{"K", "7"}});
+  refused([](Scene&) {}, "source_radius", {{"homogeneous", "table"}, {"source_radius", "0.1"}});
+  // A light at the camera is fine outside the medium, or softened.
+  scene.media.clear();
+  std::get<scene::PointLight>(scene.lights[0]).position = scene.camera.position;
+  CHECK(reasons(scene).empty());
+  scene.media = {homogeneous(0.2)};
+  CHECK(reasons(scene, {{"source_radius", "0.1"}}).empty());
+}
+
+TEST_CASE("fogshop leaves out what a scene does not need", "[fogshop]") {
+  const auto stages = [](const Scene& scene, const Pairs& given) {
+    return method.prepare(std::make_shared<const Scene>(scene), settings(given), {})->stages();
+  };
+  Scene scene = small_scene();
+  for (const char* variant : {"paper", "S"}) {
+    const Pairs given{{"variant", variant}};
+    for (const auto& stage : stages(scene, given)) CHECK_FALSE(stage.kept);  // no medium
+    const auto empty = render(scene, given);
+    CHECK(empty.times.empty());
+    CHECK(empty.counters.at("erf_evaluations") == 0);
+    CHECK(empty.film.get("mean", 3, 3).isZero());
+    CHECK(empty.film.get("transmittance", 3, 3).isOnes());
+
+    Scene constant = scene;
+    constant.media = {homogeneous(0.3)};
+    CHECK(kept(stages(constant, given), "homogeneous term"));
+    CHECK_FALSE(kept(stages(constant, given), "gaussians"));
+    CHECK(render(constant, given).counters.at("erf_evaluations") == 0);
+
+    Scene dark = scene;
+    dark.lights.clear();
+    dark.media = {gaussians({{Point3(0, 0, -4), 1, 0.5}}, 0.1)};
+    CHECK_FALSE(kept(stages(dark, given), "airlight of Gaussians"));
+    CHECK_FALSE(kept(stages(dark, given), variant == std::string("S") ? "light maps" : "depths to centres"));
+    CHECK(render(dark, given).film.get("airlight", 6, 4).isZero());
+  }
+  scene.media = {gaussians({{Point3(0, 0, -4), 1, 0.5}})};
+  CHECK_FALSE(kept(stages(scene, {{"variant", "paper"}}), "homogeneous term"));
+  CHECK(kept(stages(scene, {}), "light maps"));
+  CHECK_FALSE(kept(stages(scene, {{"light_depth", "exact"}}), "light maps"));
+  CHECK_FALSE(kept(stages(scene, {}), "colour"));
+  CHECK_FALSE(kept(stages(scene, {}), "surfaces"));
+}
+
+// A constant medium has a closed form: both variants must give it, on rays that end nowhere.
+TEST_CASE("fogshop in a constant medium", "[fogshop]") {
+  Scene scene = small_scene();
+  scene.media = {homogeneous(0.3)};
+  scene.media[0].sigma_t = Rgb(1, 0.5, 0.25);
+  scene.media[0].albedo = Rgb(0.9, 0.8, 0.7);
+  for (const char* variant : {"paper", "S"}) {
+    const Film film = render(scene, {{"variant", variant}}).film;
+    for (int y = 0; y < scene.height; ++y)
+      for (int x = 0; x < scene.width; ++x) {
+        const Ray ray = camera_ray(scene.camera, x + 0.5, y + 0.5, scene.width, scene.height);
+        const Vec3 q = Point3(1, 2, -3) - ray.origin;
+        const double along = q.dot(ray.direction), h = std::sqrt(q.squaredNorm() - along * along);
+        const Rgb got = film.get("airlight", x, y);
+        for (int c = 0; c < 3; ++c) {
+          const double beta = 0.3 * scene.media[0].sigma_t[c];
+          const double expected = (3 - c) * scene.media[0].albedo[c] *
+                                  fogshop::homogeneous_airlight(fogshop::LightFromRay{along, h}, infinity, beta);
+          CHECK(got[c] == Approx(expected).epsilon(2e-7));  // float layers
+        }
+        CHECK(film.get("transmittance", x, y).isZero());
+      }
+  }
+}
+
+// Eq. 29 on a wall: L = L_a + e^-T(v,p) L_p, with L_p = albedo/pi cos E e^-T(s,p).
+TEST_CASE("fogshop lights surfaces through the medium", "[fogshop]") {
+  Scene scene = small_scene();
+  scene.media = {gaussians({{Point3(0.5, 0.2, -4), 1, 0.5}, {Point3(-1, 0.5, -3), 0.6, 1}}, 0.05)};
+  scene.surfaces.push_back({"wall", scene::Plane{Point3(0, 0, -6), Vec3(0, 0, 1)}, scene::Lambert{Rgb(0.5, 0.6, 0.7)}});
+  finish(scene);
+  for (const char* variant : {"paper", "S"}) {
+    const Film film = render(scene, {{"variant", variant}, {"eps_T", "1e-12"}}).film;
+    for (int y = 0; y < scene.height; y += 2)
+      for (int x = 0; x < scene.width; x += 3) {
+        const Ray ray = camera_ray(scene.camera, x + 0.5, y + 0.5, scene.width, scene.height);
+        const double t = -6 / ray.direction.z();
+        const Point3 p = ray.at(t), s(1, 2, -3);
+        const Vec3 to_light = (s - p).normalized();
+        const Rgb visible = transmittance(scene.media, ray, {0, t});
+        const Rgb lit = transmittance(scene.media, {p, to_light}, {0, (s - p).norm()});
+        const Rgb expected =
+            visible * lit * Rgb(0.5, 0.6, 0.7) / pi * to_light.z() / (s - p).squaredNorm() * Rgb(3, 2, 1);
+        CHECK(((film.get("surface", x, y) - expected).abs() <= 2e-6 * expected).all());
+        CHECK(((film.get("transmittance", x, y) - visible).abs() <= 1e-6).all());
+        CHECK(((film.get("mean", x, y) - film.get("airlight", x, y) - film.get("surface", x, y)).abs() <= 1e-6).all());
+      }
+  }
+}
+
+TEST_CASE("fogshop gives the same bits on one thread and on two", "[fogshop]") {
+  const Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/a100.toml");
+  for (const Pairs& given : {Pairs{{"variant", "paper"}}, Pairs{{"K", "12"}}, Pairs{{"edges", "S3"}}}) {
+    const Film one = render(scene, given, 1).film, two = render(scene, given, 2).film;
+    CHECK(one.layers == two.layers);
+  }
+}
+
+// A length unit of 2^k metres changes nothing but the unit of radiance.
+TEST_CASE("fogshop does not know metres", "[fogshop]") {
+  const auto scaled = [](double unit) {
+    Scene scene = small_scene();
+    scene.camera.position *= unit;
+    auto& light = std::get<scene::PointLight>(scene.lights[0]);
+    light.position *= unit;
+    light.intensity *= unit * unit;
+    scene.media = {gaussians(
+        {{unit * Point3(0.5, 0.2, -4), unit, 0.5 / unit}, {unit * Point3(-1, 0.5, -3), unit, 1 / unit}}, 0.05 / unit)};
+    return scene;
+  };
+  for (const char* variant : {"paper", "S"}) {
+    const Film metres = render(scaled(1), {{"variant", variant}}).film;
+    for (double unit : {1.0 / 1024, 1024.0}) {
+      const Film other = render(scaled(unit), {{"variant", variant}}).film;
+      CHECK(relative_l2(other.layer("airlight"), metres.layer("airlight")) <= 1e-6);
+    }
+  }
+}
+
+// Accuracy on shipped scenes against the deterministic reference, which shares no code with the method; the bounds are
+// those of the experiments fogshop/*.
+TEST_CASE("fogshop against the deterministic reference", "[fogshop]") {
+  struct Case {
+    const char* name;
+    double paper_least, paper_most, s12, s26, extrapolated24;
+  };
+  const Case cases[] = {{"f100_thin", 0.0, 0.08, 0.035, 0.01, 0.004},
+                        {"halo_near", 0.21, 1.0, 0.035, 0.01, 0.002},
+                        {"a30", 0.1, 1.7, 0.035, 0.01, 0.004},
+                        {"tube", 0.96, 1.8, 0.4, 0.04, 0.02}};
+  for (const Case& c : cases) {
+    const Scene scene =
+        scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/") + c.name + ".toml",
+                          {{"film.width", "16"}, {"film.height", "12"}});
+    const auto reference = deterministic::make_renderer();
+    const scene::Settings defaults(reference->settings(), {});
+    const Film truth =
+        reference->prepare(std::make_shared<const Scene>(scene), defaults, {})->render(view_of(scene), {}).film;
+    const auto error = [&](Pairs given) {
+      given.insert({{"map_directions", "128"}, {"map_edges", "64"}});
+      return relative_l2(render(scene, given).film.layer("airlight"), truth.layer("airlight"));
+    };
+    INFO(c.name);
+    const double paper = error({{"variant", "paper"}});
+    CHECK(paper >= c.paper_least);
+    CHECK(paper <= c.paper_most);
+    CHECK(error({{"K", "12"}, {"extrapolate", "false"}}) <= c.s12);
+    CHECK(error({{"K", "26"}, {"extrapolate", "false"}}) <= c.s26);
+    CHECK(error({{"K", "24"}, {"edges", "S3"}}) <= c.extrapolated24);
+  }
+}
