@@ -187,6 +187,10 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
   if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)
     reasons.push_back(fmt::format("K = {} is odd: extrapolation needs an even number of slices", options.slices));
+  const double side = options.map_directions + 2, entries = side * side * (options.map_edges + 1);
+  if (options.variant == Options::Variant::slices && options.map && entries > 1 << 28)
+    reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
+                                  options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
   if (reasons.empty()) {
     const std::string blinding = blinding_light(make_fog(scene.media), options, scene, scene.camera);
     if (!blinding.empty()) reasons.push_back(blinding);

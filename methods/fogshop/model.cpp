@@ -4,70 +4,38 @@
 #include <numeric>
 
 namespace airlight::fogshop {
+namespace {
+
+using Type = scene::SettingSpec::Type;
+
+scene::SettingSpec choice(const char* name, const char* fallback, std::vector<std::string> choices, const char* doc) {
+  return {name, Type::choice, fallback, doc, 0, 0, std::move(choices)};
+}
+
+scene::SettingSpec integer(const char* name, const char* fallback, double least, double greatest, const char* doc) {
+  return {name, Type::integer, fallback, doc, least, greatest, {}};
+}
+
+scene::SettingSpec real(const char* name, const char* fallback, double least, double greatest, const char* doc) {
+  return {name, Type::real, fallback, doc, least, greatest, {}};
+}
+
+}  // namespace
 
 std::vector<scene::SettingSpec> setting_specs() {
-  using Type = scene::SettingSpec::Type;
   return {
-      {"variant",
-       Type::choice,
-       "S",
-       "paper: Zhou et al. 2007; S: K slices with exact depths at their edges",
-       0,
-       0,
-       {"paper", "S"}},
-      {"K", Type::integer, "26", "slices of variant S", 1, 4096, {}},
-      {"extrapolate",
-       Type::flag,
-       "true",
-       "S: extrapolate from K/2 and K slices (error K^-4, else K^-2); K even",
-       0,
-       0,
-       {}},
-      {"edges",
-       Type::choice,
-       "plain",
-       "where S cuts: plain, or S3 that also looks at the Gaussians",
-       0,
-       0,
-       {"plain", "S3"}},
-      {"light_depth",
-       Type::choice,
-       "map",
-       "depths from the lights in S: octahedral map, or exact sums",
-       0,
-       0,
-       {"map", "exact"}},
-      {"map_directions", Type::integer, "64", "the light map has this number squared of directions", 2, 2048, {}},
-      {"map_edges", Type::integer, "48", "distances per direction of the light map", 1, 4096, {}},
-      {"homogeneous",
-       Type::choice,
-       "exact",
-       "F in the paper variant: closed form, or the paper's table (256^2)",
-       0,
-       0,
-       {"exact", "table"}},
-      {"erf",
-       Type::choice,
-       "precise",
-       "error function: 1e-12, 4e-6 (erf10) or 2e-4 (the paper's polynomial)",
-       0,
-       0,
-       {"precise", "erf10", "paper"}},
-      {"cull",
-       Type::choice,
-       "depth",
-       "radius of a Gaussian: by lost optical depth, or the paper's Eq. 30",
-       0,
-       0,
-       {"depth", "paper"}},
-      {"eps_T",
-       Type::real,
-       "1e-4",
-       "optical depth [-] that culling may cost per Gaussian, relative to the deepest one if that is below 1",
-       1e-15,
-       1,
-       {}},
-      {"source_radius", Type::real, "0", "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)", 0, 1e300, {}},
+      choice("variant", "S", {"paper", "S"}, "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
+      integer("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
+      choice("edges", "S3", {"plain", "S3"}, "where S cuts: by length and lights, or by the Gaussians too"),
+      {"extrapolate", Type::flag, "true", "S from K/2 and K slices (error K^-4 instead of K^-2); K even", 0, 0, {}},
+      choice("light_depth", "map", {"map", "exact"}, "depths from the lights in S: by maps, or by exact sums"),
+      integer("map_directions", "64", 2, 2048, "a light map has this number squared of directions"),
+      integer("map_edges", "48", 1, 4096, "distances per direction of a light map"),
+      choice("homogeneous", "exact", {"exact", "table"}, "F in the paper variant: closed form, or a table of 256^2"),
+      choice("erf", "precise", {"precise", "erf10", "paper"}, "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
+      choice("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
+      real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
+      real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
 

@@ -14,9 +14,9 @@ namespace airlight::fogshop {
 struct Options {
   enum class Variant { paper, slices };
   Variant variant = Variant::slices;
-  int slices = 26;          // K
+  int slices = 24;          // K
   bool extrapolate = true;  // from K/2 and K slices; K is even
-  bool boxes = false;       // edge placement S3
+  bool boxes = true;        // edge placement S3
   bool map = true;          // depths from the light by its map, else by exact sums
   int map_directions = 64;  // R
   int map_edges = 48;       // N

@@ -41,6 +41,7 @@ inline Options exact(Options::Variant variant, int slices) {
   o.variant = variant;
   o.slices = slices;
   o.extrapolate = false;
+  o.boxes = false;
   o.map = false;
   o.depth_threshold = 1e-14;
   return o;
