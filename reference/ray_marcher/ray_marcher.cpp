@@ -1,6 +1,7 @@
 #include "reference/ray_marcher/ray_marcher.h"
 
 #include <fmt/format.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <chrono>
@@ -15,6 +16,19 @@ namespace airlight::ray_marcher {
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// While it lives, this thread takes subnormal numbers as zero, and gives them so: libraries set that for some threads
+// of a pool and not for others, and the picture must not depend on which thread made it.
+class FlushSubnormals {
+ public:
+  FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~FlushSubnormals() { _mm_setcsr(before_); }
+  FlushSubnormals(const FlushSubnormals&) = delete;
+  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
+
+ private:
+  unsigned before_;
+};
 
 // Size of the finest voxels [m]; 1 without a grid.
 double length_unit(const scene::Scene& scene) {
@@ -41,13 +55,20 @@ std::vector<scene::Stage> explain(const Plan& plan) {
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
   const bool lit = !plan.lights.empty();
-  add("shadow_march", lit && varying > 0 && !plan.options.exact_shadow,
+  const bool shadows = lit && varying > 0 && (plan.scatters || scene.geometry);
+  add("shadow_march", shadows && !plan.options.exact_shadow,
       !lit                        ? "no light"
+      : !shadows && varying > 0   ? "no medium scatters, no surface is lit"
       : varying == 0              ? "no medium varies: optical depths have a closed form"
       : plan.options.exact_shadow ? "shadow = exact"
                                   : fmt::format("{} varying media, {} lights", varying, plan.lights.size()));
   add("constant_media", constants,
       constants ? "constants are integrated in closed form" : "no medium has a constant part");
+  const bool grids = std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return bool(l.grid); });
+  add("empty_space_skipping", grids && plan.options.skip_empty,
+      !grids                     ? "no voxel grid"
+      : !plan.options.skip_empty ? "empty_space_skipping = false"
+                                 : "bricks of 4^3 voxels");
   add("environment_directions", has_environment(scene),
       has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
                              : "no environment light");
@@ -81,6 +102,7 @@ class PreparedMarch final : public scene::Prepared {
     scene::parallel_rows(columns * rows, execution, [&](int tile) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
       const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
+      const FlushSubnormals flush;
       static thread_local std::vector<Ray> rays;
       static thread_local TileMarcher marcher;
       rays.clear();
@@ -108,6 +130,10 @@ class PreparedMarch final : public scene::Prepared {
                        {"shadow_rays", double(total.shadow_rays)},
                        {"shadow_steps", double(total.shadow_steps)},
                        {"occlusion_rays", double(total.occlusion_rays)}};
+    result.film.metadata["seconds"] = fmt::format("{:.6f}", result.times[0].seconds);
+    std::string& counters = result.film.metadata["counters"];
+    for (const auto& [name, value] : result.counters)
+      counters += fmt::format("{}{}={:.0f}", counters.empty() ? "" : " ", name, value);
     return result;
   }
 

@@ -151,31 +151,31 @@ bool grade_light(std::vector<Part>& parts, const Approach& light) {
 // A ray through a grid's map of free space, in steps.
 struct Walk {
   const GridField* grid;
-  double x[3], dx[3];  // local midpoint of step 0, and from one to the next
-  double per_cell;     // steps per cell of the largest component
+  double x[3], dx[3];   // local midpoint of step 0, and from one to the next
+  double per_cell[3];   // steps per cell along each axis, signed; infinite across the ray
+  double per_distance;  // steps per cell of the largest component
 
   Walk(const GridField& field, const Point3& start, const Vec3& step) : grid(&field) {
     const Point3 local = field.frame.point(start);
     const Vec3 delta = field.frame.vector(step);
-    for (int a = 0; a < 3; ++a) x[a] = local[a] + 0.5 * delta[a], dx[a] = delta[a];
-    per_cell = 1 / delta.cwiseAbs().maxCoeff();
+    for (int a = 0; a < 3; ++a) x[a] = local[a] + 0.5 * delta[a], dx[a] = delta[a], per_cell[a] = 1 / delta[a];
+    per_distance = 1 / delta.cwiseAbs().maxCoeff();
   }
 
   // From step i on, how many steps lie in free space; negative: how many may not.
   double run(double i) const {
-    const double px = x[0] + i * dx[0], py = x[1] + i * dx[1], pz = x[2] + i * dx[2];
-    const double free = grid->free_at(px, py, pz);
-    if (free >= 0) return 1 + std::floor(free * per_cell);
-    // To the face of the brick; a step too many or too few changes no result.
-    const double p[3] = {px, py, pz};
-    double steps = infinity;
+    const double p[3] = {x[0] + i * dx[0], x[1] + i * dx[1], x[2] + i * dx[2]};
+    const double free = grid->free_at(p[0], p[1], p[2]);
+    if (free >= 0) return 1 + int(std::min(free * per_distance, 1e9));
+    // To the nearest face of the brick that lies ahead; a step too many or too few changes no result.
+    constexpr int shift = GridField::brick_shift;
+    double steps = 1e9;
     for (int a = 0; a < 3; ++a) {
       if (dx[a] == 0) continue;
-      constexpr int shift = GridField::brick_shift;
       const double face = double(((int(p[a]) >> shift) + (dx[a] > 0)) << shift);
-      steps = std::min(steps, (face - p[a]) / dx[a]);
+      steps = std::min(steps, (face - p[a]) * per_cell[a]);
     }
-    return -1 - std::floor(std::max(steps, 0.0));
+    return -1 - int(steps);
   }
 };
 

@@ -37,7 +37,7 @@ bool same_bits(const scene::Film& a, const scene::Film& b) { return a.layers == 
 // Sums of K <= 40 floats, each good to a few 2^-24 relative (trilinear: 7 roundings, plus positions good to 1e-6 of a
 // voxel, 2e-6 of the density), and exponentials whose argument, up to 10, is good to as much: relative errors of some
 // 1e-6 where they add up at worst, 1e-5 asked.
-TEST_CASE("vector kernels agree with the plain path in double", "[ray_marcher]") {
+TEST_CASE("ray marcher: vector kernels agree with the plain path in double", "[ray_marcher]") {
   for (const auto& [name, scene] : assorted_scenes()) {
     for (const char* spacing : {"graded", "uniform"})
       for (const char* shadow : {"march", "exact"}) {

@@ -52,7 +52,7 @@ double order(double coarse, double fine) { return std::log2(coarse / fine); }
 // midpoint rule of a smooth function: order 2, seen as a ratio of errors. At 256 and 512 steps the next term is h^2
 // smaller than the leading one (relative 1e-3 where the light is a few steps away): the slope is within 0.05 of 2.
 // Errors below 1e-8 relative feel the vectors' own 1e-10 and are not asked for a slope.
-TEST_CASE("homogeneous media: oracle vectors are reached at order 2", "[ray_marcher]") {
+TEST_CASE("ray marcher: homogeneous media: oracle vectors are reached at order 2", "[ray_marcher]") {
   int seen = 0;
   for (const json& v : vectors()) {
     if (v.at("kind") != "single_scattering_sphere" && v.at("kind") != "single_scattering_box") continue;
@@ -78,7 +78,7 @@ TEST_CASE("homogeneous media: oracle vectors are reached at order 2", "[ray_marc
 // The same with sums of Gaussians: both marches are midpoint rules now. The view ends at a point, the light sees the
 // unbounded medium. Where terms of the error happen to cancel, or a Gaussian is a few steps wide, a single slope is off
 // by a few tenths at these step counts; the median over all rays is not.
-TEST_CASE("sums of Gaussians: oracle vectors are reached at order 2", "[ray_marcher]") {
+TEST_CASE("ray marcher: sums of Gaussians: oracle vectors are reached at order 2", "[ray_marcher]") {
   std::vector<double> slopes;
   for (const json& v : vectors()) {
     if (v.at("kind") != "single_scattering_gaussians") continue;
