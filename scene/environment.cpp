@@ -49,9 +49,9 @@ void remove_residue(EnvironmentMap& map) {
 }
 
 // Null if there is nothing to prefer.
-std::shared_ptr<const EnvironmentLight::Tables> make_tables(int width, int height, std::vector<double> values) {
-  auto tables = std::make_shared<EnvironmentLight::Tables>(
-      EnvironmentLight::Tables{LatLongDensity(width, height, std::move(values))});
+std::shared_ptr<const EnvironmentLight::Tables> make_tables(int width, int height, const std::vector<double>& values) {
+  auto tables =
+      std::make_shared<EnvironmentLight::Tables>(EnvironmentLight::Tables{LatLongDensity(width, height, values)});
   return tables->density.positive() ? tables : nullptr;
 }
 
@@ -95,7 +95,7 @@ EnvironmentLight make_map_environment(std::shared_ptr<const EnvironmentMap> map,
   std::vector<double> values(map->rgb.size() / 3);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = luminance(scale * Rgb(map->rgb[3 * i], map->rgb[3 * i + 1], map->rgb[3 * i + 2]));
-  light.tables = make_tables(map->width, map->height, std::move(values));
+  light.tables = make_tables(map->width, map->height, values);
   light.map = std::move(map);
   return light;
 }
@@ -120,7 +120,7 @@ EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& 
       const Vec3 w = from_lat_long(LatLong{(i + 0.5) / width, pi * (j + 0.5) / height});
       values.push_back(luminance((scale * evaluate_sh(light.sh, w)).abs()));
     }
-  light.tables = make_tables(width, height, std::move(values));
+  light.tables = make_tables(width, height, values);
   return light;
 }
 

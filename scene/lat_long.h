@@ -13,7 +13,7 @@ struct LatLong {
 };
 
 inline LatLong to_lat_long(const Vec3& w) {
-  return {0.5 + std::atan2(w[0], -w[2]) / (2 * pi), std::atan2(std::hypot(w[0], w[2]), w[1])};
+  return {0.5 + std::atan2(w[0], -w[2]) / (2 * pi), std::atan2(std::sqrt(w[0] * w[0] + w[2] * w[2]), w[1])};
 }
 
 // The direction with longitude u, height y = cos(theta) and s = sin(theta).

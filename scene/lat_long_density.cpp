@@ -37,23 +37,23 @@ double sample_linear(double a, double b, double u) {
 
 }  // namespace
 
-LatLongDensity::LatLongDensity(int width, int height, std::vector<double> values)
-    : width_(width), height_(height), values_(std::move(values)) {
+LatLongDensity::LatLongDensity(int width, int height, const std::vector<double>& values)
+    : width_(width), height_(height) {
   // Scaled so that no square or sum of them overflows or vanishes.
-  const double largest = *std::max_element(values_.begin(), values_.end());
-  if (largest > 0)
-    for (double& value : values_) value /= largest;
+  const double largest = *std::max_element(values.begin(), values.end());
+  values_.reserve(values.size());
+  for (const double value : values) values_.push_back(largest > 0 ? float(value / largest) : 0.0f);
   cosine_.resize(std::size_t(height) + 2);
   for (int j = 0; j <= height + 1; ++j) cosine_[j] = std::cos(strip_begin(j, height));
   strips_.resize(std::size_t(height) + 2);
   cells_.resize(std::size_t(height + 1) * (width + 1));
   for (int j = 0; j <= height; ++j) {
-    const double* top = &values_[std::size_t(std::max(j - 1, 0)) * width];
-    const double* bottom = &values_[std::size_t(std::min(j, height - 1)) * width];
+    const float* top = &values_[std::size_t(std::max(j - 1, 0)) * width];
+    const float* bottom = &values_[std::size_t(std::min(j, height - 1)) * width];
     double* cells = &cells_[std::size_t(j) * (width + 1)];
     for (int i = 0; i < width; ++i) {
       const int next = i + 1 == width ? 0 : i + 1;
-      cells[i + 1] = 0.25 * ((top[i] + top[next]) + (bottom[i] + bottom[next]));
+      cells[i + 1] = 0.25 * ((double(top[i]) + top[next]) + (double(bottom[i]) + bottom[next]));
     }
     strips_[j + 1] = cumulate(cells, width) * (cosine_[j] - cosine_[j + 1]) * 2 * pi / width;
   }
@@ -62,23 +62,24 @@ LatLongDensity::LatLongDensity(int width, int height, std::vector<double> values
 
 double LatLongDensity::pdf(const Vec3& direction) const {
   const LatLongCell cell = find_cell(to_lat_long(direction), width_, height_);
-  const double* top = &values_[std::size_t(cell.top) * width_];
-  const double* bottom = &values_[std::size_t(cell.bottom) * width_];
-  const double above = top[cell.left] + (top[cell.right] - top[cell.left]) * cell.x;
-  const double below = bottom[cell.left] + (bottom[cell.right] - bottom[cell.left]) * cell.x;
+  const float* top = &values_[std::size_t(cell.top) * width_];
+  const float* bottom = &values_[std::size_t(cell.bottom) * width_];
+  const auto between = [](double a, double b, double x) { return a + (b - a) * x; };
+  const double above = between(top[cell.left], top[cell.right], cell.x);
+  const double below = between(bottom[cell.left], bottom[cell.right], cell.x);
   const double y = (cosine_[cell.strip] - direction[1]) / (cosine_[cell.strip] - cosine_[cell.strip + 1]);
-  return (above + (below - above) * std::clamp(y, 0.0, 1.0)) / total_;
+  return between(above, below, std::clamp(y, 0.0, 1.0)) / total_;
 }
 
 Vec3 LatLongDensity::sample(double u1, double u2) const {
   const int strip = choose(strips_.data(), height_ + 1, u1);
-  const double* top = &values_[std::size_t(std::max(strip - 1, 0)) * width_];
-  const double* bottom = &values_[std::size_t(std::min(strip, height_ - 1)) * width_];
+  const float* top = &values_[std::size_t(std::max(strip - 1, 0)) * width_];
+  const float* bottom = &values_[std::size_t(std::min(strip, height_ - 1)) * width_];
   const int left = choose(&cells_[std::size_t(strip) * (width_ + 1)], width_, u2);
   const int right = left + 1 == width_ ? 0 : left + 1;
-  const double y = sample_linear(top[left] + top[right], bottom[left] + bottom[right], u1);
-  const double x =
-      sample_linear(top[left] + (bottom[left] - top[left]) * y, top[right] + (bottom[right] - top[right]) * y, u2);
+  const double a = top[left], b = top[right], c = bottom[left], d = bottom[right];
+  const double y = sample_linear(a + b, c + d, u1);
+  const double x = sample_linear(a + (c - a) * y, b + (d - b) * y, u2);
   const double height = cosine_[strip] + (cosine_[strip + 1] - cosine_[strip]) * y;
   const double sine = std::sqrt(std::max(0.0, (1 - height) * (1 + height)));
   return from_lat_long((left + 0.5 + x) / width_, height, sine);

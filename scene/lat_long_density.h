@@ -14,7 +14,7 @@ namespace airlight::scene {
 class LatLongDensity {
  public:
   // width * height values >= 0, finite, row 0 at +y, x fastest.
-  LatLongDensity(int width, int height, std::vector<double> values);
+  LatLongDensity(int width, int height, const std::vector<double>& values);
 
   // False if all values are 0: then there is nothing to sample.
   bool positive() const { return total_ > 0; }
@@ -25,7 +25,7 @@ class LatLongDensity {
 
  private:
   int width_, height_;
-  std::vector<double> values_;
+  std::vector<float> values_;   // over their maximum
   std::vector<double> cosine_;  // height + 2: where strips begin
   std::vector<double> strips_;  // height + 2: cumulated share of the strips
   std::vector<double> cells_;   // (height + 1) x (width + 1): cumulated share of the cells of each strip

@@ -27,11 +27,16 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-void check(const std::string& path, const std::string& extension, const std::string& content) {
-  if (extension == ".off") return check_off(path, content);
-  if (extension == ".obj") return check_obj(path, content);
-  if (extension == ".ply") return check_ply(path, content);
-  throw Error(fmt::format("{}: found a file named '{}', expected .obj, .ply or .off", path, extension));
+// What the importer is given: the file, once it is known to be whole.
+std::string checked(const std::string& path, const std::string& extension, std::string content) {
+  if (extension == ".obj") return plain_obj(path, content);
+  if (extension == ".off")
+    check_off(path, content);
+  else if (extension == ".ply")
+    check_ply(path, content);
+  else
+    throw Error(fmt::format("{}: found a file named '{}', expected .obj, .ply or .off", path, extension));
+  return content;
 }
 
 // What polygons cut into triangles must give.
@@ -49,7 +54,7 @@ void append(const aiMesh& from, TriangleMesh& mesh) {
     mesh.vertices.emplace_back(from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z);
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
     const aiFace& face = from.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines of an OBJ file
+    if (face.mNumIndices != 3) continue;
     mesh.triangles.push_back(
         {first + int(face.mIndices[0]), first + int(face.mIndices[1]), first + int(face.mIndices[2])});
   }
@@ -74,9 +79,8 @@ void join_vertices(TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::string& path) {
-  const std::string content = read_whole_file(path, max_bytes);
   const std::string extension = lower_extension(path);
-  check(path, extension, content);
+  const std::string content = checked(path, extension, read_whole_file(path, max_bytes));
 
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);

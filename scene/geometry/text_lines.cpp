@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\v\f";
 
-std::string shown(std::string_view word) {
+}  // namespace
+
+std::string TextLines::shown(std::string_view word) {
   std::string text(word.substr(0, 40));
   for (char& c : text)
     if (c < 32 || c > 126) c = '?';
   return text;
 }
-
-}  // namespace
 
 bool TextLines::next_raw(std::string_view& line) {
   if (rest_.empty()) return false;

@@ -11,8 +11,6 @@ class TextLines {
 
   // Moves to the next line that holds anything but blanks and comments (from '#'); false at the end.
   bool next();
-  // The next line as it is; false at the end.
-  bool next_raw(std::string_view& line);
   // The next word of the line; empty at its end.
   std::string_view word();
   bool at_end() const;  // no more words in this line
@@ -21,11 +19,14 @@ class TextLines {
   // The next word as an integer in [least, greatest].
   long long integer(const char* what, long long least, long long greatest);
 
+  static std::string shown(std::string_view word);  // fit for a message: short and printable
   [[noreturn]] void fail(const std::string& found_and_expected) const;
   std::string_view rest() const { return rest_; }  // what follows the line
   int line() const { return line_; }
 
  private:
+  bool next_raw(std::string_view& line);  // the next line as it is
+
   std::string path_;
   std::string_view rest_;
   std::string_view words_;

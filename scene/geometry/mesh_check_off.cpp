@@ -1,17 +1,9 @@
-#include "scene/geometry/mesh_check.h"
-
 #include <fmt/format.h>
 
+#include "scene/geometry/mesh_check.h"
 #include "scene/geometry/text_lines.h"
 
 namespace airlight::scene {
-namespace {
-
-void check_vertex(TextLines& lines) {
-  for (const char* what : {"a coordinate x", "a coordinate y", "a coordinate z"}) lines.number(what);
-}
-
-}  // namespace
 
 void check_off(const std::string& path, const std::string& content) {
   TextLines lines(path, content);
@@ -26,7 +18,7 @@ void check_off(const std::string& path, const std::string& content) {
   const auto faces = lines.integer("the number of faces", 1, (long long)content.size() / 6);
   for (long long i = 0; i < vertices; ++i) {
     if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} vertices, expected {}", i, vertices));
-    check_vertex(lines);
+    for (const char* what : {"a coordinate x", "a coordinate y", "a coordinate z"}) lines.number(what);
   }
   for (long long i = 0; i < faces; ++i) {
     if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} faces, expected {}", i, faces));
@@ -34,24 +26,6 @@ void check_off(const std::string& path, const std::string& content) {
     for (long long k = 0; k < corners; ++k) lines.integer("the index of a vertex", 0, vertices - 1);
   }
   if (lines.next()) lines.fail(fmt::format("found more after the {} faces that the header announces", faces));
-}
-
-void check_obj(const std::string& path, const std::string& content) {
-  TextLines lines(path, content);
-  long long faces = 0;
-  while (lines.next()) {
-    const std::string_view kind = lines.word();
-    if (kind == "v") check_vertex(lines);
-    if (kind != "f") continue;
-    ++faces;
-    int corners = 0;
-    for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-      if (word == "\\" && !lines.next()) break;  // the face goes on in the next line
-      corners += word != "\\";
-    }
-    if (corners < 3) lines.fail(fmt::format("found a face of {} corners, expected at least 3", corners));
-  }
-  if (faces == 0) lines.fail("found the end of the file without a face, expected lines 'f ...'");
 }
 
 }  // namespace airlight::scene
