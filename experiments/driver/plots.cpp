@@ -69,6 +69,8 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     if (curve == drawing.curves.end()) curve = drawing.curves.insert(curve, {name, {}});
     curve->points.push_back(point);
   }
+  // Against time a curve runs through the settings in their order.
+  if (plot.x == "seconds" || plot.x == "prepare_seconds") return drawing;
   for (Curve& curve : drawing.curves)
     std::stable_sort(curve.points.begin(), curve.points.end(),
                      [](const PlotPoint& a, const PlotPoint& b) { return a.x.value < b.x.value; });
@@ -103,6 +105,22 @@ std::string axis_label(const std::string& given, const std::string& axis) {
   return axis.rfind("counter.", 0) == 0 ? axis.substr(8) : axis;
 }
 
+// The range of an axis: logarithmic where values span a factor of 4, with some room at both ends.
+struct Span {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0;
+  void add(double value) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  std::string axis(const std::string& name) const {
+    if (greatest <= 4 * least) return fmt::format("set {}range [0:{:.6g}]\n", name, 1.15 * greatest);
+    const double room = std::pow(greatest / least, 0.06);
+    return fmt::format("set logscale {0}\nset format {0} \"%g\"\nset {0}range [{1:.6g}:{2:.6g}]\n", name, least / room,
+                       greatest * room);
+  }
+};
+
 std::string escaped(std::string text) {
   std::replace(text.begin(), text.end(), '"', '\'');
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -113,13 +131,13 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   // Colours that the colour-blind tell apart (Okabe and Ito).
   static const char* colors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
   static const int shapes[] = {7, 5, 9, 13, 11, 6, 4};
-  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  Span x, y;
   for (const Curve& curve : drawing.curves)
     for (const PlotPoint& p : curve.points) {
-      least = std::min(least, p.x.value);
-      greatest = std::max(greatest, p.x.value);
+      x.add(p.x.value);
+      y.add(p.bound ? p.y.high : p.y.value);
     }
-  const bool log_x = greatest > 4 * least;
+  if (drawing.floor > 0) y.add(drawing.floor);
   std::string lines;
   const auto add = [&](const std::string& text) { lines += (lines.empty() ? "" : ", \\\n     ") + text; };
   for (std::size_t i = 0; i < drawing.curves.size(); ++i) {
@@ -140,15 +158,14 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
       "data = \"{0}.csv\"\n"
       "set datafile separator comma\n"
       "set title \"{1}\" noenhanced\nset xlabel \"{2}\" noenhanced\nset ylabel \"{3}\" noenhanced\n"
-      "set key outside below center horizontal noenhanced\nset grid xtics ytics lc rgb \"#dddddd\"\nset border 3 lc "
-      "rgb \"#444444\"\n"
-      "set tics nomirror\nset logscale y\nset format y \"%g\"\n{4}"
-      "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
+      "set key outside right center vertical Left reverse noenhanced\n"
+      "set grid xtics ytics lt 1 lw 0.5 lc rgb \"#cccccc\"\nset border 3 lc rgb \"#444444\"\nset tics nomirror\n"
+      "{4}{5}",
       name, escaped(title), escaped(axis_label(plot.x_label, plot.x)), escaped(axis_label(plot.y_label, plot.y)),
-      log_x ? "set logscale x\nset format x \"%g\"\n" : "");
+      x.axis("x"), y.axis("y"));
   for (const auto& [terminal, file] :
-       {std::pair<const char*, const char*>{"svg size 640,480 dynamic font \"sans-serif,13\"", "svg"},
-        {"pngcairo size 960,720 font \"Sans,13\"", "png"}})
+       {std::pair<const char*, const char*>{"svg size 820,440 dynamic font \"sans-serif,13\"", "svg"},
+        {"pngcairo size 1230,660 font \"Sans,13\"", "png"}})
     out += fmt::format("set terminal {}\nset output \"{}.{}\"\nplot {}\n", terminal, name, file, lines);
   return out;
 }

@@ -191,10 +191,16 @@ class Run {
     Progress progress(fmt::format("{}: {} on {}", experiment().id, m.name, row.scene));
     const scene::Execution execution = progress.execution(rule.threads);
     const scene::View view = scene::view_of(*scene);
-    auto start = Clock::now();
-    const auto prepared = renderer.prepare(scene, settings, execution);
-    row.prepare_seconds = since(start);
-    start = Clock::now();
+    std::vector<double> preparations;
+    std::unique_ptr<scene::Prepared> prepared;
+    for (double spent = 0; preparations.empty() || (preparations.size() < 5 && spent + preparations.back() < 0.25);) {
+      const auto start = Clock::now();
+      prepared = renderer.prepare(scene, settings, execution);
+      preparations.push_back(since(start));
+      spent += preparations.back();
+    }
+    row.prepare_seconds = median(preparations);
+    const auto start = Clock::now();
     scene::Rendering rendering = prepared->render(view, execution);
     const double first = since(start);
     check_interrupted();  // what a stopped renderer kept is no row
