@@ -10,7 +10,7 @@ namespace airlight::experiments::cli {
 using Pairs = std::map<std::string, std::string>;  // from key=value
 
 struct RenderOptions {
-  std::string scene, method, out, png, samples;
+  std::string scene, method, out, png, samples, cache;
   Pairs settings, overrides;
   int threads = 0;
   double exposure = 0;

@@ -74,7 +74,8 @@ int gates(const ExperimentOptions& options) {
   const auto root = project_root(options.root);
   std::vector<Experiment> experiments;
   for (const std::string& id : choose_experiments(root, options.names))
-    if (Experiment e = read_experiment(root, id, options.profile); !e.gates.empty() || e.kind == "oracles") experiments.push_back(e);
+    if (Experiment e = read_experiment(root, id, options.profile); !e.gates.empty() || e.kind == "oracles")
+      experiments.push_back(e);
   std::vector<GateResult> results;
   for (const Experiment& e : experiments) {
     try {

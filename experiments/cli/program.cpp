@@ -103,6 +103,8 @@ int dispatch(int argc, char** argv) {
   c->add_option("--exposure", render_options.exposure, "of the preview, in powers of two");
   c->add_option("--threads", render_options.threads, "0: all");
   c->add_option("--samples", render_options.samples, "N, or A..B: a range to be merged (path_tracer)");
+  c->add_option("--cache", render_options.cache,
+                "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
   add_pairs(c, "--set", render_options.settings, "a setting of the method (airlight explain lists them)");
   add_pairs(c, "--override", render_options.overrides, "a value of the scene file, e.g. film.width=64");
   data_option(c);

@@ -10,6 +10,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
+#include "reference/path_tracer/cache.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::cli {
@@ -43,8 +44,11 @@ int render(const RenderOptions& options) {
   const std::optional<SampleRange> range = sample_range(options.samples);
   Pairs given = options.settings;
   if (range) given["samples"] = std::to_string(range->end - range->begin);
-  if (range && range->explicit_range && renderer.name() != "path_tracer")
+  const bool part = range && range->explicit_range;
+  if (part && renderer.name() != "path_tracer")
     throw Error(fmt::format("--samples {}: only path_tracer computes ranges of samples", options.samples));
+  if (!options.cache.empty() && (part || renderer.name() != "path_tracer"))
+    throw Error("--cache: only for path_tracer, and without a range of samples");
   const scene::Settings settings(renderer.settings(), given, options.method);
   require_folder(options.out);
   if (!options.png.empty()) require_folder(options.png);
@@ -57,8 +61,10 @@ int render(const RenderOptions& options) {
   const scene::Execution execution = progress.execution(options.threads);
   const auto start = std::chrono::steady_clock::now();
   scene::Film film;
-  if (range && range->explicit_range)
+  if (part)
     film = render_samples(scene, settings, *range, execution, options.out + ".samples");
+  else if (!options.cache.empty())
+    film = path_tracer::render_cached(scene, settings, scene::view_of(*scene), options.cache, execution).film;
   else
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -13,6 +13,7 @@ struct ReferenceInfo {
   double seconds = 0;
   bool cached = false;
   double exposure = 0;
+  std::string samples;  // that a Monte Carlo reference has: a cache may hold more than were asked for
 };
 
 struct GateResult {

@@ -69,6 +69,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
                                {"renderer", r.renderer},
                                {"settings", r.settings},
                                {"seconds", r.seconds},
+                               {"samples", r.samples},
                                {"from_cache", r.cached}});
   j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
   j["plots"] = json::array();

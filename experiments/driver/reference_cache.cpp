@@ -9,6 +9,7 @@
 
 #include "experiments/build_info.h"
 #include "experiments/driver/content_key.h"
+#include "reference/path_tracer/cache.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 
@@ -36,6 +37,18 @@ bool load(const fs::path& image, const fs::path& record, Reference& reference) {
   return true;
 }
 
+void trace(const fs::path& folder, std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+           const scene::Execution& execution, Reference& reference) {
+  const scene::View view = scene::view_of(*scene);
+  fs::create_directories(folder);
+  path_tracer::CachedRendering traced = path_tracer::render_cached(scene, settings, view, folder.string(), execution);
+  for (const std::string& note : traced.notes) fmt::print(stderr, "airlight: {}\n", note);
+  if (!traced.complete) throw scene::Interrupted("interrupted");
+  reference.film = std::move(traced.film);
+  reference.seconds = traced.seconds;
+  reference.cached = traced.found >= std::uint64_t(settings.integer("samples"));
+}
+
 }  // namespace
 
 std::string reference_key(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings) {
@@ -48,7 +61,12 @@ Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scen
                         const scene::Execution& execution) {
   Reference reference;
   reference.key = reference_key(*scene, renderer, settings);
-  const fs::path image = cache / (reference.key + ".exr"), record = cache / (reference.key + ".json");
+  if (renderer.name() == "path_tracer") {
+    trace(cache / "samples", scene, settings, execution, reference);
+    return reference;
+  }
+  const fs::path folder = cache / "references";
+  const fs::path image = folder / (reference.key + ".exr"), record = folder / (reference.key + ".json");
   if (load(image, record, reference)) return reference;
 
   const auto reasons = renderer.supports(*scene, settings);
@@ -60,7 +78,7 @@ Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scen
   // A renderer may keep what it has when it is stopped: that is no reference.
   if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
 
-  fs::create_directories(cache);
+  fs::create_directories(folder);
   fs::remove(record);  // never a record beside another image
   scene::write_exr(image.string(), reference.film);
   const json j = {{"scene", scene->name},

@@ -1,5 +1,8 @@
 // Reference images, computed once: results/cache/references/<key>.exr with its checksum in <key>.json.
 //
+// The path tracer's samples go through its own cache instead (results/cache/samples): a reference with fewer samples is
+// refined, one with more is used, and one that was interrupted goes on where it was.
+//
 // The key is the content of scene, renderer, settings and of the sources of scene/ and reference/: another program that
 // computes the same is served, a changed reference is not. A damaged or half-copied file is computed anew.
 #pragma once
@@ -20,7 +23,7 @@ struct Reference {
 
 std::string reference_key(const scene::Scene&, const scene::Renderer&, const scene::Settings&);
 
-// Throws Error if the renderer cannot render the scene, Interrupted if stopped (nothing is stored then).
+// `cache` is results/cache. Throws Error if the renderer cannot render the scene, Interrupted if stopped.
 Reference reference_for(const std::filesystem::path& cache, std::shared_ptr<const scene::Scene>, const scene::Renderer&,
                         const scene::Settings&, const scene::Execution&);
 

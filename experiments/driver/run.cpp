@@ -118,8 +118,8 @@ class Run {
       const scene::Renderer& renderer = find_renderer(experiment().reference.renderer, "reference");
       const scene::Settings settings(renderer.settings(), experiment().reference.settings, "reference");
       Progress progress(fmt::format("{}: reference of {}", experiment().id, c.name));
-      reference = reference_for(results_ / "cache" / "references", scene, renderer, settings,
-                                progress.execution(experiment().timing.threads));
+      reference =
+          reference_for(results_ / "cache", scene, renderer, settings, progress.execution(experiment().timing.threads));
       exposure = exposure_of(reference->film, experiment().layer);
       ReferenceInfo info{c.name,
                          reference->key,
@@ -128,8 +128,11 @@ class Run {
                          experiment().id + "/" + file_name(c.name) + "/reference",
                          reference->seconds,
                          reference->cached,
-                         exposure};
+                         exposure,
+                         ""};
       keep_picture(results_ / "images", info.image, reference->film, experiment().layer, exposure);
+      const auto samples = reference->film.metadata.find("samples");
+      if (samples != reference->film.metadata.end()) info.samples = samples->second;
       outcome_.references.push_back(info);
     }
     for (const MethodCase& m : experiment().methods)

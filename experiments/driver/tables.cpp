@@ -205,8 +205,8 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   const Machine machine = this_machine();
   out += "## Conditions\n\n";
   for (const ReferenceInfo& r : outcome.references)
-    out +=
-        fmt::format("- Reference of {}: `{}`, `{}`, {} once.\n", r.scene, r.renderer, r.settings, duration(r.seconds));
+    out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once.\n", r.scene, r.renderer, r.settings,
+                       r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds));
   out += fmt::format(
       "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
       "precomputation apart.\n- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n",

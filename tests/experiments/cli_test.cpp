@@ -162,6 +162,28 @@ TEST_CASE("explain and doctor", "[cli]") {
   CHECK_THAT(doctor.out, Contains("Embree 3") && Contains("processor") && Contains("graphics"));
 }
 
+// A path tracer that is stopped keeps its samples: the film says how many, and a render with the same cache goes on to
+// the bits of one that was never stopped.
+TEST_CASE("Ctrl-C keeps the samples of a path tracer, and the cache goes on from there", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = scenes + "constant_homogeneous.toml --override film.width=16 --override film.height=12 ";
+  const std::string many = "render " + scene + "-m path_tracer --set max_order=1 --cache kept --samples ";
+  const Result stopped = run(many + "65536 -o a.exr & pid=$!; sleep 1; kill -INT $pid; wait $pid; exit $?; #", folder);
+  CAPTURE(stopped.err);
+  CHECK(stopped.code == 130);
+  const auto part = airlight::scene::read_exr(folder.file("a.exr"));
+  CHECK(part.metadata.at("complete") == "false");
+  REQUIRE(run(many + "1024 -o b.exr", folder).code == 0);
+  REQUIRE(run("render " + scene + "-m path_tracer --set max_order=1 --samples 1024 -o c.exr", folder).code == 0);
+  const auto resumed = airlight::scene::read_exr(folder.file("b.exr")),
+             whole = airlight::scene::read_exr(folder.file("c.exr"));
+  // The cache may hold more than 1024 already: then all are used.
+  if (resumed.metadata.at("samples") == "1024")
+    CHECK(resumed.layers == whole.layers);
+  else
+    CHECK(resumed.layers.at("n") > whole.layers.at("n"));
+}
+
 TEST_CASE("Ctrl-C stops a render and leaves nothing half-written", "[cli]") {
   const TemporaryFolder folder;
   const Result r = run("render " + scenes +
