@@ -25,6 +25,22 @@ Check read_airlight_paper(const Value&);
 Check read_sampling(const Value&);
 Check read_random_numbers(const Value&);
 
+// slab_kinds.cpp
+Check read_slab_table(const Value&);
+Check read_slab_point(const Value&);
+Check read_slab_exit_radiance(const Value&);
+Check read_slab_orders(const Value&);
+Check read_half_space(const Value&);
+
+// sphere_kinds.cpp
+Check read_sphere_environment(const Value&);
+Check read_sphere_central_point(const Value&);
+Check read_single_scattering_environment(const Value&);
+Check read_multiple_scattering(const Value&);
+
+// identity_kinds.cpp
+Check read_identity(const Value&);
+
 // statistics_kinds.cpp
 Check read_statistics(const Value&);
 
