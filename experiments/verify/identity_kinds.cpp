@@ -56,7 +56,7 @@ scene::Scene furnace(const std::vector<scene::Medium>& media, bool white_ball) {
 
 Comparison mean_one(const std::string& name, double expected, const scene::Scene& scene, const Ray& ray,
                     std::uint64_t samples) {
-  const auto got = measure(scene, ray, 1, {0, samples, samples}, "furnace " + name);
+  const auto got = Measurement(scene, ray, 1, "furnace " + name).run(fixed(samples));
   // A walk without next-event estimation would have no variance at all: rounding is allowed for.
   return statistical(name, expected, 0, got.total.mean[0], got.total.error[0], accept_se, 1e-9);
 }
@@ -86,24 +86,12 @@ Check read_furnace(const Value& v) {
       }};
 }
 
-// Paths that enter a convex region evenly over its boundary, cosine-weighted, albedo 1: mean collisions. Sixteen
-// repeats with their own random numbers give the standard error.
+// Paths that enter a convex region evenly over its boundary, cosine-weighted, albedo 1: mean collisions. Student's t
+// with 15 degrees of freedom: 6.6 standard errors are as rare as 4.5 of a known one.
 Comparison collisions(const std::string& name, double expected, const scene::Medium& medium, const Detector& entry,
                       std::uint64_t samples) {
-  const scene::Scene scene = furnace({medium}, false);
-  constexpr int repeats = 16;
-  double sum = 0, square = 0;
-  for (int i = 0; i < repeats; ++i) {
-    const std::uint64_t n = samples / repeats;
-    const auto got = measure(scene, entry, 1, {0, n, n}, "collisions " + name + std::to_string(i));
-    const double mean = double(got.counters.collisions) / double(got.samples);
-    sum += mean;
-    square += mean * mean;
-  }
-  const double mean = sum / repeats;
-  const double se = std::sqrt((square / repeats - mean * mean) / (repeats - 1));
-  // Student's t with 15 degrees of freedom: 6.6 standard errors are as rare as 4.5 of a known one.
-  return statistical(name, expected, 0, mean, se, 6.6);
+  const auto got = Measurement(furnace({medium}, false), entry, 1, "collisions " + name).collisions(samples);
+  return statistical(name, expected, 0, got.mean[0], got.error[0], 6.6);
 }
 
 // Points on the unit sphere or on the faces of the unit cube [0, 1]^3, pushed out a little, with a cosine-weighted
@@ -201,8 +189,8 @@ Check read_reciprocity(const Value& v) {
                 scene.media = {fog(scene::Slab{Vec3::UnitZ(), -2, 0}, 1, 0.95, p)};
                 scene.lights = {scene::DirectionalLight{to_light, Rgb::Ones()}};
                 scene::finish(scene);
-                const auto got = measure(scene, Ray{to_eye, -to_eye}, 1, {0, samples, samples},
-                                         std::string("reciprocity ") + n + std::to_string(to_light[2]));
+                const std::string run = std::string("reciprocity ") + n + std::to_string(to_light[2]);
+                const auto got = Measurement(scene, Ray{to_eye, -to_eye}, 1, run).run(fixed(samples));
                 return std::pair{got.total.mean[0] / to_light[2], got.total.error[0] / to_light[2]};
               };
               const Vec3 a = Vec3(0.3, 0.1, 0.9).normalized(), b = Vec3(-0.6, 0.7, 0.4).normalized();
@@ -220,7 +208,7 @@ Check read_limits(const Value& v) {
   const double thin = e["sphere_thin_L1_over_chord_tau"].number(), accuracy = v["accuracy"]["abs"].number();
   const double r20 = e["R_mu1_iso_0.9_tau20"].number(), infinite = e["R_mu1_iso_0.9_inf"].number();
   return {
-      "", [=](VerifyProfile) {
+      "", [=](VerifyProfile profile) {
         // The thin ball of the single-scattering vectors, per optical depth of its chord of 2 sqrt(1 - 0.5^2).
         scene::Scene scene;
         scene.media = {fog(scene::Sphere{Point3::Zero(), 1}, 1e-4, 1, scene::Isotropic{})};
@@ -235,7 +223,7 @@ Check read_limits(const Value& v) {
           slab.surfaces = {{"black", scene::Plane{Point3(0, 0, tau + 1), Vec3::UnitZ()}, scene::Lambert{Rgb::Zero()}}};
           scene::finish(slab);
           const std::string name = "R tau " + std::to_string(int(tau));
-          const auto got = measure(slab, Ray{Point3(0, 0, -1), Vec3::UnitZ()}, 1, {2.7e-4, 1 << 23}, name);
+          const auto got = Measurement(slab, Ray{Point3(0, 0, -1), Vec3::UnitZ()}, 1, name).run(aim(2.7e-4, profile));
           out.comparisons.push_back(
               statistical(name, expected, 0, got.total.mean[0], got.total.error[0], accept_se, accuracy));
         }

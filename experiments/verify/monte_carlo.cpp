@@ -19,38 +19,74 @@ std::uint32_t index_of(const std::string& name) {
   return hash;
 }
 
-World world(const scene::Scene& scene, int orders, std::uint32_t stream) {
-  path_tracer::Options options;
-  options.orders = orders;
-  options.stream = stream;
-  return {std::make_shared<const scene::Scene>(scene), options};
-}
-
-template <class Run>
-RadianceEstimate measure_with(const scene::Scene& scene, int orders, const Effort& effort, Run run) {
-  std::uint64_t samples = effort.least;
-  if (effort.se > 0) {
-    const double pilot = run(world(scene, orders, 2), pilot_samples).total.error[0];
-    const double needed = double(pilot_samples) * (pilot / effort.se) * (pilot / effort.se);
-    samples = std::uint64_t(std::clamp(needed * 1.1, double(effort.least), double(effort.most)));
-  }
-  return run(world(scene, orders, 1), (samples + 1023) / 1024 * 1024);
-}
-
 }  // namespace
 
-RadianceEstimate measure(const scene::Scene& scene, const Detector& detector, int orders, const Effort& effort,
-                         const std::string& name) {
-  return measure_with(scene, orders, effort, [&](const World& w, std::uint64_t samples) {
-    return path_tracer::mean_radiance(w, detector, samples, {}, index_of(name));
-  });
+Effort fixed(std::uint64_t samples) { return {0, samples, samples, infinity}; }
+
+Effort aim(double se, VerifyProfile profile) {
+  Effort effort;
+  effort.se = se;
+  if (profile == VerifyProfile::paper) {
+    effort.most <<= 4;
+    effort.collisions *= 100;
+  }
+  return effort;
 }
 
-RadianceEstimate measure(const scene::Scene& scene, const Ray& ray, int orders, const Effort& effort,
-                         const std::string& name) {
-  return measure_with(scene, orders, effort, [&](const World& w, std::uint64_t samples) {
-    return path_tracer::radiance(w, ray, samples, {}, index_of(name));
-  });
+Measurement::Measurement(const scene::Scene& scene, Detector detector, int orders, std::string name)
+    : scene_(std::make_shared<const scene::Scene>(scene)),
+      detector_(std::move(detector)),
+      ray_{Point3::Zero(), Vec3::UnitZ()},
+      orders_(orders),
+      name_(std::move(name)) {}
+
+Measurement::Measurement(const scene::Scene& scene, const Ray& ray, int orders, std::string name)
+    : scene_(std::make_shared<const scene::Scene>(scene)), ray_(ray), orders_(orders), name_(std::move(name)) {}
+
+RadianceEstimate Measurement::trace(std::uint64_t samples, std::uint32_t stream, std::uint32_t repeat,
+                                    bool analog) const {
+  path_tracer::Options options;
+  options.orders = orders_;
+  options.stream = stream;
+  if (analog) options.roulette_order = 0;
+  const World world(scene_, options);
+  const std::uint32_t index = index_of(name_) + repeat;
+  return detector_ ? path_tracer::mean_radiance(world, detector_, samples, {}, index)
+                   : path_tracer::radiance(world, ray_, samples, {}, index);
+}
+
+double Measurement::collisions_for(double se) const {
+  const RadianceEstimate pilot = trace(pilot_samples, 2, 0);
+  const double ratio = pilot.total.error[0] / se;
+  return double(pilot.counters.collisions) * ratio * ratio;
+}
+
+RadianceEstimate Measurement::run(const Effort& effort) const {
+  double samples = double(effort.least);
+  if (effort.se > 0) {
+    const RadianceEstimate pilot = trace(pilot_samples, 2, 0);
+    const double ratio = pilot.total.error[0] / effort.se;
+    const double per_path = double(pilot.counters.collisions) / double(pilot_samples);
+    samples = std::max(1.1 * double(pilot_samples) * ratio * ratio, double(effort.least));
+    samples = std::min({samples, double(effort.most), effort.collisions / std::max(per_path, 0.1)});
+  }
+  return trace((std::uint64_t(samples) + 1023) / 1024 * 1024, 1, 0);
+}
+
+path_tracer::Estimate Measurement::collisions(std::uint64_t samples) const {
+  constexpr int repeats = 16;
+  double sum = 0, square = 0;
+  for (int i = 0; i < repeats; ++i) {
+    const RadianceEstimate got = trace(samples / repeats, 1, std::uint32_t(i), true);
+    const double mean = double(got.counters.collisions) / double(got.samples);
+    sum += mean;
+    square += mean * mean;
+  }
+  path_tracer::Estimate result;
+  const double mean = sum / repeats;
+  result.mean = Rgb::Constant(mean);
+  result.error = Rgb::Constant(std::sqrt((square / repeats - mean * mean) / (repeats - 1)));
+  return result;
 }
 
 Detector cosine_detector(const Point3& origin, const Vec3& axis) {

@@ -14,20 +14,44 @@ namespace airlight::experiments::verification {
 inline constexpr double accept_se = 4.5;
 
 // How far to go: until the standard error of the total is below `se`, as foretold by a pilot of other random numbers (a
-// stop by the samples themselves would be biased), but at least `least` and at most `most` samples.
+// stop by the samples themselves would be biased), but at least `least` samples, and no more than `most` samples or
+// about `collisions` collisions. What falls short of `se` has a larger standard error, and is judged by that.
 struct Effort {
-  double se = 0;
-  std::uint64_t most = 1 << 20;
+  double se = 0;  // 0: `least` samples
   std::uint64_t least = 1 << 14;
+  std::uint64_t most = std::uint64_t(1) << 24;
+  double collisions = 3e7;
 };
+Effort fixed(std::uint64_t samples);
+// The quick profile's limit of collisions, or a hundred times that.
+Effort aim(double se, VerifyProfile);
 
 using Detector = path_tracer::RaySource;
 
-// Means over a detector's rays, or of one ray. `name` picks the random numbers: other names, other numbers.
-path_tracer::RadianceEstimate measure(const scene::Scene&, const Detector&, int orders, const Effort&,
-                                      const std::string& name);
-path_tracer::RadianceEstimate measure(const scene::Scene&, const Ray&, int orders, const Effort&,
-                                      const std::string& name);
+// A scene with rays to look along, and the scattering orders to be told apart. Copies share the scene.
+class Measurement {
+ public:
+  // `name` picks the random numbers: other names, other numbers.
+  Measurement(const scene::Scene&, Detector, int orders, std::string name);
+  Measurement(const scene::Scene&, const Ray&, int orders, std::string name);
+
+  // Collisions that a standard error of `se` takes, foretold by the pilot.
+  double collisions_for(double se) const;
+  path_tracer::RadianceEstimate run(const Effort&) const;
+
+  // Mean collisions per path and its standard error, from sixteen repeats with their own random numbers. Absorption is
+  // played: a path survives a collision with the probability of the albedo.
+  path_tracer::Estimate collisions(std::uint64_t samples) const;
+
+ private:
+  path_tracer::RadianceEstimate trace(std::uint64_t samples, std::uint32_t stream, std::uint32_t repeat,
+                                      bool analog = false) const;
+  std::shared_ptr<const scene::Scene> scene_;
+  Detector detector_;  // empty: the one ray
+  Ray ray_;
+  int orders_;
+  std::string name_;
+};
 
 // Rays from `origin`, cosine-weighted about `axis`: their mean radiance times pi is the flux through a plane.
 Detector cosine_detector(const Point3& origin, const Vec3& axis);

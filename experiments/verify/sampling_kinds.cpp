@@ -1,4 +1,7 @@
 // Sampling of cosines and distances, and the random number generator.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -14,13 +17,7 @@ namespace {
 using Row = std::vector<double>;
 
 std::string joined(const Row& row, std::size_t count) {
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, row[i]).ptr;
-    text += (i ? "," : "") + std::string(buffer, end);
-  }
-  return text;
+  return fmt::format("{}", fmt::join(row.begin(), row.begin() + long(count), ","));
 }
 
 std::vector<Row> read_rows(const Value& list, std::size_t columns) {
