@@ -51,15 +51,16 @@ const std::string good = R"({"id": "a", "kind": "F", "in": {"u": 0.0, "v": 0.7},
 }  // namespace
 
 TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify]") {
-  for (const char* kind : {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians",
-                           "optical_depth", "field_bounds", "phase_function", "statistics"}) {
+  for (const char* kind :
+       {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians", "optical_depth",
+        "field_bounds", "phase_function", "statistics", "sampling", "random_numbers"}) {
     std::ostringstream out;
     CAPTURE(kind);
     const int code = verify({vectors + "references.json"}, kind, VerifyProfile::quick, out);
     CAPTURE(out.str());
     CHECK(code == 0);
   }
-  for (const char* kind : {"line_integral", "depth", "F", "airlight_homogeneous", "airlight_scene"}) {
+  for (const char* kind : {"line_integral", "depth", "F", "airlight_homogeneous", "airlight_scene", "airlight_paper"}) {
     std::ostringstream out;
     CAPTURE(kind);
     const int code = verify({vectors + "fogshop.json"}, kind, VerifyProfile::quick, out);
