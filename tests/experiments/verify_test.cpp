@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using airlight::experiments::verify;
@@ -18,14 +19,9 @@ const std::string vectors = AIRLIGHT_SOURCE_DIR "/tests/vectors/";
 
 // A file that goes away with the test.
 struct TemporaryFile {
-  std::string path;
-  explicit TemporaryFile(const std::string& text) {
-    path =
-        (std::filesystem::temp_directory_path() / ("airlight_verify_" + std::to_string(counter++) + ".json")).string();
-    std::ofstream(path) << text;
-  }
-  ~TemporaryFile() { std::remove(path.c_str()); }
-  static inline int counter = 0;
+  airlight::TemporaryFolder folder;
+  std::string path = folder.file("vectors.json");
+  explicit TemporaryFile(const std::string& text) { folder.write("vectors.json", text); }
 };
 
 std::string complaint(const std::string& text) {

@@ -7,6 +7,7 @@
 #include "reference/path_tracer/stopping.h"
 #include "scene/error.h"
 #include "tests/reference/path_tracer/scenes.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::path_tracer;
@@ -30,11 +31,10 @@ World world_of(std::uint64_t samples) {
   return World(ball(), options);
 }
 
-// An empty folder of its own.
+// A name for a folder that does not exist yet.
 std::string folder(const std::string& name) {
-  const auto path = std::filesystem::temp_directory_path() / "airlight_path_tracer_cache" / name;
-  std::filesystem::remove_all(path);
-  return path.string();
+  static const TemporaryFolder parent;
+  return parent.file(name);
 }
 
 scene::Film direct(std::uint64_t samples) {

@@ -9,6 +9,7 @@
 #include "reference/path_tracer/renderer.h"
 #include "scene/error.h"
 #include "tests/reference/path_tracer/scenes.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::path_tracer;
@@ -75,9 +76,8 @@ Accumulation rendered(const World& world, const scene::View& view, std::uint64_t
 bool same_layers(const scene::Film& a, const scene::Film& b) { return a.layers == b.layers; }
 
 std::string scratch(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / "airlight_path_tracer_test";
-  std::filesystem::create_directories(folder);
-  return (folder / name).string();
+  static const TemporaryFolder folder;
+  return folder.file(name);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "scene/data_folder.h"
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::scene;
@@ -17,11 +18,9 @@ namespace {
 const std::string root = AIRLIGHT_SOURCE_DIR;
 const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 
-// A folder of its own, removed at the end.
 struct Folder {
-  fs::path path = fs::temp_directory_path() / "airlight_assets_test";
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
+  TemporaryFolder own;
+  fs::path path = own.path();
 };
 
 std::string message(const std::string& text, const std::string& folder) {

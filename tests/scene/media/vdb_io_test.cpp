@@ -8,6 +8,7 @@
 #include "scene/error.h"
 #include "scene/media/voxel_grid.h"
 #include "tests/scene/media/random_points.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::scene;
@@ -15,11 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A folder of its own, removed at the end.
 struct Folder {
-  fs::path path = fs::temp_directory_path() / fs::path("airlight_vdb_" + std::to_string(std::random_device{}()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
+  airlight::TemporaryFolder own;
+  fs::path path = own.path();
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 
