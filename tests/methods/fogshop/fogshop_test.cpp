@@ -252,3 +252,31 @@ TEST_CASE("fogshop against the deterministic reference", "[fogshop]") {
     CHECK(error({{"K", "24"}}) <= c.extrapolated24);
   }
 }
+
+// Everything at once, layer by layer: two lights of which one has a ball, colour, albedo, a merged second medium, a
+// wall, both kinds of camera. The wall stands behind everything, so that nothing shadows the medium.
+TEST_CASE("fogshop layers are those of the deterministic reference", "[fogshop]") {
+  Scene scene = small_scene();
+  scene.lights.push_back(scene::PointLight{Point3(-0.8, -0.5, -4), Rgb(1, 2, 4), 0.2});
+  scene.media = {gaussians({{Point3(0.5, 0.2, -4), 1, 0.5}, {Point3(-1, 0.5, -3), 0.6, 1}}, 0.05), homogeneous(0.02)};
+  for (auto& medium : scene.media) {
+    medium.sigma_t = Rgb(1, 0.6, 0.3) * (&medium == &scene.media[0] ? 1 : 2);
+    medium.albedo = Rgb(0.9, 0.8, 0.7);
+  }
+  scene.surfaces.push_back({"wall", scene::Plane{Point3(0, 0, -6), Vec3(0, 0, 1)}, scene::Lambert{Rgb(0.5, 0.6, 0.7)}});
+  for (const auto kind : {scene::Camera::Kind::perspective, scene::Camera::Kind::orthographic}) {
+    scene.camera.kind = kind;
+    scene.camera.height = 4;
+    finish(scene);
+    const auto reference = deterministic::make_renderer();
+    const Film truth = reference->prepare(std::make_shared<const Scene>(scene), {reference->settings(), {}}, {})
+                           ->render(view_of(scene), {})
+                           .film;
+    const Film film = render(scene, {{"K", "96"}, {"light_depth", "exact"}, {"eps_T", "1e-10"}}).film;
+    // Layers are floats; the airlight has 96 extrapolated slices.
+    CHECK(relative_l2(film.layer("airlight"), truth.layer("airlight")) <= 1e-4);
+    CHECK(relative_l2(film.layer("surface"), truth.layer("surface")) <= 1e-6);
+    CHECK(relative_l2(film.layer("transmittance"), truth.layer("transmittance")) <= 1e-6);
+    CHECK(relative_l2(film.layer("mean"), truth.layer("mean")) <= 1e-4);
+  }
+}
