@@ -24,8 +24,10 @@ void Columns::march(const Plan& plan, std::size_t n, const Points& points, const
     const Layer& layer = plan.layers[k];
     std::vector<float>& column = columns_[k];
     column.assign(padded(n), 0.0f);
-    const bool plain = layer.varies && !layer.grid && !layer.gaussians;
-    if (plan.options.exact_shadow || plain) {
+    const bool exact = plan.options.exact_shadow;
+    const bool kernel =
+        !layer.varies || (layer.grid && !exact) || (layer.gaussians && !(exact && layer.gaussians->any_negative));
+    if (!kernel) {
       for (std::size_t i = 0; i < n; ++i) {
         const Ray ray{points.at(i), Vec3(to.to_x[i], to.to_y[i], to.to_z[i]).normalized()};
         const Interval t{0, to.distance[i]};
@@ -53,7 +55,10 @@ void Columns::march(const Plan& plan, std::size_t n, const Points& points, const
     } else if (layer.gaussians) {
       enter(layer.gaussians->frame);
       clip_rays(layer.gaussians->lo, layer.gaussians->hi, n, rays);
-      counters.shadow_steps += gaussian_columns(*layer.gaussians, rule, n, rays, column.data());
+      if (exact)
+        gaussian_integrals(*layer.gaussians, n, rays, column.data());
+      else
+        counters.shadow_steps += gaussian_columns(*layer.gaussians, rule, n, rays, column.data());
     }
   }
 }

@@ -22,8 +22,7 @@ using Mask = hn::Mask<F>;
 
 HWY_INLINE VF squared(VF x, VF y, VF z) { return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))); }
 
-// Sphere around up to Lanes points, and its indices of Gaussians that reach within `slack` of it or of the segment that
-// starts there.
+// Sphere around up to Lanes points.
 struct Neighbourhood {
   float x, y, z, radius;
 };
@@ -66,8 +65,62 @@ long long GaussianDensity(const GaussianField& field, std::size_t n, const float
   return static_cast<long long>(n);
 }
 
-// Lanes are rays. All rays of a group lie within the group's radius of the segment from its middle to its light, since
-// they are parallel or converge: that decides which Gaussians matter to them.
+// Up to Lanes rays, one per lane, with what encloses them.
+struct RayGroup {
+  Mask used;
+  VF t0, t1, ox, oy, oz, dx, dy, dz;
+  Neighbourhood a;         // around the beginnings
+  float sx, sy, sz, span;  // from there to around the ends; its squared length
+  float radius;
+
+  RayGroup(std::size_t i, std::size_t n, const LocalRays& rays) {
+    const F f;
+    t0 = hn::LoadU(f, rays.t0 + i), t1 = hn::LoadU(f, rays.t1 + i);
+    dx = hn::LoadU(f, rays.dx + i), dy = hn::LoadU(f, rays.dy + i), dz = hn::LoadU(f, rays.dz + i);
+    ox = hn::LoadU(f, rays.ox + i), oy = hn::LoadU(f, rays.oy + i), oz = hn::LoadU(f, rays.oz + i);
+    used = hn::And(hn::FirstN(f, n - i), hn::Lt(t0, t1));
+    const auto at = [&](VF t) HWY_ATTR {
+      return around(used, hn::MulAdd(t, dx, ox), hn::MulAdd(t, dy, oy), hn::MulAdd(t, dz, oz));
+    };
+    a = at(t0);
+    const Neighbourhood b = at(t1);
+    sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
+    span = std::max(sx * sx + sy * sy + sz * sz, 1e-30f);
+    radius = std::max(a.radius, b.radius);
+  }
+
+  // Each ray is in the hull of the spheres around both groups of ends: a Gaussian out of reach of it matters to none.
+  bool misses(const GaussianField& field, std::size_t g) const {
+    const float gx = field.x[g] - a.x, gy = field.y[g] - a.y, gz = field.z[g] - a.z;
+    const float s = std::clamp((gx * sx + gy * sy + gz * sz) / span, 0.0f, 1.0f);
+    const float ex = gx - s * sx, ey = gy - s * sy, ez = gz - s * sz, apart = field.reach[g] + radius;
+    return ex * ex + ey * ey + ez * ez > apart * apart * 1.0001f;
+  }
+};
+
+// A Gaussian along each ray: amplitude * exp(-(near^2 + ((t - middle) * rate)^2)), for |t - middle| <= spread.
+struct Profile {
+  VF middle, rate, near2, limit, spread;
+  Mask met;
+
+  Profile(const GaussianField& field, std::size_t g, const RayGroup& rays) {
+    const F f;
+    const VF scale = hn::Set(f, field.inverse_width[g]);
+    const VF qx = hn::Mul(scale, hn::Sub(hn::Set(f, field.x[g]), rays.ox)),
+             qy = hn::Mul(scale, hn::Sub(hn::Set(f, field.y[g]), rays.oy)),
+             qz = hn::Mul(scale, hn::Sub(hn::Set(f, field.z[g]), rays.oz));
+    const VF wx = hn::Mul(scale, rays.dx), wy = hn::Mul(scale, rays.dy), wz = hn::Mul(scale, rays.dz);
+    const VF rate2 = squared(wx, wy, wz);
+    rate = hn::Sqrt(rate2);
+    middle = hn::Div(hn::MulAdd(qx, wx, hn::MulAdd(qy, wy, hn::Mul(qz, wz))), rate2);
+    near2 = squared(hn::NegMulAdd(middle, wx, qx), hn::NegMulAdd(middle, wy, qy), hn::NegMulAdd(middle, wz, qz));
+    const float reach = field.reach[g] * field.inverse_width[g];
+    limit = hn::Set(f, reach * reach);
+    spread = hn::Div(hn::Sqrt(hn::Max(hn::Zero(f), hn::Sub(limit, near2))), rate);
+    met = hn::And(rays.used, hn::Le(near2, limit));
+  }
+};
+
 long long GaussianColumns(const GaussianField& field, const StepRule& rule, std::size_t n, const LocalRays& rays,
                           float* column) {
   const F f;
@@ -75,59 +128,33 @@ long long GaussianColumns(const GaussianField& field, const StepRule& rule, std:
   long long evaluations = 0;
   std::vector<float> sums;
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
-    const VF t0 = hn::LoadU(f, rays.t0 + i), t1 = hn::LoadU(f, rays.t1 + i);
-    const Mask used = hn::And(hn::FirstN(f, n - i), hn::Lt(t0, t1));
-    if (hn::AllFalse(f, used)) continue;
-    const VF length = hn::IfThenElseZero(used, hn::Sub(t1, t0));
+    const RayGroup group(i, n, rays);
+    if (hn::AllFalse(f, group.used)) continue;
+    const VF length = hn::IfThenElseZero(group.used, hn::Sub(group.t1, group.t0));
     VF steps = hn::Set(f, float(rule.count));
     if (rule.length > 0)
       steps = hn::Min(hn::Max(one, hn::Ceil(hn::Div(length, hn::Set(f, rule.length)))), hn::Set(f, 1048576.0f));
     const VF h = hn::Div(length, steps);
-    steps = hn::IfThenElseZero(used, steps);
-    const VF dx = hn::LoadU(f, rays.dx + i), dy = hn::LoadU(f, rays.dy + i), dz = hn::LoadU(f, rays.dz + i);
-    const VF ox = hn::LoadU(f, rays.ox + i), oy = hn::LoadU(f, rays.oy + i), oz = hn::LoadU(f, rays.oz + i);
-    // The ranges' ends bound all rays: each is in the hull of the two groups of ends.
-    const auto end = [&](VF o, VF d, VF t) HWY_ATTR { return hn::MulAdd(t, d, o); };
-    const Neighbourhood a = around(used, end(ox, dx, t0), end(oy, dy, t0), end(oz, dz, t0));
-    const Neighbourhood b = around(used, end(ox, dx, t1), end(oy, dy, t1), end(oz, dz, t1));
-    const float sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
-    const float radius = std::max(a.radius, b.radius), span = std::max(sx * sx + sy * sy + sz * sz, 1e-30f);
+    steps = hn::IfThenElseZero(group.used, steps);
     const int most = int(hn::GetLane(hn::MaxOfLanes(f, steps)));
     sums.assign(field.any_negative ? most * hn::Lanes(f) : 0, 0.0f);
     VF total = zero;
     for (std::size_t g = 0; g < field.count; ++g) {
-      const float gx = field.x[g] - a.x, gy = field.y[g] - a.y, gz = field.z[g] - a.z;
-      const float s = std::clamp((gx * sx + gy * sy + gz * sz) / span, 0.0f, 1.0f);
-      const float ex = gx - s * sx, ey = gy - s * sy, ez = gz - s * sz, apart = field.reach[g] + radius;
-      if (ex * ex + ey * ey + ez * ez > apart * apart * 1.0001f) continue;
-      // Along each ray the Gaussian is exp(-(near^2 + ((t - middle) rate)^2)).
-      const VF scale = hn::Set(f, field.inverse_width[g]);
-      const VF qx = hn::Mul(scale, hn::Sub(hn::Set(f, field.x[g]), ox)),
-               qy = hn::Mul(scale, hn::Sub(hn::Set(f, field.y[g]), oy)),
-               qz = hn::Mul(scale, hn::Sub(hn::Set(f, field.z[g]), oz));
-      const VF wx = hn::Mul(scale, dx), wy = hn::Mul(scale, dy), wz = hn::Mul(scale, dz);
-      const VF rate2 = squared(wx, wy, wz);
-      const VF middle = hn::Div(hn::MulAdd(qx, wx, hn::MulAdd(qy, wy, hn::Mul(qz, wz))), rate2);
-      const VF near2 =
-          squared(hn::NegMulAdd(middle, wx, qx), hn::NegMulAdd(middle, wy, qy), hn::NegMulAdd(middle, wz, qz));
-      const float reach = field.reach[g] * field.inverse_width[g];
-      const VF limit = hn::Set(f, reach * reach), rate = hn::Sqrt(rate2);
+      if (group.misses(field, g)) continue;
+      const Profile p(field, g, group);
+      if (hn::AllFalse(f, p.met)) continue;
       // Steps within reach, of any ray of the group.
-      const VF spread = hn::Div(hn::Sqrt(hn::Max(zero, hn::Sub(limit, near2))), rate);
-      const Mask met = hn::And(used, hn::Le(near2, limit));
-      if (hn::AllFalse(f, met)) continue;
-      const VF first = hn::Div(hn::Sub(hn::Sub(middle, spread), t0), h);
-      const VF last = hn::Div(hn::Sub(hn::Add(middle, spread), t0), h);
-      const int from = std::max(
-          0, int(std::max(-1.0f, hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(met, first, hn::Set(f, 1e9f)))))) - 1);
-      const int to = std::min(
-          most, int(std::min(1e9f, hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElse(met, last, hn::Set(f, -2.0f)))))) + 2);
+      const VF first = hn::Div(hn::Sub(hn::Sub(p.middle, p.spread), group.t0), h);
+      const VF last = hn::Div(hn::Sub(hn::Add(p.middle, p.spread), group.t0), h);
+      const float least = hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(p.met, first, hn::Set(f, 1e9f))));
+      const float greatest = hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElse(p.met, last, hn::Set(f, -2.0f))));
+      const int from = int(std::clamp(least - 1, 0.0f, 1e9f)), to = std::min(most, int(std::min(greatest, 1e9f)) + 2);
       const VF peak = hn::Set(f, field.amplitude[g]);
-      const VF u0 = hn::Mul(rate, hn::Sub(hn::MulAdd(half, h, t0), middle)), du = hn::Mul(rate, h);
+      const VF u0 = hn::Mul(p.rate, hn::Sub(hn::MulAdd(half, h, group.t0), p.middle)), du = hn::Mul(p.rate, h);
       for (int j = from; j < to; ++j) {
-        const VF step = hn::Set(f, float(j)), u = hn::MulAdd(step, du, u0), d2 = hn::MulAdd(u, u, near2);
-        const VF value =
-            hn::IfThenElseZero(hn::And(hn::Le(d2, limit), hn::Lt(step, steps)), hn::Mul(peak, hn::Exp(f, hn::Neg(d2))));
+        const VF step = hn::Set(f, float(j)), u = hn::MulAdd(step, du, u0), d2 = hn::MulAdd(u, u, p.near2);
+        const VF value = hn::IfThenElseZero(hn::And(hn::Le(d2, p.limit), hn::Lt(step, steps)),
+                                            hn::Mul(peak, hn::Exp(f, hn::Neg(d2))));
         if (field.any_negative) {
           float* at = sums.data() + j * hn::Lanes(f);
           hn::StoreU(hn::Add(hn::LoadU(f, at), value), f, at);
@@ -147,6 +174,44 @@ long long GaussianColumns(const GaussianField& field, const StepRule& rule, std:
   return evaluations;
 }
 
+// erf, absolute error 1.5e-7: Abramowitz and Stegun, formula 7.1.26. Absolute is what counts, in optical depths.
+HWY_INLINE VF error_function(VF x) {
+  const F f;
+  const VF size = hn::Abs(x);
+  const VF t = hn::Div(hn::Set(f, 1.0f), hn::MulAdd(hn::Set(f, 0.3275911f), size, hn::Set(f, 1.0f)));
+  VF sum = hn::MulAdd(hn::Set(f, 1.061405429f), t, hn::Set(f, -1.453152027f));
+  sum = hn::MulAdd(sum, t, hn::Set(f, 1.421413741f));
+  sum = hn::MulAdd(sum, t, hn::Set(f, -0.284496736f));
+  sum = hn::MulAdd(sum, t, hn::Set(f, 0.254829592f));
+  const VF tail = hn::Mul(hn::Mul(sum, t), hn::Exp(f, hn::Neg(hn::Mul(size, size))));
+  return hn::CopySign(hn::Sub(hn::Set(f, 1.0f), tail), x);
+}
+
+// Zhou et al. 2007, Eq. 31: sqrt(pi)/2 * amplitude * exp(-near^2) / rate * (erf(u1) - erf(u0)).
+void GaussianIntegrals(const GaussianField& field, std::size_t n, const LocalRays& rays, float* column) {
+  const F f;
+  for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
+    const RayGroup group(i, n, rays);
+    if (hn::AllFalse(f, group.used)) continue;
+    VF total = hn::Zero(f);
+    for (std::size_t g = 0; g < field.count; ++g) {
+      if (group.misses(field, g)) continue;
+      const Profile p(field, g, group);
+      if (hn::AllFalse(f, p.met)) continue;
+      // Where it is cut off, or as good as zero, is outside.
+      const VF reach = hn::Mul(p.rate, p.spread);
+      const auto edge = [&](VF t) HWY_ATTR {
+        return hn::Min(reach, hn::Max(hn::Neg(reach), hn::Mul(p.rate, hn::Sub(t, p.middle))));
+      };
+      const VF between = hn::Sub(error_function(edge(group.t1)), error_function(edge(group.t0)));
+      const VF height =
+          hn::Div(hn::Mul(hn::Set(f, 0.886226925f * field.amplitude[g]), hn::Exp(f, hn::Neg(p.near2))), p.rate);
+      total = hn::Add(total, hn::IfThenElseZero(p.met, hn::Mul(height, between)));
+    }
+    hn::StoreU(hn::Add(total, hn::LoadU(f, column + i)), f, column + i);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace airlight::ray_marcher
 HWY_AFTER_NAMESPACE();
@@ -164,6 +229,11 @@ HWY_EXPORT(GaussianColumns);
 long long gaussian_columns(const GaussianField& field, const StepRule& rule, std::size_t n, const LocalRays& rays,
                            float* column) {
   return HWY_DYNAMIC_DISPATCH(GaussianColumns)(field, rule, n, rays, column);
+}
+
+HWY_EXPORT(GaussianIntegrals);
+void gaussian_integrals(const GaussianField& field, std::size_t n, const LocalRays& rays, float* column) {
+  HWY_DYNAMIC_DISPATCH(GaussianIntegrals)(field, n, rays, column);
 }
 
 }  // namespace airlight::ray_marcher

@@ -70,6 +70,12 @@ void Counters::add(const Counters& other) {
   shadow_rays += other.shadow_rays;
   shadow_steps += other.shadow_steps;
   occlusion_rays += other.occlusion_rays;
+  ray_seconds += other.ray_seconds;
+  march_seconds += other.march_seconds;
+  occlusion_seconds += other.occlusion_seconds;
+  shadow_seconds += other.shadow_seconds;
+  scattering_seconds += other.scattering_seconds;
+  surface_seconds += other.surface_seconds;
 }
 
 }  // namespace airlight::ray_marcher

@@ -41,12 +41,15 @@ void add_passes(const Plan&, int ray_number, const Ray&, double t_end, std::vect
 // Is that pass the one for this light?
 bool serves(const std::vector<Pass>&, std::size_t pass, int light);
 
+// Work done, and where the time went (summed over threads).
 struct Counters {
   long long rays = 0;            // camera rays
   long long steps = 0;           // density evaluations on camera rays
   long long shadow_rays = 0;     // from a step or a surface point towards a light, through media
   long long shadow_steps = 0;    // density evaluations on shadow rays
   long long occlusion_rays = 0;  // shadow rays tested against surfaces
+  double ray_seconds = 0, march_seconds = 0, occlusion_seconds = 0, shadow_seconds = 0, scattering_seconds = 0,
+         surface_seconds = 0;
   void add(const Counters&);
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 
 #include "reference/ray_marcher/plan.h"
@@ -52,16 +53,20 @@ std::vector<scene::Stage> explain(const Plan& plan) {
   const auto varying = std::count_if(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.varies; });
   const bool constants =
       std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
+  const bool lit = !plan.lights.empty();
+  const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
+  add("camera_rays", true,
+      plan.options.graded ? "one per pixel, and its steps, graded" : "one per pixel, and its steps");
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
-  const bool lit = !plan.lights.empty();
-  const bool shadows = lit && varying > 0 && (plan.scatters || scene.geometry);
-  add("shadow_march", shadows && !plan.options.exact_shadow,
+  add("shadows", shadows,
       !lit                        ? "no light"
-      : !shadows && varying > 0   ? "no medium scatters, no surface is lit"
-      : varying == 0              ? "no medium varies: optical depths have a closed form"
-      : plan.options.exact_shadow ? "shadow = exact"
-                                  : fmt::format("{} varying media, {} lights", varying, plan.lights.size()));
+      : plan.layers.empty()       ? "no medium with extinction"
+      : !shadows                  ? "no medium scatters, no surface is lit"
+      : varying == 0              ? "closed form: no medium varies"
+      : plan.options.exact_shadow ? fmt::format("exact, {} lights", plan.lights.size())
+                                  : fmt::format("marched, {} varying media, {} lights", varying, plan.lights.size()));
+  add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? "no light" : "no medium scatters");
   add("constant_media", constants,
       constants ? "constants are integrated in closed form" : "no medium has a constant part");
   const bool grids = std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return bool(l.grid); });
@@ -73,11 +78,32 @@ std::vector<scene::Stage> explain(const Plan& plan) {
       has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
                              : "no environment light");
   add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
-  add("surface_shading", bool(scene.geometry) && lit, scene.geometry ? "surfaces are lit directly" : "no surfaces");
-  add("background", has_environment(scene),
-      has_environment(scene) ? "environment seen through the media" : "no environment light");
+  const bool seen = (bool(scene.geometry) && lit) || has_environment(scene);
+  add("surfaces", seen,
+      scene.geometry && lit    ? "surfaces are lit directly"
+      : has_environment(scene) ? "the environment is seen through the media"
+                               : "nothing behind the media");
   if (!(scene.ambient_in_scatter == 0).all()) add("ambient", false, "the ray marcher has no ambient term");
   return stages;
+}
+
+// The wall clock, shared among the stages that are kept as the threads' time was; what it costs to find that another
+// has nothing to do goes to the first. The plain path does not tell stages apart.
+std::vector<scene::StageTime> stage_times(const std::vector<scene::Stage>& stages, const Counters& c, double seconds) {
+  const std::map<std::string, double> threads = {
+      {"camera_rays", c.ray_seconds}, {"camera_march", c.march_seconds},    {"occlusion", c.occlusion_seconds},
+      {"shadows", c.shadow_seconds},  {"scattering", c.scattering_seconds}, {"surfaces", c.surface_seconds}};
+  double sum = 0, rest = seconds;
+  for (const auto& [name, t] : threads) sum += t;
+  std::vector<scene::StageTime> times = {{"camera_rays", 0}};
+  for (const scene::Stage& stage : stages) {
+    const auto found = threads.find(stage.name);
+    if (!stage.kept || found == threads.end() || stage.name == "camera_rays" || sum == 0) continue;
+    times.push_back({stage.name, seconds * found->second / sum});
+    rest -= times.back().seconds;
+  }
+  times[0].seconds = rest;
+  return times;
 }
 
 class PreparedMarch final : public scene::Prepared {
@@ -124,13 +150,14 @@ class PreparedMarch final : public scene::Prepared {
       const std::lock_guard lock(mutex);
       total.add(counters);
     });
-    result.times = {{"march", now() - start}};
+    const double seconds = now() - start;
+    result.times = stage_times(stages(), total, seconds);
     result.counters = {{"rays", double(total.rays)},
                        {"steps", double(total.steps)},
                        {"shadow_rays", double(total.shadow_rays)},
                        {"shadow_steps", double(total.shadow_steps)},
                        {"occlusion_rays", double(total.occlusion_rays)}};
-    result.film.metadata["seconds"] = fmt::format("{:.6f}", result.times[0].seconds);
+    result.film.metadata["seconds"] = fmt::format("{:.6f}", seconds);
     std::string& counters = result.film.metadata["counters"];
     for (const auto& [name, value] : result.counters)
       counters += fmt::format("{}{}={:.0f}", counters.empty() ? "" : " ", name, value);

@@ -49,13 +49,25 @@ const std::vector<Pixel>& TileMarcher::march(const Plan& plan, const std::vector
   for (const Layer& layer : plan.layers)
     if (!(layer.medium->sigma_t == layer.medium->sigma_t[0]).all()) channels_ = 3;
   pixels_.assign(rays.size(), Pixel());
+  since_ = std::chrono::steady_clock::now();
   lay_steps();
+  end_of(&Counters::ray_seconds);
   sample_densities();
   weigh_steps();
+  end_of(&Counters::march_seconds);
   for (int light = 0; plan.scatters && light < int(plan.lights.size()); ++light) scatter_light(light);
   collect();
+  end_of(&Counters::scattering_seconds);
   shade_behind();
+  end_of(&Counters::surface_seconds);
   return pixels_;
+}
+
+// Books the time since the last stage ended.
+void TileMarcher::end_of(double Counters::*stage) {
+  const auto now = std::chrono::steady_clock::now();
+  counters_->*stage += std::chrono::duration<double>(now - since_).count();
+  since_ = now;
 }
 
 void TileMarcher::lay_steps() {
@@ -181,11 +193,15 @@ void TileMarcher::scatter_light(int light) {
   if (plan_->scene->geometry || shape.kind == LightShape::spot) {
     if (whole) lit_ = steps_;
     lit = &lit_;
+    end_of(&Counters::scattering_seconds);
     keep_lit(light);
+    end_of(&Counters::occlusion_seconds);
   }
   const std::size_t n = index_.size();
   if (n == 0) return;
+  end_of(&Counters::scattering_seconds);
   columns_.march(*plan_, n, lit->at, to_, *counters_);
+  end_of(&Counters::shadow_seconds);
   scatterers_.resize(plan_->layers.size());
   const Rgb colour = light_colour(plan_->lights[light]);
   for (std::size_t k = 0; k < scatterers_.size(); ++k) {

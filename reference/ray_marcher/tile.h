@@ -5,6 +5,8 @@
 // densities, transmittances, then per light: directions, occlusion, shadow columns, scattering; last the surfaces
 // behind.
 #pragma once
+#include <chrono>
+
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/samples.h"
 #include "reference/ray_marcher/scalar.h"
@@ -26,12 +28,14 @@ class TileMarcher {
   void collect();
   void shade_behind();
   void light_surfaces();
+  void end_of(double Counters::*stage);
   std::size_t slot(std::size_t layer, int channel) const { return layer * channels_ + channel; }
 
   const Plan* plan_ = nullptr;
   const std::vector<Ray>* rays_ = nullptr;
   Counters* counters_ = nullptr;
-  int channels_ = 1;  // of the transport: 1 where every extinction is grey
+  std::chrono::steady_clock::time_point since_;  // beginning of the stage that runs
+  int channels_ = 1;                             // of the transport: 1 where every extinction is grey
   std::vector<Pixel> pixels_;
   std::vector<scene::RayEnd> ends_;
   std::vector<Pass> passes_;

@@ -1,4 +1,5 @@
 // The order at which marching reaches the deterministic truth, and identities that hold at any number of steps.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -234,6 +235,22 @@ TEST_CASE("ray marcher: what a scene does not need is not done", "[ray_marcher]"
     CHECK(std::abs(all.film.layer("airlight")[i] - less.film.layer("airlight")[i]) < 0.001 * 0.144 + 1e-7);
 }
 
+TEST_CASE("ray marcher: times are those of stages that are kept", "[ray_marcher]") {
+  const RayMarcher marcher;
+  for (const auto& [name, scene] : assorted_scenes()) {
+    INFO(name);
+    const auto prepared = marcher.prepare(scene, scene::Settings(marcher.settings(), {}), {});
+    const auto stages = prepared->stages();
+    for (const auto& time : prepared->render(view_at(Point3(0, 0, 4), Point3::Zero(), 16, 16), {}).times) {
+      const auto stage = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.name == time.name; });
+      INFO(time.name);
+      REQUIRE(stage != stages.end());
+      CHECK(stage->kept);
+      CHECK(time.seconds >= 0);
+    }
+  }
+}
+
 TEST_CASE("ray marcher: stages say what is kept and why", "[ray_marcher]") {
   const RayMarcher marcher;
   const scene::Settings settings(marcher.settings(), {});
@@ -246,11 +263,11 @@ TEST_CASE("ray marcher: stages say what is kept and why", "[ray_marcher]") {
     return names;
   };
   const scene::Light sun = scene::DirectionalLight{};
-  CHECK(kept(make_scene({}, {sun})) == "");
+  CHECK(kept(make_scene({}, {sun})) == "camera_rays ");
   CHECK(kept(make_scene({make_medium(scene::Homogeneous{1}, scene::Sphere{}, Rgb::Ones(), Rgb::Ones())}, {sun})) ==
-        "camera_march constant_media ");
+        "camera_rays camera_march shadows scattering constant_media ");
   const auto grid = make_smoke(6, 0.3, Vec3::Zero(), Mat3::Identity());
   CHECK(kept(make_scene({make_medium(grid, scene::Unbounded{}, Rgb::Ones(), Rgb::Ones())},
                         {scene::make_constant_environment(Rgb::Ones())})) ==
-        "camera_march shadow_march empty_space_skipping environment_directions background ");
+        "camera_rays camera_march shadows scattering empty_space_skipping environment_directions surfaces ");
 }
