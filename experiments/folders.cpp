@@ -31,4 +31,10 @@ fs::path project_root(const std::string& given) {
   throw Error("no folder above the current one holds experiments/README.md; name the project's folder with --root");
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw Error(fmt::format("{}: cannot make this folder: {}", folder.string(), failure.message()));
+}
+
 }  // namespace airlight::experiments

@@ -9,4 +9,7 @@ namespace airlight::experiments {
 // experiments/README.md. Throws Error if there is none.
 std::filesystem::path project_root(const std::string& given);
 
+// Makes the folder and those above it, where they are missing. Throws Error.
+void make_folder(const std::filesystem::path&);
+
 }  // namespace airlight::experiments

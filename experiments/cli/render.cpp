@@ -63,9 +63,11 @@ int render(const RenderOptions& options) {
   scene::Film film;
   if (part)
     film = render_samples(scene, settings, *range, execution, options.out + ".samples");
-  else if (!options.cache.empty())
-    film = path_tracer::render_cached(scene, settings, scene::view_of(*scene), options.cache, execution).film;
-  else
+  else if (!options.cache.empty()) {
+    auto kept = path_tracer::render_cached(scene, settings, scene::view_of(*scene), options.cache, execution);
+    for (const std::string& note : kept.notes) fmt::print(stderr, "airlight: {}\n", note);
+    film = std::move(kept.film);
+  } else
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write(options, renderer, *scene, settings, seconds, film);

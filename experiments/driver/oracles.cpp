@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "experiments/driver/tables.h"
+#include "experiments/folders.h"
 #include "experiments/verify/verify.h"
 #include "scene/atomic_file.h"
 
@@ -72,7 +73,7 @@ Outcome run_oracles(Experiment experiment, const RunOptions& options) {
   }
 
   const fs::path folder = options.root / "results" / e.id;
-  fs::create_directories(folder);
+  make_folder(folder);
   const auto put = [&](const char* name, const std::string& text) {
     scene::write_file_atomically((folder / name).string(), text);
   };

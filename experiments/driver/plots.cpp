@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "experiments/folders.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 
@@ -205,7 +206,7 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
       if (drawing.curves.empty()) continue;
       const std::string name = slug(scene.empty() ? plot.name : plot.name + "." + scene);
       const std::string title = scene.empty() ? plot.title : plot.title + ": " + scene;
-      fs::create_directories(plots);
+      make_folder(plots);
       scene::write_file_atomically((plots / (name + ".csv")).string(), data_csv(drawing));
       scene::write_file_atomically((plots / (name + ".gp")).string(), script(plot, title, name, drawing));
       scripts.push_back(name + ".gp");

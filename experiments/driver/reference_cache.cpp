@@ -9,6 +9,7 @@
 
 #include "experiments/build_info.h"
 #include "experiments/driver/content_key.h"
+#include "experiments/folders.h"
 #include "reference/path_tracer/cache.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -26,13 +27,15 @@ std::string file_bytes(const fs::path& path) {
 bool load(const fs::path& image, const fs::path& record, Reference& reference) {
   if (!fs::exists(image) || !fs::exists(record)) return false;
   const json j = json::parse(file_bytes(record), nullptr, false);
-  if (j.is_discarded() || !j.contains("checksum") || !j.contains("seconds")) return false;
-  if (content_key(std::string_view(file_bytes(image))) != j["checksum"].get<std::string>()) {
+  if (!j.is_object()) return false;
+  const auto checksum = j.find("checksum"), seconds = j.find("seconds");
+  if (checksum == j.end() || !checksum->is_string() || seconds == j.end() || !seconds->is_number()) return false;
+  if (content_key(std::string_view(file_bytes(image))) != checksum->get<std::string>()) {
     fmt::print(stderr, "airlight: {}: checksum differs, computing it anew\n", image.string());
     return false;
   }
   reference.film = scene::read_exr(image.string());
-  reference.seconds = j["seconds"];
+  reference.seconds = seconds->get<double>();
   reference.cached = true;
   return true;
 }
@@ -40,7 +43,7 @@ bool load(const fs::path& image, const fs::path& record, Reference& reference) {
 void trace(const fs::path& folder, std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
            const scene::Execution& execution, Reference& reference) {
   const scene::View view = scene::view_of(*scene);
-  fs::create_directories(folder);
+  make_folder(folder);
   path_tracer::CachedRendering traced = path_tracer::render_cached(scene, settings, view, folder.string(), execution);
   for (const std::string& note : traced.notes) fmt::print(stderr, "airlight: {}\n", note);
   if (!traced.complete) throw scene::Interrupted("interrupted");
@@ -78,7 +81,7 @@ Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scen
   // A renderer may keep what it has when it is stopped: that is no reference.
   if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
 
-  fs::create_directories(folder);
+  make_folder(folder);
   fs::remove(record);  // never a record beside another image
   scene::write_exr(image.string(), reference.film);
   const json j = {{"scene", scene->name},

@@ -15,6 +15,7 @@
 #include "experiments/driver/reference_cache.h"
 #include "experiments/driver/tables.h"
 #include "experiments/driver/timing.h"
+#include "experiments/folders.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
@@ -73,7 +74,7 @@ scene::Film without_noise_layers(scene::Film film) {
 void keep_picture(const fs::path& images, const std::string& name, const scene::Film& film, const std::string& layer,
                   double exposure) {
   const fs::path file = images / name;
-  fs::create_directories(file.parent_path());
+  make_folder(file.parent_path());
   scene::write_exr(file.string() + ".exr", without_noise_layers(film));
   scene::write_png(file.string() + ".png", film, layer, exposure);
 }
@@ -243,7 +244,7 @@ class Run {
 
   void write() const {
     const fs::path folder = results_ / experiment().id;
-    fs::create_directories(folder);
+    make_folder(folder);
     const auto plots = draw_plots(outcome_, folder);
     const auto put = [&](const char* name, const std::string& text) {
       scene::write_file_atomically((folder / name).string(), text);

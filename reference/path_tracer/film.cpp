@@ -48,8 +48,10 @@ std::string unresolved(const World& world, const Accumulation& a) {
       for (std::size_t at = 0; at < node.sums.size(); at += layout.doubles()) {
         const Rgb sum = entry(&node.sums[at], layout.order(m));
         mean += (sum / double(node.count)).sum();
-        variance +=
-            standard_error(sum, entry(&node.sums[at], layout.order_square(m)), double(node.count)).square().sum();
+        // The channels share their paths: their errors add, as if they were one.
+        const Rgb square = entry(&node.sums[at], layout.order_square(m));
+        const double error = standard_error(sum, square, double(node.count)).sum();
+        variance += error * error;
       }
     }
     if (!(std::sqrt(variance) <= 0.5 * std::abs(mean)) || mean == 0)

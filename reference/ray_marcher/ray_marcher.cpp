@@ -44,6 +44,16 @@ bool has_environment(const scene::Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
 }
 
+// The integral of 1/t^2 along every camera ray diverges there; steps would make any number of it.
+bool light_on_camera(const scene::Scene& scene) {
+  if (scene.camera.kind != scene::Camera::Kind::perspective) return false;
+  for (const scene::Light& light : scene.lights)
+    if (const auto ball = scene::ball(light); ball && ball->radius == 0 && ball->center == scene.camera.position)
+      for (const scene::Medium& m : scene.media)
+        if ((m.albedo * m.sigma_t).maxCoeff() * scene::density(m, ball->center) > 0) return true;
+  return false;
+}
+
 std::vector<scene::Stage> explain(const Plan& plan) {
   std::vector<scene::Stage> stages;
   const auto add = [&](const char* name, bool kept, const std::string& reason) {
@@ -190,6 +200,10 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
   const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));
+  if (light_on_camera(scene))
+    reasons.push_back(
+        "a point or spot light of radius 0 stands on the camera inside a medium: its airlight is infinite; expected a "
+        "distance or a radius");
   return reasons;
 }
 

@@ -12,7 +12,8 @@
 
 namespace airlight::path_tracer::test {
 
-inline nlohmann::json vector_of(const std::string& id) {
+// By reference, so that a loop over a part of it is a loop over something that lives.
+inline const nlohmann::json& vector_of(const std::string& id) {
   std::ifstream in(std::string(AIRLIGHT_SOURCE_DIR) + "/tests/vectors/references.json");
   static const nlohmann::json file = nlohmann::json::parse(in);
   for (const auto& v : file.at("vectors"))

@@ -1,0 +1,162 @@
+// Stress cases 18, 19 and 21 to 26: densities at the edge of what a density can be.
+#include "scene/math/random.h"
+#include "tests/stress/stress.h"
+
+using namespace airlight;
+using namespace airlight::stress;
+
+namespace {
+
+scene::VoxelGrid grid_of(int n, const std::vector<float>& values) {
+  scene::VoxelGrid grid;
+  grid.size = Eigen::Vector3i::Constant(n);
+  grid.voxel_size = 0.5;
+  grid.values = values;
+  return grid;
+}
+
+const std::vector<scene::Light> lamps = {scene::PointLight{{0.4, 1.4, 0.3}}, scene::DirectionalLight{}, white()};
+
+}  // namespace
+
+TEST_CASE("stress 18: NaN, infinite, minus zero and subnormal voxels", "[stress]") {
+  const auto load = [](const std::string& value) {
+    return scene::parse_scene(
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n[[medium]]\ntype = \"grid\"\n"
+        "size = [2, 2, 1]\nvoxel_size = 1.0\norigin = [0, 0, 0]\nvalues = [0.5, 1.0, " +
+            value + ", 0.25]\n",
+        "voxels", ".");
+  };
+  for (const char* const value : {"nan", "inf", "-1.0", "1e300"}) {
+    CAPTURE(value);
+    // Line 9, third value.
+    CHECK_THROWS_WITH(load(value), Catch::Contains("voxels:9:"));
+  }
+  for (const char* const value : {"-0.0", "1e-45", "1e-310"}) CHECK_NOTHROW(load(value));
+  // Like 0 in every picture.
+  const auto view = view_from({0.3, 0.4, 3}, {0.25, 0.25, 0.25});
+  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+    const Given given = std::string(name) == "path_tracer" ? Given{{"samples", "64"}} : Given{};
+    const scene::Film zero =
+        picture(name, scene_of({of_grid(grid_of(2, {1, 0, 0, 1, 0, 1, 1, 0}), 2, 0.9)}, lamps), view, given);
+    const scene::Film odd = picture(
+        name, scene_of({of_grid(grid_of(2, {1, -0.0f, 1e-45f, 1, -0.0f, 1, 1, 1e-40f}), 2, 0.9)}, lamps), view, given);
+    CAPTURE(name);
+    CHECK(all_finite(odd));
+    CHECK(odd.layer("mean") == zero.layer("mean"));
+  }
+}
+
+TEST_CASE("stress 19: renderers on an empty grid, one voxel, one active voxel", "[stress]") {
+  std::vector<float> one_active(27, 0.0f);
+  one_active[13] = 0.75f;
+  scene::VoxelGrid single = grid_of(1, {0.75f});
+  single.translation = Vec3::Constant(0.5);
+  const auto view = view_from({0.5, 0.5, 3}, {0.5, 0.5, 0.5}, 3);
+  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+    const Given given = std::string(name) == "path_tracer" ? Given{{"samples", "256"}} : Given{};
+    CAPTURE(name);
+    const scene::Film nothing = picture(name, scene_of({of_grid(scene::VoxelGrid{}, 2, 1)}, lamps), view, given);
+    CHECK(all_finite(nothing));
+    CHECK(nothing.get("transmittance", 1, 1)[0] == 1);
+    if (nothing.has("airlight")) CHECK(nothing.get("airlight", 1, 1)[0] == 0);
+    const scene::Film a = picture(name, scene_of({of_grid(single, 2, 1)}, lamps), view, given);
+    const scene::Film b = picture(name, scene_of({of_grid(grid_of(3, one_active), 2, 1)}, lamps), view, given);
+    // A tent of one voxel to either side: its area is value times voxel. The ray marcher's midpoints are exact on the
+    // two straight halves of it up to one step of 64 at the kink: 2^-12 of a depth of 0.75.
+    const double exact = std::exp(-2 * 0.75 * 0.5);
+    CHECK(a.get("transmittance", 1, 1)[0] == Approx(exact).epsilon(std::string(name) == "ray_marcher" ? 2e-4 : 1e-6));
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x)
+        CHECK(b.get("transmittance", x, y)[0] ==
+              Approx(a.get("transmittance", x, y)[0]).epsilon(std::string(name) == "ray_marcher" ? 1e-3 : 1e-6));
+    CHECK(all_finite(b));
+  }
+}
+
+TEST_CASE("stress 21: renderers add overlapping media", "[stress]") {
+  // 1.2 of albedo 0.9 and 0.8 of albedo 0.6 make 2 of albedo 0.78.
+  const scene::Region ball = scene::Sphere{{0, 0, 0}, 1};
+  const auto two = scene_of({medium(ball, 1.2, 0.9), medium(ball, 0.8, 0.6)}, lamps);
+  const auto one = scene_of({medium(ball, 2, 0.78)}, lamps);
+  const auto view = view_from({0.2, 0.3, 3}, {0, 0, 0});
+  for (const char* const name : {"deterministic", "ray_marcher"}) {
+    const scene::Film a = picture(name, two, view), b = picture(name, one, view);
+    CAPTURE(name);
+    for (std::size_t i = 0; i < a.layer("mean").size(); ++i)
+      CHECK(a.layer("mean")[i] == Approx(b.layer("mean")[i]).epsilon(1e-5).margin(1e-12));
+  }
+  const auto a = radiance(World(two, Options{}), ray_of({0.2, 0.3, 3}, {0, 0, -1}), 1 << 14, {}, 211);
+  const auto b = radiance(World(one, Options{}), ray_of({0.2, 0.3, 3}, {0, 0, -1}), 1 << 14, {}, 212);
+  CHECK(a.orders[0].mean[0] == Approx(b.orders[0].mean[0]).epsilon(1e-13));
+  Rgb sum = Rgb::Zero();
+  for (const auto& order : a.orders) sum += order.mean;
+  CHECK(sum[0] == Approx(a.total.mean[0]).epsilon(1e-12));
+  for (int m = 1; m <= 3; ++m)
+    check_equal(b.orders[m].mean[0], a.orders[m].mean[0], std::hypot(a.orders[m].error[0], b.orders[m].error[0]), 0.1);
+}
+
+TEST_CASE("stress 22: a Legendre field that is negative everywhere", "[stress]") {
+  WARN("skipped: the Legendre box does not exist yet");
+}
+
+TEST_CASE("stress 23: Legendre degree 23 per axis", "[stress]") {
+  WARN("skipped: the Legendre box does not exist yet");
+}
+
+TEST_CASE("stress 24: a fogmap of 4096 x 4096 with a single spike", "[stress]") {
+  WARN("skipped: the fogmap does not exist yet");
+}
+
+TEST_CASE("stress 25: renderers on a Gaussian spike and a flat one", "[stress]") {
+  // a = 1/width. The spike is 1e-6 wide and sqrt(pi) deep where the ray meets its middle, and not there beside it.
+  scene::GaussianSum spike;
+  spike.gaussians = {{{0.1, 0.2, 0}, 1e-6, 1e6}};
+  const auto needle = scene_of({of_field(spike, 1, 0.8)}, {scene::DirectionalLight{Vec3::UnitZ(), Rgb::Ones()}});
+  const Ray through{{0.1, 0.2, 3}, -Vec3::UnitZ()}, beside{{0.1 + 1e-4, 0.2, 3}, -Vec3::UnitZ()};
+  const double depth = std::sqrt(pi);
+  CHECK(scene::optical_depth(needle->media, through, {0, infinity})[0] == Approx(depth).epsilon(1e-9));
+  CHECK(scene::optical_depth(needle->media, beside, {0, infinity})[0] == 0);
+  // Light and view along one line: the airlight is the integral of exp(-2 tau), (1 - exp(-2 depth)) / 2.
+  const double expected = 0.8 / (4 * pi) * 0.5 * (1 - std::exp(-2 * depth));
+  const auto exact = deterministic::airlight(*needle, through, infinity);
+  CHECK(exact.converged);
+  CHECK(exact.radiance[0] == Approx(expected).epsilon(1e-8));
+  CHECK(deterministic::airlight(*needle, beside, infinity).radiance[0] == 0);
+  const auto traced = radiance(World(needle, Options{}), through, 1 << 14, {}, 251);
+  check_equal(expected, traced.orders[1], 0.05);
+  CHECK(traced.counters.violations == 0);
+
+  // 1e6 wide over a box of 1: a constant up to 1e-12.
+  scene::GaussianSum flat;
+  flat.gaussians = {{{0, 0, 0}, 1e6, 1}};
+  const Box box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+  const auto smooth = scene_of({of_field(flat, 2, 0.8, box)}, lamps), constant = scene_of({medium(box, 2, 0.8)}, lamps);
+  const Ray ray = ray_of({0.1, 0.2, 3}, {0, 0, -1});
+  CHECK(scene::optical_depth(smooth->media, ray, {0, infinity})[0] == Approx(2).epsilon(1e-11));
+  const double one = deterministic::airlight(*constant, ray, infinity).radiance[0];
+  CHECK(deterministic::airlight(*smooth, ray, infinity).radiance[0] == Approx(one).epsilon(2e-10));
+  const auto tracked = radiance(World(smooth, Options{}), ray, 1 << 13, {}, 252);
+  const auto free = radiance(World(constant, Options{}), ray, 1 << 13, {}, 253);
+  check_equal(free.total.mean[0], tracked.total.mean[0], std::hypot(free.total.error[0], tracked.total.error[0]), 0.05);
+}
+
+// A bound that sums a hundred thousand maxima holds, and the work is that of the sum.
+TEST_CASE("stress 26: paths through 1e5 Gaussians in one cell", "[stress]") {
+  scene::GaussianSum sum;
+  for (int i = 0; i < 100000; ++i) {
+    const RandomBlock u = SampleRandom(7, 1, 0, i).block(0, Purpose::camera);
+    sum.gaussians.push_back({Point3(u.coarse(0), u.coarse(1), u.coarse(2)) * 0.01, 0.05 + 0.05 * u.coarse(3), 1e-5});
+  }
+  const auto scene = scene_of({of_field(sum, 10, 1, scene::Sphere{{0, 0, 0}, 0.3})}, {white()});
+  Options options;
+  options.supergrid_cells = 4;
+  const World world(scene, options);
+  const auto e = radiance(world, ray_of({0.01, 0.02, -1}, {0, 0, 1}), 256, {}, 261);
+  check_equal(1, e.total, 0.1);
+  CHECK(e.counters.violations == 0);
+  // Delta tracking looks up the density a few times per collision, not more: the bound of a cell is that of its
+  // nearest points, here at most exp(2 * 0.26 * 0.15 / 0.05^2) but for the widest Gaussians; without a bound that
+  // adapts it would be hundreds of times.
+  CHECK(e.counters.lookups < 100 * (e.counters.collisions + e.counters.paths));
+}
