@@ -16,7 +16,7 @@ constexpr double underflow_widths = 27.4;
 constexpr double polynomial_widths = 0.25;
 
 struct Term {
-  GaussianLine line;
+  GaussianLines<double> line;
   Interval reach;  // where it is not zero
 
   double value(double t) const {
@@ -47,7 +47,7 @@ double positive_part(const std::vector<Term>& terms, double constant, Interval t
   if (hi <= 0) return 0;
   if (lo >= 0) {
     double integral = constant * (t.hi - t.lo);
-    for (const Term& term : near) integral += scene::integral(term.line, t);
+    for (const Term& term : near) integral += scene::integral(term.line, {t.lo, t.hi});
     return integral;
   }
   // A term much smaller than the rest need not be resolved.
@@ -74,10 +74,10 @@ double clamped_line_integral(const GaussianSum& sum, const Ray& ray, Interval t)
   std::vector<Term> terms;
   std::vector<double> edges;
   for (const Gaussian& g : sum.gaussians) {
-    const GaussianLine line = gaussian_line(g, ray);
-    const Interval reach = within_cutoff(line, std::min(sum.cutoff, underflow_widths), t);
-    if (reach.empty() || g.amplitude == 0) continue;
-    terms.push_back({line, reach});
+    const GaussianLines<double> line = along(load(g), ray);
+    const Range<double> reach = within_cutoff(line, std::min(sum.cutoff, underflow_widths), {t.lo, t.hi});
+    if (!(reach.lo < reach.hi) || g.amplitude == 0) continue;
+    terms.push_back({line, {reach.lo, reach.hi}});
     edges.push_back(reach.lo);
     edges.push_back(reach.hi);
   }

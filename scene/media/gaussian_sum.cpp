@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/media/gaussian_block.h"
+#include "scene/media/gaussian_line.h"
 
 namespace airlight::scene {
 namespace {
@@ -11,7 +11,29 @@ namespace {
 // Beyond this many widths a Gaussian is below 1e-17 of its amplitude.
 constexpr double negligible_widths = 6.257;
 
-double squared_distance(double dx, double dy, double dz) { return dx * dx + dy * dy + dz * dz; }
+// The square of the distance in widths at which a Gaussian ends: the cutoff, or where it is 0 in double precision.
+double reach2(const GaussianSum& sum) { return std::min(sum.cutoff * sum.cutoff, exp_minus_end); }
+
+// Calls f(Gaussians<Pack>) for all; what is missing in the last four are Gaussians of amplitude 0.
+template <class F>
+void for_each_pack(const std::vector<Gaussian>& gaussians, F&& f) {
+  const std::size_t n = gaussians.size(), rest = n % pack_size, whole = n - rest;
+  for (std::size_t i = 0; i < whole; i += pack_size) f(load_four(&gaussians[i]));
+  if (rest == 0) return;
+  static const Gaussian none{Point3::Zero(), 1, 0};
+  const Gaussian &a = gaussians[whole], &b = rest > 1 ? gaussians[whole + 1] : none;
+  const Gaussian& c = rest > 2 ? gaussians[whole + 2] : none;
+  f(Gaussians<Pack>{{a.center[0], b.center[0], c.center[0], 0},
+                    {a.center[1], b.center[1], c.center[1], 0},
+                    {a.center[2], b.center[2], c.center[2], 0},
+                    {a.width, b.width, c.width, 1},
+                    {a.amplitude, b.amplitude, c.amplitude, 0}});
+}
+
+template <class T>
+T squared_distance(T dx, T dy, T dz) {
+  return dx * dx + dy * dy + dz * dz;
+}
 double squared_distance(const Point3& a, const Point3& b) {
   return squared_distance(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
@@ -27,28 +49,18 @@ Point3 farthest_point(const Box& box, const Point3& x) {
 }  // namespace
 
 double density(const GaussianSum& sum, const Point3& x) {
-  const double cutoff2 = sum.cutoff * sum.cutoff;
-  const auto value = [&](double center_x, double center_y, double center_z, double width, double amplitude) {
-    const double exponent = squared_distance(x[0] - center_x, x[1] - center_y, x[2] - center_z) / (width * width);
-    const double inside = amplitude * exp_minus(exponent);
-    return exponent < cutoff2 ? inside : 0.0;
-  };
-  const std::size_t n = sum.gaussians.size(), whole = n - n % lanes;
-  Lanes values{};
-  for (std::size_t first = 0; first < whole; first += lanes) {
-    const GaussianBlock b(&sum.gaussians[first]);
-    for (int k = 0; k < lanes; ++k) values[k] += value(b.x[k], b.y[k], b.z[k], b.width[k], b.amplitude[k]);
-  }
-  double f = sum.constant + total(values);
-  for (std::size_t i = whole; i < n; ++i) {
-    const Gaussian& g = sum.gaussians[i];
-    f += value(g.center[0], g.center[1], g.center[2], g.width, g.amplitude);
-  }
-  return std::max(0.0, f);
+  const double limit = reach2(sum);
+  Pack values{};
+  for_each_pack(sum.gaussians, [&](const Gaussians<Pack>& g) {
+    const Pack exponent = squared_distance<Pack>(x[0] - g.x, x[1] - g.y, x[2] - g.z) / (g.width * g.width);
+    const PackMask near = exponent < limit;
+    if (any(near)) values += pick(near, g.amplitude * exp_minus(exponent), Pack{});
+  });
+  return std::max(0.0, sum.constant + total(values));
 }
 
 Interval density_bounds(const GaussianSum& sum, const Box& box) {
-  const double cutoff2 = sum.cutoff * sum.cutoff;
+  const double limit = reach2(sum);
   double lo = sum.constant;
   double hi = sum.constant;
   double magnitude = sum.constant;
@@ -56,10 +68,10 @@ Interval density_bounds(const GaussianSum& sum, const Box& box) {
     // Every operation of `density` up to the exponent is monotone in the distance along each axis, also when rounded:
     // no point of the box has an exponent outside [near, far].
     const double near = squared_distance(nearest_point(box, g.center), g.center) / (g.width * g.width);
-    if (!(near < cutoff2)) continue;
+    if (!(near < limit)) continue;
     const double far = squared_distance(farthest_point(box, g.center), g.center) / (g.width * g.width);
     const double greatest = g.amplitude * exp_minus(near);
-    const double least = far < cutoff2 ? g.amplitude * exp_minus(far) : 0;
+    const double least = far < limit ? g.amplitude * exp_minus(far) : 0;
     hi += std::max(greatest, least);
     lo += std::min(greatest, least);
     magnitude += std::abs(greatest);
@@ -69,41 +81,37 @@ Interval density_bounds(const GaussianSum& sum, const Box& box) {
   return {std::max(0.0, lo - slack), std::max(0.0, hi + slack)};
 }
 
-double line_integral(const Gaussian& g, const Ray& ray, double d) { return integral(gaussian_line(g, ray), {0, d}); }
+double line_integral(const Gaussian& g, const Ray& ray, double d) { return integral(along(load(g), ray), {0.0, d}); }
 
 double density_integral(const GaussianSum& sum, const Ray& ray, Interval t) {
   if (t.empty()) return 0;
-  Lanes sums{};
-  double least_amplitude = 0;
-  for_each_block(sum.gaussians, [&](const GaussianBlock& b) {
-    Lanes lo, hi, values, is_shorts;
-    lo.fill(t.lo);
-    hi.fill(t.hi);
-    if (sum.cutoff < infinity)
-      for (int k = 0; k < lanes; ++k) {
-        const Interval part = within_cutoff(b.line(k, ray), sum.cutoff, t);
-        lo[k] = part.lo;
-        hi[k] = std::max(part.lo, part.hi);
-      }
-    for (int k = 0; k < lanes; ++k) {
-      const GaussianLine line = b.line(k, ray);
-      values[k] = long_integral(line, {lo[k], hi[k]});
-      // What a cutoff leaves empty comes out as 0 above.
-      const double length = is_short(line, {lo[k], hi[k]}) ? hi[k] - lo[k] : 0;
-      is_shorts[k] = length > 0 ? 1 : 0;
-    }
-    if (total(is_shorts) > 0)
-      for (int k = 0; k < lanes; ++k) {
-        const double value = short_integral(b.line(k, ray), {lo[k], hi[k]});
-        values[k] = is_shorts[k] > 0 ? value : values[k];
-      }
-    for (int k = 0; k < lanes; ++k) {
-      sums[k] += values[k];
-      least_amplitude = std::min(least_amplitude, b.amplitude[k]);
-    }
+  const double limit = reach2(sum);
+  const bool cut = sum.cutoff < infinity;
+  Pack values{};
+  bool negative = false;
+  for_each_pack(sum.gaussians, [&](const Gaussians<Pack>& g) {
+    negative |= any(g.amplitude < 0);
+    const GaussianLines<Pack> line = along(g, ray);
+    if (!any(line.exponent < limit)) return;
+    Range<Pack> range{splat<Pack>(t.lo), splat<Pack>(t.hi)};
+    if (cut) range = within_cutoff(line, sum.cutoff, range);
+    values += integral(line, range);
   });
-  if (least_amplitude < 0) return clamped_line_integral(sum, ray, t);
-  return total(sums) + (sum.constant > 0 ? sum.constant * (t.hi - t.lo) : 0);
+  if (negative) return clamped_line_integral(sum, ray, t);
+  return total(values) + (sum.constant > 0 ? sum.constant * (t.hi - t.lo) : 0);
+}
+
+Interval extent(const GaussianSum& sum, const Ray& ray, Interval t) {
+  if (sum.constant > 0) return t;
+  const double widths = std::min(negligible_widths, sum.cutoff);
+  Interval hull;
+  for (const Gaussian& g : sum.gaussians) {
+    if (g.amplitude == 0) continue;
+    const Range<double> part = within_cutoff(along(load(g), ray), widths, {t.lo, t.hi});
+    if (!(part.lo < part.hi)) continue;
+    hull = {std::min(hull.lo, part.lo), std::max(hull.hi, part.hi)};
+  }
+  return hull;
 }
 
 Box support(const GaussianSum& sum) {

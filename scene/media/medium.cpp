@@ -87,11 +87,16 @@ double density_integral(const Medium& medium, const Ray& ray, Interval t) {
   return t.empty() ? 0 : density_integral(medium.field, ray, t);
 }
 
+Interval extent(const DensityField& field, const Ray& ray, Interval t) {
+  if (const auto* grid = std::get_if<GridPointer>(&field)) return extent(**grid, ray, t);
+  if (const auto* sum = std::get_if<GaussianSum>(&field)) return extent(*sum, ray, t);
+  return t;
+}
+
 Interval extent(const Medium& medium, const Ray& ray, Interval t) {
   t = clip(medium.region, ray, t);
-  const Box box = support(medium.field);
-  if (t.empty() || box.empty()) return {};
-  return clip(box, ray, t);
+  if (!t.empty()) t = extent(medium.field, ray, t);
+  return t.empty() ? Interval{} : t;
 }
 
 Box bounding_box(const Medium& medium) { return intersect(bounding_box(medium.region), support(medium.field)); }

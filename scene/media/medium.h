@@ -27,6 +27,8 @@ using DensityField = std::variant<Homogeneous, GaussianSum, std::shared_ptr<cons
 double density(const DensityField&, const Point3& x);
 Interval density_bounds(const DensityField&, const Box&);
 double density_integral(const DensityField&, const Ray&, Interval t);
+// The part of t outside which the field is zero or negligible, as `support` means it.
+Interval extent(const DensityField&, const Ray&, Interval t);
 // World box outside which the field is zero (or, for a field without a constant, negligible: below 1e-17 of its
 // amplitude); infinite sides for an unbounded one.
 Box support(const DensityField&);

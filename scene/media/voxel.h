@@ -39,6 +39,11 @@ inline Voxel border_voxel(const VoxelGrid& grid, int i, int j, int k) {
   return v;
 }
 
+// The ray in samples; its parameter stays in metres, so that the direction has another length.
+inline Ray ray_in_samples(const VoxelGrid& grid, const Ray& ray) {
+  return {world_to_sample(grid, ray.origin), grid.rotation.transpose() * ray.direction / grid.voxel_size};
+}
+
 // How far the support reaches beyond the outermost samples, in voxels.
 inline double border_width(const VoxelGrid& grid) { return grid.clamp_border ? 0.5 : 1.0; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/media/region.h"
 #include "scene/media/voxel.h"
 
 namespace airlight::scene {
@@ -88,6 +89,11 @@ Interval density_bounds(const VoxelGrid& grid, const Box& box) {
   bounds.hi *= 1 + 4e-15;
   if (reaches_out) bounds.lo = 0;
   return bounds;
+}
+
+Interval extent(const VoxelGrid& grid, const Ray& ray, Interval t) {
+  if (grid.values.empty()) return {};
+  return clip(sample_support(grid), ray_in_samples(grid, ray), t);
 }
 
 Box support(const VoxelGrid& grid) {

@@ -17,7 +17,7 @@ namespace airlight::scene {
 struct VoxelGrid {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();          // samples per axis; all >= 1, or all 0 for an empty grid
   Eigen::Vector3i origin_index = Eigen::Vector3i::Zero();  // index of sample (0, 0, 0)
-  // World = rotation * (scale * index) + translation, with uniform scale; checked at load.
+  // World = rotation * (voxel_size * index) + translation; `rotation` is orthogonal (a mirroring one will do).
   Mat3 rotation = Mat3::Identity();
   double voxel_size = 1;  // [m], > 0
   Vec3 translation = Vec3::Zero();
@@ -34,22 +34,30 @@ Point3 sample_to_world(const VoxelGrid&, const Point3& sample);
 // Trilinear density at a world point [-].
 double density(const VoxelGrid&, const Point3& x);
 
-// Least and greatest density over a world box: over all samples that touch it, background included; rigorous.
+// Least and greatest density over a world box; rigorous, and exact to rounding where the grid is not rotated against
+// it.
 Interval density_bounds(const VoxelGrid&, const Box&);
 
 // Integral of the density over t in [t0, t1] of the ray [m]: two-point Gauss in every voxel crossed, exact for the
 // cubic that a trilinear density is along a line. Cost: one step per voxel crossed.
 double density_integral(const VoxelGrid&, const Ray&, Interval t);
 
+// The part of t outside which the density is zero; empty if nowhere.
+Interval extent(const VoxelGrid&, const Ray&, Interval t);
+
 // World box outside which the density is zero; empty for an empty grid.
 Box support(const VoxelGrid&);
 
-// Reads grid `name` of an OpenVDB file. Throws Error (file, grid, what was found, what was expected) if it is missing,
-// not a float grid, not uniformly scaled, truncated or damaged, holds NaN, infinity (with the index) or a negative
-// value, or has more than max_voxels samples in its active bounding box.
+// Reads grid `name` of an OpenVDB file: the box of its active voxels, or that which write_vdb noted. Throws Error
+// (file, grid, what was found, what was expected) if it is missing, not a float grid with background 0, not uniformly
+// scaled to 1e-6, truncated or damaged, holds NaN, infinity or a negative value (with the index), or spans more than
+// max_voxels. Every length in the file is checked before OpenVDB reads it. Changed bytes within compressed samples can
+// only be noticed by a checksum: write_vdb stores one in the file, and if there is a file PATH.xxh128 (the output of
+// `xxh128sum PATH`) it must match.
 VoxelGrid read_vdb(const std::string& path, const std::string& name = "density", std::size_t max_voxels = 1u << 30);
 
-// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive.
+// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive. What it writes comes
+// back bit for bit (the rotation to rounding), unless read_vdb must refuse it. Throws Error.
 void write_vdb(const std::string& path, const VoxelGrid&, const std::string& name = "density");
 
 }  // namespace airlight::scene

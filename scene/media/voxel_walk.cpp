@@ -59,10 +59,8 @@ double sum_at(const float* p, std::ptrdiff_t row, std::ptrdiff_t slice, __m256d 
 
 double density_integral(const VoxelGrid& grid, const Ray& ray, Interval t) {
   if (grid.values.empty() || t.empty()) return 0;
-  // In samples: s = origin + t * direction, t still in metres.
-  const Point3 start = world_to_sample(grid, ray.origin);
-  const Vec3 velocity = grid.rotation.transpose() * ray.direction / grid.voxel_size;
-  t = clip(sample_support(grid), Ray{start, velocity}, t);
+  const auto [start, velocity] = ray_in_samples(grid, ray);
+  t = clip(sample_support(grid), {start, velocity}, t);
   if (t.empty()) return 0;
 
   const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
