@@ -52,7 +52,7 @@ std::vector<double> cut(const std::vector<Feature>& features, Interval range) {
   std::vector<double> cuts{range.lo};
   for (const Feature& f : features) {
     if (!(f.t > range.lo && f.t < range.hi)) continue;
-    if (f.t - cuts.back() > std::max(0.75 * f.width, 4e-16 * std::abs(f.t))) cuts.push_back(f.t);
+    if (f.t - cuts.back() > std::max(2 * f.width, 4e-16 * std::abs(f.t))) cuts.push_back(f.t);
   }
   cuts.push_back(range.hi);
   return cuts;
@@ -79,19 +79,10 @@ struct AirlightIntegrator::Impl {
     return tables[m] ? depth_error / double(std::max<std::size_t>(1, tables[m]->size())) : depth_error;
   }
 
-  // Density integral of one medium along a segment [m].
-  double segment(std::size_t m, const Ray& ray, Interval t) const {
-    const Medium& medium = scene.media[m];
-    if (!tables[m]) return scene::density_integral(medium, ray, t);
-    const double sigma = medium.sigma_t.maxCoeff();
-    if (!(sigma > 0)) return 0;
-    return density_integral(*tables[m], ray, scene::clip(medium.region, ray, t), cull(m) / sigma);
-  }
-
   Rgb depth(const Ray& ray, Interval t) const {
     Rgb sum = Rgb::Zero();
     for (std::size_t m = 0; m < scene.media.size(); ++m) {
-      const double length = segment(m, ray, t);
+      const double length = scene::density_integral(scene.media[m], ray, t);
       for (int c = 0; c < 3; ++c)
         if (scene.media[m].sigma_t[c] > 0) sum[c] += scene.media[m].sigma_t[c] * length;  // never 0 * infinity
     }
@@ -153,7 +144,9 @@ struct Integrand {
     least = std::min(least, depth.maxCoeff());
     greatest = std::max(greatest, depth.maxCoeff());
     clearest = std::min(clearest, depth.minCoeff());
-    return source * (-depth).exp() * place.weight;
+    // Not Eigen's exp, which stops at 1e-308: darkness must be 0, not a very small light that everything else is
+    // compared with.
+    return source * depth.unaryExpr([](double d) { return std::exp(-d); }) * place.weight;
   }
 };
 
@@ -283,30 +276,43 @@ Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
   const double steepest = fine ? 6 : 12;  // e-folds that the rule resolves
   const long per_panel = 2 * options.rule->half - 1;
 
-  // First estimates. A panel over which the depth changes by many e-folds would show the rule only zeros: it is halved
-  // until it does not, unless it is darker than the brightest place by exp(-300).
+  // First estimates. A panel over which the depth changes by many e-folds might show the rule only zeros: it is halved
+  // until it does not, if what it can hold at all, by its ends and nodes, matters.
   std::vector<Panel> estimated;
-  std::vector<Panel> open(panels.rbegin(), panels.rend());
+  std::vector<std::pair<Panel, double>> steep;  // with the least depth seen in it
+  Rgb total = Rgb::Zero();
   double clearest = infinity;
-  bool spent = false;
-  while (!open.empty()) {
-    Panel p = open.back();
-    open.pop_back();
+  const auto estimate = [&](Panel p) {
     integrand.reset();
     scene::estimate_panel(integrand, *options.rule, p);
     result.evaluations += per_panel;
+    total += p.value;
     clearest = std::min(clearest, integrand.clearest);
-    const bool steep = integrand.greatest - integrand.least > steepest && integrand.clearest < clearest + 300;
-    if (steep && p.hi - p.lo > 1e-15) {
-      if (result.evaluations + 2 * per_panel <= options.max_evaluations) {
-        const double middle = 0.5 * (p.lo + p.hi);
-        open.push_back({middle, p.hi, p.chart});
-        open.push_back({p.lo, middle, p.chart});
-        continue;
-      }
-      spent = true;
+    if (integrand.greatest - integrand.least > steepest && p.hi - p.lo > 1e-15)
+      steep.push_back({p, integrand.clearest});
+    else
+      estimated.push_back(p);
+  };
+  for (const Panel& p : panels) estimate(p);
+  bool spent = false;
+  while (!steep.empty()) {
+    const auto [p, least_depth] = steep.back();
+    steep.pop_back();
+    const double width = p.hi - p.lo, middle = p.lo + 0.5 * width;
+    const Rgb ends = integrand(p.chart, p.lo + 1e-9 * width).max(integrand(p.chart, p.hi - 1e-9 * width));
+    result.evaluations += 2;
+    const Rgb most = p.value.max(width * ends);
+    // While all nodes so far fell into the dark, the least dark panels are looked into.
+    const bool matters = (total > 0).any() ? (most > 1e-4 * impl.accuracy.relative_tolerance * total).any()
+                                           : least_depth < clearest + 300;
+    if (matters && result.evaluations + 2 * per_panel <= options.max_evaluations) {
+      total -= p.value;
+      estimate({p.lo, middle, p.chart});
+      estimate({middle, p.hi, p.chart});
+    } else {
+      spent = spent || matters;
+      estimated.push_back(p);
     }
-    estimated.push_back(p);
   }
   const scene::Integral integral = scene::refine_panels(integrand, estimated, options, result.evaluations);
   result.radiance = integral.value;

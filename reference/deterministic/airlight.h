@@ -36,8 +36,7 @@ class AirlightIntegrator {
   // light paths see all media and surfaces.
   Airlight operator()(const Ray&, double t_end) const;
 
-  // All media between the origin and t; noise-free, and fast for many Gaussians: contributions below the tolerance
-  // times 1e-3 / (number of Gaussians) are skipped.
+  // All media between the origin and t; noise-free.
   Rgb optical_depth(const Ray&, double t) const;
 
   // From a point to a delta light, through all media (infinite for an unbounded one and a directional light).

@@ -1,4 +1,4 @@
-// A sum of Gaussians as arrays, for many evaluations of depths to a stated absolute error.
+// A sum of Gaussians as arrays, for passes over all of them per ray.
 #pragma once
 #include <optional>
 #include <vector>
@@ -20,12 +20,5 @@ struct GaussianTable {
 
 // Nothing if an amplitude is negative: then the density is clamped at 0, and no sum of single integrals.
 std::optional<GaussianTable> make_gaussian_table(const scene::GaussianSum&);
-
-// Integral of the density over t in [t0, t1] of the ray [m]; t1 may be infinite. Every Gaussian whose whole line
-// integral is below `skip` [m] counts as 0.
-double density_integral(const GaussianTable&, const Ray&, Interval t, double skip);
-
-// erf(v) - erf(u), 0 unless u < v; the tails keep their relative accuracy.
-double erf_difference(double u, double v);
 
 }  // namespace airlight::deterministic
