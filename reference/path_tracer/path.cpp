@@ -56,7 +56,7 @@ class Walk {
   void gather_delta(const Vertex&, const Pick&, const Rgb& analog_pdf);
   void gather_environment(const Vertex&, const Pick&, double u1, double u2);
   void connect(const Ray&, Interval hull, const Rgb& throughput, const Pick&, double direction_pdf, bool from_camera,
-               double u);
+               int reflections, double u);
   void connect_from(const Vertex&);
   void escape(const Ray&);
   bool survive(double u);
@@ -166,9 +166,10 @@ void Walk::gather_environment(const Vertex& v, const Pick& pick, double u1, doub
   sample_.add(m_, s_ + (v.hit != nullptr), throughput_ * value * radiance * T / (pdf + walk));
 }
 
-// Light of one point or spot light scattered once on a ray, at one point drawn with equal angles.
+// Light of one point or spot light scattered once on a ray, at one point drawn with equal angles; `reflections` on the
+// way, that at the start of the ray included.
 void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const Pick& pick, double direction_pdf,
-                   bool from_camera, double u) {
+                   bool from_camera, int reflections, double u) {
   const scene::Light& light = lights_.light(pick.light);
   const Point3 center = scene::ball(light)->center;
   const Equiangular angles(ray, center, hull);
@@ -208,7 +209,7 @@ void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const P
         pick_there * walk_pdf * (exact() ? (density_ * extinction * T).mean() : (density_ * extinction).mean());
     sum += extinction * medium.albedo * (scene::phase_value(medium.phase, c) / (pdf + analog));
   }
-  sample_.add(m_ + 1, s_, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
+  sample_.add(m_ + 1, reflections, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
 }
 
 // The connection from a vertex: a direction half by phase function or reflection, half with density 1/(2 pi^2 sin
@@ -244,7 +245,7 @@ void Walk::connect_from(const Vertex& v) {
   const double sine = (offset - offset.dot(out) * out).norm() / length;
   direction_pdf_ = scatter_pdf(v, out);
   const double direction_pdf = 0.5 * (direction_pdf_ + 1 / (2 * pi * pi * std::min(1.0, sine)));
-  connect(ray, hull, throughput_ * value, pick, direction_pdf, false, block.fine(1));
+  connect(ray, hull, throughput_ * value, pick, direction_pdf, false, s_ + (v.hit != nullptr), block.fine(1));
 }
 
 // The walk left the scene along ray_: environments, weighted against their own sampling at the vertex before.
@@ -274,7 +275,7 @@ void Walk::run(const CameraRay& camera) {
   if (connected && !hull_.empty() && options.max_order != 0) {
     const Pick pick = lights_.pick_for_ray(ray_, hull_, first.coarse(1));
     if (pick.light >= 0)
-      connect(ray_, hull_, throughput_, pick, 1.0, true, random_.block(0, Purpose::connection).fine(0));
+      connect(ray_, hull_, throughput_, pick, 1.0, true, 0, random_.block(0, Purpose::connection).fine(0));
   }
 
   for (;;) {
