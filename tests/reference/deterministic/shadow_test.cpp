@@ -25,9 +25,8 @@ Scene foggy(std::vector<Surface> surfaces, std::vector<Light> lights, double sig
   return s;
 }
 
-// Airlight along z under a light from +x, over [a, b] of the ray: sigma/(4 pi) E int exp(-sigma (z + path)) dz, where
-// the path through a slab that is infinite in x never ends... so the sun stands in the slab's plane: see the tests for
-// their paths.
+// 1/(4 pi) int_a^b sigma exp(-sigma z) dz: airlight of a stretch of the z axis, isotropic, before the light path's
+// loss.
 double between(double sigma, double a, double b) { return (std::exp(-sigma * a) - std::exp(-sigma * b)) / (4 * pi); }
 
 const Ray along_z{Point3::Zero(), Vec3::UnitZ()};
