@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 
 #include "experiments/build_info.h"
@@ -255,6 +256,9 @@ int run(int argc, char** argv) {
   } catch (const scene::Interrupted&) {
     say("interrupted");
     return 130;
+  } catch (const std::filesystem::filesystem_error& error) {
+    say(fmt::format("{}: {}", error.path1().string(), error.code().message()));
+    return 2;
   } catch (const std::bad_alloc&) {
     say("out of memory");
     return 2;

@@ -202,7 +202,7 @@ class Reader {
       plot.x = reader.text("x");
       plot.y = reader.text("y");
       plot.name = reader.text("name", plot.y + "_against_" + plot.x);
-      plot.title = reader.text("title", experiment_.title);
+      plot.title = reader.text("title", "");
       plot.x_label = reader.text("x_label", "");
       plot.y_label = reader.text("y_label", "");
       plot.per_scene = reader.flag("per_scene", plot.x != "parameter");

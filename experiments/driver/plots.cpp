@@ -130,8 +130,9 @@ std::string escaped(std::string text) {
 
 std::string script(const PlotCase& plot, const std::string& title, const std::string& name, const Drawing& drawing) {
   // Colours that the colour-blind tell apart (Okabe and Ito).
-  static const char* colors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
-  static const int shapes[] = {7, 5, 9, 13, 11, 6, 4};
+  static const char* colors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
+                                 "#56B4E9", "#000000", "#7F3C8D", "#80BA5A", "#A5AA99"};
+  static const int shapes[] = {7, 5, 9, 13, 11, 6, 4, 8, 12, 15};
   Span x, y;
   for (const Curve& curve : drawing.curves)
     for (const PlotPoint& p : curve.points) {
@@ -142,15 +143,15 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   std::string lines;
   const auto add = [&](const std::string& text) { lines += (lines.empty() ? "" : ", \\\n     ") + text; };
   for (std::size_t i = 0; i < drawing.curves.size(); ++i) {
-    const std::string style = fmt::format("lc rgb \"{}\" pt {} ps 0.7 lw 1.6", colors[i % 7], shapes[i % 7]);
+    const std::string style = fmt::format("lc rgb \"{}\" pt {} ps 0.7 lw 1.6", colors[i % 10], shapes[i % 10]);
     add(fmt::format("data index {} using 2:5 with linespoints {} title \"{}\"", 2 * i, style,
                     escaped(drawing.curves[i].name)));
     add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
-                    colors[i % 7]));
+                    colors[i % 10]));
     const auto& points = drawing.curves[i].points;
     if (std::any_of(points.begin(), points.end(), [](const PlotPoint& p) { return p.bound; }))
       add(fmt::format("data index {} using 2:5 with points lc rgb \"{}\" pt 10 ps 0.9 notitle", 2 * i + 1,
-                      colors[i % 7]));
+                      colors[i % 10]));
   }
   if (drawing.floor > 0)
     add(fmt::format("{:.6g} with lines dt 2 lw 1 lc rgb \"#888888\" title \"noise floor\"", drawing.floor));
@@ -179,7 +180,6 @@ void run_gnuplot(const fs::path& folder, const std::vector<std::string>& scripts
   if (!has_gnuplot()) throw Unavailable("gnuplot is not installed: no plots (Debian: gnuplot-nox)");
   for (const std::string& name : scripts) {
     const fs::path log = folder / (name + ".log");
-
     const std::string command =
         fmt::format("cd '{}' && gnuplot '{}' >'{}' 2>&1", folder.string(), name, log.filename().string());
     if (std::system(command.c_str()) != 0)
@@ -205,7 +205,10 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
       const Drawing drawing = collect(outcome, plot, scene);
       if (drawing.curves.empty()) continue;
       const std::string name = slug(scene.empty() ? plot.name : plot.name + "." + scene);
-      const std::string title = scene.empty() ? plot.title : plot.title + ": " + scene;
+      const std::string what = !plot.title.empty() ? plot.title
+                                                   : fmt::format("{} against {}", axis_label(plot.y_label, plot.y),
+                                                                 axis_label(plot.x_label, plot.x));
+      const std::string title = scene.empty() ? what : what + ": " + scene;
       make_folder(plots);
       scene::write_file_atomically((plots / (name + ".csv")).string(), data_csv(drawing));
       scene::write_file_atomically((plots / (name + ".gp")).string(), script(plot, title, name, drawing));

@@ -86,6 +86,7 @@ class Run {
         results_(options.root / "results"),
         journal_(results_ / "cache" / "rows" / (experiment.id + "." + experiment.profile + ".jsonl"), options.resume) {
     outcome_.experiment = std::move(experiment);
+    if (!options.resume) fs::remove_all(results_ / "images" / outcome_.experiment.id);
     if (options.threads > 0) outcome_.experiment.timing.threads = options.threads;
   }
 
@@ -107,6 +108,17 @@ class Run {
 
  private:
   const Experiment& experiment() const { return outcome_.experiment; }
+
+  static bool belongs(const SceneCase& c, const MethodCase& m) {
+    return m.scenes.empty() || std::find(m.scenes.begin(), m.scenes.end(), c.name) != m.scenes.end();
+  }
+
+  std::size_t row_count() const {
+    std::size_t count = 0;
+    for (const SceneCase& c : experiment().scenes)
+      for (const MethodCase& m : experiment().methods) count += belongs(c, m);
+    return count;
+  }
 
   void scene(const SceneCase& c) {
     check_interrupted();
@@ -137,8 +149,7 @@ class Run {
       outcome_.references.push_back(info);
     }
     for (const MethodCase& m : experiment().methods)
-      if (m.scenes.empty() || std::find(m.scenes.begin(), m.scenes.end(), c.name) != m.scenes.end())
-        method(c, m, scene, masks, reference, exposure);
+      if (belongs(c, m)) method(c, m, scene, masks, reference, exposure);
   }
 
   void method(const SceneCase& c, const MethodCase& m, std::shared_ptr<const scene::Scene> scene, const Masks& masks,
@@ -192,7 +203,8 @@ class Run {
                    const std::optional<Reference>& reference, const scene::Renderer& renderer,
                    const scene::Settings& settings) {
     const TimingRule& rule = experiment().timing;
-    Progress progress(fmt::format("{}: {} on {}", experiment().id, m.name, row.scene));
+    Progress progress(fmt::format("{} [{} of {}]: {} on {}", experiment().id, outcome_.rows.size() + 1, row_count(),
+                                  m.name, row.scene));
     const scene::Execution execution = progress.execution(rule.threads);
     const scene::View view = scene::view_of(*scene);
     std::vector<double> preparations;
@@ -251,6 +263,8 @@ class Run {
     };
     put("table.csv", table_csv(outcome_));
     put("summary.csv", summary_csv(outcome_));
+    if (!experiment().expected.empty()) put("expected.csv", expected_csv(outcome_));
+    if (!experiment().speed_ups.empty()) put("speed_up.csv", speed_up_csv(outcome_));
     put("table.md", table_markdown(outcome_, plots));
     put("run.json", run_record(outcome_, plots));
   }

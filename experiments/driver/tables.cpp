@@ -24,6 +24,12 @@ std::string csv_line(const Cells& cells) {
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
 
+std::string csv(const std::vector<Cells>& lines) {
+  std::string out;
+  for (const Cells& line : lines) out += csv_line(line);
+  return out;
+}
+
 std::string duration(double seconds) {
   if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
   if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
@@ -89,6 +95,12 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
       if (e.metric == "seconds") return time_text(row);
     }
   return "not in this profile";
+}
+
+std::vector<Cells> expected(const Outcome& outcome) {
+  std::vector<Cells> lines{{"what", "printed", "ours"}};
+  for (const ExpectedCase& x : outcome.experiment.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
+  return lines;
 }
 
 std::vector<Point> curve(const Outcome& outcome, const std::string& scene, const std::string& method,
@@ -174,10 +186,14 @@ std::string table_csv(const Outcome& outcome) {
   return out;
 }
 
-std::string summary_csv(const Outcome& outcome) {
-  std::string out;
-  for (const Cells& line : summary(outcome)) out += csv_line(line);
-  return out;
+std::string summary_csv(const Outcome& outcome) { return csv(summary(outcome)); }
+
+std::string expected_csv(const Outcome& outcome) {
+  return outcome.experiment.expected.empty() ? "" : csv(expected(outcome));
+}
+
+std::string speed_up_csv(const Outcome& outcome) {
+  return outcome.experiment.speed_ups.empty() ? "" : csv(speed_ups(outcome));
 }
 
 std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots, const std::string& table) {
@@ -188,10 +204,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   if (!outcome.complete) out += "This run was interrupted: rows are missing.\n\n";
   out += (table.empty() ? markdown(summary(outcome)) : table) + "\n";
   if (!e.expected.empty()) {
-    out += "## Printed and measured\n\n";
-    std::vector<Cells> lines{{"what", "printed", "ours"}};
-    for (const ExpectedCase& x : e.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
-    out += markdown(lines) + "\n";
+    out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";
   }
   if (!e.speed_ups.empty()) out += "## Speed at equal error\n\n" + markdown(speed_ups(outcome)) + "\n";
   for (const PlotFile& plot : plots) out += fmt::format("![{}]({})\n", plot.title, plot.file);

@@ -16,6 +16,8 @@ struct PlotFile {
 
 std::string table_csv(const Outcome&);
 std::string summary_csv(const Outcome&);
+std::string expected_csv(const Outcome&);  // printed and measured; empty without [[expected]]
+std::string speed_up_csv(const Outcome&);  // empty without [[speed_up]]
 // `table` replaces the table of rows if it is not empty.
 std::string table_markdown(const Outcome&, const std::vector<PlotFile>&, const std::string& table = "");
 std::string run_record(const Outcome&, const std::vector<PlotFile>&);

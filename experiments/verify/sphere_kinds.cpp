@@ -173,8 +173,8 @@ Check read_multiple_scattering(const Value& v) {
         Outcome out;
         for (const Number& n : numbers)
           out.comparisons.push_back(of(n.name, n.mean, n.error, n.order < 0 ? got.total : got.orders[n.order], 0, 4));
-        // The vector does not tell the error of its count: it is ours, scaled by the numbers of histories. Sixteen repeats
-        // make a Student's t of 15 degrees: 5.5 standard errors are as rare as 4 of a known one.
+        // The vector does not tell the error of its count: it is ours, scaled by the numbers of histories. Sixteen
+        // repeats make a Student's t of 15 degrees: 5.5 standard errors are as rare as 4 of a known one.
         const auto count = Measurement(one_medium(medium, light), ray, 4, id + "collisions").collisions(samples / 2);
         const double error = count.error[0] * std::sqrt(double(samples / 2) / histories);
         out.comparisons.push_back(of("analog collisions", collisions, error, count, 0, 5.5));
