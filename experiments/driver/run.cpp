@@ -93,16 +93,24 @@ class Run {
   Outcome run() {
     const auto start = Clock::now();
     bool stopped = false;
-    try {
-      for (const SceneCase& c : outcome_.experiment.scenes) scene(c);
-      outcome_.complete = true;
-    } catch (const scene::Interrupted&) {
-      stopped = true;
+    std::optional<Error> failure;
+    for (const SceneCase& c : outcome_.experiment.scenes) {
+      try {
+        scene(c);
+      } catch (const scene::Interrupted&) {
+        stopped = true;
+        break;
+      } catch (const Error& error) {
+        // A scene that cannot be read or judged takes nothing from the others.
+        if (!failure) failure = error;
+      }
     }
+    outcome_.complete = !stopped && !failure;
     outcome_.seconds = since(start);
     outcome_.gates = judge(outcome_.experiment, outcome_.rows);
     write();
     if (stopped) throw scene::Interrupted("interrupted");
+    if (failure) throw Error(*failure);
     return outcome_;
   }
 

@@ -201,7 +201,8 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   std::string out = fmt::format("# {}\n\n", e.title);
   if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
   if (!e.about.empty()) out += e.about + "\n\n";
-  if (!outcome.complete) out += "This run was interrupted: rows are missing.\n\n";
+  if (!outcome.complete)
+    out += "This run is not complete: it was interrupted, or a scene failed. Rows are missing.\n\n";
   out += (table.empty() ? markdown(summary(outcome)) : table) + "\n";
   if (!e.expected.empty()) {
     out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";

@@ -151,6 +151,17 @@ TEST_CASE("a damaged cached reference is computed anew", "[driver]") {
   CHECK(metric(second.rows[0], "rel_l2") == metric(first.rows[0], "rel_l2"));
 }
 
+TEST_CASE("a scene that cannot be read takes nothing from the others", "[driver]") {
+  const Project project;
+  std::string text = experiment_file;
+  text.insert(text.find("[[scene]]"), "[[scene]]\nfile = \"scenes/missing.toml\"\n");
+  project.folder.write("experiments/g/e.toml", text);
+  CHECK_THROWS_WITH(project.run(false), Catch::Contains("missing.toml"));
+  const auto record = nlohmann::json::parse(read_bytes((project.folder.path() / "results/g/e/run.json").string()));
+  CHECK(record["rows"].size() == 3);
+  CHECK(record["complete"] == false);
+}
+
 TEST_CASE("gates fail only beyond the interval", "[driver]") {
   Experiment e;
   e.id = "g/e";
