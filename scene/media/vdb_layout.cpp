@@ -134,11 +134,21 @@ class TreeWalk {
       walk_.take(bytes);
       return;
     }
-    // Positive: the length of compressed data, which is shorter than plain data; else plain, of the length negated.
+    // Positive: the length of compressed data; else that of plain data negated.
     const std::int64_t stored = walk_.number<std::int64_t>();
-    const bool possible = stored > 0 ? std::uint64_t(stored) < bytes + 64 : -std::uint64_t(stored) == bytes;
-    if (!possible) damaged(walk_.at(), fmt::format("a block of {} bytes for {}", stored, bytes));
-    walk_.take(stored > 0 ? stored : bytes);
+    const std::size_t at = walk_.at();
+    bool possible = -std::uint64_t(stored) == bytes;
+    const char* data = walk_.take(stored > 0 ? stored : bytes * possible);
+    if (stored > 0) possible = compression_ & 4 ? is_blosc(data, stored, bytes) : bytes > 0;
+    if (!possible) damaged(at, fmt::format("a block of {} bytes for {}", stored, bytes));
+  }
+
+  // A Blosc block begins with 16 bytes that repeat both lengths. There are blocks of nothing but these.
+  static bool is_blosc(const char* data, std::uint64_t stored, std::uint64_t bytes) {
+    if (stored < 16) return false;
+    std::uint32_t lengths[3];  // plain, of a part, compressed
+    std::memcpy(lengths, data + 4, sizeof lengths);
+    return lengths[0] == bytes && lengths[2] == stored;
   }
 
   Walk& walk_;

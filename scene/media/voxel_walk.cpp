@@ -27,7 +27,9 @@ __m256d least_of_all(__m256d v) {
 // least corner.
 double sum_at(const float* p, std::ptrdiff_t row, std::ptrdiff_t slice, __m256d shift, __m256d direction, double a,
               double b) {
-  const auto pair = [](const float* q) { return _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(q))); };
+  const auto pair = [](const float* q) {
+    return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q)));
+  };
   const __m128 z0 = _mm_unpacklo_ps(pair(p), pair(p + row));                  // 000 010 100 110
   const __m128 z1 = _mm_unpacklo_ps(pair(p + slice), pair(p + slice + row));  // 001 011 101 111
   const __m128i any = _mm_castps_si128(_mm_or_ps(z0, z1));
