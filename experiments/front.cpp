@@ -35,17 +35,50 @@ std::vector<LogPoint> envelope(const std::vector<Point>& points) {
   return curve;
 }
 
-double between(double x, double x0, double x1, double y0, double y1) {
-  return x1 == x0 ? y0 : y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+// A piecewise linear function of x, x rising.
+struct Knot {
+  double x;
+  double y;
+};
+
+std::vector<Knot> error_over_time(const std::vector<Point>& points) {
+  std::vector<Knot> knots;
+  for (const LogPoint& p : envelope(points)) knots.push_back({p.time, p.error});
+  return knots;
 }
 
-std::optional<double> log_time_at(const std::vector<LogPoint>& curve, double error) {
-  if (curve.empty() || error > curve.front().error || error < curve.back().error) return std::nullopt;
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
-    if (error >= curve[i + 1].error)
-      return between(error, curve[i].error, curve[i + 1].error, curve[i].time, curve[i + 1].time);
-  return curve.back().time;
+std::vector<Knot> time_over_error(const std::vector<Point>& points) {
+  std::vector<Knot> knots;
+  for (const LogPoint& p : envelope(points)) knots.insert(knots.begin(), {p.error, p.time});
+  return knots;
 }
+
+std::optional<double> at(const std::vector<Knot>& knots, double x) {
+  if (knots.empty() || x < knots.front().x || x > knots.back().x) return std::nullopt;
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+    if (x <= knots[i + 1].x)
+      return knots[i].y + (knots[i + 1].y - knots[i].y) * (x - knots[i].x) / (knots[i + 1].x - knots[i].x);
+  return knots.back().y;
+}
+
+std::optional<Gain> gain(const std::vector<Knot>& baseline, const std::vector<Knot>& other) {
+  if (baseline.empty() || other.empty()) return std::nullopt;
+  const double from = std::max(baseline.front().x, other.front().x), to = std::min(baseline.back().x, other.back().x);
+  if (from > to) return std::nullopt;
+  // The ratio is piecewise linear in logarithms: 65 equal steps resolve every knot well enough for a mean.
+  const int steps = from < to ? 64 : 0;
+  double sum = 0, least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (int i = 0; i <= steps; ++i) {
+    const double x = i == steps ? to : from + (to - from) * i / steps;
+    const double ratio = *at(baseline, x) - *at(other, x);
+    sum += ratio;
+    least = std::min(least, ratio);
+    greatest = std::max(greatest, ratio);
+  }
+  return Gain{std::exp(sum / (steps + 1)), std::exp(least), std::exp(greatest), std::exp(from), std::exp(to)};
+}
+
+std::optional<double> exponential(std::optional<double> x) { return x ? std::optional(std::exp(*x)) : x; }
 
 }  // namespace
 
@@ -76,37 +109,19 @@ double hypervolume(const std::vector<Point>& points, double worst_time, double w
 }
 
 std::optional<double> error_at_time(const std::vector<Point>& points, double time) {
-  const auto curve = envelope(points);
-  const double x = std::log(time);
-  if (curve.empty() || x < curve.front().time || x > curve.back().time) return std::nullopt;
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
-    if (x <= curve[i + 1].time)
-      return std::exp(between(x, curve[i].time, curve[i + 1].time, curve[i].error, curve[i + 1].error));
-  return std::exp(curve.back().error);
+  return exponential(at(error_over_time(points), std::log(time)));
 }
 
 std::optional<double> time_at_error(const std::vector<Point>& points, double error) {
-  const auto time = log_time_at(envelope(points), std::log(error));
-  return time ? std::optional(std::exp(*time)) : std::nullopt;
+  return exponential(at(time_over_error(points), std::log(error)));
 }
 
-std::optional<SpeedUp> speed_up(const std::vector<Point>& baseline, const std::vector<Point>& other) {
-  const auto a = envelope(baseline), b = envelope(other);
-  if (a.empty() || b.empty()) return std::nullopt;
-  const double high = std::min(a.front().error, b.front().error);
-  const double low = std::max(a.back().error, b.back().error);
-  if (low > high) return std::nullopt;
-  // The ratio is piecewise linear in logarithms: 65 equal steps resolve every knot well enough for a mean.
-  const int steps = low < high ? 64 : 0;
-  double sum = 0, least = std::numeric_limits<double>::infinity(), greatest = -least;
-  for (int i = 0; i <= steps; ++i) {
-    const double error = i == steps ? low : high + (low - high) * i / std::max(steps, 1);
-    const double ratio = *log_time_at(a, error) - *log_time_at(b, error);
-    sum += ratio;
-    least = std::min(least, ratio);
-    greatest = std::max(greatest, ratio);
-  }
-  return SpeedUp{std::exp(sum / (steps + 1)), std::exp(least), std::exp(greatest), std::exp(low), std::exp(high)};
+std::optional<Gain> speed_up(const std::vector<Point>& baseline, const std::vector<Point>& other) {
+  return gain(time_over_error(baseline), time_over_error(other));
+}
+
+std::optional<Gain> error_ratio(const std::vector<Point>& baseline, const std::vector<Point>& other) {
+  return gain(error_over_time(baseline), error_over_time(other));
 }
 
 }  // namespace airlight::experiments

@@ -29,14 +29,17 @@ double hypervolume(const std::vector<Point>&, double worst_time, double worst_er
 std::optional<double> error_at_time(const std::vector<Point>&, double time);
 std::optional<double> time_at_error(const std::vector<Point>&, double error);
 
-// Time of `baseline` over time of `other` at equal error, geometric mean over the errors that both curves reach.
-struct SpeedUp {
+// How a method compares with a baseline over what both reach; no extrapolation.
+struct Gain {
   double geometric_mean;
   double least;
   double greatest;
-  double error_low;  // range of errors that both reach
-  double error_high;
+  double from;  // the errors, or times, that both reach
+  double to;
 };
-std::optional<SpeedUp> speed_up(const std::vector<Point>& baseline, const std::vector<Point>& other);
+// Time of `baseline` over time of `other`, at equal error.
+std::optional<Gain> speed_up(const std::vector<Point>& baseline, const std::vector<Point>& other);
+// Error of `baseline` over error of `other`, at equal time.
+std::optional<Gain> error_ratio(const std::vector<Point>& baseline, const std::vector<Point>& other);
 
 }  // namespace airlight::experiments

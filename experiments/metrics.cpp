@@ -263,8 +263,9 @@ Measure measure_values(const std::string& base, const Values& v) {
   if (base == "p999") return percentile(v, 0.999);
   if (base == "bias") {
     const Estimate e = with_interval(v, signed_bias);
-    const double half = (e.high - e.low) / 2;
-    return {"", e.value, e.low, e.high, half / 1.96, noisy && e.low <= 0 && e.high >= 0};
+    // The standard error, back from the interval.
+    const double floor = noisy ? (e.high - e.low) / 2 / student_quantile(0.975, v.batch_count() - 1) : 0;
+    return {"", e.value, e.low, e.high, floor, noisy && e.low <= 0 && e.high >= 0};
   }
   if (base == "rel_mse") {
     double signal = squares(v, -1).signal;

@@ -73,7 +73,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
                                {"from_cache", r.cached}});
   j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
   if (!e.expected.empty()) j["tables"].push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
-  if (!e.speed_ups.empty()) j["tables"].push_back({{"file", "speed_up.csv"}, {"title", "Speed at equal error"}});
+  if (!e.speed_ups.empty()) j["tables"].push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
   j["plots"] = json::array();
   for (const PlotFile& plot : plots) j["plots"].push_back({{"file", plot.file}, {"title", plot.title}});
   j["pictures"] = pictures(outcome);

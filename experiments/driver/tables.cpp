@@ -8,7 +8,7 @@
 #include <set>
 
 #include "experiments/build_info.h"
-#include "experiments/front.h"
+#include "experiments/driver/comparisons.h"
 #include "experiments/machine.h"
 
 namespace airlight::experiments {
@@ -28,12 +28,6 @@ std::string csv(const std::vector<Cells>& lines) {
   std::string out;
   for (const Cells& line : lines) out += csv_line(line);
   return out;
-}
-
-std::string duration(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
-  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
-  return fmt::format("{:.3g} s", seconds);
 }
 
 std::string time_text(const Row& row) {
@@ -57,9 +51,13 @@ std::vector<Cells> summary(const Outcome& outcome) {
   if (setting) head.push_back("setting");
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
   head.insert(head.end(), {"time of one render", "prepared once in"});
+  const bool compared = !outcome.experiment.metrics.empty();
+  const std::vector<bool> best = on_front(outcome);
+  if (compared) head.push_back("front");
   if (note) head.push_back("note");
   std::vector<Cells> lines{head};
-  for (const Row& row : outcome.rows) {
+  for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+    const Row& row = outcome.rows[i];
     Cells line{row.scene};
     if (parameter) line.push_back(row.parameter ? fmt::format("{:g}", *row.parameter) : "");
     line.push_back(row.method);
@@ -71,6 +69,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
     }
     line.push_back(time_text(row));
     line.push_back(row.runs ? duration(row.prepare_seconds) : "");
+    if (compared) line.push_back(best[i] ? "yes" : "");
     if (note) line.push_back(row.note);
     lines.push_back(line);
   }
@@ -100,39 +99,6 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
 std::vector<Cells> expected(const Outcome& outcome) {
   std::vector<Cells> lines{{"what", "printed", "ours"}};
   for (const ExpectedCase& x : outcome.experiment.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
-  return lines;
-}
-
-std::vector<Point> curve(const Outcome& outcome, const std::string& scene, const std::string& method,
-                         const std::string& metric) {
-  std::vector<Point> points;
-  for (const Row& row : outcome.rows)
-    if (row.scene == scene && row.method == method) {
-      const auto time = quantity(row, "seconds"), error = quantity(row, metric);
-      const auto below = std::any_of(row.measures.begin(), row.measures.end(),
-                                     [&](const Measure& m) { return m.name == metric && m.below_floor; });
-      if (time && error && !below) points.push_back({*time, *error});
-    }
-  return points;
-}
-
-std::vector<Cells> speed_ups(const Outcome& outcome) {
-  std::vector<Cells> lines{
-      {"scene", "faster", "than", "at equal", "factor (geometric mean)", "least", "greatest", "over errors"}};
-  std::vector<std::string> scenes;
-  for (const Row& row : outcome.rows)
-    if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
-  for (const SpeedUpCase& s : outcome.experiment.speed_ups)
-    for (const std::string& scene : scenes) {
-      const auto ratio =
-          speed_up(curve(outcome, scene, s.baseline, s.metric), curve(outcome, scene, s.method, s.metric));
-      if (ratio)
-        lines.push_back({scene, s.method, s.baseline, s.metric, fmt::format("{:.3g}", ratio->geometric_mean),
-                         fmt::format("{:.3g}", ratio->least), fmt::format("{:.3g}", ratio->greatest),
-                         fmt::format("{:.2g} to {:.2g}", ratio->error_low, ratio->error_high)});
-      else
-        lines.push_back({scene, s.method, s.baseline, s.metric, "no common error", "", "", ""});
-    }
   return lines;
 }
 
@@ -193,7 +159,7 @@ std::string expected_csv(const Outcome& outcome) {
 }
 
 std::string speed_up_csv(const Outcome& outcome) {
-  return outcome.experiment.speed_ups.empty() ? "" : csv(speed_ups(outcome));
+  return outcome.experiment.speed_ups.empty() ? "" : csv(equal_error_and_time(outcome));
 }
 
 std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots, const std::string& table) {
@@ -207,7 +173,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   if (!e.expected.empty()) {
     out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";
   }
-  if (!e.speed_ups.empty()) out += "## Speed at equal error\n\n" + markdown(speed_ups(outcome)) + "\n";
+  if (!e.speed_ups.empty()) out += "## Equal error, equal time\n\n" + markdown(equal_error_and_time(outcome)) + "\n";
   for (const PlotFile& plot : plots) out += fmt::format("![{}]({})\n", plot.title, plot.file);
   if (!plots.empty()) out += "\n";
   if (!outcome.gates.empty()) {
@@ -223,7 +189,9 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
                        r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds));
   out += fmt::format(
       "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
-      "precomputation apart.\n- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n",
+      "precomputation apart. front: no other row of the scene is both faster and closer in the first metric, beyond "
+      "the "
+      "intervals.\n- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n",
       e.profile, machine.cpu, e.timing.threads ? e.timing.threads : machine.threads, machine.threads, version(),
       commit());
   return out;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/interrupt.h"
+
 namespace airlight::experiments::verification {
 namespace {
 
@@ -51,8 +53,9 @@ RadianceEstimate Measurement::trace(std::uint64_t samples, std::uint32_t stream,
   if (analog) options.roulette_order = 0;
   const World world(scene_, options);
   const std::uint32_t index = index_of(name_) + repeat;
-  return detector_ ? path_tracer::mean_radiance(world, detector_, samples, {}, index)
-                   : path_tracer::radiance(world, ray_, samples, {}, index);
+  const scene::Execution execution = quiet_execution(0);
+  return detector_ ? path_tracer::mean_radiance(world, detector_, samples, execution, index)
+                   : path_tracer::radiance(world, ray_, samples, execution, index);
 }
 
 double Measurement::collisions_for(double se) const {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "experiments/interrupt.h"
 #include "experiments/verify/check.h"
 #include "scene/error.h"
 #include "scene/settings.h"
@@ -131,6 +132,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
         ++line_of(kinds_found, path, w.kind).not_yet;
         continue;
       }
+      check_interrupted();
       const auto start = std::chrono::steady_clock::now();
       const Outcome outcome = w.check.job(profile);
       VerifyKind& line = line_of(kinds_found, path, w.kind);

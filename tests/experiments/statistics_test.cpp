@@ -139,8 +139,16 @@ TEST_CASE("equal time and equal error between two curves", "[statistics]") {
   REQUIRE(ratio);
   CHECK(ratio->geometric_mean == Approx(4).epsilon(1e-12));
   CHECK(ratio->least == Approx(4).epsilon(1e-12));
-  CHECK(ratio->error_high == Approx(1));
-  CHECK(ratio->error_low == Approx(0.04));
+  CHECK(ratio->to == Approx(1));
+  CHECK(ratio->from == Approx(0.04));
+  const auto better = error_ratio(bad, good);
+  REQUIRE(better);
+  CHECK(better->geometric_mean == Approx(4).epsilon(1e-12));
+  CHECK(better->from == Approx(1));
+  CHECK(better->to == Approx(100));
+  // A baseline with one setting, at time 5: error 0.8 there, 0.2 on the good curve.
+  CHECK(error_ratio({point(5, 0.8)}, good)->geometric_mean == Approx(4).epsilon(1e-12));
+  CHECK_FALSE(error_ratio({point(0.5, 0.8)}, good));
 }
 
 // 95 % intervals cover the true mean in about 95 % of 2000 repeats. The count outside is binomial: with rate 0.05 its

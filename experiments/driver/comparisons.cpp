@@ -1,0 +1,107 @@
+#include "experiments/driver/comparisons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/front.h"
+#include "experiments/statistics.h"
+
+namespace airlight::experiments {
+namespace {
+
+// Names of the scenes, in order of appearance.
+std::vector<std::string> scene_names(const Outcome& outcome) {
+  std::vector<std::string> scenes;
+  for (const Row& row : outcome.rows)
+    if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
+  return scenes;
+}
+
+std::vector<Point> curve(const Outcome& outcome, const std::string& scene, const std::string& method,
+                         const std::string& metric) {
+  std::vector<Point> points;
+  for (const Row& row : outcome.rows)
+    if (row.scene == scene && row.method == method) {
+      const auto time = quantity(row, "seconds"), error = quantity(row, metric);
+      const auto below = std::any_of(row.measures.begin(), row.measures.end(),
+                                     [&](const Measure& m) { return m.name == metric && m.below_floor; });
+      if (time && error && !below) points.push_back({*time, *error});
+    }
+  return points;
+}
+
+// Median preparation of a method's settings on a scene [s].
+double preparation(const Outcome& outcome, const std::string& scene, const std::string& method) {
+  std::vector<double> seconds;
+  for (const Row& row : outcome.rows)
+    if (row.scene == scene && row.method == method && row.runs > 0) seconds.push_back(row.prepare_seconds);
+  return median(seconds);
+}
+
+// How many renders pay for a longer preparation, in the middle of the common errors.
+std::string break_even(const Outcome& outcome, const SpeedUpCase& s, const std::string& scene,
+                       const std::vector<Point>& baseline, const std::vector<Point>& other, const Gain& faster) {
+  const double error = std::sqrt(faster.from * faster.to);
+  const double saved = *time_at_error(baseline, error) - *time_at_error(other, error);
+  const double longer = preparation(outcome, scene, s.method) - preparation(outcome, scene, s.baseline);
+  if (longer <= 0) return saved >= 0 ? "1" : "never";
+  return saved > 0 ? fmt::format("{:.0f}", std::ceil(longer / saved)) : "never";
+}
+
+}  // namespace
+
+TextTable equal_error_and_time(const Outcome& outcome) {
+  TextTable lines{{"scene", "method", "against", "metric", "times faster at equal error", "range", "over errors",
+                   "preparation repaid after renders", "times less error at equal time", "range", "over times"}};
+  for (const SpeedUpCase& s : outcome.experiment.speed_ups)
+    for (const std::string& scene : scene_names(outcome)) {
+      const auto baseline = curve(outcome, scene, s.baseline, s.metric),
+                 other = curve(outcome, scene, s.method, s.metric);
+      if (baseline.empty() || other.empty()) continue;
+      std::vector<std::string> line{scene, s.method, s.baseline, s.metric};
+      if (const auto faster = speed_up(baseline, other))
+        line.insert(line.end(), {fmt::format("{:.3g}", faster->geometric_mean),
+                                 fmt::format("{:.3g} to {:.3g}", faster->least, faster->greatest),
+                                 fmt::format("{:.2g} to {:.2g}", faster->from, faster->to),
+                                 break_even(outcome, s, scene, baseline, other, *faster)});
+      else
+        line.insert(line.end(), {"no common error", "", "", ""});
+      if (const auto better = error_ratio(baseline, other))
+        line.insert(line.end(), {fmt::format("{:.3g}", better->geometric_mean),
+                                 fmt::format("{:.3g} to {:.3g}", better->least, better->greatest),
+                                 fmt::format("{} to {}", duration(better->from), duration(better->to))});
+      else
+        line.insert(line.end(), {"no common time", "", ""});
+      lines.push_back(line);
+    }
+  return lines;
+}
+
+std::vector<bool> on_front(const Outcome& outcome) {
+  std::vector<bool> marks(outcome.rows.size(), false);
+  const auto& metrics = outcome.experiment.metrics;
+  if (metrics.empty()) return marks;
+  for (const std::string& scene : scene_names(outcome)) {
+    std::vector<Point> points;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+      const Row& row = outcome.rows[i];
+      const auto time = quantity(row, "seconds"), error = quantity(row, metrics.front());
+      if (row.scene != scene || !time || !error) continue;
+      points.push_back({*time, *error});
+      index.push_back(i);
+    }
+    for (const std::size_t kept : front(points)) marks[index[kept]] = true;
+  }
+  return marks;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
+  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  return fmt::format("{:.3g} s", seconds);
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,21 @@
+// What is read off several rows together: who is on the front, who is faster at equal error or closer at equal time.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "experiments/driver/outcome.h"
+
+namespace airlight::experiments {
+
+using TextTable = std::vector<std::vector<std::string>>;  // the header first
+
+// For each row: no other row of its scene beats it in both time and the first metric, beyond the intervals.
+std::vector<bool> on_front(const Outcome&);
+
+// A line for each [[speed_up]] and scene: ratios of time over the errors that both reach, after how many renders a
+// longer preparation is repaid (in the middle of those errors), ratios of error over the times that both reach.
+TextTable equal_error_and_time(const Outcome&);
+
+std::string duration(double seconds);  // "12.3 ms"
+
+}  // namespace airlight::experiments
