@@ -55,8 +55,7 @@ std::shared_ptr<const EnvironmentLight::Tables> make_tables(int width, int heigh
   return tables->density.positive() ? tables : nullptr;
 }
 
-Rgb bilinear(const EnvironmentMap& map, const Vec3& w) {
-  const LatLongCell cell = find_cell(to_lat_long(w), map.width, map.height);
+Rgb bilinear(const EnvironmentMap& map, const LatLongCell& cell) {
   const float* top = &map.rgb[3 * std::size_t(cell.top) * map.width];
   const float* bottom = &map.rgb[3 * std::size_t(cell.bottom) * map.width];
   const auto row = [&](const float* texels) {
@@ -140,7 +139,10 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& pa
 }
 
 Rgb radiance(const EnvironmentLight& light, const Vec3& w) {
-  if (light.map) return light.scale * bilinear(*light.map, light.to_map * w);
+  if (light.map) {
+    const EnvironmentMap& map = *light.map;
+    return light.scale * bilinear(map, find_cell(to_lat_long(light.to_map * w), map.width, map.height));
+  }
   if (!light.sh.empty()) return light.scale * evaluate_sh(light.sh, light.to_map * w);
   return light.scale;
 }
@@ -155,6 +157,15 @@ Vec3 sample_environment(const EnvironmentLight& light, double u1, double u2) {
 double pdf_environment(const EnvironmentLight& light, const Vec3& w) {
   if (!light.tables) return uniform_pdf;
   return uniform_share * uniform_pdf + (1 - uniform_share) * light.tables->density.pdf(light.to_map * w);
+}
+
+EnvironmentValue evaluate_environment(const EnvironmentLight& light, const Vec3& w) {
+  if (!light.map || !light.tables) return {radiance(light, w), pdf_environment(light, w)};
+  // The density's grid is the map's.
+  const Vec3 v = light.to_map * w;
+  const LatLongCell cell = find_cell(to_lat_long(v), light.map->width, light.map->height);
+  return {light.scale * bilinear(*light.map, cell),
+          uniform_share * uniform_pdf + (1 - uniform_share) * light.tables->density.pdf(cell, v[1])};
 }
 
 }  // namespace airlight::scene

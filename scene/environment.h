@@ -52,6 +52,13 @@ Rgb radiance(const EnvironmentLight&, const Vec3& w);
 Vec3 sample_environment(const EnvironmentLight&, double u1, double u2);
 double pdf_environment(const EnvironmentLight&, const Vec3& w);
 
+// Radiance and that density together, for the price of one.
+struct EnvironmentValue {
+  Rgb radiance;
+  double pdf;
+};
+EnvironmentValue evaluate_environment(const EnvironmentLight&, const Vec3& w);
+
 // Projection on real spherical harmonics of `order` bands (order^2 coefficients) over world directions. A constant and
 // an SH light are projected exactly; a map by Gauss points within every stretch between texel centres, relative error
 // below 1e-6 (1e-9 for 1024 x 512 texels and order 6).

@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 
+#include "scene/math/elementary.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {
@@ -13,16 +14,20 @@ struct LatLong {
 };
 
 inline LatLong to_lat_long(const Vec3& w) {
-  return {0.5 + std::atan2(w[0], -w[2]) / (2 * pi), std::atan2(std::sqrt(w[0] * w[0] + w[2] * w[2]), w[1])};
+  return {0.5 + elementary::atan2(w[0], -w[2]) / (2 * pi),
+          elementary::atan2(std::sqrt(w[0] * w[0] + w[2] * w[2]), w[1])};
 }
 
 // The direction with longitude u, height y = cos(theta) and s = sin(theta).
 inline Vec3 from_lat_long(double u, double y, double s) {
-  const double phi = 2 * pi * (u - 0.5);
-  return {s * std::sin(phi), y, -s * std::cos(phi)};
+  const elementary::SinCos longitude = elementary::sincos_turns(u - 0.5);
+  return {s * longitude.sin, y, -s * longitude.cos};
 }
 
-inline Vec3 from_lat_long(const LatLong& p) { return from_lat_long(p.u, std::cos(p.theta), std::sin(p.theta)); }
+inline Vec3 from_lat_long(const LatLong& p) {
+  const elementary::SinCos polar = elementary::sincos_turns(p.theta / (2 * pi));
+  return from_lat_long(p.u, polar.cos, polar.sin);
+}
 
 // Where a position falls on a grid of texel centres: the two nearest columns (around the world) and rows (clamped at
 // the poles), and how far it is from the first to the second, in [0, 1]. `strip` counts the stretches between rows, 0

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/lat_long.h"
+#include "scene/math/elementary.h"
 
 namespace airlight::scene {
 namespace {
@@ -44,7 +44,7 @@ LatLongDensity::LatLongDensity(int width, int height, const std::vector<double>&
   values_.reserve(values.size());
   for (const double value : values) values_.push_back(largest > 0 ? float(value / largest) : 0.0f);
   cosine_.resize(std::size_t(height) + 2);
-  for (int j = 0; j <= height + 1; ++j) cosine_[j] = std::cos(strip_begin(j, height));
+  for (int j = 0; j <= height + 1; ++j) cosine_[j] = elementary::sincos_turns(strip_begin(j, height) / (2 * pi)).cos;
   strips_.resize(std::size_t(height) + 2);
   cells_.resize(std::size_t(height + 1) * (width + 1));
   for (int j = 0; j <= height; ++j) {
@@ -60,14 +60,13 @@ LatLongDensity::LatLongDensity(int width, int height, const std::vector<double>&
   total_ = cumulate(strips_.data(), height + 1);
 }
 
-double LatLongDensity::pdf(const Vec3& direction) const {
-  const LatLongCell cell = find_cell(to_lat_long(direction), width_, height_);
+double LatLongDensity::pdf(const LatLongCell& cell, double direction_y) const {
   const float* top = &values_[std::size_t(cell.top) * width_];
   const float* bottom = &values_[std::size_t(cell.bottom) * width_];
   const auto between = [](double a, double b, double x) { return a + (b - a) * x; };
   const double above = between(top[cell.left], top[cell.right], cell.x);
   const double below = between(bottom[cell.left], bottom[cell.right], cell.x);
-  const double y = (cosine_[cell.strip] - direction[1]) / (cosine_[cell.strip] - cosine_[cell.strip + 1]);
+  const double y = (cosine_[cell.strip] - direction_y) / (cosine_[cell.strip] - cosine_[cell.strip + 1]);
   return between(above, below, std::clamp(y, 0.0, 1.0)) / total_;
 }
 

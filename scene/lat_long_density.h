@@ -7,6 +7,7 @@
 #pragma once
 #include <vector>
 
+#include "scene/lat_long.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {
@@ -19,7 +20,11 @@ class LatLongDensity {
   // False if all values are 0: then there is nothing to sample.
   bool positive() const { return total_ > 0; }
   // Density over solid angle [1/sr]; integrates to 1. Requires positive().
-  double pdf(const Vec3& direction) const;
+  double pdf(const Vec3& direction) const {
+    return pdf(find_cell(to_lat_long(direction), width_, height_), direction[1]);
+  }
+  // The same, where the direction's cell and the cosine of its polar angle are known.
+  double pdf(const LatLongCell&, double y) const;
   // The direction for two uniforms in [0, 1); monotone in u1 from pole to pole, then in u2 around. Requires positive().
   Vec3 sample(double u1, double u2) const;
 

@@ -15,26 +15,42 @@ namespace {
 constexpr std::uint32_t flight_blocks = 1u << 18;
 constexpr std::size_t most_media = 64;
 
-Eigen::Vector3i cells_of(const scene::Medium& medium, const Box& box, const Options& options) {
-  if (!options.supergrid) return {1, 1, 1};
-  if (options.supergrid_cells > 0) return Eigen::Vector3i::Constant(options.supergrid_cells);
-  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
-    Eigen::Vector3i cells;
-    for (int a = 0; a < 3; ++a)
-      cells[a] = std::clamp(int(std::ceil(box.size()[a] / (4 * (*grid)->voxel_size))), 1, 1024);
-    return cells;
+int cells_along(double size, double cell, const Options& options) {
+  if (!options.supergrid) return 1;
+  if (options.supergrid_cells > 0) return options.supergrid_cells;
+  return std::clamp(int(std::ceil(size / cell)), 1, 1024);
+}
+
+// Cells of 4^3 voxels, their faces on samples, whichever way the grid lies in the world.
+void prepare_grid(TrackedMedium& tracked, const scene::VoxelGrid& grid, const Options& options) {
+  tracked.grid = &grid;
+  const Box box = scene::sample_support(grid);
+  if (box.empty()) return;
+  Eigen::Vector3i cells;
+  Vec3 size = box.size();
+  for (int a = 0; a < 3; ++a) {
+    cells[a] = cells_along(size[a], 4, options);
+    const bool whole_voxels = options.supergrid && options.supergrid_cells == 0 && 4 * cells[a] >= size[a];
+    if (whole_voxels) size[a] = 4 * cells[a];
   }
-  return Eigen::Vector3i::Constant(16);
+  tracked.majorants = make_supergrid({box.lo, box.lo + size}, cells, options.majorant_scale,
+                                     [&](const Box& cell) { return scene::density_bounds_at_samples(grid, cell).hi; });
 }
 
 TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
-  TrackedMedium tracked{&medium, false, 0, {}};
+  TrackedMedium tracked;
+  tracked.medium = &medium;
   if (const auto* field = std::get_if<scene::Homogeneous>(&medium.field)) {
     tracked.homogeneous = true;
     tracked.constant = field->density;
     return tracked;
   }
+  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
+    prepare_grid(tracked, **grid, options);
+    return tracked;
+  }
   const double scale = options.majorant_scale;
+  const Eigen::Vector3i cells = Eigen::Vector3i::Constant(cells_along(16, 1, options));
   const Box all{Point3::Constant(-infinity), Point3::Constant(infinity)};
   const Box box = intersect(scene::support(medium.field), scene::bounding_box(medium.region));
   const bool bounded = (box.size().array() < infinity).all();
@@ -56,12 +72,12 @@ TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
         around = std::max(
             {around, scene::density_bounds(medium.field, below).hi, scene::density_bounds(medium.field, above).hi});
       }
-      tracked.majorants = make_supergrid(core, cells_of(medium, core, options), scale,
+      tracked.majorants = make_supergrid(core, cells, scale,
                                          [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
       tracked.majorants.outside = round_up(scale * around);
     }
   } else if (bounded && !box.empty() && (box.size().array() > 0).all()) {
-    tracked.majorants = make_supergrid(box, cells_of(medium, box, options), scale,
+    tracked.majorants = make_supergrid(box, cells, scale,
                                        [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
   }
   return tracked;
@@ -96,7 +112,8 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
       if (t < range.hi) nearest = {t, int(m), tracked.constant};
       continue;
     }
-    walk(tracked.majorants, ray, range, [&](double begin, double end, double majorant) {
+    const Ray tracking = tracked.tracking_ray(ray);
+    walk(tracked.majorants, tracking, range, [&](double begin, double end, double majorant) {
       if (!(majorant > 0)) return false;
       const double rate = sigma * majorant;
       for (double t = begin;;) {
@@ -107,7 +124,7 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
           return false;
         }
         t += step;
-        const double density = scene::density(tracked.medium->field, ray.at(t));
+        const double density = tracked.density_at(tracking.at(t));
         ++counters.lookups;
         if (density > majorant * (1 + 1e-6)) ++counters.violations;
         if (block.fine(1) * majorant < density) {
@@ -166,7 +183,8 @@ Rgb Media::ratio_transmittance(const Ray& ray, double tmax, const SampleRandom& 
     RandomBlock block = random.block(vertex, Purpose::transmittance, index);
     int used = 1;
     double depth = -elementary::log(block.fine(0));
-    walk(tracked.majorants, ray, range, [&](double begin, double end, double majorant) {
+    const Ray tracking = tracked.tracking_ray(ray);
+    walk(tracked.majorants, tracking, range, [&](double begin, double end, double majorant) {
       if (!(majorant > 0)) return false;
       const double rate = sigma * majorant;
       for (double t = begin;;) {
@@ -177,7 +195,7 @@ Rgb Media::ratio_transmittance(const Ray& ray, double tmax, const SampleRandom& 
           return false;
         }
         t += step;
-        const double density = scene::density(tracked.medium->field, ray.at(t));
+        const double density = tracked.density_at(tracking.at(t));
         ++counters.lookups;
         if (density > majorant * (1 + 1e-6)) ++counters.violations;
         product *= 1 - density / majorant;

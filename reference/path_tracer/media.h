@@ -15,10 +15,17 @@
 namespace airlight::path_tracer {
 
 struct TrackedMedium {
-  const scene::Medium* medium;
-  bool homogeneous;     // constant density in its region: exact free flights, no majorant
-  double constant = 0;  // that density
-  Supergrid majorants;  // of the density
+  const scene::Medium* medium = nullptr;
+  bool homogeneous = false;                // constant density in its region: exact free flights, no majorant
+  double constant = 0;                     // that density
+  const scene::VoxelGrid* grid = nullptr;  // of a voxel grid: its rays, lookups and majorants are in samples
+  Supergrid majorants;                     // of the density
+
+  // The ray as lookups and majorants take it; its parameter stays in metres.
+  Ray tracking_ray(const Ray& ray) const { return grid ? scene::ray_in_samples(*grid, ray) : ray; }
+  double density_at(const Point3& tracking_point) const {
+    return grid ? scene::density_at_sample(*grid, tracking_point) : scene::density(medium->field, tracking_point);
+  }
 };
 
 struct Collision {

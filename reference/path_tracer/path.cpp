@@ -156,13 +156,13 @@ void Walk::gather_environment(const Vertex& v, const Pick& pick, double u1, doub
   const Vec3 out = scene::sample_environment(environment, u1, u2);
   const Rgb value = scatter_value(v, out);
   if (!(value.maxCoeff() > 0)) return;
-  const double pdf = pick.probability * scene::pdf_environment(environment, out);
-  const Rgb radiance = scene::radiance(environment, out);
+  const auto [radiance, density] = scene::evaluate_environment(environment, out);
+  const double pdf = pick.probability * density;
   if (!(pdf > 0) || (radiance == 0).all()) return;
   const Ray shadow{origin(v, out), out};
   if (!world_.visible(shadow, infinity, -1)) return;
   const Rgb T = transmittance(shadow, infinity, 0);
-  const double walk = scatter_pdf(v, out) * (exact() ? (density_ * T).mean() : 1.0);
+  const double walk = scatter_pdf(v, out);
   sample_.add(m_, s_ + (v.hit != nullptr), throughput_ * value * radiance * T / (pdf + walk));
 }
 
@@ -253,9 +253,9 @@ void Walk::escape(const Ray& ray) {
   if (lights_.environments().empty() || vertex_ == 0) return;
   for (const int i : lights_.environments()) {
     const auto& environment = std::get<scene::EnvironmentLight>(lights_.light(i));
-    const Rgb radiance = scene::radiance(environment, ray.direction);
+    const auto [radiance, density] = scene::evaluate_environment(environment, ray.direction);
     if ((radiance == 0).all()) continue;
-    const double pdf = lights_.probability(i, ray.origin) * scene::pdf_environment(environment, ray.direction);
+    const double pdf = lights_.probability(i, ray.origin) * density;
     sample_.add(m_, s_, throughput_ * radiance * (direction_pdf_ / (direction_pdf_ + pdf)));
   }
 }
@@ -284,8 +284,7 @@ void Walk::run(const CameraRay& camera) {
     const double t = collision ? collision->t : end->t;
     // How the segment changes the densities of the channels; needed where they differ, and for weights.
     Rgb factor = Rgb::Ones();
-    const bool weights_environment = !collision && end->t == infinity && vertex_ > 0 && !lights_.environments().empty();
-    const bool need_T = !grey || (exact() && ((collision && connected) || weights_environment));
+    const bool need_T = !grey || (exact() && collision && connected);
     Rgb T = Rgb::Ones();
     if (need_T && !hull_.empty()) T = media_.transmittance(ray_, t, counters_);
     if (collision) {
@@ -305,8 +304,6 @@ void Walk::run(const CameraRay& camera) {
     if (!collision) {
       if (end->on_ball) return;
       if (!end->hit) {
-        // For its weight, the walk escapes with its direction's density times the transmittance.
-        if (exact()) direction_pdf_ *= mean;
         escape(ray_);
         return;
       }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/math/types.h"
+#include "scene/media/grid_steps.h"
 
 namespace airlight::path_tracer {
 
@@ -33,18 +34,16 @@ float round_up(double x);
 template <class Visit>
 void walk(const Supergrid& grid, const Ray& ray, Interval t, Visit&& visit) {
   double inside_begin = t.lo, inside_end = t.lo;
-  Vec3 inverse;
   if (grid.size[0] > 0) {
     const Box box = grid.box();
     inside_end = t.hi;
     for (int a = 0; a < 3; ++a) {
-      inverse[a] = 1 / ray.direction[a];
       if (ray.direction[a] == 0) {
         if (!(ray.origin[a] >= box.lo[a] && ray.origin[a] <= box.hi[a])) inside_end = -infinity;
         continue;
       }
-      const double t0 = (box.lo[a] - ray.origin[a]) * inverse[a];
-      const double t1 = (box.hi[a] - ray.origin[a]) * inverse[a];
+      const double t0 = (box.lo[a] - ray.origin[a]) / ray.direction[a];
+      const double t1 = (box.hi[a] - ray.origin[a]) / ray.direction[a];
       inside_begin = std::max(inside_begin, std::min(t0, t1));
       inside_end = std::min(inside_end, std::max(t0, t1));
     }
@@ -55,30 +54,23 @@ void walk(const Supergrid& grid, const Ray& ray, Interval t, Visit&& visit) {
   }
   if (inside_begin > t.lo && visit(t.lo, inside_begin, double(grid.outside))) return;
 
-  int cell[3], step[3], last[3];
-  double next[3];
-  for (int a = 0; a < 3; ++a) {
-    const double x = (ray.origin[a] + inside_begin * ray.direction[a] - grid.lo[a]) / grid.cell[a];
-    cell[a] = std::clamp(int(x), 0, grid.size[a] - 1);
-    step[a] = ray.direction[a] > 0 ? 1 : -1;
-    last[a] = ray.direction[a] > 0 ? grid.size[a] - 1 : 0;
-    // The face ahead from its own coordinate every time: no drift.
-    next[a] = ray.direction[a] == 0
-                  ? infinity
-                  : (grid.lo[a] + (cell[a] + (step[a] > 0)) * grid.cell[a] - ray.origin[a]) * inverse[a];
-  }
+  const std::ptrdiff_t row = grid.size[0];
+  const Point3 most = grid.size.cast<double>().array() - 1;
+  const Ray in_cells{(ray.origin - grid.lo).cwiseQuotient(grid.cell), ray.direction.cwiseQuotient(grid.cell)};
+  scene::GridSteps steps(in_cells, inside_begin, Point3::Zero(), most, {1, row, row * grid.size[1]});
+  const __m256d none = _mm256_setzero_pd(), last = scene::GridSteps::lanes(most, 0);
   double now = inside_begin;
-  for (;;) {
-    const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-    const double exit = std::min(std::max(next[a], now), inside_end);
-    if (exit > now && visit(now, exit, double(grid.at(cell[0], cell[1], cell[2])))) return;
+  double majorant = grid.majorants[steps.index()];
+  for (;; steps.advance()) {
+    // Rounding may lead out of the cells a few ulp early: the rest of the way in the box keeps the last bound.
+    if (!steps.within(none, last)) break;
+    majorant = grid.majorants[steps.index()];
+    const double exit = std::min(std::max(steps.exit(), now), inside_end);
+    if (exit > now && visit(now, exit, majorant)) return;
     now = exit;
-    if (cell[a] == last[a] || !(now < inside_end)) break;
-    cell[a] += step[a];
-    next[a] = (grid.lo[a] + (cell[a] + (step[a] > 0)) * grid.cell[a] - ray.origin[a]) * inverse[a];
+    if (!(now < inside_end)) break;
   }
-  // Rounding may end the walk through the cells a few ulp early: the rest of the way in the box keeps the last bound.
-  if (now < inside_end && visit(now, inside_end, double(grid.at(cell[0], cell[1], cell[2])))) return;
+  if (now < inside_end && visit(now, inside_end, majorant)) return;
   if (inside_end < t.hi) visit(inside_end, t.hi, double(grid.outside));
 }
 

@@ -39,19 +39,7 @@ inline Voxel border_voxel(const VoxelGrid& grid, int i, int j, int k) {
   return v;
 }
 
-// The ray in samples; its parameter stays in metres, so that the direction has another length.
-inline Ray ray_in_samples(const VoxelGrid& grid, const Ray& ray) {
-  return {world_to_sample(grid, ray.origin), grid.rotation.transpose() * ray.direction / grid.voxel_size};
-}
-
 // How far the support reaches beyond the outermost samples, in voxels.
 inline double border_width(const VoxelGrid& grid) { return grid.clamp_border ? 0.5 : 1.0; }
-
-// The support in samples; empty for an empty grid.
-inline Box sample_support(const VoxelGrid& grid) {
-  if (grid.values.empty()) return {};
-  const double width = border_width(grid);
-  return {Point3::Constant(-width), grid.size.cast<double>().array() + (width - 1)};
-}
 
 }  // namespace airlight::scene

@@ -10,7 +10,7 @@ namespace airlight::scene {
 namespace {
 
 // At a position within the support.
-double density_at_sample(const VoxelGrid& grid, const Point3& s) {
+double density_within(const VoxelGrid& grid, const Point3& s) {
   const double x = std::floor(s[0]), y = std::floor(s[1]), z = std::floor(s[2]);
   const int i = int(x), j = int(y), k = int(z);
   const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
@@ -37,13 +37,24 @@ Point3 sample_to_world(const VoxelGrid& grid, const Point3& sample) {
   return grid.rotation * (grid.voxel_size * (sample + grid.origin_index.cast<double>())) + grid.translation;
 }
 
-double density(const VoxelGrid& grid, const Point3& x) {
-  const Point3 s = world_to_sample(grid, x);
+Ray ray_in_samples(const VoxelGrid& grid, const Ray& ray) {
+  return {world_to_sample(grid, ray.origin), grid.rotation.transpose() * ray.direction / grid.voxel_size};
+}
+
+Box sample_support(const VoxelGrid& grid) {
+  if (grid.values.empty()) return {};
+  const double width = border_width(grid);
+  return {Point3::Constant(-width), grid.size.cast<double>().array() + (width - 1)};
+}
+
+double density(const VoxelGrid& grid, const Point3& x) { return density_at_sample(grid, world_to_sample(grid, x)); }
+
+double density_at_sample(const VoxelGrid& grid, const Point3& s) {
   const double width = border_width(grid);
   for (int axis = 0; axis < 3; ++axis)
     if (!(s[axis] >= -width && s[axis] <= grid.size[axis] - 1 + width)) return 0;
   if (grid.values.empty()) return 0;
-  return density_at_sample(grid, s);
+  return density_within(grid, s);
 }
 
 Interval density_bounds(const VoxelGrid& grid, const Box& box) {
@@ -64,10 +75,15 @@ Interval density_bounds(const VoxelGrid& grid, const Box& box) {
   const double slack = sample_rounding(grid, world.lo.cwiseAbs().cwiseMax(world.hi.cwiseAbs()));
   lo.array() -= slack;
   hi.array() += slack;
+  Interval bounds = density_bounds_at_samples(grid, {lo, hi});
+  if (!(part.lo == box.lo && part.hi == box.hi)) bounds.lo = 0;
+  return bounds;
+}
 
-  const Box inside = intersect(Box{lo, hi}, sample_support(grid));
+Interval density_bounds_at_samples(const VoxelGrid& grid, const Box& box) {
+  const Box inside = intersect(box, sample_support(grid));
   if (inside.empty()) return {0, 0};
-  const bool reaches_out = !(part.lo == box.lo && part.hi == box.hi) || inside.lo != lo || inside.hi != hi;
+  const bool reaches_out = inside.lo != box.lo || inside.hi != box.hi;
 
   // A trilinear function takes its extremes over a box at the corners; over several voxels at the grid of the box's
   // faces and the samples between them.
@@ -81,7 +97,7 @@ Interval density_bounds(const VoxelGrid& grid, const Box& box) {
   for (double z : places[2])
     for (double y : places[1])
       for (double x : places[0]) {
-        const double value = density_at_sample(grid, {x, y, z});
+        const double value = density_within(grid, {x, y, z});
         bounds = {std::min(bounds.lo, value), std::max(bounds.hi, value)};
       }
   // Four roundings per interpolation, three in a row.

@@ -31,12 +31,20 @@ struct VoxelGrid {
 Point3 world_to_sample(const VoxelGrid&, const Point3& world);
 Point3 sample_to_world(const VoxelGrid&, const Point3& sample);
 
-// Trilinear density at a world point [-].
+// The ray in samples; its parameter stays in metres, so that the direction has another length.
+Ray ray_in_samples(const VoxelGrid&, const Ray&);
+// The support in samples; empty for an empty grid.
+Box sample_support(const VoxelGrid&);
+
+// Trilinear density at a world point, and at a position in samples [-].
 double density(const VoxelGrid&, const Point3& x);
+double density_at_sample(const VoxelGrid&, const Point3& sample);
 
 // Least and greatest density over a world box; rigorous, and exact to rounding where the grid is not rotated against
 // it.
 Interval density_bounds(const VoxelGrid&, const Box&);
+// The same over a box in samples, always exact to rounding.
+Interval density_bounds_at_samples(const VoxelGrid&, const Box& samples);
 
 // Integral of the density over t in [t0, t1] of the ray [m]: two-point Gauss in every voxel crossed, exact for the
 // cubic that a trilinear density is along a line. Cost: one step per voxel crossed.

@@ -137,6 +137,18 @@ TEST_CASE("densities of environments integrate to 1 and are positive", "[environ
   }
 }
 
+TEST_CASE("radiance and density come together as they come apart", "[environment]") {
+  for (const EnvironmentLight& light : all_lights()) {
+    int differing = 0;
+    integrate(30, [&](const Vec3& w) {
+      const EnvironmentValue both = evaluate_environment(light, w);
+      differing += !(both.pdf == pdf_environment(light, w) && (both.radiance == radiance(light, w)).all());
+      return 0.0;
+    });
+    CHECK(differing == 0);
+  }
+}
+
 // Chi-square over 32 x 16 bins equal in solid angle; expected counts by quadrature of the density, 40 x 40 points in
 // each bin. False-alarm rate 1e-6 for each of the 8 lights; fixed seed.
 TEST_CASE("environments are sampled as their densities say", "[environment]") {

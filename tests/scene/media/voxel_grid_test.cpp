@@ -160,6 +160,16 @@ TEST_CASE("stress 15: rays within voxel faces and along voxel edges", "[media]")
 }
 
 // Segments that end on a voxel face, an edge or a sample: the parts add up, nothing is counted twice or left out.
+TEST_CASE("stress 15: a ray that moves too slowly along an axis to reach a face", "[media]") {
+  RandomPoints random(11);
+  const VoxelGrid grid = random_grid(random, {6, 5, 4}, false, false);
+  for (const double slow : {1e-308, -1e-308, 1e-320, 1e-200, -1e-200}) {
+    const Ray still{{-2, 2.25, 1.5}, {1, 0, 0}}, moving{{-2, 2.25, 1.5}, {1, slow, -slow}};
+    CHECK(density_integral(grid, moving, {0, infinity}) ==
+          Approx(density_integral(grid, still, {0, infinity})).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("stress 13: a light on a voxel face", "[media]") {
   RandomPoints random(5);
   for (bool clamp : {false, true}) {
