@@ -11,9 +11,60 @@
 namespace airlight::path_tracer {
 namespace {
 
-// Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media.
-constexpr std::uint32_t flight_blocks = 1u << 18;
+// Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media. So do the transmittances of its four
+// branches (light, and three segments of a connection): 2^16 for each medium.
+constexpr std::uint32_t flight_blocks = 1u << 18, branch_blocks = 1u << 16;
 constexpr std::size_t most_media = 64;
+
+// The random numbers of one flight, two from each block of a range.
+class Uniforms {
+ public:
+  Uniforms(const SampleRandom& random, std::uint32_t vertex, Purpose purpose, std::uint32_t first, std::uint32_t count)
+      : random_(random), vertex_(vertex), purpose_(purpose), index_(first), end_(first + count) {}
+
+  double next() {
+    if (used_ == 2) {
+      if (++index_ == end_)
+        throw Error("path_tracer: a flight used up its random numbers, expected a tighter majorant");
+      block_ = random_.block(vertex_, purpose_, index_);
+      used_ = 0;
+    }
+    return block_.fine(used_++);
+  }
+
+ private:
+  const SampleRandom& random_;
+  std::uint32_t vertex_;
+  Purpose purpose_;
+  std::uint32_t index_, end_;
+  RandomBlock block_ = random_.block(vertex_, purpose_, index_);
+  int used_ = 0;
+};
+
+// Calls visit(t, density, majorant) at the collisions that a medium of the majorants' extinction, times sigma, would
+// cause along the range, until it returns true. The first one lies an optical depth of `depth` ahead.
+template <class Visit>
+void track(const TrackedMedium& tracked, const Ray& ray, Interval range, double sigma, double depth, Uniforms& uniforms,
+           Counters& counters, Visit&& visit) {
+  const Ray tracking = tracked.tracking_ray(ray);
+  walk(tracked.majorants, tracking, range, [&](double begin, double end, double majorant) {
+    if (!(majorant > 0)) return false;
+    const double rate = sigma * majorant;
+    for (double t = begin;;) {
+      const double step = depth / rate;
+      if (!(t + step < end)) {
+        depth = std::max(0.0, depth - (end - t) * rate);
+        return false;
+      }
+      t += step;
+      const double density = tracked.density_at(tracking.at(t));
+      ++counters.lookups;
+      if (density > majorant * (1 + 1e-6)) ++counters.violations;
+      if (visit(t, density, majorant)) return true;
+      depth = -elementary::log(uniforms.next());
+    }
+  });
+}
 
 int cells_along(double size, double cell, const Options& options) {
   if (!options.supergrid) return 1;
@@ -103,39 +154,17 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
     const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
     const double sigma = tracked.medium->sigma_t[hero];
     if (range.empty() || !(sigma > 0)) continue;
-    std::uint32_t index = std::uint32_t(m) * flight_blocks;
-    const std::uint32_t last = index + flight_blocks;
-    RandomBlock block = random.block(vertex, Purpose::flight, index);
-    double depth = -elementary::log(block.fine(0));  // optical depth left to the next tentative collision
+    Uniforms uniforms(random, vertex, Purpose::flight, std::uint32_t(m) * flight_blocks, flight_blocks);
+    const double depth = -elementary::log(uniforms.next());
     if (tracked.homogeneous) {
       const double t = range.lo + depth / (sigma * tracked.constant);
       if (t < range.hi) nearest = {t, int(m), tracked.constant};
       continue;
     }
-    const Ray tracking = tracked.tracking_ray(ray);
-    walk(tracked.majorants, tracking, range, [&](double begin, double end, double majorant) {
-      if (!(majorant > 0)) return false;
-      const double rate = sigma * majorant;
-      for (double t = begin;;) {
-        const double step = depth / rate;
-        if (!(t + step < end)) {
-          depth -= (end - t) * rate;
-          if (depth < 0) depth = 0;
-          return false;
-        }
-        t += step;
-        const double density = tracked.density_at(tracking.at(t));
-        ++counters.lookups;
-        if (density > majorant * (1 + 1e-6)) ++counters.violations;
-        if (block.fine(1) * majorant < density) {
-          nearest = {t, int(m), density};
-          return true;
-        }
-        if (++index == last)
-          throw Error("path_tracer: 2^18 null collisions in one flight, expected a tighter majorant");
-        block = random.block(vertex, Purpose::flight, index);
-        depth = -elementary::log(block.fine(0));
-      }
+    track(tracked, ray, range, sigma, depth, uniforms, counters, [&](double t, double density, double majorant) {
+      if (!(uniforms.next() * majorant < density)) return false;
+      nearest = {t, int(m), density};
+      return true;
     });
   }
   if (nearest) ++counters.collisions;
@@ -177,37 +206,12 @@ Rgb Media::ratio_transmittance(const Ray& ray, double tmax, const SampleRandom& 
       product *= elementary::exp(-sigma * tracked.constant * range.length());
       continue;
     }
-    // Four branches of a vertex (light, and three segments of a connection) share its blocks, two numbers a block.
-    std::uint32_t index = (branch << 22) + std::uint32_t(m) * (flight_blocks >> 2);
-    const std::uint32_t last = index + (flight_blocks >> 2);
-    RandomBlock block = random.block(vertex, Purpose::transmittance, index);
-    int used = 1;
-    double depth = -elementary::log(block.fine(0));
-    const Ray tracking = tracked.tracking_ray(ray);
-    walk(tracked.majorants, tracking, range, [&](double begin, double end, double majorant) {
-      if (!(majorant > 0)) return false;
-      const double rate = sigma * majorant;
-      for (double t = begin;;) {
-        const double step = depth / rate;
-        if (!(t + step < end)) {
-          depth -= (end - t) * rate;
-          if (depth < 0) depth = 0;
-          return false;
-        }
-        t += step;
-        const double density = tracked.density_at(tracking.at(t));
-        ++counters.lookups;
-        if (density > majorant * (1 + 1e-6)) ++counters.violations;
-        product *= 1 - density / majorant;
-        if (product == 0) return true;
-        if (used == 2) {
-          if (++index == last)
-            throw Error("path_tracer: 2^17 null collisions in one segment, expected a tighter majorant");
-          block = random.block(vertex, Purpose::transmittance, index);
-          used = 0;
-        }
-        depth = -elementary::log(block.fine(used++));
-      }
+    const std::uint32_t first = branch * std::uint32_t(most_media) * branch_blocks + std::uint32_t(m) * branch_blocks;
+    Uniforms uniforms(random, vertex, Purpose::transmittance, first, branch_blocks);
+    const double depth = -elementary::log(uniforms.next());
+    track(tracked, ray, range, sigma, depth, uniforms, counters, [&](double, double density, double majorant) {
+      product *= 1 - density / majorant;
+      return product == 0;
     });
   }
   return Rgb::Constant(product);

@@ -1,0 +1,42 @@
+// A scene and a camera ray, each made ready for many paths.
+#pragma once
+#include <memory>
+
+#include "reference/path_tracer/counters.h"
+#include "reference/path_tracer/lights.h"
+#include "reference/path_tracer/media.h"
+#include "reference/path_tracer/options.h"
+#include "scene/scene.h"
+
+namespace airlight::path_tracer {
+
+// Everything of a scene that paths need, prepared once.
+class World {
+ public:
+  World(std::shared_ptr<const scene::Scene>, const Options&);
+
+  const scene::Scene& scene() const { return *scene_; }
+  const Options& options() const { return options_; }
+  const Media& media() const { return media_; }
+  const Lights& lights() const { return lights_; }
+
+  // Is nothing in the way from x to direction w before tmax? Surfaces, and balls of lights but `except`.
+  bool visible(const Ray&, double tmax, int except) const;
+
+ private:
+  std::shared_ptr<const scene::Scene> scene_;
+  Options options_;
+  Media media_;
+  Lights lights_;
+};
+
+// What is the same for every path along one camera ray: computed once for a pixel's centre.
+struct CameraRay {
+  Ray ray;
+  scene::RayEnd end;
+  Interval hull;   // where media are
+  Rgb background;  // radiance seen through the medium, where the ray ends nowhere
+};
+CameraRay prepare_camera_ray(const World&, const Ray&, Counters&);
+
+}  // namespace airlight::path_tracer
