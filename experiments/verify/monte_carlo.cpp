@@ -51,6 +51,7 @@ RadianceEstimate Measurement::trace(std::uint64_t samples, std::uint32_t stream,
   options.orders = orders_;
   options.stream = stream;
   if (analog) options.roulette_order = 0;
+  options.forced = !analog;
   const World world(scene_, options);
   const std::uint32_t index = index_of(name_) + repeat;
   const scene::Execution execution = quiet_execution(0);

@@ -32,10 +32,10 @@ Identity identity_of(const scene::Scene& scene, const scene::View& view, const O
   return {scene.hash,
           hash.digits(),
           fmt::format("pixel={} orders={} max_order={} roulette_order={} roulette_cap={} supergrid={} "
-                      "supergrid_cells={} majorant_scale={} transmittance={} connection={}",
+                      "supergrid_cells={} majorant_scale={} transmittance={} first_collision={} connection={}",
                       o.box_pixels ? "box" : "center", o.orders, o.max_order, o.roulette_order, o.roulette_cap,
                       o.supergrid, o.supergrid_cells, o.majorant_scale, o.column_transmittance ? "column" : "ratio",
-                      connections[int(o.connection)]),
+                      o.forced ? "forced" : "analog", connections[int(o.connection)]),
           o.seed,
           o.stream,
           build_id()};

@@ -13,7 +13,8 @@ namespace {
 
 // Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media. So do the transmittances of its four
 // branches (light, and three segments of a connection): 2^16 for each medium.
-constexpr std::uint32_t flight_blocks = 1u << 18, branch_blocks = 1u << 16;
+// The second and later tries of a first collision have 2^15 each.
+constexpr std::uint32_t flight_blocks = 1u << 18, branch_blocks = 1u << 16, retry_blocks = 1u << 15;
 constexpr std::size_t most_media = 64;
 
 // The random numbers of one flight, two from each block of a range.
@@ -140,6 +141,7 @@ Media::Media(const std::vector<scene::Medium>& media, const Options& options) {
   for (const scene::Medium& medium : media) {
     if (!(medium.sigma_t.maxCoeff() > 0)) continue;
     tracked_.push_back(prepare(medium, options));
+    homogeneous_ = homogeneous_ && tracked_.back().homogeneous;
     if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff()) grey_ = false;
   }
   if (tracked_.size() > most_media)
@@ -147,14 +149,18 @@ Media::Media(const std::vector<scene::Medium>& media, const Options& options) {
 }
 
 std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const SampleRandom& random,
-                                    std::uint32_t vertex, Counters& counters) const {
+                                    std::uint32_t vertex, int attempt, Counters& counters) const {
   std::optional<Collision> nearest;
   for (std::size_t m = 0; m < tracked_.size(); ++m) {
     const TrackedMedium& tracked = tracked_[m];
     const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
     const double sigma = tracked.medium->sigma_t[hero];
     if (range.empty() || !(sigma > 0)) continue;
-    Uniforms uniforms(random, vertex, Purpose::flight, std::uint32_t(m) * flight_blocks, flight_blocks);
+    const std::uint32_t first =
+        std::uint32_t(m) * (attempt == 0 ? flight_blocks : retry_blocks) +
+        (attempt == 0 ? 0 : std::uint32_t(attempt - 1) * std::uint32_t(most_media) * retry_blocks);
+    Uniforms uniforms(random, vertex, attempt == 0 ? Purpose::flight : Purpose::retry, first,
+                      attempt == 0 ? flight_blocks : retry_blocks);
     const double depth = -elementary::log(uniforms.next());
     if (tracked.homogeneous) {
       const double t = range.lo + depth / (sigma * tracked.constant);
@@ -181,7 +187,7 @@ Interval Media::hull(const Ray& ray, double tmax) const {
   return hull;
 }
 
-Rgb Media::transmittance(const Ray& ray, double tmax, Counters& counters) const {
+Rgb Media::optical_depth(const Ray& ray, double tmax, Counters& counters) const {
   Rgb depth = Rgb::Zero();
   for (const TrackedMedium& tracked : tracked_) {
     ++counters.columns;
@@ -190,6 +196,10 @@ Rgb Media::transmittance(const Ray& ray, double tmax, Counters& counters) const 
     for (int c = 0; c < 3; ++c)
       if (tracked.medium->sigma_t[c] > 0) depth[c] += tracked.medium->sigma_t[c] * column;
   }
+  return depth;
+}
+
+Rgb Media::transmittance(const Rgb& depth) const {
   if (grey_) return Rgb::Constant(elementary::exp(-depth[0]));
   return {elementary::exp(-depth[0]), elementary::exp(-depth[1]), elementary::exp(-depth[2])};
 }

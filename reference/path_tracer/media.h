@@ -14,6 +14,8 @@
 
 namespace airlight::path_tracer {
 
+inline constexpr int most_tries = 8;
+
 struct TrackedMedium {
   const scene::Medium* medium = nullptr;
   bool homogeneous = false;                // constant density in its region: exact free flights, no majorant
@@ -40,23 +42,28 @@ class Media {
 
   const std::vector<TrackedMedium>& tracked() const { return tracked_; }
   bool empty() const { return tracked_.empty(); }
-  bool grey() const { return grey_; }  // extinction is the same in all channels, in every medium
+  bool homogeneous() const { return homogeneous_; }  // all of them: flights cost next to nothing
+  bool grey() const { return grey_; }                // extinction is the same in all channels, in every medium
 
   // The first collision before tmax under the extinction of channel `hero`, by delta tracking; nothing if there is
-  // none.
+  // none. Other tries, below most_tries, are independent flights.
   std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
-                               Counters&) const;
+                               int attempt, Counters&) const;
   // The part of [0, tmax] from the first to the last point where any medium is met.
   Interval hull(const Ray&, double tmax) const;
-  // Transmittance over [0, tmax], per channel, by noise-free columns.
-  Rgb transmittance(const Ray&, double tmax, Counters&) const;
+  // Optical depth and transmittance over [0, tmax], per channel, by noise-free columns.
+  Rgb optical_depth(const Ray&, double tmax, Counters&) const;
+  Rgb transmittance(const Rgb& optical_depth) const;
+  Rgb transmittance(const Ray& ray, double tmax, Counters& counters) const {
+    return transmittance(optical_depth(ray, tmax, counters));
+  }
   // The same by ratio tracking: unbiased, noisy; only where grey().
   Rgb ratio_transmittance(const Ray&, double tmax, const SampleRandom&, std::uint32_t vertex, std::uint32_t branch,
                           Counters&) const;
 
  private:
   std::vector<TrackedMedium> tracked_;
-  bool grey_ = true;
+  bool grey_ = true, homogeneous_ = true;
 };
 
 }  // namespace airlight::path_tracer

@@ -42,6 +42,13 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        0,
        {"column", "ratio"}},
+      {"first_collision",
+       Type::choice,
+       "forced",
+       "of camera rays that meet no surface: several tries with the weight of their chance, or one",
+       0,
+       0,
+       {"forced", "analog"}},
       {"connection",
        Type::choice,
        "auto",
@@ -67,6 +74,7 @@ Options parse_options(const scene::Settings& settings) {
   o.supergrid_cells = int(settings.integer("supergrid_cells"));
   o.majorant_scale = settings.real("majorant_scale");
   o.column_transmittance = settings.text("transmittance") == "column";
+  o.forced = settings.text("first_collision") == "forced";
   const std::string& connection = settings.text("connection");
   o.connection = connection == "always"  ? Options::Connection::always
                  : connection == "never" ? Options::Connection::never

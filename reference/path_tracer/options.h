@@ -21,6 +21,7 @@ struct Options {
   int supergrid_cells = 0;           // per axis; 0: 16, or one cell per 4^3 voxels of a grid
   double majorant_scale = 1;         // multiplies every majorant; below 1 injects a fault
   bool column_transmittance = true;  // noise-free; false: ratio tracking
+  bool forced = true;                // first collisions are forced where a camera ray meets no surface
   enum class Connection { automatic, always, never } connection = Connection::automatic;
 };
 

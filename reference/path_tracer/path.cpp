@@ -75,6 +75,7 @@ class Walk {
   std::uint32_t vertex_ = 0;  // 0: the eye
   Ray ray_;                   // current segment
   Interval hull_;             // where media are on it
+  Rgb gain_ = Rgb::Ones();    // of the densities of a collision on it, where it is forced
   double direction_pdf_ = 1;  // density with which its direction was drawn [1/sr]; 1 from the eye
 };
 
@@ -205,8 +206,9 @@ void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const P
     if (!(densities[i] > 0)) continue;
     const scene::Medium& medium = *tracked[i].medium;
     const Rgb extinction = medium.sigma_t * densities[i];
-    const double analog =
-        pick_there * walk_pdf * (exact() ? (density_ * extinction * T).mean() : (density_ * extinction).mean());
+    const double analog = pick_there * walk_pdf *
+                          (exact() ? (density_ * extinction * T * (from_camera ? gain_ : Rgb(Rgb::Ones()))).mean()
+                                   : (density_ * extinction).mean());
     sum += extinction * medium.albedo * (scene::phase_value(medium.phase, c) / (pdf + analog));
   }
   sample_.add(m_ + 1, reflections, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
@@ -270,6 +272,8 @@ void Walk::run(const CameraRay& camera) {
   scene::RayEnd later;  // of the second segment on
   const scene::RayEnd* end = &camera.end;
   hull_ = camera.hull;
+  gain_ = camera.gain;
+  int tries = camera.tries;
   if (camera.end.t == infinity) sample_.add(0, 0, camera.background);
 
   if (connected && !hull_.empty() && options.max_order != 0) {
@@ -280,7 +284,9 @@ void Walk::run(const CameraRay& camera) {
 
   for (;;) {
     ++counters_.rays;
-    const auto collision = hull_.empty() ? std::nullopt : media_.fly(ray_, end->t, hero_, random_, vertex_, counters_);
+    std::optional<Collision> collision;
+    for (int k = 0; k < tries && !collision && !hull_.empty(); ++k)
+      collision = media_.fly(ray_, end->t, hero_, random_, vertex_, k, counters_);
     const double t = collision ? collision->t : end->t;
     // How the segment changes the densities of the channels; needed where they differ, and for weights.
     Rgb factor = Rgb::Ones();
@@ -290,10 +296,11 @@ void Walk::run(const CameraRay& camera) {
     if (collision) {
       const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
       factor = T * medium.sigma_t * collision->density;
+      if (grey) throughput_ /= gain_[0];
     } else {
       factor = T;
     }
-    const Rgb arriving = density_ * factor;  // unnormalised
+    const Rgb arriving = collision ? Rgb(density_ * factor * gain_) : Rgb(density_ * factor);  // unnormalised
     const double mean = arriving.mean();
     if (!(mean > 0)) return;  // underflow: optical depths beyond 700
     if (!grey) {
@@ -358,6 +365,8 @@ void Walk::run(const CameraRay& camera) {
     later = scene::ray_end(world_.scene(), ray_);
     end = &later;
     hull_ = media_.hull(ray_, end->t);
+    gain_ = Rgb::Ones();
+    tries = 1;
   }
 }
 

@@ -36,6 +36,10 @@ struct CameraRay {
   scene::RayEnd end;
   Interval hull;   // where media are
   Rgb background;  // radiance seen through the medium, where the ray ends nowhere
+  // A forced first collision: flights are tried until one collides, this many at most. One that does is `gain` times as
+  // likely as with one try, per channel: 1 + T + T^2 + ..., T the transmittance of the whole ray.
+  int tries = 1;
+  Rgb gain = Rgb::Ones();
 };
 CameraRay prepare_camera_ray(const World&, const Ray&, Counters&);
 

@@ -48,7 +48,11 @@ TEST_CASE("stress 01: tau 1e-8", "[stress]") {
   const auto quadrature = deterministic::airlight(*lit, ray, infinity);
   Options options;
   const auto traced = radiance(World(lit, options), ray, 1 << 14);
-  check_equal(quadrature.radiance[0], traced.orders[1], 0.02);
+  // The walk's own collisions (eight tries: once in 1e7 paths) carry a share of up to 8 tau, and are not met here.
+  const Estimate& first = traced.orders[1];
+  CHECK(std::abs(first.mean[0] / quadrature.radiance[0] - 1) <=
+        limit * first.error[0] / quadrature.radiance[0] + 9 * tau);
+  CHECK(first.error[0] < 0.02 * quadrature.radiance[0]);
   CHECK(traced.orders[2].mean[0] <= 1e-6 * traced.orders[1].mean[0]);
 }
 

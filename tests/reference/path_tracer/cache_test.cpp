@@ -107,7 +107,7 @@ TEST_CASE("a cache folder that cannot be made is an error with its name", "[path
 TEST_CASE("a target error stops tiles one by one", "[path_tracer]") {
   Options options;
   options.samples = 4096;
-  options.target_error = 0.004;
+  options.target_error = 0.001;
   const World world(ball(), options);
   Accumulation a = empty_accumulation(world, view_of_ball());
   render_to_target(world, view_of_ball(), {}, a);

@@ -72,7 +72,9 @@ TEST_CASE("furnace", "[path_tracer]") {
 TEST_CASE("mean number of collisions", "[path_tracer]") {
   const std::uint64_t n = 1 << 16;
   const auto count = [&](const scene::Medium& m, const RaySource& source, double expected, int index) {
-    const World world(scene_of({m}, {}), Options{});
+    Options options;
+    options.forced = false;
+    const World world(scene_of({m}, {}), options);
     const auto e = mean_radiance(world, source, n, {}, index);
     const double mean = double(e.counters.collisions) / double(n);
     // The number of collisions has a spread of about its mean plus one (a little more than geometric for backward

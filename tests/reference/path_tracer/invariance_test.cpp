@@ -17,7 +17,7 @@ using namespace airlight::path_tracer::test;
 
 namespace {
 
-constexpr int comparisons = 40;
+constexpr int comparisons = 400;
 const double limit = threshold(1e-3, comparisons);
 
 void check_equal(const Estimate& a, const Estimate& b, double resolution = 0.02) {
@@ -191,6 +191,34 @@ TEST_CASE("the result does not depend on the majorants", "[path_tracer]") {
   }
   // The work does.
   CHECK(results[2].counters.lookups > 3 * results[0].counters.lookups);
+}
+
+TEST_CASE("forced first collisions change the noise and nothing else", "[path_tracer]") {
+  const Ray ray = ray_of({0.2, 0.1, 3}, {0.02, 0, -1});
+  const Box unit{{-1, -1, -1}, {1, 1, 1}};
+  const scene::Light inside = scene::PointLight{{0.3, 0.5, -0.2}};
+  int index = 100;
+  double share_of_time = 0;
+  for (const Rgb& sigma : {Rgb(0.02, 0.02, 0.02), Rgb(1, 1, 1), Rgb(0.1, 0.7, 3), Rgb(0.01, 0.2, 4)})
+    for (const bool varies : {false, true})
+      for (const auto& lights : {std::vector<scene::Light>{white()}, {white(), inside}, {inside}}) {
+        scene::Medium m = varies ? cloud(sigma) : medium(unit, 1, 0.9);
+        m.sigma_t = sigma;
+        m.albedo = Rgb(0.9, 0.8, 0.5);
+        RadianceEstimate results[2];
+        for (const bool forced : {false, true}) {
+          Options options = some_options();
+          options.forced = forced;
+          results[forced] = radiance(World(scene_of({m}, lights), options), ray, 1 << 15, {}, ++index);
+        }
+        CAPTURE(sigma, varies, lights.size());
+        check_equal(results[0].total, results[1].total, 0.1);
+        check_equal(results[0].orders[1], results[1].orders[1], 0.2);
+        check_equal(results[0].orders[2], results[1].orders[2], 0.5);
+        if (lights.size() == 1 && scene::light_name(lights[0]) == "environment" && sigma[0] == 0.02)
+          share_of_time = std::max(share_of_time, results[1].total.error[0] / results[0].total.error[0]);
+      }
+  CHECK(share_of_time < 0.5);  // in thin media: an eighth of the variance
 }
 
 // Stress case 31.
