@@ -1,6 +1,5 @@
 #include "experiments/machine.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <sched.h>
 #include <stdlib.h>
@@ -35,37 +34,6 @@ Machine this_machine() {
   double load[1] = {0};
   if (getloadavg(load, 1) == 1) m.load_average = load[0];
   return m;
-}
-
-std::vector<std::string> graphics_devices() {
-  // The few EGL names that this needs, so that neither headers nor library are needed to build or to start.
-  using Device = void*;
-  using GetProc = void* (*)(const char*);
-  using QueryDevices = unsigned (*)(int, Device*, int*);
-  using QueryString = const char* (*)(Device, int);
-  constexpr int extensions = 0x3055, vendor = 0x3053, renderer = 0x335F;
-  void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (!library) return {"none: libEGL.so.1 is not installed (CPU only)"};
-  const auto get = reinterpret_cast<GetProc>(dlsym(library, "eglGetProcAddress"));
-  if (!get) return {"none: libEGL.so.1 has no eglGetProcAddress (CPU only)"};
-  const auto devices = reinterpret_cast<QueryDevices>(get("eglQueryDevicesEXT"));
-  const auto name = reinterpret_cast<QueryString>(get("eglQueryDeviceStringEXT"));
-  if (!devices || !name) return {"none: EGL cannot list devices (CPU only)"};
-  Device found[16] = {};
-  int count = 0;
-  if (!devices(16, found, &count) || count == 0) return {"none: EGL lists no device (CPU only)"};
-  std::vector<std::string> lines;
-  for (int i = 0; i < count; ++i) {
-    const char* all = name(found[i], extensions);
-    const std::string has = all ? all : "";
-    const bool named = has.find("EGL_EXT_device_query_name") != std::string::npos;
-    const char* by = named ? name(found[i], vendor) : nullptr;
-    const char* what = named ? name(found[i], renderer) : nullptr;
-    const bool software = has.find("EGL_MESA_device_software") != std::string::npos;
-    lines.push_back(fmt::format("EGL device {}: {}{}{}", i, software ? "software renderer" : "hardware",
-                                by ? fmt::format(", {}", by) : "", what ? fmt::format(", {}", what) : ""));
-  }
-  return lines;  // the library stays loaded: drivers do not unload cleanly
 }
 
 std::string utc_now() {

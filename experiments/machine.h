@@ -15,9 +15,6 @@ struct Machine {
 };
 Machine this_machine();
 
-// One line per EGL device, or one line that says why there are none. Never fails.
-std::vector<std::string> graphics_devices();
-
 std::string utc_now();  // 2026-01-31T12:00:00Z
 
 }  // namespace airlight::experiments

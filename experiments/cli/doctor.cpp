@@ -6,8 +6,31 @@
 #include "experiments/cli/commands.h"
 #include "experiments/machine.h"
 #include "experiments/renderers.h"
+#include "gpu/context.h"
+#include "scene/error.h"
 
 namespace airlight::experiments::cli {
+namespace {
+
+// Every place where a context could be made, and the one that would be used. Without any the rest works as well.
+void graphics() {
+  const auto line = [](const std::string& text) { fmt::print("  graphics   {}\n", text); };
+  try {
+    for (const gpu::Attempt& a : gpu::Context::try_everything())
+      line(a.failure.empty() ? fmt::format("{}: {}{}, {}, OpenGL {}", a.place.name, a.renderer,
+                                           a.place.software ? " (software renderer)" : "", a.vendor, a.version)
+                             : a.failure);
+    const gpu::Context& context = gpu::Context::get();
+    const gpu::Limits& l = context.limits();
+    line("chosen: " + context.description());
+    line(fmt::format("limits: storage blocks of {} MiB, {} in a shader; {} KiB shared; 3D textures of {}^3; {} groups",
+                     l.storage_block >> 20, l.storage_blocks, l.shared_memory >> 10, l.texture_size_3d, l.groups[0]));
+  } catch (const Error& error) {
+    line(error.what());
+  }
+}
+
+}  // namespace
 
 int doctor() {
   fmt::print("airlight {} ({})\n", version(), commit());
@@ -17,7 +40,7 @@ int doctor() {
   fmt::print("  processor  {}, {} threads, {}\n", machine.cpu, machine.threads, machine.simd);
   fmt::print("  memory     {:.1f} GiB\n", machine.memory_gib);
   fmt::print("  system     {}\n", machine.system);
-  for (const std::string& line : graphics_devices()) fmt::print("  graphics   {}\n", line);
+  graphics();
   const bool gnuplot = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
   fmt::print("  plots      {}\n", gnuplot ? "gnuplot" : "none: gnuplot is not installed (tables only)");
   for (const auto& renderer : all_renderers()) fmt::print("  renderer   {}: {}\n", renderer->name(), renderer->about());

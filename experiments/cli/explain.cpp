@@ -3,6 +3,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
+#include "scene/error.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::cli {
@@ -56,8 +57,15 @@ int explain(const ExplainOptions& options) {
     fmt::print("  medium   {}, {}, phase {}\n", medium.name, scene::field_name(medium.field),
                scene::phase_name(medium.phase));
   for (const scene::Surface& surface : scene->surfaces) fmt::print("  surface  {}\n", surface.name);
-  for (const auto& renderer : all_renderers())
-    if (options.method.empty() || renderer->name() == options.method) explain_one(*renderer, scene, options.settings);
+  for (const auto& renderer : all_renderers()) {
+    if (!options.method.empty() && renderer->name() != options.method) continue;
+    try {
+      explain_one(*renderer, scene, options.settings);
+    } catch (const Unavailable& reason) {
+      if (!options.method.empty()) throw;
+      fmt::print("  not available on this machine: {}\n", reason.what());  // the others go on
+    }
+  }
   return 0;
 }
 

@@ -31,18 +31,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// A light without extent at the camera, inside the medium, is infinitely bright.
-std::string blinding_light(const Fog& fog, const Options& options, const Scene& scene, const scene::Camera& camera) {
-  if (options.source_radius > 0 || camera.kind != scene::Camera::Kind::perspective) return "";
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const auto ball = scene::ball(scene.lights[i]);
-    if (ball && ball->center == camera.position && density(fog.sum, camera.position) > 0)
-      return fmt::format("light {} is at the camera inside the medium: its airlight is infinite (source_radius = 0)",
-                         i);
-  }
-  return "";
-}
-
 class PreparedFogshop final : public scene::Prepared {
  public:
   PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution);
@@ -59,15 +47,7 @@ class PreparedFogshop final : public scene::Prepared {
 PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
     : scene_(std::move(scene)) {
   Stopwatch watch;
-  model_.options = options;
-  model_.fog = make_fog(scene_->media);
-  CulledGaussians culled = make_arrays(model_.fog.sum.gaussians, options.cull, options.depth_threshold);
-  model_.gaussians = std::move(culled.arrays);
-  model_.dropped = culled.dropped;
-  for (const scene::Light& light : scene_->lights) {
-    const auto& point = std::get<scene::PointLight>(light);
-    if ((point.intensity > 0).any()) model_.lights.push_back({point.position, point.intensity, {}, nullptr});
-  }
+  model_ = make_model(*scene_, options);
   times_.push_back({"gaussians", watch.lap()});
   const Needs needs = needs_of(*scene_, model_);
   if (needs.center_depths) {
@@ -90,10 +70,8 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
 }
 
 scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
-  const std::string blinding = blinding_light(model_.fog, model_.options, *scene_, view.camera);
-  if (!blinding.empty()) throw Error(scene_->name + ": " + blinding);
-  if (model_.paper() && view.camera.kind != scene::Camera::Kind::perspective)
-    throw Error(scene_->name + ": " + needs_view_point);
+  const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
+  if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   std::vector<float>&airlight = film.add("airlight"), &surface = film.add("surface"),
@@ -181,8 +159,6 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     if (!std::holds_alternative<scene::PointLight>(scene.lights[i]))
       reasons.push_back(
           fmt::format("light {} is a {} light, expected point lights only", i, scene::light_name(scene.lights[i])));
-  const bool perspective = scene.camera.kind == scene::Camera::Kind::perspective;
-  if (options.variant == Options::Variant::paper && !perspective) reasons.push_back(needs_view_point);
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
   if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)
@@ -192,8 +168,8 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
                                   options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
   if (reasons.empty()) {
-    const std::string blinding = blinding_light(make_fog(scene.media), options, scene, scene.camera);
-    if (!blinding.empty()) reasons.push_back(blinding);
+    const std::string objection = objection_to_view(scene, make_fog(scene.media), options, scene.camera);
+    if (!objection.empty()) reasons.push_back(objection);
   }
   return reasons;
 }

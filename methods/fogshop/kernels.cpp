@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <iterator>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "methods/fogshop/kernels.cpp"
@@ -161,6 +162,18 @@ void DepthsFromPointAny(const GaussianArrays& g, const Point3& from, const Line&
   return DepthsFromPoint<Erf::paper>(g, from, ray, t, count, depth);
 }
 
+template <Erf kind>
+void FillTable(ErfTable& table) {
+  using P = ErfPolynomial<kind>;
+  table = {P::cut, P::scale, {std::begin(P::coefficient), std::end(P::coefficient)}};
+}
+
+void ErfTableAny(Erf erf, ErfTable& table) {
+  if (erf == Erf::precise) return FillTable<Erf::precise>(table);
+  if (erf == Erf::erf10) return FillTable<Erf::erf10>(table);
+  return FillTable<Erf::paper>(table);
+}
+
 double ErrorFunctionAny(double x, Erf erf) {
   if (erf == Erf::precise) return ErrorFunction<Erf::precise>(x);
   if (erf == Erf::erf10) return ErrorFunction<Erf::erf10>(x);
@@ -179,6 +192,13 @@ HWY_EXPORT(DepthsAtAny);
 HWY_EXPORT(DepthsFromPointAny);
 HWY_EXPORT(ErrorFunctionAny);
 HWY_EXPORT(NearPrism);
+HWY_EXPORT(ErfTableAny);
+
+ErfTable erf_table(Erf erf) {
+  ErfTable table;
+  HWY_DYNAMIC_DISPATCH(ErfTableAny)(erf, table);
+  return table;
+}
 
 double error_function(Erf erf, double x) { return HWY_DYNAMIC_DISPATCH(ErrorFunctionAny)(x, erf); }
 

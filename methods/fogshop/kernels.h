@@ -18,6 +18,13 @@ enum class Erf {
 // erf of one number by the named approximation.
 double error_function(Erf, double x);
 
+// The approximation itself: erf x is x times a polynomial in z = scale x^2 - 1 up to |x| = cut, and +-1 beyond.
+struct ErfTable {
+  double cut, scale;
+  std::vector<double> coefficients;  // of z^0, z^1, ...
+};
+ErfTable erf_table(Erf);
+
 // A ray with an end; the length may be infinite.
 struct Line {
   Point3 origin;

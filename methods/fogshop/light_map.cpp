@@ -25,8 +25,7 @@ Vec3 from_octahedron(double x, double y) {
 
 LightMap::LightMap(const GaussianArrays& gaussians, const Point3& light, int directions, int edges, Erf erf,
                    const scene::Execution& execution)
-    : light_(light), directions_(directions), edges_(edges) {
-  frame(gaussians);
+    : light_(light), directions_(directions), edges_(edges), frame_(frame_of(gaussians, light)) {
   const int padded = (edges + 1 + GaussianArrays::padding - 1) / GaussianArrays::padding * GaussianArrays::padding;
   std::vector<double> distance(padded);
   for (int k = 0; k < padded; ++k) distance[k] = distance_of(std::min(k, edges));
@@ -37,7 +36,7 @@ LightMap::LightMap(const GaussianArrays& gaussians, const Point3& light, int dir
     Crossings crossings;
     std::vector<double> depth(padded);
     for (int column = 0; column < side; ++column) {
-      cross(gaussians, {light, direction(column - 1, row - 1), far_}, erf, crossings);
+      cross(gaussians, {light, direction(column - 1, row - 1), frame_.far}, erf, crossings);
       depths_at(crossings, distance.data(), padded, depth.data(), erf);
       std::copy_n(depth.begin(), edges + 1, &depths_[(std::size_t(row) * side + column) * (edges + 1)]);
       evaluations[row] += double(crossings.count) * (edges + 2);
@@ -46,34 +45,36 @@ LightMap::LightMap(const GaussianArrays& gaussians, const Point3& light, int dir
   evaluations_ = std::accumulate(evaluations.begin(), evaluations.end(), 0.0);
 }
 
-void LightMap::frame(const GaussianArrays& gaussians) {
-  near_ = gaussians.count > 0 ? infinity : 0;
+MapFrame frame_of(const GaussianArrays& gaussians, const Point3& light) {
+  MapFrame frame;
+  frame.near = gaussians.count > 0 ? infinity : 0;
   Vec3 axis = Vec3::Zero();
   for (int i = 0; i < gaussians.count; ++i) {
-    const Vec3 offset = gaussians.center(i) - light_;
+    const Vec3 offset = gaussians.center(i) - light;
     const double distance = offset.norm(), radius = std::sqrt(gaussians.radius_squared[i]);
-    near_ = std::max(0.0, std::min(near_, distance - radius));
-    far_ = std::max(far_, distance + radius);
+    frame.near = std::max(0.0, std::min(frame.near, distance - radius));
+    frame.far = std::max(frame.far, distance + radius);
     if (distance > 0) axis += offset / distance;
   }
-  if (!(near_ > 0) || !(axis.norm() > 0)) return;
+  if (!(frame.near > 0) || !(axis.norm() > 0)) return frame;
   axis.normalize();
   double angle = 0;
   for (int i = 0; i < gaussians.count; ++i) {
-    const Vec3 offset = gaussians.center(i) - light_;
+    const Vec3 offset = gaussians.center(i) - light;
     angle = std::max(angle, std::atan2(axis.cross(offset).norm(), axis.dot(offset)) +
                                 std::asin(std::sqrt(gaussians.radius_squared[i]) / offset.norm()));
   }
-  if (angle > 70 * pi / 180) return;
-  tangent_ = std::tan(angle);
+  if (angle > 70 * pi / 180) return frame;
+  frame.tangent = std::tan(angle);
   const Vec3 side = axis.unitOrthogonal();
-  axes_ << side.transpose(), axis.cross(side).transpose(), axis.transpose();
+  frame.axes << side.transpose(), axis.cross(side).transpose(), axis.transpose();
+  return frame;
 }
 
 Vec3 LightMap::direction(int i, int j) const {
-  if (tangent_ > 0) {
+  if (frame_.tangent > 0) {
     const double x = 2 * (i + 0.5) / directions_ - 1, y = 2 * (j + 0.5) / directions_ - 1;
-    return (axes_.transpose() * Vec3(tangent_ * x, tangent_ * y, 1)).normalized();
+    return (frame_.axes.transpose() * Vec3(frame_.tangent * x, frame_.tangent * y, 1)).normalized();
   }
   // Beyond an edge of the square lies the same edge, reversed.
   if (i < 0 || i >= directions_) {
@@ -91,7 +92,7 @@ Vec3 LightMap::direction(int i, int j) const {
 // solid angle close by; they are even across a medium that the light is outside of.
 double LightMap::distance_of(double edge) const {
   const double s = edge / edges_;
-  return near_ + (far_ - near_) * (near_ > 0 ? s : s * s);
+  return frame_.near + (frame_.far - frame_.near) * (frame_.near > 0 ? s : s * s);
 }
 
 double LightMap::depth(const Point3& x) const {
@@ -107,11 +108,11 @@ void LightMap::depths(const Line& ray, const double* t, int count, double* depth
   map.depths = depths_.data();
   map.directions = directions_;
   map.edges = edges_;
-  map.near = near_;
-  map.far = far_;
-  map.tangent = tangent_;
+  map.near = frame_.near;
+  map.far = frame_.far;
+  map.tangent = frame_.tangent;
   // The axes turn the ray, not every point of it.
-  const Vec3 start = axes_ * offset, step = axes_ * ray.direction;
+  const Vec3 start = frame_.axes * offset, step = frame_.axes * ray.direction;
   look_up(map, start.data(), step.data(), t, count, depth);
 }
 

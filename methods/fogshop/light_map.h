@@ -9,6 +9,14 @@
 
 namespace airlight::fogshop {
 
+// Where the Gaussians lie as the light sees them.
+struct MapFrame {
+  double near = 0, far = 0;      // the Gaussians lie between these distances [m]
+  double tangent = 0;            // half the width of the perspective view at distance 1; 0: octahedral
+  Mat3 axes = Mat3::Identity();  // of the view in its rows, its direction last
+};
+MapFrame frame_of(const GaussianArrays&, const Point3& light);
+
 class LightMap {
  public:
   // `directions` squared texels and `edges` + 1 distances; every texel holds exact depths at its centre. Calls of the
@@ -26,16 +34,13 @@ class LightMap {
   std::size_t bytes() const { return depths_.size() * sizeof(float); }
 
  private:
-  void frame(const GaussianArrays&);
   Vec3 direction(int i, int j) const;  // of a texel; i, j from -1 to directions: a border of one texel
   double distance_of(double edge) const;
 
   Point3 light_;
   int directions_, edges_;
-  double near_ = 0, far_ = 0;     // the Gaussians lie between these distances
-  double tangent_ = 0;            // half the width of the perspective view at distance 1; 0: octahedral
-  Mat3 axes_ = Mat3::Identity();  // of the view in its rows, its direction last
-  std::vector<float> depths_;     // [row][column][edge], with a border of one texel
+  MapFrame frame_;
+  std::vector<float> depths_;  // [row][column][edge], with a border of one texel
   double evaluations_ = 0;
 };
 

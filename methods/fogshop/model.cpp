@@ -57,6 +57,20 @@ Options read_options(const scene::Settings& settings) {
   return o;
 }
 
+Model make_model(const scene::Scene& scene, const Options& options) {
+  Model model;
+  model.options = options;
+  model.fog = make_fog(scene.media);
+  CulledGaussians culled = make_arrays(model.fog.sum.gaussians, options.cull, options.depth_threshold);
+  model.gaussians = std::move(culled.arrays);
+  model.dropped = culled.dropped;
+  for (const scene::Light& light : scene.lights) {
+    const auto& point = std::get<scene::PointLight>(light);
+    if ((point.intensity > 0).any()) model.lights.push_back({point.position, point.intensity, {}, nullptr});
+  }
+  return model;
+}
+
 std::vector<double> depths_to_centers(const Model& model, const Point3& from, const scene::Execution& execution,
                                       double& evaluations) {
   const GaussianArrays& g = model.gaussians;

@@ -48,6 +48,9 @@ struct Model {
   bool paper() const { return options.variant == Options::Variant::paper; }
 };
 
+// Everything but the tables.
+Model make_model(const scene::Scene&, const Options&);
+
 // T(from, b_i) - T_i(from, b_i) for every Gaussian, the constant included [-], hue 1: n rays against n Gaussians, each
 // cut off at its radius. Adds to `evaluations`.
 std::vector<double> depths_to_centers(const Model&, const Point3& from, const scene::Execution&, double& evaluations);

@@ -82,4 +82,21 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   return stages;
 }
 
+std::string objection_to_view(const scene::Scene& scene, const Fog& fog, const Options& options,
+                              const scene::Camera& camera) {
+  if (camera.kind != scene::Camera::Kind::perspective)
+    return options.variant == Options::Variant::paper
+               ? "variant paper needs a perspective camera: its depths T(v, b_i) start from one view point"
+               : "";
+  if (options.source_radius > 0) return "";
+  // A light without extent at the camera, inside the medium, is infinitely bright.
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto ball = scene::ball(scene.lights[i]);
+    if (ball && ball->center == camera.position && density(fog.sum, camera.position) > 0)
+      return fmt::format("light {} is at the camera inside the medium: its airlight is infinite (source_radius = 0)",
+                         i);
+  }
+  return "";
+}
+
 }  // namespace airlight::fogshop

@@ -17,7 +17,7 @@ Needs needs_of(const scene::Scene&, const Model&);
 // Every stage, kept or left out, with the reason.
 std::vector<scene::Stage> describe_stages(const scene::Scene&, const Model&);
 
-inline constexpr char needs_view_point[] =
-    "variant paper needs a perspective camera: its depths T(v, b_i) start from one view point";
+// Why the scene cannot be seen from this camera; empty if it can.
+std::string objection_to_view(const scene::Scene&, const Fog&, const Options&, const scene::Camera&);
 
 }  // namespace airlight::fogshop

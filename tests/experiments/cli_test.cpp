@@ -151,6 +151,25 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
   CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
 }
 
+// A wish that no device fulfils stands for a machine without one.
+TEST_CASE("without a GPU, asking for it is one line and exit code 3, and the rest works", "[cli]") {
+  const TemporaryFolder folder;
+  setenv("AIRLIGHT_GPU", "no such device", 1);
+  const std::string scene = scenes + "fogshop/f100.toml";
+  const Result rendered = run("render " + scene + " --method fogshop_gpu --out picture.exr", folder);
+  CHECK(rendered.code == 3);
+  CHECK(rendered.error_lines() == 1);
+  CHECK_THAT(rendered.err, Catch::StartsWith("airlight: gpu: "));
+  CHECK(!std::filesystem::exists(folder.path() / "picture.exr"));
+  const Result explained = run("explain " + scene, folder);
+  CHECK(explained.code == 0);
+  CHECK_THAT(explained.out, Contains("not available on this machine: gpu: "));
+  const Result examined = run("doctor", folder);
+  CHECK(examined.code == 0);
+  CHECK_THAT(examined.out, Contains("graphics   gpu: "));
+  unsetenv("AIRLIGHT_GPU");
+}
+
 TEST_CASE("explain and doctor", "[cli]") {
   const TemporaryFolder folder;
   const Result explained = run("explain " + scenes + "constant_homogeneous.toml", folder);

@@ -1,0 +1,155 @@
+#include "gpu/context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "gpu/program.h"
+#include "scene/error.h"
+
+namespace airlight::gpu {
+namespace {
+
+std::string& wish() {
+  static std::string text = [] {
+    const char* variable = std::getenv("AIRLIGHT_GPU");
+    return std::string(variable && *variable ? variable : "auto");
+  }();
+  return text;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+bool fits(const Attempt& attempt, const std::string& wanted) {
+  return wanted == "auto" || attempt.place.name == wanted ||
+         lower(attempt.vendor).find(lower(wanted)) != std::string::npos ||
+         lower(attempt.renderer).find(lower(wanted)) != std::string::npos;
+}
+
+void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* text, const void* user) {
+  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
+  auto& errors = *static_cast<std::vector<std::string>*>(const_cast<void*>(user));
+  if (errors.size() < 8) errors.emplace_back(text, length < 0 ? std::char_traits<char>::length(text) : length);
+}
+
+}  // namespace
+
+void Context::choose_device(const std::string& name) { wish() = name; }
+
+// Whatever goes wrong is in the answer's failure.
+Attempt Context::attempt(const Place& place, std::unique_ptr<EglContext>& context) {
+  Attempt result{place, {}, {}, {}, {}};
+  try {
+    context = Egl::get().make_context(place);
+    context->make_current();
+    const auto get_string = reinterpret_cast<PFNGLGETSTRINGPROC>(context->function("glGetString"));
+    const auto text = [&](GLenum name) {
+      const GLubyte* s = get_string ? get_string(name) : nullptr;
+      return std::string(s ? reinterpret_cast<const char*>(s) : "");
+    };
+    result.renderer = text(GL_RENDERER);
+    result.vendor = text(GL_VENDOR);
+    result.version = text(GL_VERSION);
+    context->release();
+    const std::string name = lower(result.renderer);
+    for (const char* soft : {"llvmpipe", "softpipe", "swrast"})
+      result.place.software = result.place.software || name.find(soft) != std::string::npos;
+    if (result.renderer.empty()) result.failure = place.name + ": the driver tells no GL_RENDERER";
+  } catch (const Error& error) {
+    result.failure = error.what();
+    context.reset();
+  }
+  return result;
+}
+
+std::vector<Attempt> Context::try_everything() {
+  std::vector<Attempt> attempts;
+  for (const Place& place : Egl::get().places()) {
+    std::unique_ptr<EglContext> context;
+    attempts.push_back(attempt(place, context));
+  }
+  return attempts;
+}
+
+Context& Context::get() {
+  // Never destroyed: drivers may be gone when the process ends.
+  static Context* const context = [] {
+    const auto places = Egl::get().places();
+    if (places.empty()) throw Unavailable("gpu: EGL lists no device and no surfaceless platform: CPU only");
+    std::string failures;
+    for (const Place& place : places) {
+      std::unique_ptr<EglContext> egl;
+      const Attempt a = attempt(place, egl);
+      if (!a.failure.empty()) {
+        failures += (failures.empty() ? "" : "; ") + a.failure;
+      } else if (fits(a, wish())) {
+        return new Context(a, std::move(egl));
+      } else {
+        failures += fmt::format("{}{}: {} is not '{}'", failures.empty() ? "" : "; ", place.name, a.renderer, wish());
+      }
+    }
+    throw Unavailable("gpu: no device works: " + failures);
+  }();
+  return *context;
+}
+
+Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
+    : attempt_(std::move(attempt)), egl_(std::move(egl)) {
+#define AIRLIGHT_LOAD(type, name)                                \
+  gl_.name = reinterpret_cast<type>(egl_->function("gl" #name)); \
+  if (!gl_.name) throw Unavailable("gpu: " + attempt_.renderer + " lacks gl" + #name);
+  egl_->make_current();
+  AIRLIGHT_GL_FUNCTIONS(AIRLIGHT_LOAD)
+#undef AIRLIGHT_LOAD
+  gl_.Enable(GL_DEBUG_OUTPUT);
+  gl_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  gl_.DebugMessageCallback(on_message, &errors_);
+  GLint64 bytes = 0;
+  gl_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+  limits_.storage_block = std::size_t(bytes);
+  gl_.GetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &limits_.storage_blocks);
+  for (GLuint axis = 0; axis < 3; ++axis)
+    gl_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits_.groups[axis]);
+  gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
+  gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
+  gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
+  gl_.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);  // row 0 is the top, as in a film
+  egl_->release();
+}
+
+std::string Context::description() const {
+  return fmt::format("{}, OpenGL {} ({})", attempt_.renderer, attempt_.version, attempt_.place.name);
+}
+
+bool Context::software() const { return attempt_.place.software; }
+
+void Context::check(const std::string& what) {
+  if (errors_.empty()) return;
+  const std::string first = errors_.front();
+  errors_.clear();
+  throw Error(fmt::format("gpu: {} failed on {}: {}", what, attempt_.renderer, first));
+}
+
+Program& Context::program(const std::string& file, const std::map<std::string, std::string>& definitions) {
+  std::string key = file;
+  for (const auto& [name, value] : definitions) key += fmt::format(" {}={}", name, value);
+  auto& program = programs_[key];
+  if (!program) program = std::make_unique<Program>(*this, file, definitions);
+  return *program;
+}
+
+Use::Use(Context& shared) : context(shared) {
+  context.mutex_.lock();
+  if (context.depth_++ == 0) context.egl_->make_current();
+}
+
+Use::~Use() {
+  if (--context.depth_ == 0) context.egl_->release();
+  context.mutex_.unlock();
+}
+
+}  // namespace airlight::gpu

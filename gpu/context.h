@@ -1,0 +1,76 @@
+// The OpenGL context that everything under gpu/ shares: chosen once, debug messages turned into errors.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gpu/egl.h"
+#include "gpu/gl.h"
+
+namespace airlight::gpu {
+
+class Program;
+
+// What a shader may count on; checked by those who need more than OpenGL's minimum.
+struct Limits {
+  std::size_t storage_block = 0;  // bytes of one storage buffer
+  int storage_blocks = 0;         // bound in one compute shader
+  int groups[3] = {0, 0, 0};      // work groups of a dispatch
+  int shared_memory = 0;          // bytes
+  int texture_size_3d = 0, texture_size = 0;
+};
+
+class Context {
+ public:
+  // The context of this process, made on the first call: the first place that works, or the one asked for by
+  // choose_device or the variable AIRLIGHT_GPU. Throws Unavailable in one line if there is none; every attempt is then
+  // in attempts().
+  static Context& get();
+  // "auto", the name of a place ("device 1", "surfaceless"), or a part of GL_VENDOR or GL_RENDERER. Before the first
+  // get().
+  static void choose_device(const std::string& wish);
+  // What was tried so far, and what came of it; tries everything, for `airlight doctor`, if nothing was.
+  static std::vector<Attempt> try_everything();
+
+  // One line: renderer, version, place.
+  std::string description() const;
+  const std::string& renderer() const { return attempt_.renderer; }
+  bool software() const;  // llvmpipe and its like: its times are not those of a GPU
+  const Limits& limits() const { return limits_; }
+  const Gl& gl() const { return gl_; }
+
+  // Throws Error with the driver's words if a call has failed since the last check. `what` names the work done.
+  void check(const std::string& what);
+
+  // Compute programs by file name and definitions, compiled once (program.h).
+  Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});
+
+  Context(const Context&) = delete;
+
+ private:
+  friend class Use;
+  Context(Attempt, std::unique_ptr<EglContext>);
+  static Attempt attempt(const Place&, std::unique_ptr<EglContext>&);
+
+  Attempt attempt_;
+  std::unique_ptr<EglContext> egl_;
+  Gl gl_;
+  Limits limits_;
+  std::vector<std::string> errors_;
+  std::map<std::string, std::unique_ptr<Program>> programs_;
+  std::recursive_mutex mutex_;
+  int depth_ = 0;
+};
+
+// Makes the shared context current on this thread while it lives; others wait.
+class Use {
+ public:
+  explicit Use(Context&);
+  ~Use();
+  Use(const Use&) = delete;
+  Context& context;
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,158 @@
+#include "gpu/fogshop/fogshop_gpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/buffer.h"
+#include "gpu/fogshop/passes.h"
+#include "gpu/timer.h"
+#include "methods/fogshop/fogshop.h"
+#include "methods/fogshop/stages.h"
+#include "methods/fogshop/surface_pass.h"
+#include "scene/error.h"
+
+namespace airlight::gpu {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+class PreparedFogshopGpu final : public scene::Prepared {
+ public:
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const fogshop::Options& options)
+      : scene_(std::move(scene)),
+        model_(fogshop::make_model(*scene_, options)),
+        needs_(fogshop::needs_of(*scene_, model_)),
+        context_(Context::get()),
+        fog_(context_, model_) {
+    StageTimer timer(context_);
+    if (needs_.light_maps) {
+      fog_.fill_light_maps();
+      timer.stage("light maps");
+    }
+    if (needs_.center_depths) {
+      fog_.fill_light_depths();
+      timer.stage("depths to centres");
+    }
+    times_ = timer.times();
+  }
+
+  std::vector<scene::Stage> stages() const override {
+    auto stages = fogshop::describe_stages(*scene_, model_);
+    stages.insert(stages.begin(), {"device", true, context_.description()});
+    return stages;
+  }
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  fogshop::Model model_;
+  fogshop::Needs needs_;
+  Context& context_;
+  mutable FogOnDevice fog_;
+  std::vector<scene::StageTime> times_;
+};
+
+scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
+  const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
+  if (!objection.empty()) throw Error(scene_->name + ": " + objection);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  scene::Film& film = result.film;
+  std::vector<float>&airlight = film.add("airlight"), &surface = film.add("surface"),
+  &transmittance = film.add("transmittance"), &mean = film.add("mean");
+  const long dispatches = Program::dispatches();
+  const Use use(context_);
+  StageTimer timer(context_);
+
+  // Section 5.4, step 1: distances, by Embree.
+  const std::size_t pixels = film.pixels();
+  std::vector<float> distance;
+  std::vector<fogshop::SurfacePoint> points(pixels, fogshop::SurfacePoint{Point3::Zero(), Vec3::Zero(), -1});
+  if (needs_.distances) {
+    distance.assign(pixels, far_away);
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t i = std::size_t(y) * view.width + x;
+        const scene::RayEnd end =
+            scene::ray_end(*scene_, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
+        if (end.t < far_away) distance[i] = float(end.t);
+        if (end.hit) points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
+      }
+    });
+    timer.stage("distances");
+  }
+
+  if (needs_.airlight) {
+    if (needs_.center_depths) {
+      fog_.fill_view_depths(view.camera.position);
+      timer.stage("depths to centres");
+    }
+    const std::vector<PixelAirlight> image = fog_.airlight(view, distance, timer);
+    for (std::size_t i = 0; i < pixels; ++i)
+      for (int c = 0; c < 3; ++c) {
+        airlight[3 * i + c] = image[i].airlight[c];
+        const double hue = model_.fog.hue[c];
+        transmittance[3 * i + c] = hue > 0 ? float(std::exp(-hue * image[i].depth)) : 1.0f;
+      }
+    timer.stage("read back");
+  } else {
+    std::fill(transmittance.begin(), transmittance.end(), 1.0f);
+  }
+
+  // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
+  if (needs_.surfaces) {
+    scene::parallel_rows(view.height, execution, [&](int y) {
+      fogshop::Crossings crossings;
+      double evaluations = 0;
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t i = std::size_t(y) * view.width + x;
+        if (points[i].surface < 0) continue;
+        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+        const Rgb reflected =
+            fogshop::direct_reflection(*scene_, model_, points[i], -ray.direction, crossings, evaluations);
+        for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * reflected[c]);
+      }
+    });
+    timer.stage("surfaces");
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
+  result.times = timer.times();
+  result.counters["rays"] = double(pixels);
+  result.counters["dispatches"] = double(Program::dispatches() - dispatches);
+  result.counters["gaussians"] = model_.gaussians.count;
+  result.counters["gaussians_dropped"] = model_.dropped;
+  return result;
+}
+
+}  // namespace
+
+std::string FogshopGpu::about() const {
+  return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
+}
+
+std::vector<scene::SettingSpec> FogshopGpu::settings() const { return fogshop::Fogshop().settings(); }
+
+std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
+  std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
+  const fogshop::Options options = fogshop::read_options(settings);
+  if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
+  if (options.slices > most_slices)
+    reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
+  if (scene.lights.size() > most_lights)
+    reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> FogshopGpu::prepare(std::shared_ptr<const Scene> scene,
+                                                     const scene::Settings& settings, const Execution&) const {
+  const std::vector<std::string> reasons = supports(*scene, settings);
+  if (!reasons.empty())
+    throw Error(fmt::format("{}: fogshop_gpu cannot render this: {}", scene->name, reasons.front()));
+  return std::make_unique<PreparedFogshopGpu>(std::move(scene), fogshop::read_options(settings));
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,18 @@
+// Fogshop on the GPU: the airlight of methods/fogshop in compute shaders, single precision, same settings, same layers.
+#pragma once
+#include "scene/renderer.h"
+
+namespace airlight::gpu {
+
+class FogshopGpu final : public scene::Renderer {
+ public:
+  std::string name() const override { return "fogshop_gpu"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  // Does not need a GPU; prepare does, and throws Unavailable without one.
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                           const scene::Execution&) const override;
+};
+
+}  // namespace airlight::gpu

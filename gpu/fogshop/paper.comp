@@ -1,0 +1,59 @@
+// Variant `paper`: Zhou et al. 2007, Eqs. 8 to 17, every pixel of a strip. One tile is one work group.
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "common/camera.glsl"
+#include "common/angle.glsl"
+#include "fogshop/fog.glsl"
+#include "fogshop/near.glsl"
+#include "fogshop/light.glsl"
+#include "fogshop/light_lookup.glsl"
+
+layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
+layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };
+// Depths as in depths.comp: from every light to every centre, from the view point to every centre, from every light to
+// the view point.
+layout(std430, binding = 8) readonly buffer Depths { float segment_depth[]; };
+uniform int has_distances;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
+  bool visible = pixel.x < width && pixel.y < height;
+  vec3 origin, direction;
+  camera_ray(vec2(pixel) + 0.5, origin, direction);
+  float end = visible && has_distances != 0 ? distances[pixel.y * width + pixel.x] : far_away;
+  int count = near_count();
+  const int to_view = LIGHTS * gaussian_count, to_lights = to_view + gaussian_count;
+
+  vec3 sum[LIGHTS + 1];
+  for (int l = 0; l < LIGHTS; ++l) sum[l] = vec3(0);
+  float depth = constant > 0 ? constant * end : 0;
+  for (int first = 0; first < count; first += group_size) {
+    int loaded = load_near(first, count);
+    for (int i = 0; i < loaded; ++i) {
+      Gaussian g = near_block[i];
+      Crossing c = cross_line(g, origin, direction, end);
+      if (!c.met) continue;
+      float whole = depth_at(c, end), t = clamp(c.middle, 0, end), before = depth_at(c, t);  // Eq. 10, clamped
+      vec3 x = origin + t * direction;
+      depth += whole;
+      for (int l = 0; l < LIGHTS; ++l) {
+        vec3 offset = x - lights[l].position;
+        float distance_ = length(offset);
+        Crossing towards = cross_line(g, lights[l].position, offset / max(distance_, 1e-30), distance_);
+        // Eqs. 11 to 13, exponents added before the exponential. What lies beyond its radius still counts here.
+        float light_part = towards.depth * max(erf(g.a * (distance_ - towards.middle)) + towards.base, 0);
+        float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
+                         light_part - before;
+        float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
+        sum[l] += hue * weight * exp(hue * exponent);
+      }
+    }
+  }
+  vec3 airlight = vec3(0);
+  for (int l = 0; l < LIGHTS; ++l) {
+    if (constant > 0)  // Eqs. 16 and 17
+      sum[l] += exp(-hue * segment_depth[to_lights + l]) *
+                homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
+    airlight += lights[l].intensity * sum[l];
+  }
+  if (visible) pixels[pixel.y * width + pixel.x] = vec4(airlight * albedo, depth);
+}

@@ -1,0 +1,81 @@
+#include "gpu/shader_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include "scene/error.h"
+
+namespace airlight::gpu {
+namespace {
+
+std::string text_of(const std::string& file, const std::string& from) {
+  if (const char* folder = std::getenv("AIRLIGHT_SHADERS"); folder && *folder) {
+    const std::string path = std::string(folder) + "/" + file;
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw Error(fmt::format("{}no shader {} (AIRLIGHT_SHADERS)", from, path));
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  const auto found = embedded_shaders().find(file);
+  if (found == embedded_shaders().end()) throw Error(fmt::format("{}no shader gpu/{}", from, file));
+  return found->second;
+}
+
+void append(const std::string& file, const std::string& from, ShaderSource& source) {
+  if (std::find(source.files.begin(), source.files.end(), file) != source.files.end()) return;
+  const int number = int(source.files.size());
+  source.files.push_back(file);
+  std::istringstream lines(text_of(file, from));
+  source.text += fmt::format("#line 1 {}\n", number);
+  int at = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++at;
+    if (line.rfind("#include", 0) != 0) {
+      source.text += line + "\n";
+      continue;
+    }
+    const std::size_t open = line.find('"'), close = line.rfind('"');
+    if (open == close) throw Error(fmt::format("gpu/{}:{}: expected #include \"file\"", file, at));
+    append(line.substr(open + 1, close - open - 1), fmt::format("gpu/{}:{}: ", file, at), source);
+    source.text += fmt::format("#line {} {}\n", at + 1, number);
+  }
+}
+
+}  // namespace
+
+ShaderSource shader_source(const std::string& file, const std::map<std::string, std::string>& definitions) {
+  ShaderSource source;
+  source.text = "#version 450 core\n";
+  for (const auto& [name, value] : definitions) source.text += fmt::format("#define {} {}\n", name, value);
+  append(file, "", source);
+  return source;
+}
+
+std::string with_file_names(const std::string& message, const ShaderSource& source) {
+  // Mesa: "0:12(3): error: ...", NVIDIA: "0(12) : error C1008: ...".
+  static const std::regex mesa(R"((^|\n)(\d+):(\d+)(\(\d+\))?:)"), nvidia(R"((^|\n)(\d+)\((\d+)\) ?:)");
+  std::string result = message;
+  for (const std::regex& form : {mesa, nvidia}) {
+    std::string changed;
+    auto from = result.cbegin();
+    for (std::sregex_iterator m(result.cbegin(), result.cend(), form), end; m != end; ++m) {
+      const std::size_t number = std::stoul((*m)[2]);
+      changed.append(from, (*m)[0].first);
+      changed += number < source.files.size()
+                     ? fmt::format("{}gpu/{}:{}:", (*m)[1].str(), source.files[number], (*m)[3].str())
+                     : (*m)[0].str();
+      from = (*m)[0].second;
+    }
+    changed.append(from, result.cend());
+    result = changed;
+  }
+  while (!result.empty() && std::isspace(static_cast<unsigned char>(result.back()))) result.pop_back();
+  return result;
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,25 @@
+// The shaders as they were compiled into the program, or from the folder AIRLIGHT_SHADERS while one works on them.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+namespace airlight::gpu {
+
+// A shader's text with its includes in place, ready for the compiler.
+struct ShaderSource {
+  std::string text;
+  std::vector<std::string> files;  // by the number that #line gives them, which compilers put into their messages
+};
+
+// `file` is relative to gpu/, e.g. "common/erf.glsl"; `#include "..."` likewise, each file at most once. `version` and
+// `definitions` stand in front. Throws Error (file, line, what was found) where an include leads nowhere.
+ShaderSource shader_source(const std::string& file, const std::map<std::string, std::string>& definitions);
+
+// A compiler's message with names of files in place of their numbers: "gpu/common/erf.glsl:12: ...".
+std::string with_file_names(const std::string& message, const ShaderSource&);
+
+// All files that were compiled in, by name; made by cmake/embed_shaders.cmake.
+const std::map<std::string, std::string>& embedded_shaders();
+
+}  // namespace airlight::gpu

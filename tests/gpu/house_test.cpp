@@ -1,0 +1,140 @@
+// The GPU house: context, programs, buffers, timers, and how each fails.
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "gpu/shader_source.h"
+#include "gpu/timer.h"
+#include "tests/gpu/device.h"
+#include "tests/temporary_folder.h"
+
+using namespace airlight;
+using namespace airlight::gpu;
+
+namespace {
+
+// Shaders of a test, read from a folder as while one works on them.
+class ShaderFolder {
+ public:
+  explicit ShaderFolder(const std::string& text) {
+    folder_.write("test.comp", text);
+    setenv("AIRLIGHT_SHADERS", folder_.path().c_str(), 1);
+  }
+  ~ShaderFolder() { unsetenv("AIRLIGHT_SHADERS"); }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+const char* const doubling = R"(layout(local_size_x = LOCAL_SIZE_X) in;
+layout(std430, binding = 0) buffer Values { float values[]; };
+uniform int count;
+uniform float factor;
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i < count) values[i] *= factor;
+}
+)";
+
+}  // namespace
+
+TEST_CASE("every place is tried, and the one chosen works", "[gpu]") {
+  if (!test::device()) return;
+  int working = 0;
+  for (const Attempt& a : Context::try_everything()) {
+    CHECK(a.failure.empty() != a.renderer.empty());
+    working += a.failure.empty();
+  }
+  CHECK(working > 0);
+  const Context& context = Context::get();
+  CHECK(context.limits().storage_block >= std::size_t(1) << 24);
+  CHECK(context.limits().groups[0] >= 65535);
+  CHECK(context.description().find(context.renderer()) == 0);
+}
+
+TEST_CASE("a program runs over a buffer, and only within it", "[gpu]") {
+  Context* context = test::device();
+  if (!context) return;
+  const ShaderFolder shaders(doubling);
+  const Use use(*context);
+  std::vector<float> values(1000);
+  for (int i = 0; i < 1000; ++i) values[i] = float(i);
+  Buffer buffer(*context, "values", values);
+  Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
+  program.set("count", 990);  // the rest is a guard zone; 1000 is no multiple of 64 either
+  program.set("factor", 2.0);
+  buffer.bind(0);
+  const long before = Program::dispatches();
+  program.dispatch(990);
+  program.dispatch(0);
+  CHECK(Program::dispatches() - before == 1);  // nothing to do is no dispatch
+  const std::vector<float> after = buffer.download<float>();
+  for (int i = 0; i < 1000; ++i) CHECK(after[i] == (i < 990 ? 2.0f : 1.0f) * float(i));
+}
+
+TEST_CASE("a shader's error names its file and line", "[gpu]") {
+  Context* context = test::device();
+  if (!context) return;
+  const ShaderFolder shaders("layout(local_size_x = 1) in;\n#include \"part.glsl\"\nvoid main() { wrong(); }\n");
+  shaders.folder().write("part.glsl", "float right() { return 1; }\nfloat broken() { return nothing; }\n");
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {}), Catch::Contains("gpu/part.glsl:2:"));
+  shaders.folder().write("part.glsl", "float right() { return 1; }\n");
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {}), Catch::Contains("gpu/test.comp:3:"));
+  shaders.folder().write("part.glsl", "#include \"missing.glsl\"\n");
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {}),
+                    Catch::Contains("gpu/part.glsl:1: no shader") && Catch::Contains("missing.glsl"));
+  // The context survives all of it.
+  shaders.folder().write("test.comp", doubling);
+  CHECK_NOTHROW(Program(*context, "test.comp", {}));
+}
+
+TEST_CASE("messages of compilers are translated", "[gpu]") {
+  const ShaderSource source{"", {"a.comp", "b.glsl"}};
+  CHECK(with_file_names("1:12(3): error: no\n0:4(1): error: yes", source) ==
+        "gpu/b.glsl:12: error: no\ngpu/a.comp:4: error: yes");
+  CHECK(with_file_names("1(12) : error C1008: undefined", source) == "gpu/b.glsl:12: error C1008: undefined");
+  CHECK(with_file_names("link error 7:x", source) == "link error 7:x");
+}
+
+TEST_CASE("misuse of the GPU is an error", "[gpu]") {
+  Context* context = test::device();
+  if (!context) return;
+  const Use use(*context);
+  const ShaderFolder shaders(doubling);
+  Program program(*context, "test.comp", {});
+  CHECK_THROWS_WITH(program.set("no_such_uniform", 1), Catch::Contains("no uniform 'no_such_uniform'"));
+  context->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 9999, 0);
+  CHECK_THROWS_WITH(context->check("this"), Catch::Contains("this failed on " + context->renderer()));
+  CHECK_NOTHROW(context->check("once only"));
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {{"LOCAL_SIZE_X", "256"}}), Catch::Contains("more than 128"));
+  CHECK_THROWS_AS(program.dispatch(context->limits().groups[0] + 1), Error);
+  CHECK_THROWS_WITH(Buffer(*context, "giant", context->limits().storage_block + 1),
+                    Catch::Contains("'giant' needs") && Catch::Contains("offers at most"));
+  CHECK_THROWS_AS(Buffer(*context, "giant", context->limits().storage_block + 1), Unavailable);
+}
+
+TEST_CASE("stages are timed by the device", "[gpu]") {
+  Context* context = test::device();
+  if (!context) return;
+  const Use use(*context);
+  const ShaderFolder shaders(doubling);
+  const Buffer buffer(*context, "values", std::vector<float>(1 << 20, 1.0f));
+  Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
+  program.set("count", 1 << 20);
+  program.set("factor", 1.0);
+  buffer.bind(0);
+  program.dispatch(1 << 20);
+  StageTimer timer(*context);
+  program.dispatch(1 << 20);
+  timer.stage("one");
+  timer.stage("nothing");
+  program.dispatch(1 << 20);
+  timer.stage("one");
+  const auto times = timer.times();
+  REQUIRE(times.size() == 2);
+  CHECK(times[0].name == "one");
+  CHECK(times[0].seconds > 1e-7);
+  CHECK(times[1].seconds < times[0].seconds);
+}
