@@ -3,12 +3,30 @@
 #include "experiments/verify/vector_scene.h"
 #include "methods/fogshop/homogeneous_airlight.h"
 #include "methods/fogshop/paper_airlight.h"
+#include "methods/fogshop/surface_psf.h"
 
 namespace airlight::experiments::verification {
 
 Check read_f(const Value& v) {
   const double u = v["in"]["u"].number(), limit = v["in"]["v"].number(), expected = v["value"].number();
   return {"", [=](VerifyProfile) { return Outcome{{relative("F", expected, fogshop::F(u, limit), 1e-12)}}; }};
+}
+
+Check read_average_depth(const Value& v) {
+  const double u = v["in"]["u"].number(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) { return Outcome{{relative("T", expected, fogshop::average_depth(u), 1e-12)}}; }};
+}
+
+Check read_npsf(const Value& v) {
+  const double gamma = v["in"]["gamma"].number(), T = v["in"]["T"].number(), expected = v["value"].number();
+  return {"", [=](VerifyProfile) { return Outcome{{relative("NPSF", expected, fogshop::npsf(gamma, T), 1e-12)}}; }};
+}
+
+Check read_npsf_coefficient(const Value& v) {
+  const int l = int(v["in"]["l"].number());
+  const double T = v["in"]["T"].number(), expected = v["value"].number();
+  return {"",
+          [=](VerifyProfile) { return Outcome{{relative("g", expected, fogshop::npsf_coefficient(l, T), 1e-12)}}; }};
 }
 
 Check read_airlight_homogeneous(const Value& v) {

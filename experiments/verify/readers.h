@@ -18,6 +18,9 @@ Check read_single_scattering_gaussians(const Value&);
 
 // fogshop_kinds.cpp
 Check read_f(const Value&);
+Check read_average_depth(const Value&);
+Check read_npsf(const Value&);
+Check read_npsf_coefficient(const Value&);
 Check read_airlight_homogeneous(const Value&);
 Check read_airlight_paper(const Value&);
 

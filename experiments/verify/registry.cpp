@@ -49,9 +49,9 @@ Kinds fogshop() {
       {"airlight_homogeneous", read_airlight_homogeneous},
       {"airlight_scene", read_airlight_scene},
       {"airlight_paper", read_airlight_paper},
-      {"avg_depth", waiting("fogshop surface reflectance", {"in", "value"})},
-      {"npsf", waiting("fogshop surface reflectance", {"in", "value"})},
-      {"npsf_coef", waiting("fogshop surface reflectance", {"in", "value"})},
+      {"avg_depth", read_average_depth},
+      {"npsf", read_npsf},
+      {"npsf_coef", read_npsf_coefficient},
   };
 }
 

@@ -6,6 +6,10 @@ namespace airlight {
 // Scaled complementary error function exp(x^2) erfc(x). Relative error 2e-15 for all x; +inf below -26.6, 0 at +inf.
 double erfcx(double x);
 
+// Dawson's integral D(x) = exp(-x^2) times the integral of exp(t^2) over t in [0, x]; odd, about 1/(2x) far out.
+// Relative error 1e-14.
+double dawson(double x);
+
 // (1 - exp(-x)) / x, 1 at x = 0: the mean of exp(-s) over s in [0, x]. Any finite x, and +inf (0).
 double mean_exp_minus(double x);
 
