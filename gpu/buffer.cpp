@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "scene/error.h"
 
@@ -24,11 +23,7 @@ Buffer::Buffer(Context& context, const std::string& name, std::size_t bytes)
   gl.ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 
-Buffer::Buffer(Buffer&& other) noexcept
-    : context_(other.context_), name_(std::move(other.name_)), bytes_(other.bytes_), id_(std::exchange(other.id_, 0)) {}
-
 Buffer::~Buffer() {
-  if (id_ == 0) return;
   const Use use(*context_);
   context_->gl().DeleteBuffers(1, &id_);
 }

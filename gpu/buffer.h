@@ -20,7 +20,6 @@ class Buffer {
     upload(values);
   }
   ~Buffer();
-  Buffer(Buffer&&) noexcept;
   Buffer(const Buffer&) = delete;
 
   std::size_t bytes() const { return bytes_; }

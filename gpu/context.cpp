@@ -117,7 +117,6 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
-  gl_.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);  // row 0 is the top, as in a film
   egl_->release();
 }
 
@@ -142,14 +141,13 @@ Program& Context::program(const std::string& file, const std::map<std::string, s
   return *program;
 }
 
-Use::Use(Context& shared) : context(shared) {
-  context.mutex_.lock();
-  if (context.depth_++ == 0) context.egl_->make_current();
+Use::Use(Context& shared) : context(shared), lock_(shared.mutex_) {
+  if (context.depth_ == 0) context.egl_->make_current();
+  ++context.depth_;
 }
 
 Use::~Use() {
   if (--context.depth_ == 0) context.egl_->release();
-  context.mutex_.unlock();
 }
 
 }  // namespace airlight::gpu

@@ -71,6 +71,9 @@ class Use {
   ~Use();
   Use(const Use&) = delete;
   Context& context;
+
+ private:
+  std::unique_lock<std::recursive_mutex> lock_;
 };
 
 }  // namespace airlight::gpu
