@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000350831:0.00309997]
+set xrange [0.000348816:0.00324659]
 set logscale y
 set format y "%g"
 set yrange [0.000117423:1.05266]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000770566:0.00708576]
+set xrange [0.00077282:0.00730999]
 set logscale y
 set format y "%g"
 set yrange [0.000137106:0.375714]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000781031:0.00694508]
+set xrange [0.000798817:0.00697645]
 set logscale y
 set format y "%g"
 set yrange [0.000128982:0.184354]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000690502:0.00748362]
+set xrange [0.000692546:0.00712138]
 set logscale y
 set format y "%g"
 set yrange [3.11279e-05:0.0541759]

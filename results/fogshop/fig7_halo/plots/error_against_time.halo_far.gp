@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000260244:0.00739623]
+set xrange [0.000208615:0.00719427]
 set logscale y
 set format y "%g"
 set yrange [3.19286e-05:1.35993]
