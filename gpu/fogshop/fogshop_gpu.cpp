@@ -9,8 +9,8 @@
 #include "gpu/fogshop/passes.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/fogshop.h"
+#include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
-#include "methods/fogshop/surface_pass.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
@@ -37,6 +37,11 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
+    if (needs_.scattered) {
+      reflection_ = std::make_unique<fogshop::ScatteredReflection>(
+          options.sh_order, options.reflectance == fogshop::Options::Reflectance::npsf_by_depth);
+      timer.stage("harmonics of the NPSF");
+    }
     times_ = timer.times();
   }
 
@@ -54,6 +59,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   fogshop::Needs needs_;
   Context& context_;
   mutable FogOnDevice fog_;
+  std::unique_ptr<fogshop::ScatteredReflection> reflection_;  // null: left out
   std::vector<scene::StageTime> times_;
 };
 
@@ -71,18 +77,10 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   // Section 5.4, step 1: distances, by Embree.
   const std::size_t pixels = film.pixels();
   std::vector<float> distance;
-  std::vector<fogshop::SurfacePoint> points(pixels, fogshop::SurfacePoint{Point3::Zero(), Vec3::Zero(), -1});
+  fogshop::FirstHits hits;
   if (needs_.distances) {
-    distance.assign(pixels, far_away);
-    scene::parallel_rows(view.height, execution, [&](int y) {
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t i = std::size_t(y) * view.width + x;
-        const scene::RayEnd end =
-            scene::ray_end(*scene_, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
-        if (end.t < far_away) distance[i] = float(end.t);
-        if (end.hit) points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
-      }
-    });
+    hits = fogshop::first_hits(*scene_, view, execution);
+    for (const double t : hits.distance) distance.push_back(t < far_away ? float(t) : far_away);
     timer.stage("distances");
   }
 
@@ -105,18 +103,8 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs_.surfaces) {
-    scene::parallel_rows(view.height, execution, [&](int y) {
-      fogshop::Crossings crossings;
-      double evaluations = 0;
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t i = std::size_t(y) * view.width + x;
-        if (points[i].surface < 0) continue;
-        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-        const Rgb reflected =
-            fogshop::direct_reflection(*scene_, model_, points[i], -ray.direction, crossings, evaluations);
-        for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * reflected[c]);
-      }
-    });
+    surface_pass(*scene_, model_, reflection_.get(), view, hits.points, transmittance, execution, surface,
+                 needs_.scattered ? &film.add("reflected_airlight") : nullptr);
     timer.stage("surfaces");
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "methods/fogshop/airlight_pass.h"
+#include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
 #include "methods/fogshop/surface_pass.h"
 #include "scene/error.h"
@@ -41,6 +42,7 @@ class PreparedFogshop final : public scene::Prepared {
  private:
   std::shared_ptr<const Scene> scene_;
   Model model_;
+  std::unique_ptr<ScatteredReflection> reflection_;  // null: left out
   std::vector<scene::StageTime> times_;
 };
 
@@ -67,6 +69,11 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     model_.f_table = std::make_unique<FTable>();
     times_.push_back({"table of F", watch.lap()});
   }
+  if (needs.scattered) {
+    reflection_ = std::make_unique<ScatteredReflection>(options.sh_order,
+                                                        options.reflectance == Options::Reflectance::npsf_by_depth);
+    times_.push_back({"harmonics of the NPSF", watch.lap()});
+  }
 }
 
 scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
@@ -81,19 +88,10 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Section 5.4, step 1: distances.
   const std::size_t pixels = film.pixels();
-  std::vector<double> distance(pixels, infinity);
-  std::vector<SurfacePoint> points(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1});
   const Needs needs = needs_of(*scene_, model_);
+  FirstHits hits{std::vector<double>(pixels, infinity), {}};
   if (needs.distances) {
-    scene::parallel_rows(view.height, execution, [&](int y) {
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t i = std::size_t(y) * view.width + x;
-        const scene::RayEnd end =
-            scene::ray_end(*scene_, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
-        distance[i] = end.t;
-        if (end.hit) points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
-      }
-    });
+    hits = first_hits(*scene_, view, execution);
     result.times.push_back({"distances", watch.lap()});
   }
 
@@ -103,7 +101,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Step 6: airlight and T(v,p).
   if (needs.airlight) {
-    const AirlightImage image = airlight_pass(model_, view_model, view, distance, execution);
+    const AirlightImage image = airlight_pass(model_, view_model, view, hits.distance, execution);
     for (std::size_t i = 0; i < pixels; ++i) {
       const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
       for (int c = 0; c < 3; ++c) {
@@ -121,18 +119,8 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs.surfaces) {
-    std::vector<double> calls(view.height, 0.0);
-    scene::parallel_rows(view.height, execution, [&](int y) {
-      Crossings crossings;
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t i = std::size_t(y) * view.width + x;
-        if (points[i].surface < 0) continue;
-        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-        const Rgb reflected = direct_reflection(*scene_, model_, points[i], -ray.direction, crossings, calls[y]);
-        for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * reflected[c]);
-      }
-    });
-    for (double c : calls) evaluations += c;
+    evaluations += surface_pass(*scene_, model_, reflection_.get(), view, hits.points, transmittance, execution,
+                                surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
     result.times.push_back({"surfaces", watch.lap()});
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];

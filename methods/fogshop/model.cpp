@@ -35,6 +35,9 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("erf", "precise", {"precise", "erf10", "paper"}, "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
       choice("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
       real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
+      choice("reflectance", "direct", {"direct", "npsf", "npsfT"},
+             "of surfaces: unscattered light alone; scattered too, by the printed NPSF or by that of the depth"),
+      integer("sh_order", "6", 1, 12, "bands of the NPSF"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -54,6 +57,12 @@ Options read_options(const scene::Settings& settings) {
   o.cull = settings.text("cull") == "paper" ? Cull::paper : Cull::depth;
   o.depth_threshold = settings.real("eps_T");
   o.source_radius = settings.real("source_radius");
+  const std::string& reflectance = settings.text("reflectance");
+  using Reflectance = Options::Reflectance;
+  o.reflectance = reflectance == "direct" ? Reflectance::direct
+                  : reflectance == "npsf" ? Reflectance::npsf
+                                          : Reflectance::npsf_by_depth;
+  o.sh_order = int(settings.integer("sh_order"));
   return o;
 }
 

@@ -25,6 +25,10 @@ struct Options {
   Cull cull = Cull::depth;
   double depth_threshold = 1e-4;  // eps_T
   double source_radius = 0;       // [m]
+  // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, or by that of the depth at hand.
+  enum class Reflectance { direct, npsf, npsf_by_depth };
+  Reflectance reflectance = Reflectance::direct;
+  int sh_order = 6;  // bands of the NPSF
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -25,6 +25,7 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.f_table = model.paper() && model.options.table && lit && constant;
   needs.airlight = gaussians || constant;
   needs.surfaces = !scene.surfaces.empty() && lit;
+  needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
   return needs;
 }
 
@@ -77,8 +78,14 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   stage("shadows of surfaces in the medium", false,
         scene.surfaces.empty() ? "there are no surfaces"
                                : "the method does not know them: airlight behind an occluder is not darkened");
-  stage("airlight reflected by surfaces", false,
-        scene.surfaces.empty() ? "there are no surfaces" : "Eqs. 18 to 27 are not built yet");
+  stage("airlight reflected by surfaces", needs.scattered,
+        scene.surfaces.empty()                          ? "there are no surfaces"
+        : !lit                                          ? no_lights
+        : !needs.airlight                               ? "there is no medium"
+        : o.reflectance == Options::Reflectance::direct ? "reflectance = direct"
+        : o.reflectance == Options::Reflectance::npsf
+            ? fmt::format("Eq. 25, {} bands of the printed NPSF; occluders do not shadow it", o.sh_order)
+            : fmt::format("Eq. 25, {} bands of the NPSF of each depth; occluders do not shadow it", o.sh_order));
   return stages;
 }
 

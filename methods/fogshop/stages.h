@@ -11,6 +11,7 @@ struct Needs {
   bool f_table;        // the paper's table of F
   bool airlight;       // there is a medium
   bool surfaces;       // something to light
+  bool scattered;      // light that the medium scatters onto surfaces
 };
 Needs needs_of(const scene::Scene&, const Model&);
 

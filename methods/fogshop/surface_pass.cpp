@@ -1,6 +1,9 @@
 #include "methods/fogshop/surface_pass.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include "methods/fogshop/scattered_reflection.h"
 
 namespace airlight::fogshop {
 
@@ -21,6 +24,45 @@ Rgb direct_reflection(const scene::Scene& scene, const Model& model, const Surfa
     radiance += reflectance * cosine * in.irradiance * (-depth * model.fog.hue).exp();
   }
   return radiance;
+}
+
+FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const scene::Execution& execution) {
+  const std::size_t pixels = std::size_t(view.width) * view.height;
+  FirstHits hits{std::vector<double>(pixels, infinity),
+                 std::vector<SurfacePoint>(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1})};
+  scene::parallel_rows(view.height, execution, [&](int y) {
+    for (int x = 0; x < view.width; ++x) {
+      const std::size_t i = std::size_t(y) * view.width + x;
+      const scene::RayEnd end =
+          scene::ray_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
+      hits.distance[i] = end.t;
+      if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
+    }
+  });
+  return hits;
+}
+
+double surface_pass(const scene::Scene& scene, const Model& model, const ScatteredReflection* reflection,
+                    const scene::View& view, const std::vector<SurfacePoint>& points,
+                    const std::vector<float>& transmittance, const scene::Execution& execution,
+                    std::vector<float>& surface, std::vector<float>* scattered) {
+  std::vector<double> calls(view.height, 0.0);
+  scene::parallel_rows(view.height, execution, [&](int y) {
+    Crossings crossings;
+    for (int x = 0; x < view.width; ++x) {
+      const std::size_t i = std::size_t(y) * view.width + x;
+      if (points[i].surface < 0) continue;
+      const Vec3 to_view = -camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
+      Rgb radiance = direct_reflection(scene, model, points[i], to_view, crossings, calls[y]);
+      if (reflection) {
+        const Rgb part = (*reflection)(scene, model, points[i], to_view, crossings, calls[y]);
+        for (int c = 0; c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
+        radiance += part;
+      }
+      for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * radiance[c]);
+    }
+  });
+  return std::accumulate(calls.begin(), calls.end(), 0.0);
 }
 
 }  // namespace airlight::fogshop

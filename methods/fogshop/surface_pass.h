@@ -1,5 +1,5 @@
 // Surfaces seen through the medium: Zhou et al. 2007, Eq. 29, with L_p lit by the lights through the medium (the second
-// term of Eq. 19). The scattered light that Eqs. 18 to 27 add to it joins here.
+// term of Eq. 19) and by what the medium scatters (scattered_reflection.h). Both backends use it.
 #pragma once
 #include <vector>
 
@@ -15,9 +15,25 @@ struct SurfacePoint {
   int surface;
 };
 
+// Section 5.4, step 1: what ends the camera rays.
+struct FirstHits {
+  std::vector<double> distance;      // d_vp [m] of every pixel; infinite where nothing is hit
+  std::vector<SurfacePoint> points;  // surface < 0: none
+};
+FirstHits first_hits(const scene::Scene&, const scene::View&, const scene::Execution&);
+
 // L_p [W/m^2/sr] towards `view`: sum over the lights of brdf cos I/d^2 e^(-T(s,p)), 0 where another surface is in the
 // way.
 Rgb direct_reflection(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
                       double& evaluations);
+
+class ScatteredReflection;
+
+// Steps 4 and 7: L = e^-T L_p of every pixel that a surface ends, into `surface`; the part of it that the medium had
+// scattered into `scattered` too, if there is a `reflection`. Other pixels are left alone. Returns calls of the error
+// function.
+double surface_pass(const scene::Scene&, const Model&, const ScatteredReflection* reflection, const scene::View&,
+                    const std::vector<SurfacePoint>&, const std::vector<float>& transmittance, const scene::Execution&,
+                    std::vector<float>& surface, std::vector<float>* scattered);
 
 }  // namespace airlight::fogshop

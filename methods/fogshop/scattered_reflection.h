@@ -1,0 +1,39 @@
+// Light that the medium scatters onto a surface, reflected: Zhou et al. 2007, section 4, Eqs. 18 to 25, for point
+// lights.
+//
+// A point light at optical depth T reaches a surface unscattered, I/d^2 e^-T from one direction, and spread around it:
+// I/d^2 T e^-T NPSF. The spread light is kept in zonal harmonics around the light's direction; their inner product with
+// the reflectance is the integral of the reflectance times a polynomial (Eq. 20 without the visibility of occluders).
+// Taking the medium between light and surface as homogeneous is the paper's approximation; it is exact where it is so
+// everywhere.
+#pragma once
+#include <vector>
+
+#include "methods/fogshop/surface_pass.h"
+
+namespace airlight::fogshop {
+
+class ScatteredReflection {
+ public:
+  // `follows_depth`: g_l of the depth at hand, from a table (improved); else those of T = 1 for every depth, as
+  // printed. `order` bands, 1 to 12; the paper uses 4 to 6.
+  ScatteredReflection(int order, bool follows_depth);
+
+  // L_p of the scattered light alone [W/m^2/sr] towards `to_view`, the medium's albedo included.
+  Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
+                 double& evaluations) const;
+
+  // g_l, l < order, at depth T.
+  std::vector<double> bands(double T) const;
+  // Integral of brdf * cosine * (the light spread by these bands around `to_light`) over the hemisphere, per channel.
+  // Lambert in closed form; others by 512 directions, which resolve Phong exponents up to about 50.
+  static Rgb reflect(const scene::Material&, const Vec3& normal, const Vec3& to_view, const Vec3& to_light,
+                     const std::vector<double>& bands);
+
+ private:
+  int order_;
+  bool follows_depth_;
+  std::vector<std::vector<double>> table_;  // by log T
+};
+
+}  // namespace airlight::fogshop
