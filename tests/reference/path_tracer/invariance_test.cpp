@@ -198,7 +198,7 @@ TEST_CASE("forced first collisions change the noise and nothing else", "[path_tr
   const Box unit{{-1, -1, -1}, {1, 1, 1}};
   const scene::Light inside = scene::PointLight{{0.3, 0.5, -0.2}};
   int index = 100;
-  double share_of_time = 0;
+  double share_of_error = 0;
   for (const Rgb& sigma : {Rgb(0.02, 0.02, 0.02), Rgb(1, 1, 1), Rgb(0.1, 0.7, 3), Rgb(0.01, 0.2, 4)})
     for (const bool varies : {false, true})
       for (const auto& lights : {std::vector<scene::Light>{white()}, {white(), inside}, {inside}}) {
@@ -216,9 +216,9 @@ TEST_CASE("forced first collisions change the noise and nothing else", "[path_tr
         check_equal(results[0].orders[1], results[1].orders[1], 0.2);
         check_equal(results[0].orders[2], results[1].orders[2], 0.5);
         if (lights.size() == 1 && scene::light_name(lights[0]) == "environment" && sigma[0] == 0.02)
-          share_of_time = std::max(share_of_time, results[1].total.error[0] / results[0].total.error[0]);
+          share_of_error = std::max(share_of_error, results[1].total.error[0] / results[0].total.error[0]);
       }
-  CHECK(share_of_time < 0.5);  // in thin media: an eighth of the variance
+  CHECK(share_of_error < 0.5);  // thin media: eight tries, so about an eighth of the variance; a quarter is asked
 }
 
 // Stress case 31.
