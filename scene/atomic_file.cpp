@@ -30,15 +30,70 @@ int write_all(int descriptor, std::string_view bytes) {
   return 0;
 }
 
+std::string folder_of(const std::string& target) {
+  const std::string folder = std::filesystem::path(target).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// A name beside `target` that no other process or call picks.
+std::string temporary_name(const std::string& target) {
+  static std::atomic<unsigned> counter{0};
+  return fmt::format("{}.{}-{}.tmp", target, ::getpid(), counter++);
+}
+
 // Opens a new file beside `target`; a name left behind by a killed process is stepped over.
 int open_temporary(const std::string& target, std::string& name) {
-  static std::atomic<unsigned> counter{0};
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    name = fmt::format("{}.{}-{}.tmp", target, ::getpid(), counter++);
+    name = temporary_name(target);
     const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 || errno != EEXIST) return descriptor;
   }
   return -1;
+}
+
+// Writes everything and flushes it to the disk. Returns 0 or an errno.
+int fill(int descriptor, std::string_view bytes) {
+  const int error = write_all(descriptor, bytes);
+  // EINVAL: a file system that has nothing to flush.
+  if (error == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) return errno;
+  return error;
+}
+
+// The file has no name before it is whole, so a process killed on the way leaves nothing behind. False where the system
+// has no such files; nothing was changed then.
+bool write_unnamed(const std::string& target, std::string_view bytes, int& error) {
+  const int descriptor = ::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return false;
+  error = fill(descriptor, bytes);
+  bool named = true;
+  if (error == 0) {
+    const std::string self = fmt::format("/proc/self/fd/{}", descriptor);
+    const auto link_to = [&](const std::string& name) {
+      return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
+    if (!link_to(target)) {
+      // There is an old file: only a rename replaces it.
+      const std::string temporary = temporary_name(target);
+      named = errno == EEXIST && link_to(temporary);
+      if (named && ::rename(temporary.c_str(), target.c_str()) != 0) {
+        error = errno;
+        ::unlink(temporary.c_str());
+      }
+    }
+  }
+  ::close(descriptor);
+  return named;
+}
+
+int write_named(const std::string& target, std::string_view bytes) {
+  std::string temporary;
+  const int descriptor = open_temporary(target, temporary);
+  if (descriptor < 0) return errno;
+  int error = fill(descriptor, bytes);
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) ::unlink(temporary.c_str());
+  return error;
 }
 
 void write_directly(const std::string& path, std::string_view bytes) {
@@ -51,8 +106,7 @@ void write_directly(const std::string& path, std::string_view bytes) {
 
 // The rename is on the disk once the folder is. A file system that cannot do this has still done the rename.
 void flush_folder(const std::string& target) {
-  const std::string folder = std::filesystem::path(target).parent_path().string();
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
@@ -72,18 +126,9 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
     if (!ignored) target = resolved.string();
   }
 
-  std::string temporary;
-  const int descriptor = open_temporary(target, temporary);
-  if (descriptor < 0) fail(path, errno);
-  int error = write_all(descriptor, bytes);
-  // EINVAL: a file system that has nothing to flush.
-  if (error == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) error = errno;
-  if (::close(descriptor) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    fail(path, error);
-  }
+  int error = 0;
+  if (!write_unnamed(target, bytes, error)) error = write_named(target, bytes);
+  if (error != 0) fail(path, error);
   flush_folder(target);
 }
 

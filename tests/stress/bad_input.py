@@ -3,7 +3,7 @@
 NaN, missing; outputs that cannot be written; kill -9 in the middle. Each must end with the exit code it should, with one
 clear line on standard error, without a signal and without a temporary file left behind.
 
-usage: bad_input.py PROGRAM SOURCE_FOLDER [WORD]   (WORD: only cases whose name contains it)
+usage: bad_input.py PROGRAM SOURCE_FOLDER [WORD]   (WORD: only cases whose name contains it, each with its answer)
 """
 import concurrent.futures
 import os
@@ -18,6 +18,7 @@ import time
 
 PROGRAM, SOURCE = (os.path.abspath(p) for p in sys.argv[1:3])
 WORD = sys.argv[3] if len(sys.argv) > 3 else ''
+VERBOSE = len(sys.argv) > 3  # else only what fails is printed: a log is read from its end
 DATA = os.path.join(SOURCE, 'experiments', 'data')
 WORK = pathlib.Path(tempfile.mkdtemp(prefix='airlight_bad_input_', dir='/dev/shm' if os.access('/dev/shm', os.W_OK)
                                      and 'TMPDIR' not in os.environ else None))
@@ -32,7 +33,13 @@ def run(arguments, timeout=60, **more):
 
 def fail(name, text):
     failures.append(name)
-    print(f'FAILED {name}: {text}', flush=True)
+    sys.stdout.write(f'FAILED {name}: {text}\n')  # one write: two threads print
+    sys.stdout.flush()
+
+
+def ok(name, text):
+    if VERBOSE:
+        sys.stdout.write(f'ok     {name}: {text}\n')
 
 
 def case(name, arguments, code=2, says='', other_codes=(), **more):
@@ -48,9 +55,11 @@ def check(item):
         done = run(arguments, **more)
     except subprocess.TimeoutExpired:
         return fail(name, 'hangs')
+    except (OSError, subprocess.SubprocessError) as reason:
+        return fail(name, f'could not be started: {reason!r}')
     error = done.stderr.decode(errors='replace')
     if done.returncode in other_codes and done.returncode == 0 and not error:
-        return print(f'ok     {name}: accepted', flush=True)
+        return ok(name, 'accepted')
     lines = error.splitlines()
     if done.returncode != code and done.returncode not in other_codes:
         return fail(name, f'exit code {done.returncode}, expected {code}: {error[:300]!r}')
@@ -60,7 +69,7 @@ def check(item):
         return fail(name, f'not a clear line: {lines[0][:400]!r}')
     if says not in lines[0]:
         return fail(name, f'does not say {says!r}: {lines[0]!r}')
-    print(f'ok     {name}: {lines[0]}', flush=True)
+    ok(name, lines[0])
 
 
 def write(name, content):
@@ -315,7 +324,7 @@ def same_pictures(name, one, other):
             bits.append((WORK / 'looked.pfm').read_bytes())
         if bits[0] != bits[1]:
             return fail(name, f'layer {layer} differs')
-    print(f'ok     {name}: same bits', flush=True)
+    ok(name, 'same bits')
 
 
 def kill_and_resume():
@@ -365,7 +374,7 @@ def kill_and_resume():
         bits.append((WORK / f'bits{i}.pfm').read_bytes())
     if bits[0] != bits[1]:
         return fail('kill, experiment', 'the references differ')
-    print(f'ok     kill, experiment ({seconds:.1f} s, killed {kills} times): same bits', flush=True)
+    ok('kill, experiment', f'{seconds:.1f} s, killed {kills} times: same bits')
 
 
 def main():
