@@ -40,9 +40,8 @@ void main() {
         float distance_ = length(offset);
         Crossing towards = cross_line(g, lights[l].position, offset / max(distance_, 1e-30), distance_);
         // Eqs. 11 to 13, exponents added before the exponential. What lies beyond its radius still counts here.
-        float light_part = towards.depth * max(erf(g.a * (distance_ - towards.middle)) + towards.base, 0);
         float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
-                         light_part - before;
+                         depth_at(towards, distance_) - before;
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
         sum[l] += hue * weight * exp(hue * exponent);
       }

@@ -80,13 +80,17 @@ FogOnDevice::FogOnDevice(Context& context, const fogshop::Model& model)
                             : 0) {}
 
 Program& FogOnDevice::program(const char* file, std::map<std::string, std::string> definitions) {
-  const fogshop::ErfTable erf = fogshop::erf_table(model_.options.erf);
-  std::vector<std::string> coefficients;
-  for (const double c : erf.coefficients) coefficients.push_back(fmt::format("{:.9e}", c));
-  definitions["ERF_CUT"] = fmt::format("{:.9e}", erf.cut);
-  definitions["ERF_SCALE"] = fmt::format("{:.9e}", erf.scale);
-  definitions["ERF_COUNT"] = std::to_string(coefficients.size());
-  definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
+  if (model_.options.erf == fogshop::Erf::precise) {
+    definitions["ERF_COUNT"] = "0";  // the shader's own, for single precision
+  } else {
+    const fogshop::ErfTable erf = fogshop::erf_table(model_.options.erf);
+    std::vector<std::string> coefficients;
+    for (const double c : erf.coefficients) coefficients.push_back(fmt::format("{:.9e}", c));
+    definitions["ERF_CUT"] = fmt::format("{:.9e}", erf.cut);
+    definitions["ERF_SCALE"] = fmt::format("{:.9e}", erf.scale);
+    definitions["ERF_COUNT"] = std::to_string(coefficients.size());
+    definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
+  }
   Program& p = context_.program(file, definitions);
   p.set("gaussian_count", model_.gaussians.count);
   p.set("constant", model_.fog.sum.constant);

@@ -20,6 +20,7 @@ const int node_room = even_steps + 1 + LIGHTS * light_steps;
 
 float node[node_room], share[node_room];
 float edge[K + 1], view_depth[K + 1], depth_of_light[K + 1];
+float slice_depth[K];  // not differences of view_depth: those lose the tails of the Gaussians
 
 // Optical depth of all Gaussians between two points.
 float gaussian_depth(vec3 from, vec3 to) {
@@ -56,7 +57,8 @@ vec3 sum_slices(LightFromRay seen, int stride) {
     if (!(length_ > 0)) continue;
     float xa = t0 - seen.along, xb = t1 - seen.along;
     float mean_inverse_square = angle_of(h * length_, h * h + xa * xb) / (h * length_);
-    float step_ = max(view_depth[k + stride] - view_depth[k], 0);
+    float step_ = slice_depth[k];
+    if (stride == 2) step_ += slice_depth[k + 1];
     float s0 = view_depth[k] + depth_of_light[k], s1 = view_depth[k + stride] + depth_of_light[k + stride];
     vec3 e0 = exp(-hue * s0), q = hue * (s1 - s0);
     vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
@@ -146,16 +148,24 @@ void main() {
   edge[0] = lo;
   edge[K] = hi;
 
-  // Exact depths at the edges.
-  for (int k = 0; k <= K; ++k) view_depth[k] = constant * edge[k];
+  // Exact depths of the slices, and up to their edges.
+  view_depth[0] = constant * edge[0];
+  for (int k = 0; k < K; ++k) slice_depth[k] = constant * (edge[k + 1] - edge[k]);
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
       Crossing c = cross_line(near_block[i], origin, direction, end);
       if (!c.met) continue;
-      for (int k = 0; k <= K; ++k) view_depth[k] += depth_at(c, edge[k]);
+      Place begin = place_at(c, edge[0]);
+      view_depth[0] += c.depth * erf_between(c.start, begin);
+      for (int k = 0; k < K; ++k) {
+        Place end_ = place_at(c, edge[k + 1]);
+        slice_depth[k] += c.depth * erf_between(begin, end_);
+        begin = end_;
+      }
     }
   }
+  for (int k = 0; k < K; ++k) view_depth[k + 1] = view_depth[k] + slice_depth[k];
 
   vec3 airlight = vec3(0);
   for (int l = 0; l < LIGHTS && sliced; ++l) {

@@ -49,9 +49,10 @@ TEST_CASE("fogshop: GPU agrees with CPU", "[gpu]") {
   for (const char* name : {"f100_thin", "f100", "f100_constant", "a30", "a100", "halo_far", "halo_near", "d100_thick",
                            "tube", "count_251"}) {
     const auto scene = scene_named(name);
-    for (Pairs given : {Pairs{{"variant", "paper"}}, Pairs{{"K", "24"}}, Pairs{{"K", "12"}, {"extrapolate", "false"}},
+    for (Pairs given : {Pairs{{"variant", "paper"}}, Pairs{{"K", "24"}}, Pairs{{"erf", "precise"}},
+                        Pairs{{"K", "12"}, {"extrapolate", "false"}},
                         Pairs{{"K", "13"}, {"extrapolate", "false"}, {"edges", "plain"}}}) {
-      given["erf"] = "erf10";  // the same approximation on both sides
+      given.emplace("erf", "erf10");  // the same approximation on both sides; `precise` differs by 3.3e-7
       const scene::Film a = render(cpu, scene, given), b = render(gpu, scene, given);
       CAPTURE(name, given);
       const double error = p99(a, b, "airlight");
