@@ -260,6 +260,7 @@ Measure measure_values(const std::string& base, const Values& v) {
   const bool noisy = v.batch_count() > 0;
   if (v.size() == 0) return {"", nan, nan, nan, nan, false};
   if (base == "p95") return percentile(v, 0.95);
+  if (base == "p99") return percentile(v, 0.99);
   if (base == "p999") return percentile(v, 0.999);
   if (base == "bias") {
     const Estimate e = with_interval(v, signed_bias);
@@ -290,8 +291,8 @@ Measure measure_values(const std::string& base, const Values& v) {
 }  // namespace
 
 const std::vector<std::string>& metric_names() {
-  static const std::vector<std::string> names = {"rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse", "bias",
-                                                 "p95",  "p999"};
+  static const std::vector<std::string> names = {
+      "rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse", "bias", "p95", "p99", "p999"};
   return names;
 }
 

@@ -121,7 +121,8 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
 }
 
 std::string Context::description() const {
-  return fmt::format("{}, OpenGL {} ({})", attempt_.renderer, attempt_.version, attempt_.place.name);
+  return fmt::format("{}, OpenGL {} ({}{})", attempt_.renderer, attempt_.version, attempt_.place.name,
+                     software() ? "; a processor, no GPU" : "");
 }
 
 bool Context::software() const { return attempt_.place.software; }

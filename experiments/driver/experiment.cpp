@@ -35,10 +35,10 @@ class Reader {
   Experiment read() {
     TableReader top(toml_, "");
     const bool oracles = toml_["kind"].value_or(std::string()) == "oracles";
-    top.allow(oracles
-                  ? std::vector<std::string>{"kind", "title", "paper", "about", "vectors"}
-                  : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "scene", "method",
-                                             "reference", "timing", "plot", "gate", "speed_up", "expected", "profile"});
+    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "vectors"}
+                      : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "stages",
+                                                 "scene", "method", "reference", "timing", "plot", "gate", "speed_up",
+                                                 "expected", "profile"});
     experiment_.kind = top.choice("kind", {"images", "oracles"}, "images");
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
@@ -48,6 +48,7 @@ class Reader {
       return experiment_;
     }
     experiment_.layer = top.text("layer", "mean");
+    experiment_.stages = top.flag("stages", false);
     experiment_.metrics = strings(toml_, "metrics", top);
     for (const std::string& metric : experiment_.metrics) check_metric_name(metric, position("metrics"));
     Pairs overrides, reference_settings;

@@ -75,6 +75,7 @@ struct Experiment {
   std::string layer = "mean";
   std::vector<std::string> metrics;
   TimingRule timing;
+  bool stages = false;  // a table of the time of every stage
   std::vector<PlotCase> plots;
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;

@@ -72,6 +72,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
                                {"samples", r.samples},
                                {"from_cache", r.cached}});
   j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
+  if (e.stages) j["tables"].push_back({{"file", "stages.csv"}, {"title", "Stages"}});
   if (!e.expected.empty()) j["tables"].push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
   if (!e.speed_ups.empty()) j["tables"].push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
   j["plots"] = json::array();

@@ -44,6 +44,7 @@ json to_json(const Row& row) {
             {"seconds_mad", row.mad},
             {"prepare_seconds", row.prepare_seconds},
             {"stages", stages},
+            {"device", row.device},
             {"counters", row.counters},
             {"image", row.image},
             {"exposure", row.exposure}};
@@ -65,6 +66,7 @@ Row row_from_json(const json& j) {
   text("reference", row.reference_key);
   text("note", row.note);
   text("image", row.image);
+  text("device", row.device);
   for (const json& m : j.at("errors"))
     row.measures.push_back({m.at("metric"), number(m.at("value")), number(m.at("low")), number(m.at("high")),
                             number(m.at("noise_floor")), m.at("below_noise_floor")});

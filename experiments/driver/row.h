@@ -23,7 +23,8 @@ struct Row {
   double coverage = 0;        // of that interval
   double mad = 0;             // [s], times 1.4826
   double prepare_seconds = 0;
-  std::vector<std::pair<std::string, double>> stages;  // [s] of one render
+  std::vector<std::pair<std::string, double>> stages;  // [s] of one render, median of the runs
+  std::string device;                                  // that computed it, if not the processor
   std::map<std::string, double> counters;
   std::string image;  // file below results/images, without extension
   double exposure = 0;

@@ -198,10 +198,15 @@ class Run {
       return;
     }
     const auto reasons = renderer.supports(*scene, settings);
-    if (reasons.empty())
-      measure_row(row, m, scene, masks, reference, renderer, settings);
-    else
+    if (reasons.empty()) {
+      try {
+        measure_row(row, m, scene, masks, reference, renderer, settings);
+      } catch (const Unavailable& reason) {
+        row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
+      }
+    } else {
       row.note = "not supported: " + reasons.front();
+    }
     journal_.add(row);
     outcome_.rows.push_back(row);
     say(row, "done");
@@ -224,11 +229,13 @@ class Run {
       spent += preparations.back();
     }
     row.prepare_seconds = median(preparations);
+    for (const scene::Stage& stage : prepared->stages())
+      if (stage.name == "device") row.device = stage.reason;
+    if (!row.device.empty()) prepared->render(view, execution);  // drivers compile shaders when they are used first
     const auto start = Clock::now();
     scene::Rendering rendering = prepared->render(view, execution);
     const double first = since(start);
     check_interrupted();  // what a stopped renderer kept is no row
-    for (const scene::StageTime& stage : rendering.times) row.stages.emplace_back(stage.name, stage.seconds);
     row.counters = rendering.counters;
     const std::string& layer = experiment().layer;
     if (m.layer != layer) rendering.film.layers[layer] = rendering.film.layer(m.layer);
@@ -241,10 +248,13 @@ class Run {
     if (!reference) row.exposure = exposure_of(rendering.film, layer);
     keep_picture(results_ / "images", row.image, rendering.film, m.layer, row.exposure);
     const scene::Execution timed = quiet_execution(rule.threads);
+    StageTimes stages;
+    stages.add(rendering.times);
     const Timing timing = time_runs(rule, first, [&] {
-      prepared->render(view, timed);
+      stages.add(prepared->render(view, timed).times);
       check_interrupted();
     });
+    row.stages = stages.medians();
     row.seconds = timing.seconds;
     row.coverage = timing.coverage;
     row.mad = timing.mad;
@@ -271,6 +281,7 @@ class Run {
     };
     put("table.csv", table_csv(outcome_));
     put("summary.csv", summary_csv(outcome_));
+    if (experiment().stages) put("stages.csv", stages_csv(outcome_));
     if (!experiment().expected.empty()) put("expected.csv", expected_csv(outcome_));
     if (!experiment().speed_ups.empty()) put("speed_up.csv", speed_up_csv(outcome_));
     put("table.md", table_markdown(outcome_, plots));

@@ -36,6 +36,14 @@ std::string time_text(const Row& row) {
   return fmt::format("{} [{}, {}]", duration(row.seconds.value), duration(row.seconds.low), duration(row.seconds.high));
 }
 
+// The name alone, and a warning where its times are not those of a GPU; the whole description stands in the conditions.
+std::string device_text(const Row& row) {
+  if (row.runs == 0) return "";
+  if (row.device.empty()) return "CPU";
+  const std::string name = row.device.substr(0, std::min(row.device.find(" ("), row.device.find(',')));
+  return row.device.find("no GPU") == std::string::npos ? name : name + ", no GPU";
+}
+
 bool any(const Outcome& outcome, bool (*has)(const Row&)) {
   return std::any_of(outcome.rows.begin(), outcome.rows.end(), has);
 }
@@ -45,6 +53,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
   const bool parameter = any(outcome, [](const Row& r) { return r.parameter.has_value(); });
   const bool setting = any(outcome, [](const Row& r) { return !r.setting.empty(); });
   const bool note = any(outcome, [](const Row& r) { return !r.note.empty(); });
+  const bool device = any(outcome, [](const Row& r) { return !r.device.empty(); });
   Cells head{"scene"};
   if (parameter) head.push_back("parameter");
   head.push_back("method");
@@ -54,6 +63,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
   const bool compared = !outcome.experiment.metrics.empty();
   const std::vector<bool> best = on_front(outcome);
   if (compared) head.push_back("front");
+  if (device) head.push_back("device");
   if (note) head.push_back("note");
   std::vector<Cells> lines{head};
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
@@ -70,7 +80,31 @@ std::vector<Cells> summary(const Outcome& outcome) {
     line.push_back(time_text(row));
     line.push_back(row.runs ? duration(row.prepare_seconds) : "");
     if (compared) line.push_back(best[i] ? "yes" : "");
+    if (device) line.push_back(device_text(row));
     if (note) line.push_back(row.note);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+// Milliseconds of every stage of every row, header first.
+std::vector<Cells> stage_table(const Outcome& outcome) {
+  std::vector<std::string> names;
+  for (const Row& row : outcome.rows)
+    for (const auto& [name, seconds] : row.stages)
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  Cells head{"scene", "method", "frames per second"};
+  for (const std::string& name : names) head.push_back(name + " [ms]");
+  std::vector<Cells> lines{head};
+  for (const Row& row : outcome.rows) {
+    if (row.runs == 0) continue;
+    Cells line{row.scene, row.setting.empty() ? row.method : row.method + " " + row.setting,
+               fmt::format("{:.3g}", 1 / row.seconds.value)};
+    for (const std::string& name : names) {
+      const auto found =
+          std::find_if(row.stages.begin(), row.stages.end(), [&](const auto& stage) { return stage.first == name; });
+      line.push_back(found == row.stages.end() ? "" : fmt::format("{:.3g}", 1e3 * found->second));
+    }
     lines.push_back(line);
   }
   return lines;
@@ -91,7 +125,8 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
     if (row.scene == e.scene && row.method == e.method && (e.setting.empty() || row.setting == e.setting)) {
       for (const Measure& m : row.measures)
         if (m.name == e.metric) return text(m);
-      if (e.metric == "seconds") return time_text(row);
+      if (e.metric == "seconds" && row.runs > 0)
+        return fmt::format("{}, {:.3g} per second", time_text(row), 1 / row.seconds.value);
     }
   return "not in this profile";
 }
@@ -154,6 +189,8 @@ std::string table_csv(const Outcome& outcome) {
 
 std::string summary_csv(const Outcome& outcome) { return csv(summary(outcome)); }
 
+std::string stages_csv(const Outcome& outcome) { return outcome.experiment.stages ? csv(stage_table(outcome)) : ""; }
+
 std::string expected_csv(const Outcome& outcome) {
   return outcome.experiment.expected.empty() ? "" : csv(expected(outcome));
 }
@@ -170,6 +207,9 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   if (!outcome.complete)
     out += "This run is not complete: it was interrupted, or a scene failed. Rows are missing.\n\n";
   out += (table.empty() ? markdown(summary(outcome)) : table) + "\n";
+  if (e.stages)
+    out += "## Stages\n\nOf one render, median of the runs; a blank is a stage that the row does not have.\n\n" +
+           markdown(stage_table(outcome)) + "\n";
   if (!e.expected.empty()) {
     out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";
   }
@@ -187,6 +227,10 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   for (const ReferenceInfo& r : outcome.references)
     out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once.\n", r.scene, r.renderer, r.settings,
                        r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds));
+  std::set<std::string> devices;
+  for (const Row& row : outcome.rows)
+    if (!row.device.empty()) devices.insert(row.device);
+  for (const std::string& device : devices) out += fmt::format("- Device: {}.\n", device);
   out += fmt::format(
       "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
       "precomputation apart. front: no other row of the scene is both faster and closer in the first metric, beyond "

@@ -16,6 +16,7 @@ struct PlotFile {
 
 std::string table_csv(const Outcome&);
 std::string summary_csv(const Outcome&);
+std::string stages_csv(const Outcome&);    // time of every stage; empty without `stages`
 std::string expected_csv(const Outcome&);  // printed and measured; empty without [[expected]]
 std::string speed_up_csv(const Outcome&);  // empty without [[speed_up]]
 // `table` replaces the table of rows if it is not empty.

@@ -39,4 +39,20 @@ Timing time_runs(const TimingRule& rule, double first, const std::function<void(
           sigma_per_mad * median_absolute_deviation(times), int(times.size())};
 }
 
+void StageTimes::add(const std::vector<scene::StageTime>& times) { runs_.push_back(times); }
+
+std::vector<std::pair<std::string, double>> StageTimes::medians() const {
+  std::vector<std::pair<std::string, double>> result;
+  if (runs_.empty()) return result;
+  const std::size_t first = runs_.size() > 1 ? 1 : 0;
+  for (const scene::StageTime& stage : runs_[first]) {
+    std::vector<double> seconds;
+    for (std::size_t run = first; run < runs_.size(); ++run)
+      for (const scene::StageTime& t : runs_[run])
+        if (t.name == stage.name) seconds.push_back(t.seconds);
+    result.emplace_back(stage.name, median(seconds));
+  }
+  return result;
+}
+
 }  // namespace airlight::experiments

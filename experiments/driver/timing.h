@@ -5,6 +5,7 @@
 
 #include "experiments/driver/experiment.h"
 #include "experiments/statistics.h"
+#include "scene/renderer.h"
 
 namespace airlight::experiments {
 
@@ -19,5 +20,16 @@ struct Timing {
 // Rule: warm up until the rule's time is spent or the median of the last runs moves less than 1 %, then at least
 // `runs` (5 where one takes longer than a second), fewer if the budget ends.
 Timing time_runs(const TimingRule&, double first, const std::function<void()>& job);
+
+// Times of the stages of several renders, by name in the order of their first appearance.
+class StageTimes {
+ public:
+  // The first render warms up: its times count only if there is no other.
+  void add(const std::vector<scene::StageTime>&);
+  std::vector<std::pair<std::string, double>> medians() const;  // [s]
+
+ private:
+  std::vector<std::vector<scene::StageTime>> runs_;
+};
 
 }  // namespace airlight::experiments

@@ -197,6 +197,7 @@ TEST_CASE("rows survive their record", "[driver]") {
   row.seconds = {1, 0.5, 2};
   row.counters = {{"rays", 12}};
   row.stages = {{"slices", 0.25}};
+  row.device = "somewhere";
   row.measures.push_back({"p95", std::nan(""), std::nan(""), std::nan(""), 0, false});
   const Row back = row_from_json(nlohmann::json::parse(to_json(row).dump()));
   CHECK(to_json(back).dump() == to_json(row).dump());
@@ -217,6 +218,17 @@ TEST_CASE("timed runs follow the rule", "[driver]") {
   const Timing warmed = time_runs({31, 0.02, 60, 0}, 0, [&] { ++count; });
   CHECK(warmed.runs == 31);
   CHECK(count > 31);  // warm-up runs are not counted
+}
+
+TEST_CASE("times of stages are medians of the warm runs", "[driver]") {
+  StageTimes times;
+  CHECK(times.medians().empty());
+  times.add({{"a", 9}, {"b", 8}});
+  CHECK(times.medians() == std::vector<std::pair<std::string, double>>{{"a", 9}, {"b", 8}});
+  times.add({{"a", 1}, {"b", 2}});
+  times.add({{"a", 3}, {"b", 7}});
+  times.add({{"a", 2}});  // b was left out
+  CHECK(times.medians() == std::vector<std::pair<std::string, double>>{{"a", 2}, {"b", 4.5}});
 }
 
 TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {

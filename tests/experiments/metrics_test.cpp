@@ -65,6 +65,12 @@ TEST_CASE("metrics of exact images are their definitions", "[metrics]") {
   CHECK(one("rel_mse", a, r).value == near(0.04 / (4 + 0.04)));
   CHECK(one("bias", a, r).value == near(0.1));
   CHECK(one("p95", a, r).value == near(0.2 / 2.02));
+  // Two of 100 pixels are off: the 95th percentile does not see them, the 99th and the 99.9th do.
+  const Film ones = exact(10, 10, [](int, int, int) { return 1.0; });
+  const Film two_off = exact(10, 10, [](int x, int y, int) { return y == 0 && x < 2 ? 1.5 : 1.0; });
+  CHECK(one("p95", two_off, ones).value == 0);
+  CHECK(one("p99", two_off, ones).value == near(0.5 / 1.01));
+  CHECK(one("p999", two_off, ones).value == near(0.5 / 1.01));
   CHECK(std::isnan(one("rmse_range", a, r).value));  // a constant reference has no range
   const Measure m = one("rel_l2", a, r);
   CHECK(m.low == m.value);
