@@ -5,7 +5,7 @@
 function(content_id result)
   set(files)
   foreach(folder ${ARGN})
-    file(GLOB_RECURSE found "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp" "${ROOT}/${folder}/*.comp" "${ROOT}/${folder}/*.glsl")
+    file(GLOB_RECURSE found "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp" "${ROOT}/${folder}/*.comp" "${ROOT}/${folder}/*.glsl" "${ROOT}/${folder}/*.vert" "${ROOT}/${folder}/*.frag")
     list(APPEND files ${found})
   endforeach()
   list(SORT files)

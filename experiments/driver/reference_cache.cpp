@@ -55,8 +55,11 @@ void trace(const fs::path& folder, std::shared_ptr<const scene::Scene> scene, co
 }  // namespace
 
 std::string reference_key(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings) {
+  // A method may stand as the reference of its twin on the GPU: it depends on more than the folder `reference`.
+  bool below_reference = false;
+  for (const char* name : {"deterministic", "path_tracer", "ray_marcher"}) below_reference |= renderer.name() == name;
   return content_key({scene.hash, fmt::format("{}x{}", scene.width, scene.height), renderer.name(),
-                      settings.canonical(), reference_id()});
+                      settings.canonical(), below_reference ? reference_id() : source_id()});
 }
 
 Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scene> scene,
