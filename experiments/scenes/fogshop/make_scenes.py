@@ -28,11 +28,18 @@ def vector(v):
 
 def write_scene(name, about, table, sigma_t, light, intensity, constant=0.0, position=(0, 1, -1), target=(0, 1, 8),
                 fov=FOV_50, wall=18.0):
-    """A wall perpendicular to the view ends every ray; it is black, so that the picture is airlight alone."""
+    """One light, or a list of places that share the intensity. A wall perpendicular to the view ends every ray; it is
+    black, so that the picture is airlight alone."""
     forward = [b - a for a, b in zip(position, target)]
     length = math.sqrt(sum(x * x for x in forward))
     forward = [x / length for x in forward]
     on_wall = [a + wall * b for a, b in zip(position, forward)]
+    lights = light if isinstance(light, list) else [light]
+    lights = "\n".join(f'''[[light]]
+type = "point"
+position = {vector(place)}
+intensity = {intensity / len(lights):.9g}
+''' for place in lights)
     # `constant` is an extinction [1/m]; the file's is multiplied by sigma_t.
     text = f'''# {about}
 name = "fogshop/{name}"
@@ -54,11 +61,7 @@ file = "{table}.csv"
 constant = {constant / sigma_t:.12g}
 sigma_t = {sigma_t:.9g}
 
-[[light]]
-type = "point"
-position = {vector(light)}
-intensity = {intensity:.9g}
-
+{lights}
 [[surface]]
 name = "wall"
 type = "plane"
@@ -159,8 +162,17 @@ def same_density():
                     f"count_{n}", 1, (4, 11, 3), 1000)
 
 
+def many_lights():
+    """One cloud, lit by more and more lights of the same power together."""
+    for n in (1, 2, 4, 8, 16):
+        ring = [(7 * math.cos(2 * math.pi * k / n), 9, 8 + 7 * math.sin(2 * math.pi * k / n)) for k in range(n)]
+        write_scene(f"lights_{n}", f"100 Gaussians under {n} light{'s' if n > 1 else ''} outside.", "cloud_100", 0.25,
+                    ring, 1000)
+
+
 if __name__ == "__main__":
     smooth_fog()
     halo()
     shaft()
     same_density()
+    many_lights()
