@@ -53,6 +53,12 @@ struct ExplainOptions {
 };
 int explain(const ExplainOptions&);
 
+struct AuthorOptions {
+  std::string script, out;
+};
+// Runs a script of authoring operations (methods/fogshop/README.md) and writes the scene and its tables of Gaussians.
+int author(const AuthorOptions&);
+
 int doctor();
 
 struct ExperimentOptions {

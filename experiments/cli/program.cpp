@@ -204,6 +204,19 @@ int dispatch(int argc, char** argv) {
     };
   });
 
+  AuthorOptions author_options;
+  c = command(app, "author", "make fog of Gaussians by a script: paint, erase, copy, emit, airbrush");
+  c->add_option("SCRIPT", author_options.script, "operations, one JSON object a line (methods/fogshop/README.md)");
+  c->add_option("--out,-o", author_options.out, "scene file to write; its Gaussians go into CSV beside it");
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(author_options.script, "SCRIPT");
+      require(author_options.out, "--out");
+      return author(author_options);
+    };
+  });
+
   std::vector<std::string> vector_files;
   std::string kind, verify_profile = "quick";
   c = command(app, "verify", "recompute oracle vectors");

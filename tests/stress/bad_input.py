@@ -236,6 +236,30 @@ def project(name, experiment=EXPERIMENT):
     return ['experiment', 'run', 'g/e', '--root', name]
 
 
+def queue_scripts():
+    write('author base.toml', CAMERA)
+    good = ('{"op": "scene", "base": "author base.toml"}\n'
+            '{"op": "paint", "stroke": [[0, 0, 0], [1, 0, 0]], "a": 2, "c": 1}\n'
+            '{"op": "import", "file": "frames.csv", "frame": 1.5}\n')
+    frames = 'frame,id,x,y,z,radius,density\n1,1,0,0,0,1,1\n2,1,1,0,0,1,1\n'
+    write('frames.csv', frames)
+    out = ['-o', 'authored never.toml']
+    for what, content, _ in damaged(good):
+        case(f'script, {what}', ['author', write(f'script {what}.jsonl', content), *out])
+    for what, content, _ in damaged(frames):
+        script = good.replace('frames.csv', write(f'frames {what}.csv', content))
+        case(f'frames, {what}', ['author', write(f'script of frames {what}.jsonl', script), *out])
+    for what, text in {'nan': good.replace('"c": 1', '"c": NaN'), 'huge': good.replace('"a": 2', '"a": 1e12'),
+                       'nested': '[' * 100000, 'no base': good.replace('author base', 'none'),
+                       'base is a folder': good.replace('author base.toml', '.'), 'zero byte': good + '\0\n',
+                       'wrong type': good.replace('[1, 0, 0]', '"x"')}.items():
+        case(f'script, {what}', ['author', write(f'script {what}.jsonl', text), *out])
+    case('script, missing', ['author', 'no.jsonl', *out], says='no.jsonl')
+    write('good.jsonl', good)
+    for where in ('/dev/full/made.toml', 'no folder/made.toml', 'author base.toml'):
+        case(f'script, to {where}', ['author', 'good.jsonl', '-o', where])
+
+
 def queue_experiments():
     for i, (what, content, others) in enumerate(damaged(EXPERIMENT)):
         case(f'experiment, {what}', project(f'project{i}', content), other_codes=others)
@@ -380,6 +404,7 @@ def kill_and_resume():
 def main():
     try:
         queue_files()
+        queue_scripts()
         queue_experiments()
         queue_outputs()
         # Standard output to a full device needs its own call.

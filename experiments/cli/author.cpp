@@ -1,0 +1,25 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "experiments/authoring/write_scene.h"
+#include "experiments/cli/commands.h"
+#include "experiments/interrupt.h"
+#include "scene/error.h"
+
+namespace airlight::experiments::cli {
+
+int author(const AuthorOptions& options) {
+  if (std::filesystem::path(options.out).extension() != ".toml")
+    throw Error(fmt::format("{}: expected a name in .toml", options.out));
+  const authoring::Authored authored = authoring::run_script(options.script, check_interrupted);
+  const authoring::SceneFiles files = authoring::scene_files(authored, options.script, options.out);
+  authoring::write(files, options.out);
+  for (const auto& done : authored.done)
+    fmt::print("line {:<4} {:<9} {} Gaussians\n", done.line, done.operation, done.touched.size());
+  fmt::print("{}: {} Gaussians in {} colour{}\n", options.out, authored.list.all().size(), files.tables.size(),
+             files.tables.size() == 1 ? "" : "s");
+  return 0;
+}
+
+}  // namespace airlight::experiments::cli

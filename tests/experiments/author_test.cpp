@@ -1,0 +1,224 @@
+// airlight author: scripts as users write them, good and bad.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "experiments/authoring/script.h"
+#include "experiments/authoring/write_scene.h"
+#include "scene/error.h"
+#include "scene/scene.h"
+#include "tests/temporary_folder.h"
+
+using airlight::Error;
+using airlight::read_bytes;
+using airlight::TemporaryFolder;
+using namespace airlight::experiments::authoring;
+using Catch::Contains;
+
+namespace {
+
+const std::string view = R"({"op": "view", "position": [0, 0, 5], "look_at": [0, 0, 0]})";
+const std::string stroke = R"({"op": "paint", "stroke": [[0,0,0],[1,0,0]], "a": 5, "c": 1, "seed": 4})";
+
+Authored run(const TemporaryFolder& folder, const std::string& script) {
+  folder.write("s.jsonl", script);
+  return run_script(folder.file("s.jsonl"), [] {});
+}
+
+}  // namespace
+
+TEST_CASE("every operation of a script", "[authoring]") {
+  const TemporaryFolder folder;
+  folder.write("steam.csv",
+               "frame,id,x,y,z,radius,density\n1,7,0,0,0,0.5,2\n1,8,0,1,0,0.5,2\n3,7,4,0,0,1.5,1\n3,9,0,0,0,1,1\n");
+  const Authored a = run(folder, view + "\n# a comment\n\n" + stroke + R"(
+{"op": "paint", "screen": [[400, 300], [500, 300]], "plane": {"normal": [0,0,1], "d": -1}, "a": 2, "c": 1, "jitter": 0, "tag": "far"}
+{"op": "select", "rect": [0, 0, 800, 600]}
+{"op": "copy", "transform": {"translation": [0, 3, 0]}}
+{"op": "undo"}
+{"op": "move", "tag": "far", "transform": {"scale": 2, "rotation": {"axis": [0,1,0], "angle": 1}}, "keep": "density"}
+{"op": "emit", "pos": [0,0,0], "rate": 10, "v0": [0,1,0], "life": 1, "a0": 3, "c0": 1, "t1": 5, "time": 2.05, "color": [1, 0.5, 0.2]}
+{"op": "airbrush", "pos": [0,0,0], "rate": 10, "speed": 1, "diffusion": 0.1, "dt": 0.1, "steps": 10, "a": 3, "c": 1}
+{"op": "freeze"}
+{"op": "import", "file": "steam.csv", "frame": 1.5, "color": 0.5}
+{"op": "erase", "path": [[0, 0, 0]], "radius": 0.1, "strength": 0.5}
+)");
+  std::map<std::string, std::size_t> touched;
+  for (const auto& done : a.done) touched[done.operation] += done.touched.size();
+  // floor(1 / 0.15) + 1 on the stroke; the ray at pixel 500 meets the plane z = -1 at 6 * tan(0.35) / 3 = 0.73.
+  CHECK(touched["paint"] == 7 + 2);
+  CHECK(touched["select"] == 9);
+  CHECK(touched["copy"] == 9);
+  CHECK(touched["move"] == 2);
+  CHECK(touched["emit"] == 10);
+  CHECK(touched["airbrush"] == 10);
+  CHECK(touched["freeze"] == 10);
+  CHECK(touched["import"] == 2);
+  CHECK(a.list.all().size() == 9 + 10 + 10 + 2);
+  const auto& imported = a.list.all()[29];
+  CHECK(imported.b == airlight::Point3(1, 0, 0));  // a quarter of the way from frame 1 to frame 3
+  CHECK(imported.a == 1 / 0.75);
+  CHECK(imported.c == 1.75);
+  CHECK(a.list.all()[30].b == airlight::Point3(0, 1, 0));
+
+  // Three colours, three media; the loader gives back the list.
+  const SceneFiles files = scene_files(a, folder.file("s.jsonl"), folder.file("out.toml"));
+  REQUIRE(files.tables.size() == 3);
+  write(files, folder.file("out.toml"));
+  const auto scene = airlight::scene::load_scene(folder.file("out.toml"));
+  REQUIRE(scene.media.size() == 3);
+  CHECK(scene.width == 800);
+  CHECK((scene.media[1].albedo == airlight::Rgb(1, 0.5, 0.2)).all());
+  std::size_t at = 0;
+  std::vector<airlight::scene::Gaussian> all;
+  for (const auto& medium : scene.media) {
+    CHECK((medium.sigma_t == 1).all());
+    for (const auto& g : std::get<airlight::scene::GaussianSum>(medium.field).gaussians) all.push_back(g);
+  }
+  REQUIRE(all.size() == a.list.all().size());
+  for (const airlight::Rgb& color : {airlight::Rgb(1, 1, 1), airlight::Rgb(1, 0.5, 0.2), airlight::Rgb(0.5, 0.5, 0.5)})
+    for (const auto& g : a.list.all()) {
+      if (!(g.color == color).all()) continue;
+      CHECK(all[at].center == g.b);
+      CHECK(all[at].width == 1 / g.a);
+      CHECK(all[at++].amplitude == g.c);
+    }
+  CHECK(at == all.size());
+}
+
+TEST_CASE("a base scene is kept, its files found from elsewhere", "[authoring]") {
+  const TemporaryFolder folder;
+  const std::string base = R"(# é: a comment
+[camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+[[light]]
+type = "point"
+position = [0, 1, 0]
+intensity = 3
+[[medium]]
+type = "gaussians"
+name = "é"
+file = "old.csv" # kept
+[[surface]]
+type = "plane"
+)";
+  folder.write("in/base.toml", base + "point = [0, -1, 0]\n");
+  folder.write("in/old.csv", "center_x,center_y,center_z,width,amplitude\n0,0,0,1,1\n");
+  folder.write("in/s.jsonl", "{\"op\": \"scene\", \"base\": \"base.toml\"}\n" + stroke + "\n");
+  const Authored a = run_script(folder.file("in/s.jsonl"), [] {});
+  for (const std::string out : {"in/out.toml", "elsewhere/deep/out.toml"}) {
+    std::filesystem::create_directories(std::filesystem::path(folder.file(out)).parent_path());
+    write(scene_files(a, folder.file("in/s.jsonl"), folder.file(out)), folder.file(out));
+    const auto scene = airlight::scene::load_scene(folder.file(out));
+    CHECK(scene.media.size() == 2);
+    CHECK(scene.media[0].name == "é");
+    CHECK(scene.lights.size() == 1);
+    CHECK(scene.surfaces.size() == 1);
+  }
+  CHECK_THAT(read_bytes(folder.file("elsewhere/deep/out.toml")), Contains("file = \"../../in/old.csv\" # kept"));
+  CHECK_THROWS_WITH(scene_files(a, folder.file("in/s.jsonl"), folder.file("in/base.toml")), Contains("base scene"));
+}
+
+TEST_CASE("bad scripts are one line with the place, and leave nothing", "[authoring][cli]") {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& line, const std::string& says) {
+    CAPTURE(line);
+    try {
+      run(folder, view + "\n" + line + "\n");
+      FAIL("accepted");
+    } catch (const Error& e) {
+      const std::string what = e.what();
+      CHECK_THAT(what, Catch::StartsWith(folder.file("s.jsonl") + ":2: ") && Contains(says));
+      CHECK(what.find('\n') == std::string::npos);
+      CHECK(what.size() < 700);
+      CHECK(e.exit_code() == 2);
+    }
+  };
+  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  refused("{", "not JSON");
+  refused("[1, 2]", "expected an object");
+  refused("{\"op\": \"paint\", \"a\": NaN}", "not JSON");
+  refused(changed(stroke, "\"paint\"", "\"pant\""), "nearest: paint");
+  refused(changed(stroke, "\"a\"", "\"aa\""), "unknown key 'aa'");
+  refused(changed(stroke, "\"a\": 5", "\"a\": 5, \"a\": 6"), "twice");
+  refused(changed(stroke, "\"a\": 5, ", ""), "missing key 'a'");
+  refused(changed(stroke, "\"a\": 5", "\"a\": -5"), "a = -5, expected a number > 0");
+  refused(changed(stroke, "\"a\": 5", "\"a\": 0"), "expected a number > 0");
+  refused(changed(stroke, "\"a\": 5", "\"a\": \"5\""), "expected a number > 0");
+  refused(changed(stroke, "\"a\": 5", "\"a\": 1e999"), "not JSON");
+  refused(changed(stroke, "\"c\": 1", "\"c\": -1"), "c = -1");
+  refused(changed(stroke, "\"seed\": 4", "\"seed\": -4"), "seed = -4, expected an integer from 0");
+  refused(changed(stroke, "\"seed\": 4", "\"seed\": 4.5"), "seed = 4.5");
+  refused(changed(stroke, "\"seed\": 4", "\"spacing\": 1e-9"), "more than 1000000 points");
+  refused(changed(stroke, "\"seed\": 4", "\"jitter\": -1"), "jitter = -1");
+  refused(changed(stroke, "\"seed\": 4", "\"color\": [0.5, 2, 0]"), "in [0, 1]");
+  refused(changed(stroke, "[1,0,0]", "[1,0]"), "points of 3 finite numbers");
+  refused(changed(stroke, "\"stroke\": [[0,0,0],[1,0,0]]", "\"stroke\": []"), "1 to 100000 points");
+  refused(changed(stroke, "\"stroke\": [[0,0,0],[1,0,0]]", "\"screen\": [[1, 1]]"), "plane");
+  refused(R"({"op": "paint", "screen": [[1, 1]], "plane": {"normal": [0,0,1], "d": 9}, "a": 1, "c": 1})", "no point");
+  refused(R"({"op": "paint", "screen": [[1, 1]], "plane": {"normal": [0,0,0], "d": 9}, "a": 1, "c": 1})", "zero");
+  refused(R"({"op": "erase", "path": [[0,0,0]], "radius": 0})", "radius = 0");
+  refused(R"({"op": "erase", "path": [[0,0,0]], "radius": 1, "strength": 1.5})", "strength = 1.5");
+  refused(R"({"op": "erase", "radius": 1})", "exactly one");
+  refused(R"({"op": "select", "rect": [0, 0, 0, 9]})", "x0 < x1");
+  refused(R"({"op": "copy", "ids": [3], "transform": {}})", "no Gaussian has the id 3");
+  refused(R"({"op": "copy", "tag": "x", "transform": {}})", "the tag of a Gaussian");
+  refused(R"({"op": "move", "ids": [], "transform": {"scale": 0}})", "scale = 0");
+  refused(R"({"op": "move", "ids": [], "transform": {"sclae": 1}})", "nearest: scale");
+  const std::string emit =
+      R"({"op": "emit", "pos": [0,0,0], "rate": 10, "v0": [0,1,0], "life": 1, "a0": 3, "c0": 1, "t1": 5, "time": 2})";
+  refused(changed(emit, "\"rate\": 10", "\"rate\": 1e8"), "more than 1000000 particles");
+  refused(changed(emit, "\"c0\": 1", "\"c0\": 1, \"c1\": 2"), "c1 = 2");
+  refused(changed(emit, "\"t1\": 5", "\"t1\": -5"), "t1 = -5");
+  refused(changed(emit, "\"life\": 1", "\"life\": 0"), "life = 0");
+  const std::string brush =
+      R"({"op": "airbrush", "pos": [0,0,0], "rate": 10, "speed": 1, "diffusion": 0, "dt": 0.1, "steps": 10, "a": 3, "c": 1})";
+  refused(changed(brush, "\"rate\": 10", "\"rate\": 1e9"), "more than 1000000 Gaussians");
+  refused(changed(brush, "\"steps\": 10", "\"steps\": 99999999, \"tag\": \"x\""), "more than");
+  refused(changed(brush, "\"steps\": 10", "\"steps\": 99999999999"), "an integer from");
+  refused(changed(changed(brush, "\"dt\": 0.1", "\"dt\": 0.001"), "\"steps\": 10", "\"steps\": 10000000"),
+          "at most 1e9 moves");
+  refused(changed(brush, "\"dt\": 0.1", "\"dt\": 0"), "dt = 0");
+  refused(R"({"op": "freeze", "ids": []})", "unknown key 'ids'");
+  refused(R"({"op": "import", "file": "none.csv", "frame": 1})", "none.csv");
+  refused(R"({"op": "undo"})", "at most 0");
+  refused(R"({"op": "scene", "base": "none.toml"})", "first operation");
+  folder.write("f.csv", "frame,id,x,y,z,radius,density\n1,7,0,0,0,-1,2\n");
+  refused(R"({"op": "import", "file": "f.csv", "frame": 1})", "f.csv:2:11: radius = -1, expected a number > 0");
+  folder.write("f.csv", "frame,id,x,y,z,radius,density\n1,7,0,0,0,1,2\n");
+  refused(R"({"op": "import", "file": "f.csv", "frame": 2})", "from 1 to 1");
+  folder.write("f.csv", "frame,id,x,y,z,radius,density\n1,7,0,0,0,1,2\n1,7,0,0,0,1,2\n");
+  refused(R"({"op": "import", "file": "f.csv", "frame": 1})", "twice");
+
+  // Through the program: exit code 2, one line, and no file of the output is there.
+  const std::string program = std::filesystem::absolute(AIRLIGHT_PROGRAM).string();
+  const auto call = [&](const std::string& arguments) {
+    const int status = std::system(
+        ("cd '" + folder.path().string() + "' && '" + program + "' author " + arguments + " >out.txt 2>err.txt")
+            .c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  folder.write("bad.jsonl", view + "\n" + stroke + "\n{\"op\": \"pain\"}\n");
+  CHECK(call("bad.jsonl -o made.toml") == 2);
+  CHECK_THAT(read_bytes(folder.file("err.txt")), Catch::StartsWith("airlight: bad.jsonl:3: ") && Contains("paint"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("made.toml")));
+  CHECK_FALSE(std::filesystem::exists(folder.file("made.csv")));
+  folder.write("good.jsonl", view + "\n" + stroke + "\n");
+  CHECK(call("good.jsonl -o no/such/made.toml") == 2);
+  CHECK(call("good.jsonl -o made.txt") == 2);
+  CHECK(call("good.jsonl -o good.jsonl") == 2);
+  CHECK(call("good.jsonl") == 2);
+  CHECK(call("good.jsonl -o made.toml") == 0);
+  const std::string toml = read_bytes(folder.file("made.toml")), csv = read_bytes(folder.file("made.csv"));
+  CHECK(call("good.jsonl -o made.toml") == 0);
+  CHECK(toml == read_bytes(folder.file("made.toml")));
+  CHECK(csv == read_bytes(folder.file("made.csv")));
+  folder.write("none.jsonl", stroke + "\n");
+  CHECK(call("none.jsonl -o other.toml") == 2);
+  CHECK_THAT(read_bytes(folder.file("err.txt")), Contains("no camera"));
+}
