@@ -30,6 +30,8 @@ Buffer::~Buffer() {
 
 void Buffer::bind(int binding) const { context_->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), id_); }
 
+void Buffer::bind_as(GLenum target) const { context_->gl().BindBuffer(target, id_); }
+
 void Buffer::write(const void* data, std::size_t bytes) {
   if (bytes > bytes_) throw Error(fmt::format("gpu: buffer '{}' holds {} bytes, {} were given", name_, bytes_, bytes));
   if (bytes == 0) return;

@@ -24,6 +24,7 @@ class Buffer {
 
   std::size_t bytes() const { return bytes_; }
   void bind(int binding) const;
+  void bind_as(GLenum target) const;  // GL_PIXEL_PACK_BUFFER and its like
 
   template <class T>
   void upload(const std::vector<T>& values) {

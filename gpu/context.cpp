@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "gpu/program.h"
+#include "gpu/raster_program.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
@@ -34,6 +35,11 @@ void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, co
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
   auto& errors = *static_cast<std::vector<std::string>*>(const_cast<void*>(user));
   if (errors.size() < 8) errors.emplace_back(text, length < 0 ? std::char_traits<char>::length(text) : length);
+}
+
+std::string key_of(std::string file, const std::map<std::string, std::string>& definitions) {
+  for (const auto& [name, value] : definitions) file += fmt::format(" {}={}", name, value);
+  return file;
 }
 
 }  // namespace
@@ -117,6 +123,8 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
+  gl_.GetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &limits_.vertex_storage_blocks);
+  gl_.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &limits_.fragment_storage_blocks);
   egl_->release();
 }
 
@@ -135,10 +143,14 @@ void Context::check(const std::string& what) {
 }
 
 Program& Context::program(const std::string& file, const std::map<std::string, std::string>& definitions) {
-  std::string key = file;
-  for (const auto& [name, value] : definitions) key += fmt::format(" {}={}", name, value);
-  auto& program = programs_[key];
+  auto& program = programs_[key_of(file, definitions)];
   if (!program) program = std::make_unique<Program>(*this, file, definitions);
+  return *program;
+}
+
+RasterProgram& Context::raster_program(const std::string& name, const std::map<std::string, std::string>& definitions) {
+  auto& program = raster_programs_[key_of(name, definitions)];
+  if (!program) program = std::make_unique<RasterProgram>(*this, name, definitions);
   return *program;
 }
 

@@ -12,6 +12,7 @@
 namespace airlight::gpu {
 
 class Program;
+class RasterProgram;
 
 // What a shader may count on; checked by those who need more than OpenGL's minimum.
 struct Limits {
@@ -20,6 +21,7 @@ struct Limits {
   int groups[3] = {0, 0, 0};      // work groups of a dispatch
   int shared_memory = 0;          // bytes
   int texture_size_3d = 0, texture_size = 0;
+  int vertex_storage_blocks = 0, fragment_storage_blocks = 0;  // OpenGL promises none; raster passes need some
 };
 
 class Context {
@@ -46,6 +48,8 @@ class Context {
 
   // Compute programs by file name and definitions, compiled once (program.h).
   Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});
+  // The same for gpu/<name>.vert and gpu/<name>.frag (raster_program.h).
+  RasterProgram& raster_program(const std::string& name, const std::map<std::string, std::string>& definitions = {});
 
   Context(const Context&) = delete;
 
@@ -60,6 +64,7 @@ class Context {
   Limits limits_;
   std::vector<std::string> errors_;
   std::map<std::string, std::unique_ptr<Program>> programs_;
+  std::map<std::string, std::unique_ptr<RasterProgram>> raster_programs_;
   std::recursive_mutex mutex_;
   int depth_ = 0;
 };

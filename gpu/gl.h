@@ -21,12 +21,26 @@ namespace airlight::gpu {
   X(PFNGLUSEPROGRAMPROC, UseProgram) X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                              \
   X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i) X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                      \
   X(PFNGLPROGRAMUNIFORM3FPROC, ProgramUniform3f) X(PFNGLPROGRAMUNIFORMMATRIX3FVPROC, ProgramUniformMatrix3fv)        \
+  X(PFNGLPROGRAMUNIFORM1DPROC, ProgramUniform1d) X(PFNGLPROGRAMUNIFORM3DPROC, ProgramUniform3d)                      \
   X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute) X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                              \
   /* buffers */                                                                                                      \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers) X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                  \
   X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage) X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)              \
   X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData) X(PFNGLCLEARNAMEDBUFFERDATAPROC, ClearNamedBufferData)    \
-  X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                                                                         \
+  X(PFNGLBINDBUFFERBASEPROC, BindBufferBase) X(PFNGLBINDBUFFERPROC, BindBuffer)                                      \
+  /* raster passes */                                                                                                \
+  X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers) X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)              \
+  X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)                                                       \
+  X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers)                                               \
+  X(PFNGLNAMEDFRAMEBUFFERREADBUFFERPROC, NamedFramebufferReadBuffer)                                                 \
+  X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus)                                               \
+  X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)                                                       \
+  X(PFNGLCLEARNAMEDFRAMEBUFFERIVPROC, ClearNamedFramebufferiv) X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)          \
+  X(PFNGLCREATETEXTURESPROC, CreateTextures) X(PFNGLDELETETEXTURESPROC, DeleteTextures)                              \
+  X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D) X(PFNGLREADPIXELSPROC, ReadPixels)                                  \
+  X(PFNGLVIEWPORTPROC, Viewport) X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                    \
+  X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays) X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)              \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                  \
   /* timestamps */                                                                                                   \
   X(PFNGLCREATEQUERIESPROC, CreateQueries) X(PFNGLDELETEQUERIESPROC, DeleteQueries)                                  \
   X(PFNGLQUERYCOUNTERPROC, QueryCounter) X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)

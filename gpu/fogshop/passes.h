@@ -5,6 +5,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/program.h"
+#include "gpu/raster/hit_image.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/model.h"
 #include "scene/renderer.h"
@@ -12,7 +13,6 @@
 namespace airlight::gpu {
 
 inline constexpr int most_slices = 128, most_lights = 16;  // arrays of the shaders
-inline constexpr float far_away = 1e37f;                   // [m], as fog.glsl: an infinite ray
 
 struct PixelAirlight {
   std::array<float, 3> airlight;  // [W/m^2/sr]

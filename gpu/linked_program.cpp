@@ -1,0 +1,91 @@
+#include "gpu/linked_program.h"
+
+#include <fmt/format.h>
+
+#include "gpu/shader_source.h"
+#include "scene/error.h"
+
+namespace airlight::gpu {
+namespace {
+
+std::string refusal(const std::string& files, const char* what, Context& context, const char* log,
+                    const ShaderSource& source) {
+  try {
+    context.check("");  // the same words again
+  } catch (const Error&) {
+  }
+  return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
+}
+
+}  // namespace
+
+LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenum, std::string>>& stages,
+                             const std::map<std::string, std::string>& definitions)
+    : context_(context) {
+  const Use use(context_);
+  const Gl& gl = context_.gl();
+  id_ = gl.CreateProgram();
+  ShaderSource source;
+  GLint ok = 0;
+  char log[4096] = {};
+  for (const auto& [stage, file] : stages) {
+    source = shader_source(file, definitions);
+    text_ += source.text;
+    files_ += (files_.empty() ? "gpu/" : ", gpu/") + file;
+    const GLuint shader = gl.CreateShader(stage);
+    const char* text = source.text.c_str();
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (!ok) {
+      gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
+      gl.DeleteShader(shader);
+      gl.DeleteProgram(id_);
+      throw Error(refusal("gpu/" + file, "refused", context_, log, source));
+    }
+    gl.AttachShader(id_, shader);
+    gl.DeleteShader(shader);  // lives on in the program
+  }
+  gl.LinkProgram(id_);
+  gl.GetProgramiv(id_, GL_LINK_STATUS, &ok);
+  if (!ok) {
+    gl.GetProgramInfoLog(id_, sizeof log, nullptr, log);
+    gl.DeleteProgram(id_);
+    throw Error(refusal(files_, "not linked", context_, log, source));
+  }
+  context_.check("compiling " + files_);
+}
+
+LinkedProgram::~LinkedProgram() {
+  const Use use(context_);
+  context_.gl().DeleteProgram(id_);
+}
+
+int LinkedProgram::location(const std::string& name) {
+  const auto known = locations_.find(name);
+  if (known != locations_.end()) return known->second;
+  if (text_.find(name) == std::string::npos) throw Error(fmt::format("{} has no uniform '{}'", files_, name));
+  return locations_[name] = context_.gl().GetUniformLocation(id_, name.c_str());
+}
+
+void LinkedProgram::set(const std::string& name, int value) {
+  context_.gl().ProgramUniform1i(id_, location(name), value);
+}
+void LinkedProgram::set(const std::string& name, float value) {
+  context_.gl().ProgramUniform1f(id_, location(name), value);
+}
+void LinkedProgram::set(const std::string& name, const Vec3& v) {
+  context_.gl().ProgramUniform3f(id_, location(name), float(v[0]), float(v[1]), float(v[2]));
+}
+void LinkedProgram::set(const std::string& name, const Mat3& m) {
+  const Eigen::Matrix3f f = m.cast<float>();
+  context_.gl().ProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, f.data());
+}
+void LinkedProgram::set_double(const std::string& name, double value) {
+  context_.gl().ProgramUniform1d(id_, location(name), value);
+}
+void LinkedProgram::set_double(const std::string& name, const Vec3& v) {
+  context_.gl().ProgramUniform3d(id_, location(name), v[0], v[1], v[2]);
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,45 @@
+// What compute and raster programs have in common: compiled stages linked together, and uniforms by name.
+#pragma once
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu/context.h"
+#include "scene/math/types.h"
+
+namespace airlight::gpu {
+
+class LinkedProgram {
+ public:
+  // Compiles gpu/<file> of each stage (shader_source.h) with the same definitions. Throws Error with file and line if
+  // the compiler or the linker objects.
+  LinkedProgram(Context&, const std::vector<std::pair<GLenum, std::string>>& stages,
+                const std::map<std::string, std::string>& definitions);
+  ~LinkedProgram();
+  LinkedProgram(const LinkedProgram&) = delete;
+
+  // A name that no stage mentions is an error; one that the compiler removed is not.
+  void set(const std::string& name, int value);
+  void set(const std::string& name, float value);
+  void set(const std::string& name, double value) { set(name, float(value)); }
+  void set(const std::string& name, bool value) { set(name, int(value)); }
+  void set(const std::string& name, const Vec3& value);
+  void set(const std::string& name, const Rgb& value) { set(name, Vec3(value.matrix())); }
+  void set(const std::string& name, const Mat3& value);
+  void set_double(const std::string& name, double value);       // a uniform double
+  void set_double(const std::string& name, const Vec3& value);  // a uniform dvec3
+
+ protected:
+  Context& context_;
+  std::string files_;  // for messages: "gpu/a.vert, gpu/a.frag"
+  GLuint id_ = 0;
+
+ private:
+  int location(const std::string& name);
+
+  std::string text_;
+  std::map<std::string, int> locations_;
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,33 @@
+// What ends the camera rays, by a raster pass: scene::ray_end for every pixel centre.
+//
+// Which surface a pixel shows is decided by the rasteriser, to a fraction of a pixel at silhouettes. Where it is met is
+// computed for the pixel's own ray in double precision, from the triangle's plane or the sphere or plane itself, and
+// kept as floats. Surfaces are two-sided; there is no near plane (raster/mesh.vert) and none farther than which
+// something is lost (raster/hit.glsl). Of surfaces closer to each other than 2^-24 of their distance the first in the
+// scene is taken.
+#pragma once
+#include <memory>
+
+#include "gpu/raster/hit_image.h"
+#include "gpu/raster/surfaces_on_device.h"
+#include "scene/renderer.h"
+
+namespace airlight::gpu {
+
+class FirstHits {
+ public:
+  // Throws Unavailable where the device's vertex shaders read no storage buffers.
+  FirstHits(Context&, const scene::Scene&, bool with_balls = true);
+
+  const SurfacesOnDevice& surfaces() const { return surfaces_; }
+
+  // Draws the view. The image is valid until the next call.
+  const HitImage& draw(const scene::View&);
+
+ private:
+  Context& context_;
+  SurfacesOnDevice surfaces_;
+  std::unique_ptr<HitImage> image_;  // of the last size
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,144 @@
+// First hits by the raster pass: the scenes of the experiments, and scenes made to break it.
+#include <filesystem>
+
+#include "gpu/raster_program.h"
+#include "scene/geometry/shapes.h"
+#include "tests/gpu/device.h"
+#include "tests/gpu/raster/hits_against_embree.h"
+#include "tests/scene/geometry_scenes.h"
+
+using namespace airlight;
+using namespace airlight::gpu::test;
+using scene::Camera;
+using scene::Scene;
+
+namespace {
+
+// Distances are doubles rounded to floats: 2^-24 = 6e-8. Coverage is good to 1/256 pixel: fewer than one pixel in a
+// thousand may show what lies beside its centre.
+void check(gpu::Context& context, const Scene& scene, const scene::View& view) {
+  const Agreement a = compare(context, scene, view);
+  CAPTURE(scene.name, a.pixels, a.hits, a.moved, a.first, a.distance, a.distance_99, a.normal);
+  CHECK(a.wrong == 0);
+  CHECK(a.moved <= 0.001 * a.pixels);
+  CHECK(a.distance < 6.1e-8);
+  CHECK(a.normal < 1e-6);
+  if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+    fmt::print("{}: {} pixels, {} hits, {} moved, distance {:.1e} / {:.1e}, normal {:.1e}\n", scene.name, a.pixels,
+               a.hits, a.moved, a.distance_99, a.distance, a.normal);
+}
+
+Scene made(const char* name, std::vector<scene::Surface> surfaces, const Camera& camera) {
+  Scene scene;
+  scene.name = name;
+  scene.surfaces = std::move(surfaces);
+  scene.camera = camera;
+  scene.width = 96;
+  scene.height = 72;
+  finish(scene);
+  return scene;
+}
+
+Scene scaled(double scale, const Vec3& shift) {
+  using scene::surface_of;
+  Scene scene =
+      made("torus, sphere, plane",
+           {surface_of(moved(scene::torus(24, 12), scale, shift)),
+            surface_of(scene::Sphere{scale * Point3(0.3, 0.6, 0.2) + shift, scale * 0.4}),
+            surface_of(scene::Plane{scale * Point3(0, -0.5, 0) + shift, Vec3(0.1, 1, 0).normalized()}),
+            surface_of(moved(scene::make_box({{-0.2, -0.6, 0.5}, {0.5, 0.1, 0.7}}), scale, shift))},
+           scene::look_at(scale * Point3(1.2, 1.5, 2.6) + shift, scale * Point3(0.1, 0, 0) + shift, {0.1, 1, 0}));
+  scene.lights.emplace_back(scene::PointLight{scale * Point3(0.9, 0.7, 0.8) + shift, Rgb::Ones(), scale * 0.15});
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("first hits of the experiments' scenes", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(AIRLIGHT_SOURCE_DIR "/experiments/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Scene scene = scene::load_scene(entry.path(), {{"film.width", "96"}, {"film.height", "72"}});
+    if (scene.surfaces.empty()) continue;
+    ++scenes;
+    check(*context, scene, view_of(scene));
+  }
+  CHECK(scenes >= 20);
+}
+
+TEST_CASE("first hits at every scale and far from the origin", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  for (const auto& [scale, shift] : {std::pair<double, Vec3>{1, Vec3::Zero()},
+                                     {1e6, Vec3::Zero()},
+                                     {1e-6, Vec3::Zero()},
+                                     {1e-15, Vec3::Zero()},
+                                     {1e15, Vec3::Zero()},
+                                     {1, Vec3(3e5, -2e5, 1e6)}}) {
+    Scene scene = scaled(scale, shift);
+    CAPTURE(scale);
+    check(*context, scene, view_of(scene));
+    scene.camera.kind = Camera::Kind::orthographic;
+    scene.camera.height = 2.5 * scale;
+    check(*context, scene, view_of(scene));
+  }
+}
+
+// A near plane would have to lie before 1e-9 m here, and there is a box at 1e6 m. (The floor is a plane: in triangles
+// that reach so far, the CPU's hits are rounded as their corners are, 1e-10 m.)
+TEST_CASE("nothing before the camera is lost", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  using scene::surface_of;
+  scene::TriangleMesh fan;  // small triangles at 1e-9 m to 1e3 m, side by side
+  for (int i = 0; i < 12; ++i) {
+    const double t = std::pow(10.0, i - 9), x = -0.55 + 0.1 * i;
+    const int first = int(fan.vertices.size());
+    for (const auto& [dx, y] : {std::pair{0.0, -0.3}, {0.08, -0.3}, {0.04, 0.3}})
+      fan.vertices.push_back(t * Point3(x + dx, y, -1));
+    fan.triangles.push_back({first, first + 1, first + 2});
+  }
+  Scene scene = made("near and far",
+                     {surface_of(fan), surface_of(scene::Plane{{0, -5e-8, 0}, {0, 1, 0}}),
+                      surface_of(scene::make_box({{-1e6, -1, -2e6}, {1e6, 3e5, -1e6}})),
+                      surface_of(scene::Sphere{Point3(0, 3e-8, -1e-7), 1e-8})},
+                     Camera{});
+  check(*context, scene, view_of(scene));
+  // Inside a ball, a sphere and a box, and looking along its floor.
+  Scene inside =
+      made("inside",
+           {surface_of(scene::make_box({{-1, -1, -1}, {1, 1, 1}})), surface_of(scene::Sphere{{0, 0, 0}, 0.9}),
+            surface_of(scene::make_box({{-0.5, -1e-6, -0.5}, {0.5, 0.5, 0.5}}))},
+           scene::look_at({0, 0, 0}, {0.3, 0, -1}, {0, 1, 0}));
+  inside.lights.emplace_back(scene::PointLight{{0, 0, 0.01}, Rgb::Ones(), 0.1});
+  check(*context, inside, view_of(inside));
+  for (const double fov : {0.01, 2.9}) {
+    inside.camera.vertical_fov = fov;
+    check(*context, inside, view_of(inside));
+  }
+}
+
+TEST_CASE("of coinciding surfaces the first is seen", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  using scene::surface_of;
+  const auto box = [](double lo) { return surface_of(scene::make_box({{-1, -1, lo}, {1, 1, 2}})); };
+  const Camera camera = scene::look_at({0.2, 0.3, -4}, {0, 0, 0}, {0, 1, 0});
+  const Scene one = made("coinciding", {box(0), surface_of(scene::Plane{{0, 0, 0}, {0, 0, 1}}), box(0)}, camera);
+  check(*context, one, view_of(one));
+  const Scene two = made("coinciding too", {surface_of(scene::Plane{{0, 0, 0}, {0, 0, 1}}), box(0)}, camera);
+  check(*context, two, view_of(two));
+}
+
+TEST_CASE("runs of one kind of surface are one draw", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const Scene scene = scaled(1, Vec3::Zero());  // a mesh, two solids, a mesh, a ball
+  gpu::FirstHits pass(*context, scene);
+  const long before = gpu::RasterProgram::draws();
+  pass.draw(view_of(scene));
+  CHECK(gpu::RasterProgram::draws() - before == 4);
+  CHECK(gpu::FirstHits(*context, scene, false).surfaces().runs().size() == 3);
+}

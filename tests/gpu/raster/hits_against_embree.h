@@ -1,0 +1,86 @@
+// Every pixel of the raster pass against scene::ray_end.
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/raster/first_hits.h"
+#include "scene/scene.h"
+
+namespace airlight::gpu::test {
+
+struct PixelHit {
+  float distance;
+  float normal[3];
+};
+
+struct Agreement {
+  int pixels = 0, hits = 0;
+  int moved = 0;           // agree with a ray within 1/32 pixel of the centre instead: silhouettes, edges of triangles
+  int wrong = 0;           // neither
+  std::string first;       // of the wrong
+  double distance = 0;     // greatest relative error of the others
+  double distance_99 = 0;  // 99th percentile
+  double normal = 0;       // greatest difference
+};
+
+inline int kind_of(const scene::RayEnd& end) { return end.hit ? end.hit->surface : end.on_ball ? -2 : -1; }
+
+// Does the pixel show what this ray shows? The distance is that of the centre's ray on the same plane.
+inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const scene::RayEnd& end) {
+  if (kind_of(end) != surface) return false;
+  if (surface == -1) return pixel.distance == far_away;
+  if (!end.hit) return std::abs(pixel.distance - end.t) <= 1e-2 * end.t;
+  const Vec3 n = end.hit->normal, got(pixel.normal[0], pixel.normal[1], pixel.normal[2]);
+  const double t = n.dot(end.hit->position - centre.origin) / n.dot(centre.direction);
+  return (got - n).norm() < 1e-4 && (std::abs(pixel.distance - t) <= 1e-4 * end.t || t < 0 || n.dot(got) < 0);
+}
+
+inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view) {
+  const Use use(context);
+  FirstHits pass(context, scene);
+  const HitImage& image = pass.draw(view);
+  const std::size_t pixels = std::size_t(view.width) * view.height;
+  Buffer hits(context, "hits", pixels * sizeof(PixelHit)), surfaces(context, "surfaces", pixels * 4);
+  image.read_hits(hits);
+  image.read_surfaces(surfaces);
+  const auto hit = hits.download<PixelHit>();
+  const auto surface = surfaces.download<int>();
+  Agreement result;
+  result.pixels = int(pixels);
+  std::vector<double> errors;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const std::size_t i = std::size_t(y) * view.width + x;
+      const auto ray = [&](double dx, double dy) {
+        return camera_ray(view.camera, x + 0.5 + dx, y + 0.5 + dy, view.width, view.height);
+      };
+      const Ray centre = ray(0, 0);
+      const scene::RayEnd end = ray_end(scene, centre);
+      result.hits += kind_of(end) != -1;
+      const Vec3 got(hit[i].normal[0], hit[i].normal[1], hit[i].normal[2]);
+      const double error = end.t < infinity ? std::abs(hit[i].distance / end.t - 1) : 0;
+      const double turned = end.hit ? (got - end.hit->normal).norm() : 0;
+      if (kind_of(end) == surface[i] && error < 1e-6 && turned < 1e-5) {
+        errors.push_back(error);
+        result.distance = std::max(result.distance, error);
+        result.normal = std::max(result.normal, turned);
+        continue;
+      }
+      bool beside = false;
+      for (int k = 0; k < 16 && !beside; ++k) {
+        const double angle = 2 * pi * k / 8, r = k < 8 ? 1.0 / 32 : 1.0 / 256;
+        beside = shows(hit[i], surface[i], centre, ray_end(scene, ray(r * std::cos(angle), r * std::sin(angle))));
+      }
+      ++(beside ? result.moved : result.wrong);
+      if (!beside && result.first.empty())
+        result.first = fmt::format("pixel {} {}: surface {} at {}, expected {} at {}, normals differ by {}", x, y,
+                                   surface[i], hit[i].distance, kind_of(end), end.t, turned);
+    }
+  std::sort(errors.begin(), errors.end());
+  if (!errors.empty()) result.distance_99 = errors[std::size_t(0.99 * double(errors.size() - 1))];
+  return result;
+}
+
+}  // namespace airlight::gpu::test
