@@ -8,6 +8,7 @@
 #include "gpu/buffer.h"
 #include "gpu/fogshop/passes.h"
 #include "gpu/timer.h"
+#include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
@@ -37,7 +38,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
-    if (needs_.scattered) {
+    if (needs_.point_harmonics) {
       reflection_ = std::make_unique<fogshop::ScatteredReflection>(
           options.sh_order, options.reflectance == fogshop::Options::Reflectance::npsf_by_depth);
       timer.stage("harmonics of the NPSF");
@@ -103,7 +104,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs_.surfaces) {
-    surface_pass(*scene_, model_, reflection_.get(), view, hits.points, transmittance, execution, surface,
+    surface_pass(*scene_, model_, reflection_.get(), nullptr, view, hits.points, transmittance, execution, surface,
                  needs_.scattered ? &film.add("reflected_airlight") : nullptr);
     timer.stage("surfaces");
   }
@@ -130,6 +131,9 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
+  for (const scene::Light& light : scene.lights)
+    if (std::holds_alternative<scene::EnvironmentLight>(light))
+      reasons.push_back("environment lights are for the CPU");
   if (scene.lights.size() > most_lights)
     reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
   return reasons;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "methods/fogshop/airlight_pass.h"
+#include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
 #include "methods/fogshop/surface_pass.h"
@@ -42,7 +43,8 @@ class PreparedFogshop final : public scene::Prepared {
  private:
   std::shared_ptr<const Scene> scene_;
   Model model_;
-  std::unique_ptr<ScatteredReflection> reflection_;  // null: left out
+  std::unique_ptr<ScatteredReflection> reflection_;   // null: left out
+  std::unique_ptr<EnvironmentLighting> environment_;  // the same
   std::vector<scene::StageTime> times_;
 };
 
@@ -69,10 +71,14 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     model_.f_table = std::make_unique<FTable>();
     times_.push_back({"table of F", watch.lap()});
   }
-  if (needs.scattered) {
+  if (needs.point_harmonics) {
     reflection_ = std::make_unique<ScatteredReflection>(options.sh_order,
                                                         options.reflectance == Options::Reflectance::npsf_by_depth);
     times_.push_back({"harmonics of the NPSF", watch.lap()});
+  }
+  if (needs.environment_harmonics) {
+    environment_ = std::make_unique<EnvironmentLighting>(*scene_, options, needs.environment_airlight);
+    times_.push_back({"harmonics of the environment", watch.lap()});
   }
 }
 
@@ -100,8 +106,11 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   if (needs.center_depths) result.times.push_back({"depths to centres", watch.lap()});
 
   // Step 6: airlight and T(v,p).
+  std::vector<double> depth(pixels, 0.0);
   if (needs.airlight) {
-    const AirlightImage image = airlight_pass(model_, view_model, view, hits.distance, execution);
+    const AirlightImage image =
+        airlight_pass(model_, view_model, view,
+                      needs.environment ? up_to_environment(model_.options, hits.distance) : hits.distance, execution);
     for (std::size_t i = 0; i < pixels; ++i) {
       const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
       for (int c = 0; c < 3; ++c) {
@@ -109,6 +118,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
         transmittance[3 * i + c] = model_.fog.hue[c] > 0 ? float(visible[c]) : 1.0f;
       }
     }
+    depth = image.depth;
     evaluations += image.evaluations;
     result.counters["gaussians_crossed"] = image.crossed;
     result.counters["gaussians_in_tiles"] = image.candidates;
@@ -119,9 +129,15 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs.surfaces) {
-    evaluations += surface_pass(*scene_, model_, reflection_.get(), view, hits.points, transmittance, execution,
-                                surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
+    evaluations +=
+        surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points, transmittance,
+                     execution, surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
     result.times.push_back({"surfaces", watch.lap()});
+  }
+  if (needs.environment) {
+    environment_pass(*scene_, model_, needs.environment_airlight ? environment_.get() : nullptr, view, hits.distance,
+                     depth, execution, airlight, surface);
+    result.times.push_back({"environment", watch.lap()});
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
   result.counters["rays"] = double(pixels);
@@ -144,9 +160,10 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   const Options options = read_options(settings);
   std::vector<std::string> reasons = objections(scene.media);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (!std::holds_alternative<scene::PointLight>(scene.lights[i]))
-      reasons.push_back(
-          fmt::format("light {} is a {} light, expected point lights only", i, scene::light_name(scene.lights[i])));
+    if (!std::holds_alternative<scene::PointLight>(scene.lights[i]) &&
+        !std::holds_alternative<scene::EnvironmentLight>(scene.lights[i]))
+      reasons.push_back(fmt::format("light {} is a {} light, expected point and environment lights", i,
+                                    scene::light_name(scene.lights[i])));
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
   if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)

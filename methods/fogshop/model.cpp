@@ -37,7 +37,10 @@ std::vector<scene::SettingSpec> setting_specs() {
       real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
       choice("reflectance", "direct", {"direct", "npsf", "npsfT"},
              "of surfaces: unscattered light alone; scattered too, by the printed NPSF or by that of the depth"),
-      integer("sh_order", "6", 1, 12, "bands of the NPSF"),
+      integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
+      choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
+             "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
+      real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -63,6 +66,9 @@ Options read_options(const scene::Settings& settings) {
                   : reflectance == "npsf" ? Reflectance::npsf
                                           : Reflectance::npsf_by_depth;
   o.sh_order = int(settings.integer("sh_order"));
+  const std::string& psf = settings.text("environment_psf");
+  o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
+  o.environment_distance = settings.real("environment_distance");
   return o;
 }
 
@@ -74,8 +80,10 @@ Model make_model(const scene::Scene& scene, const Options& options) {
   model.gaussians = std::move(culled.arrays);
   model.dropped = culled.dropped;
   for (const scene::Light& light : scene.lights) {
-    const auto& point = std::get<scene::PointLight>(light);
-    if ((point.intensity > 0).any()) model.lights.push_back({point.position, point.intensity, {}, nullptr});
+    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
+      model.environment |= !environment->sh.empty() || environment_power(*environment) > 0;
+    const auto* point = std::get_if<scene::PointLight>(&light);
+    if (point && (point->intensity > 0).any()) model.lights.push_back({point->position, point->intensity, {}, nullptr});
   }
   return model;
 }

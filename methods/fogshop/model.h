@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "methods/fogshop/environment_psf.h"
 #include "methods/fogshop/f_table.h"
 #include "methods/fogshop/fog.h"
 #include "methods/fogshop/kernels.h"
@@ -28,7 +29,9 @@ struct Options {
   // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, or by that of the depth at hand.
   enum class Reflectance { direct, npsf, npsf_by_depth };
   Reflectance reflectance = Reflectance::direct;
-  int sh_order = 6;  // bands of the NPSF
+  int sh_order = 6;                        // bands of the NPSF and of the environment
+  Psf environment_psf = Psf::ball;         // what spreads light of an environment
+  double environment_distance = infinity;  // D [m]: view rays that nothing ends, and Eq. 26, reach so far
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
@@ -44,8 +47,9 @@ struct Model {
   Options options;
   Fog fog;
   GaussianArrays gaussians;
-  int dropped = 0;  // Gaussians that nothing would see
-  std::vector<LightModel> lights;
+  int dropped = 0;                 // Gaussians that nothing would see
+  std::vector<LightModel> lights;  // the point lights
+  bool environment = false;        // an environment light shines
   std::unique_ptr<FTable> f_table;
   double evaluations = 0;  // of the error function
 

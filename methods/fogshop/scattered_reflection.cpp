@@ -1,18 +1,12 @@
 #include "methods/fogshop/scattered_reflection.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
-#include "methods/fogshop/surface_psf.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::fogshop {
 namespace {
-
-// The table's depths: 64, even in log T. Below the first, g_l changes by less than 1 % and the light is T times it.
-constexpr int entries = 64;
-constexpr double least_depth = 1e-3, greatest_depth = 30;
 
 // sum_l w_l P_l(x).
 double legendre_sum(const std::vector<double>& weights, double x) {
@@ -45,25 +39,8 @@ std::vector<double> clamped_cosine(int order) {
 
 }  // namespace
 
-ScatteredReflection::ScatteredReflection(int order, bool follows_depth) : order_(order), follows_depth_(follows_depth) {
-  for (int k = 0; k < (follows_depth ? entries : 1); ++k) {
-    const double T =
-        follows_depth ? least_depth * std::pow(greatest_depth / least_depth, double(k) / (entries - 1)) : 1;
-    std::vector<double> g;
-    for (int l = 0; l < order; ++l) g.push_back(npsf_coefficient(l, T));
-    table_.push_back(g);
-  }
-}
-
-std::vector<double> ScatteredReflection::bands(double T) const {
-  if (!follows_depth_) return table_[0];
-  const double place = std::clamp(std::log(T / least_depth) / std::log(greatest_depth / least_depth), 0.0, 1.0);
-  const int k = std::min(entries - 2, int(place * (entries - 1)));
-  const double s = place * (entries - 1) - k;
-  std::vector<double> g(order_);
-  for (int l = 0; l < order_; ++l) g[l] = table_[k][l] + s * (table_[k + 1][l] - table_[k][l]);
-  return g;
-}
+ScatteredReflection::ScatteredReflection(int order, bool follows_depth)
+    : bands_(follows_depth ? Psf::npsf_by_depth : Psf::npsf, order) {}
 
 Rgb ScatteredReflection::reflect(const scene::Material& material, const Vec3& normal, const Vec3& to_view,
                                  const Vec3& to_light, const std::vector<double>& bands) {

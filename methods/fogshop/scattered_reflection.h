@@ -9,6 +9,7 @@
 #pragma once
 #include <vector>
 
+#include "methods/fogshop/environment_psf.h"
 #include "methods/fogshop/surface_pass.h"
 
 namespace airlight::fogshop {
@@ -24,16 +25,14 @@ class ScatteredReflection {
                  double& evaluations) const;
 
   // g_l, l < order, at depth T.
-  std::vector<double> bands(double T) const;
+  std::vector<double> bands(double T) const { return bands_(T); }
   // Integral of brdf * cosine * (the light spread by these bands around `to_light`) over the hemisphere, per channel.
   // Lambert in closed form; others by 512 directions, which resolve Phong exponents up to about 50.
   static Rgb reflect(const scene::Material&, const Vec3& normal, const Vec3& to_view, const Vec3& to_light,
                      const std::vector<double>& bands);
 
  private:
-  int order_;
-  bool follows_depth_;
-  std::vector<std::vector<double>> table_;  // by log T
+  PsfBands bands_;
 };
 
 }  // namespace airlight::fogshop

@@ -14,6 +14,17 @@ bool has_ball(const scene::Scene& scene) {
   });
 }
 
+const char* psf_name(Psf psf) {
+  return psf == Psf::npsf            ? "the printed NPSF"
+         : psf == Psf::npsf_by_depth ? "the NPSF of each depth"
+                                     : "the PSF of a ball of each depth";
+}
+
+// An endless constant lets no light through from infinitely far away.
+bool walled_in(const Model& model) {
+  return model.fog.sum.constant > 0 && model.options.environment_distance == infinity;
+}
+
 }  // namespace
 
 Needs needs_of(const scene::Scene& scene, const Model& model) {
@@ -24,8 +35,12 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.light_maps = !model.paper() && model.options.map && lit && gaussians;
   needs.f_table = model.paper() && model.options.table && lit && constant;
   needs.airlight = gaussians || constant;
-  needs.surfaces = !scene.surfaces.empty() && lit;
+  needs.environment = model.environment && !walled_in(model);
+  needs.surfaces = !scene.surfaces.empty() && (lit || needs.environment);
   needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
+  needs.point_harmonics = needs.scattered && lit;
+  needs.environment_airlight = needs.environment && needs.airlight;
+  needs.environment_harmonics = needs.environment && (needs.airlight || needs.surfaces);
   return needs;
 }
 
@@ -33,7 +48,7 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   const Needs needs = needs_of(scene, model);
   const Options& o = model.options;
   const std::string lights = fmt::format("{} point light{}", model.lights.size(), model.lights.size() == 1 ? "" : "s");
-  const std::string no_lights = "no light shines";
+  const std::string no_lights = "no point light shines";
   const std::string no_gaussians = "no Gaussian reaches the threshold";
   const bool lit = !model.lights.empty(), constant = model.fog.sum.constant > 0, gaussians = model.gaussians.count > 0;
   const auto unlit_or = [&](const std::string& otherwise) { return lit ? otherwise : no_lights; };
@@ -71,14 +86,16 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
   stage("surfaces", needs.surfaces,
-        scene.surfaces.empty() ? "there are none" : unlit_or("direct light through the medium, Eq. 29"));
+        scene.surfaces.empty() ? "there are none"
+        : needs.surfaces       ? "direct light through the medium, Eq. 29"
+                               : "no light reaches them");
   stage("ambient in-scatter", false,
         (scene.ambient_in_scatter > 0).any() ? "the method has none: its airlight is that of the lights"
                                              : "the scene has none");
   stage("shadows of surfaces in the medium", false,
         scene.surfaces.empty() ? "there are no surfaces"
                                : "the method does not know them: airlight behind an occluder is not darkened");
-  stage("airlight reflected by surfaces", needs.scattered,
+  stage("airlight reflected by surfaces", needs.point_harmonics,
         scene.surfaces.empty()                          ? "there are no surfaces"
         : !lit                                          ? no_lights
         : !needs.airlight                               ? "there is no medium"
@@ -86,6 +103,27 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
         : o.reflectance == Options::Reflectance::npsf
             ? fmt::format("Eq. 25, {} bands of the printed NPSF; occluders do not shadow it", o.sh_order)
             : fmt::format("Eq. 25, {} bands of the NPSF of each depth; occluders do not shadow it", o.sh_order));
+  const std::string no_environment = !model.environment ? "no environment light shines"
+                                     : walled_in(model) ? "the constant medium has no end: none of its light arrives"
+                                                        : "";
+  const auto unless_dark = [&](const std::string& otherwise) {
+    return no_environment.empty() ? otherwise : no_environment;
+  };
+  stage("background", needs.environment,
+        unless_dark("the environment through the medium, Eq. 29, where no surface is"));
+  stage("harmonics of the environment", needs.environment_harmonics,
+        unless_dark(needs.environment_harmonics ? fmt::format("{} bands", o.sh_order)
+                                                : "there is no medium and no surface"));
+  stage("airlight of the environment", needs.environment_airlight,
+        unless_dark(!needs.airlight ? "there is no medium"
+                                    : fmt::format("Eq. 28, {}, where no surface is", psf_name(o.environment_psf))));
+  stage("environment on surfaces", needs.environment && needs.surfaces,
+        scene.surfaces.empty()
+            ? "there are no surfaces"
+            : unless_dark(!needs.airlight    ? "no medium is in the way; occluders do not shadow it"
+                          : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
+                                             : fmt::format("Eqs. 26 and 27, {}; occluders do not shadow it",
+                                                           psf_name(o.environment_psf))));
   return stages;
 }
 

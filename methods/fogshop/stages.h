@@ -5,13 +5,17 @@
 namespace airlight::fogshop {
 
 struct Needs {
-  bool distances;      // d_vp of every pixel
-  bool center_depths;  // T(s,b_i), T(v,b_i), T(s,v)
-  bool light_maps;     // T(s,.) around every light
-  bool f_table;        // the paper's table of F
-  bool airlight;       // there is a medium
-  bool surfaces;       // something to light
-  bool scattered;      // light that the medium scatters onto surfaces
+  bool distances;              // d_vp of every pixel
+  bool center_depths;          // T(s,b_i), T(v,b_i), T(s,v)
+  bool light_maps;             // T(s,.) around every light
+  bool f_table;                // the paper's table of F
+  bool airlight;               // there is a medium
+  bool surfaces;               // something to light
+  bool scattered;              // light that the medium scatters onto surfaces
+  bool point_harmonics;        // that of point lights: harmonics of the NPSF
+  bool environment;            // an environment light that reaches the scene: the background
+  bool environment_harmonics;  // its projection
+  bool environment_airlight;   // Eq. 28, and the PSF that spreads it
 };
 Needs needs_of(const scene::Scene&, const Model&);
 

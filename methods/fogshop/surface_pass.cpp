@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "methods/fogshop/environment_lighting.h"
+#include "methods/fogshop/harmonic_reflection.h"
 #include "methods/fogshop/scattered_reflection.h"
 
 namespace airlight::fogshop {
@@ -11,6 +13,7 @@ Rgb direct_reflection(const scene::Scene& scene, const Model& model, const Surfa
                       Crossings& crossings, double& evaluations) {
   Rgb radiance = Rgb::Zero();
   for (const scene::Light& light : scene.lights) {
+    if (!scene::is_delta(light)) continue;
     const scene::Incident in = scene::incident(light, point.position);
     const double cosine = point.normal.dot(in.to_light);
     if (!(cosine > 0)) continue;
@@ -42,23 +45,32 @@ FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const s
   return hits;
 }
 
-double surface_pass(const scene::Scene& scene, const Model& model, const ScatteredReflection* reflection,
-                    const scene::View& view, const std::vector<SurfacePoint>& points,
-                    const std::vector<float>& transmittance, const scene::Execution& execution,
-                    std::vector<float>& surface, std::vector<float>* scattered) {
+void reflect_environment(const scene::Scene& scene, const Model& model, const EnvironmentLighting& environment,
+                         const SurfacePoint& point, const Vec3& to_view, Rgb& direct, Rgb* scattered) {
+  const scene::Material& material = scene.surfaces[point.surface].material;
+  const IncidentHarmonics in =
+      environment.incident(model.fog, average_depth(model, point.position), scattered != nullptr);
+  direct += reflect_harmonics(material, point.normal, to_view, in.attenuated).max(0.0);
+  if (scattered) *scattered += reflect_harmonics(material, point.normal, to_view, in.scattered).max(0.0);
+}
+
+double surface_pass(const scene::Scene& scene, const Model& model, const ScatteredReflection* points,
+                    const EnvironmentLighting* environment, const scene::View& view,
+                    const std::vector<SurfacePoint>& hits, const std::vector<float>& transmittance,
+                    const scene::Execution& execution, std::vector<float>& surface, std::vector<float>* scattered) {
   std::vector<double> calls(view.height, 0.0);
   scene::parallel_rows(view.height, execution, [&](int y) {
     Crossings crossings;
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
-      if (points[i].surface < 0) continue;
+      if (hits[i].surface < 0) continue;
       const Vec3 to_view = -camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
-      Rgb radiance = direct_reflection(scene, model, points[i], to_view, crossings, calls[y]);
-      if (reflection) {
-        const Rgb part = (*reflection)(scene, model, points[i], to_view, crossings, calls[y]);
-        for (int c = 0; c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
-        radiance += part;
-      }
+      Rgb radiance = direct_reflection(scene, model, hits[i], to_view, crossings, calls[y]), part = Rgb::Zero();
+      if (points) part = (*points)(scene, model, hits[i], to_view, crossings, calls[y]);
+      if (environment)
+        reflect_environment(scene, model, *environment, hits[i], to_view, radiance, scattered ? &part : nullptr);
+      for (int c = 0; scattered && c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
+      radiance += part;
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * radiance[c]);
     }
   });

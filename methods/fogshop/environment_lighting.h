@@ -1,0 +1,63 @@
+// Light from an environment, in harmonics: Zhou et al. 2007, section 4.2, Eqs. 26 to 28.
+//
+// What a medium scatters is the environment convolved with a point spread function, one product per coefficient
+// (Eq. 21), times T e^-T of one optical depth T. The paper reads T along the view ray for airlight (Eq. 28), and
+// averaged over all directions for light that reaches a surface (Eq. 26): it takes the medium around a point as a ball
+// of that depth.
+#pragma once
+#include "methods/fogshop/environment_psf.h"
+#include "methods/fogshop/model.h"
+
+namespace airlight::fogshop {
+
+// Radiance that reaches a point, order^2 coefficients each [W/m^2/sr], of directions towards the light.
+struct IncidentHarmonics {
+  std::vector<Rgb> attenuated;  // e^-T L: not scattered
+  std::vector<Rgb> scattered;  // albedo T e^-T (L * PSF): scattered once; empty where there is no medium or if left out
+};
+
+class EnvironmentLighting {
+ public:
+  // All environment lights of the scene together. `spreads`: something scatters, else the PSF is not tabulated.
+  EnvironmentLighting(const scene::Scene&, const Options&, bool spreads);
+
+  // Eq. 28: light of the environment scattered once towards the eye along a ray that no surface ends [W/m^2/sr], the
+  // medium's albedo included. `direction` is the ray's, `depth` T(v,p) [-] for a hue of 1. Has no direct term. Bands
+  // cut off may swing below 0: then it is 0.
+  Rgb airlight(const Fog&, double depth, const Vec3& direction) const;
+
+  // Eq. 27 for an average depth T of the point (Eq. 26) [-], hue 1.
+  IncidentHarmonics incident(const Fog&, double depth, bool scattered) const;
+
+  const std::vector<Rgb>& light() const { return light_; }
+  const PsfBands& bands() const { return *bands_; }  // requires spreads
+  int order() const { return order_; }
+
+ private:
+  // sqrt(4 pi / (2l+1)) g_l T e^-T of Eqs. 21, 27 and 28 by band and channel, albedo included.
+  std::vector<Rgb> spread(const Fog&, double depth) const;
+
+  int order_;
+  std::vector<Rgb> light_;  // L_lm
+  std::unique_ptr<PsfBands> bands_;
+};
+
+// The scene's environments from one direction [W/m^2/sr].
+Rgb background(const scene::Scene&, const Vec3& direction);
+
+// Eq. 26: optical depth from a point to the environment, averaged over all directions [-], hue 1; the constant reaches
+// Options::environment_distance far. All Gaussians are summed: the average falls as 1/distance^2 only.
+double average_depth(const Model&, const Point3&);
+
+// What ends the view rays that no surface ends, if the environment is not infinitely far away: replaces infinite
+// distances.
+std::vector<double> up_to_environment(const Options&, std::vector<double> distance);
+
+// Last loop of section 5.3, and Eq. 29 with L_p = L_in: adds Eq. 28 to `airlight` and the background, seen through the
+// medium, to `surface`, of every pixel whose ray nothing ends. `distance` [m] is infinite there; `depth` is T(v,p).
+// `lighting` may be null: then there is no airlight.
+void environment_pass(const scene::Scene&, const Model&, const EnvironmentLighting* lighting, const scene::View&,
+                      const std::vector<double>& distance, const std::vector<double>& depth, const scene::Execution&,
+                      std::vector<float>& airlight, std::vector<float>& surface);
+
+}  // namespace airlight::fogshop
