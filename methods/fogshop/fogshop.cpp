@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "methods/fogshop/airlight_pass.h"
+#include "methods/fogshop/low_resolution.h"
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
 #include "methods/fogshop/surface_pass.h"
@@ -101,7 +102,10 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Step 6: airlight and T(v,p).
   if (needs.airlight) {
-    const AirlightImage image = airlight_pass(model_, view_model, view, hits.distance, execution);
+    const AirlightImage image = needs.low_resolution
+                                    ? low_resolution_airlight(*scene_, model_, view_model, view, hits.distance,
+                                                              needs.distances, execution, result.times, result.counters)
+                                    : airlight_pass(model_, view_model, view, hits.distance, execution);
     for (std::size_t i = 0; i < pixels; ++i) {
       const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
       for (int c = 0; c < 3; ++c) {
@@ -112,7 +116,8 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
     evaluations += image.evaluations;
     result.counters["gaussians_crossed"] = image.crossed;
     result.counters["gaussians_in_tiles"] = image.candidates;
-    result.times.push_back({"airlight", watch.lap()});
+    const double seconds = watch.lap();
+    if (!needs.low_resolution) result.times.push_back({"airlight", seconds});
   } else {
     std::fill(transmittance.begin(), transmittance.end(), 1.0f);
   }

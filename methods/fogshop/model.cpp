@@ -38,6 +38,9 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("reflectance", "direct", {"direct", "npsf", "npsfT"},
              "of surfaces: unscattered light alone; scattered too, by the printed NPSF or by that of the depth"),
       integer("sh_order", "6", 1, 12, "bands of the NPSF"),
+      choice("downsample", "1", {"1", "2", "4"}, "airlight for one ray per so many pixels to each side, section 5.4"),
+      choice("upsample", "recompute", {"bilinear", "paper", "recompute"},
+             "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -63,6 +66,12 @@ Options read_options(const scene::Settings& settings) {
                   : reflectance == "npsf" ? Reflectance::npsf
                                           : Reflectance::npsf_by_depth;
   o.sh_order = int(settings.integer("sh_order"));
+  o.downsample = std::stoi(settings.text("downsample"));
+  const std::string& upsample = settings.text("upsample");
+  using Upsample = Options::Upsample;
+  o.upsample = upsample == "bilinear" ? Upsample::bilinear
+               : upsample == "paper"  ? Upsample::paper
+                                      : Upsample::recompute;
   return o;
 }
 

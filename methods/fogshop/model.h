@@ -29,6 +29,10 @@ struct Options {
   enum class Reflectance { direct, npsf, npsf_by_depth };
   Reflectance reflectance = Reflectance::direct;
   int sh_order = 6;  // bands of the NPSF
+  // Airlight for one pixel in downsample^2; how the others get theirs.
+  enum class Upsample { bilinear, paper, recompute };
+  int downsample = 1;
+  Upsample upsample = Upsample::recompute;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -24,6 +24,7 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.light_maps = !model.paper() && model.options.map && lit && gaussians;
   needs.f_table = model.paper() && model.options.table && lit && constant;
   needs.airlight = gaussians || constant;
+  needs.low_resolution = needs.airlight && model.options.downsample > 1;
   needs.surfaces = !scene.surfaces.empty() && lit;
   needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
   return needs;
@@ -70,6 +71,15 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                                           o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
+  using Upsample = Options::Upsample;
+  stage("low resolution", needs.low_resolution,
+        !needs.airlight     ? "there is no medium"
+        : o.downsample == 1 ? "downsample = 1"
+        : !needs.distances  ? fmt::format("one ray per {0} x {0} pixels, bilinear: no surface, no edges", o.downsample)
+        : o.upsample == Upsample::bilinear ? fmt::format("one ray per {0} x {0} pixels, bilinear", o.downsample)
+        : o.upsample == Upsample::paper
+            ? fmt::format("one ray per {0} x {0} pixels, the most alike neighbour at edges", o.downsample)
+            : fmt::format("one ray per {0} x {0} pixels, edges at full resolution", o.downsample));
   stage("surfaces", needs.surfaces,
         scene.surfaces.empty() ? "there are none" : unlit_or("direct light through the medium, Eq. 29"));
   stage("ambient in-scatter", false,

@@ -5,13 +5,14 @@
 namespace airlight::fogshop {
 
 struct Needs {
-  bool distances;      // d_vp of every pixel
-  bool center_depths;  // T(s,b_i), T(v,b_i), T(s,v)
-  bool light_maps;     // T(s,.) around every light
-  bool f_table;        // the paper's table of F
-  bool airlight;       // there is a medium
-  bool surfaces;       // something to light
-  bool scattered;      // light that the medium scatters onto surfaces
+  bool distances;       // d_vp of every pixel
+  bool center_depths;   // T(s,b_i), T(v,b_i), T(s,v)
+  bool light_maps;      // T(s,.) around every light
+  bool f_table;         // the paper's table of F
+  bool airlight;        // there is a medium
+  bool surfaces;        // something to light
+  bool low_resolution;  // airlight for some pixels only, and upsampling
+  bool scattered;       // light that the medium scatters onto surfaces
 };
 Needs needs_of(const scene::Scene&, const Model&);
 
