@@ -77,12 +77,20 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 
   // Section 5.4, step 1: distances, by Embree.
   const std::size_t pixels = film.pixels();
-  std::vector<float> distance;
+  std::vector<float> distance, low_distance;
   fogshop::FirstHits hits;
   if (needs_.distances) {
     hits = fogshop::first_hits(*scene_, view, execution);
-    for (const double t : hits.distance) distance.push_back(t < far_away ? float(t) : far_away);
+    const auto on_device = [](const std::vector<double>& from, std::vector<float>& to) {
+      for (const double t : from) to.push_back(t < far_away ? float(t) : far_away);
+    };
+    on_device(hits.distance, distance);
     timer.stage("distances");
+    if (needs_.low_resolution) {
+      const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
+      on_device(low_distances(*scene_, view, low, execution), low_distance);
+      timer.stage("distances, low resolution");
+    }
   }
 
   if (needs_.airlight) {
@@ -90,7 +98,9 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
       fog_.fill_view_depths(view.camera.position);
       timer.stage("depths to centres");
     }
-    const std::vector<PixelAirlight> image = fog_.airlight(view, distance, timer);
+    const std::vector<PixelAirlight> image = needs_.low_resolution
+                                                 ? fog_.low_resolution_airlight(view, distance, low_distance, timer)
+                                                 : fog_.airlight(view, distance, timer);
     for (std::size_t i = 0; i < pixels; ++i)
       for (int c = 0; c < 3; ++c) {
         airlight[3 * i + c] = image[i].airlight[c];

@@ -6,6 +6,7 @@ uniform int tile_row;  // of the first tile of this dispatch: lists hold a strip
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 shared Gaussian near_block[LOCAL_SIZE_X * LOCAL_SIZE_Y];
 
+// -1: no pixel of the tile is wanted.
 int near_count() { return tile_count[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x]; }
 
 // Every invocation of the group must call it. Returns how many of the block are valid.

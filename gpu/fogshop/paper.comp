@@ -2,25 +2,24 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
+#include "fogshop/pixels.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/near.glsl"
 #include "fogshop/light.glsl"
 #include "fogshop/light_lookup.glsl"
 
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };
 // Depths as in depths.comp: from every light to every centre, from the view point to every centre, from every light to
 // the view point.
 layout(std430, binding = 8) readonly buffer Depths { float segment_depth[]; };
-uniform int has_distances;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
-  bool visible = pixel.x < width && pixel.y < height;
+  bool visible = is_computed(pixel);  // the others still help to load
   vec3 origin, direction;
-  camera_ray(vec2(pixel) + 0.5, origin, direction);
-  float end = visible && has_distances != 0 ? distances[pixel.y * width + pixel.x] : far_away;
+  camera_ray(film_position(pixel), origin, direction);
+  float end = visible && has_distances != 0 ? distances[place_of(pixel)] : far_away;
   int count = near_count();
+  if (count < 0) return;  // the whole tile
   const int to_view = LIGHTS * gaussian_count, to_lights = to_view + gaussian_count;
 
   vec3 sum[LIGHTS + 1];
@@ -54,5 +53,5 @@ void main() {
                 homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
     airlight += lights[l].intensity * sum[l];
   }
-  if (visible) pixels[pixel.y * width + pixel.x] = vec4(airlight * albedo, depth);
+  if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

@@ -11,6 +11,8 @@ namespace {
 
 constexpr int tile = 8;                                    // pixels, to both sides; a tile is a work group
 constexpr std::size_t list_bytes = std::size_t(64) << 20;  // of the tiles' lists in one strip
+const std::map<std::string, std::string> square = {{"LOCAL_SIZE_X", std::to_string(tile)},
+                                                   {"LOCAL_SIZE_Y", std::to_string(tile)}};
 
 using Float3 = std::array<float, 3>;
 Float3 float3(const Vec3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
@@ -147,13 +149,11 @@ void FogOnDevice::fill_view_depths(const Point3& view) {
   fill_depths(segments, std::size_t(model_.gaussians.count) * model_.lights.size());
 }
 
-std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
-                                                 StageTimer& timer) {
-  const Use use(context_);
+void FogOnDevice::compute(const scene::View& view, int step, bool has_distances, bool only_edges, StageTimer& timer) {
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
-  const Buffer distances(context_, "distances", distance);
-  const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
+  const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
+  const std::string stage = only_edges ? "edges at full resolution" : "airlight";
   const auto look = [&](Program& p) {
     const scene::Camera& camera = view.camera;
     const bool perspective = camera.kind == scene::Camera::Kind::perspective;
@@ -165,25 +165,23 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
     p.set("camera_up", Vec3(camera.up * half));
     p.set("width", view.width);
     p.set("height", view.height);
+    p.set("grid_width", width);
+    p.set("grid_height", height);
+    p.set("film_step", step);
+    p.set("only_edges", only_edges);
   };
-  const std::map<std::string, std::string> square = {{"LOCAL_SIZE_X", std::to_string(tile)},
-                                                     {"LOCAL_SIZE_Y", std::to_string(tile)}};
-  bind();
-  distances.bind(3);
-  pixels.bind(6);
-
   if (n == 0) {
     Program& p = program("fogshop/homogeneous.comp", square);
     look(p);
-    p.set("has_distances", !distance.empty());
+    p.set("has_distances", has_distances);
     p.set("light_count", lights);
     p.set("source_radius", o.source_radius);
-    p.dispatch(view.width, view.height);
-    timer.stage("airlight");
-    return pixels.download<PixelAirlight>();
+    p.dispatch(width, height);
+    timer.stage(stage);
+    return;
   }
 
-  const int columns = (view.width + tile - 1) / tile, rows = (view.height + tile - 1) / tile;
+  const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
   const std::size_t row_bytes = std::size_t(columns) * n * 4;
   const int strip =
       int(std::clamp<std::size_t>(std::min(list_bytes, context_.limits().storage_block) / row_bytes, 1, rows));
@@ -201,7 +199,7 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
   look(tiles);
   look(p);
-  p.set("has_distances", !distance.empty());
+  p.set("has_distances", has_distances);
   p.set("source_radius", o.source_radius);
   if (!model_.paper()) {
     p.set("boxes", o.boxes);
@@ -219,8 +217,56 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
     timer.stage("tiles");
     p.set("tile_row", first);
     p.dispatch(columns * tile, count * tile);
-    timer.stage("airlight");
+    timer.stage(stage);
   }
+}
+
+std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
+                                                 StageTimer& timer) {
+  const Use use(context_);
+  const Buffer distances(context_, "distances", distance);
+  const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
+  bind();
+  distances.bind(3);
+  pixels.bind(6);
+  compute(view, 1, !distance.empty(), false, timer);
+  return pixels.download<PixelAirlight>();
+}
+
+std::vector<PixelAirlight> FogOnDevice::low_resolution_airlight(const scene::View& view,
+                                                                const std::vector<float>& distance,
+                                                                const std::vector<float>& low_distance,
+                                                                StageTimer& timer) {
+  const Use use(context_);
+  const fogshop::Options& o = model_.options;
+  const fogshop::LowResolution r{view.width, view.height, o.downsample};
+  const std::size_t count = std::size_t(view.width) * view.height;
+  const bool has_distances = !distance.empty(),
+             find_edges = has_distances && o.upsample != fogshop::Options::Upsample::bilinear;
+  const Buffer distances(context_, "distances", distance), low_distances(context_, "low distances", low_distance);
+  const Buffer pixels(context_, "pixels", count * sizeof(PixelAirlight));
+  const Buffer low(context_, "low pixels", std::size_t(r.low_width()) * r.low_height() * sizeof(PixelAirlight));
+  const Buffer edges(context_, "edges", find_edges ? count * 4 : 0);
+  bind();
+  edges.bind(9);
+  low_distances.bind(3);
+  low.bind(6);
+  compute(view, r.factor, has_distances, false, timer);
+
+  distances.bind(3);
+  pixels.bind(6);
+  low.bind(10);
+  low_distances.bind(11);
+  Program& p = context_.program("fogshop/upsample.comp", square);
+  p.set("width", r.width);
+  p.set("height", r.height);
+  p.set("low_width", r.low_width());
+  p.set("low_height", r.low_height());
+  p.set("factor", r.factor);
+  p.set("find_edges", find_edges);
+  p.dispatch(r.width, r.height);
+  timer.stage("upsampling");
+  if (find_edges && o.upsample == fogshop::Options::Upsample::recompute) compute(view, 1, true, true, timer);
   return pixels.download<PixelAirlight>();
 }
 

@@ -7,7 +7,7 @@
 #include "gpu/program.h"
 #include "gpu/raster/hit_image.h"
 #include "gpu/timer.h"
-#include "methods/fogshop/model.h"
+#include "methods/fogshop/low_resolution.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu {
@@ -31,9 +31,15 @@ class FogOnDevice {
   // rays may meet; images are done in strips whose lists fit into one storage block.
   std::vector<PixelAirlight> airlight(const scene::View&, const std::vector<float>& distance, StageTimer&);
 
+  // The same at the settings' lower resolution, brought back to the film's on the device: `low_distance` is d_vp of the
+  // low pixels [m]; both are empty where every ray is infinite.
+  std::vector<PixelAirlight> low_resolution_airlight(const scene::View&, const std::vector<float>& distance,
+                                                     const std::vector<float>& low_distance, StageTimer&);
+
  private:
   Program& program(const char* file, std::map<std::string, std::string> definitions);
   void bind() const;
+  void compute(const scene::View&, int step, bool has_distances, bool only_edges, StageTimer&);
   void fill_depths(const std::vector<struct Segment>&, std::size_t first);
 
   Context& context_;

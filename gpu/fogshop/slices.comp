@@ -3,14 +3,13 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
+#include "fogshop/pixels.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/near.glsl"
 #include "fogshop/light.glsl"
 #include "fogshop/light_lookup.glsl"
 
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };  // airlight, depth
-uniform int has_distances, boxes, extrapolate;
+uniform int boxes, extrapolate;
 uniform float clearest;  // least hue above 0
 
 const float least_h = 1e-9;  // [m]
@@ -72,11 +71,12 @@ vec3 sum_slices(LightFromRay seen, int stride) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
-  bool visible = pixel.x < width && pixel.y < height;  // the others still help to load
+  bool visible = is_computed(pixel);  // the others still help to load
   vec3 origin, direction;
-  camera_ray(vec2(pixel) + 0.5, origin, direction);
-  float end = visible && has_distances != 0 ? distances[pixel.y * width + pixel.x] : far_away;
+  camera_ray(film_position(pixel), origin, direction);
+  float end = visible && has_distances != 0 ? distances[place_of(pixel)] : far_away;
   int count = near_count();
+  if (count < 0) return;  // the whole tile
 
   // Reach of the Gaussians, the light that they take away, the depth of the whole ray.
   float reach_lo = far_away, reach_hi = -far_away, opacity = 0, depth = 0;
@@ -185,5 +185,5 @@ void main() {
              homogeneous_airlight(LightFromRay(seen.along - hi, seen.h), end - hi);
     airlight += light.intensity * sum;
   }
-  if (visible) pixels[pixel.y * width + pixel.x] = vec4(airlight * albedo, depth);
+  if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

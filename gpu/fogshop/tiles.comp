@@ -2,6 +2,7 @@
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "common/camera.glsl"
 #include "fogshop/fog.glsl"
+#include "fogshop/pixels.glsl"
 
 layout(std430, binding = 1) writeonly buffer TileCounts { int tile_count[]; };
 layout(std430, binding = 2) writeonly buffer TileLists { int tile_list[]; };
@@ -10,8 +11,18 @@ uniform int tile_row, tile_rows, tile_columns;
 void main() {
   int tile = int(gl_GlobalInvocationID.x);
   if (tile >= tile_rows * tile_columns) return;
-  vec2 first = TILE * vec2(tile % tile_columns, tile_row + tile / tile_columns);
-  vec2 last = min(first + TILE, vec2(width, height));
+  ivec2 first_pixel = TILE * ivec2(tile % tile_columns, tile_row + tile / tile_columns);
+  ivec2 last_pixel = min(first_pixel + TILE, ivec2(grid_width, grid_height));
+  if (only_edges != 0) {
+    bool wanted = false;
+    for (int y = first_pixel.y; y < last_pixel.y; ++y)
+      for (int x = first_pixel.x; x < last_pixel.x; ++x) wanted = wanted || is_computed(ivec2(x, y));
+    if (!wanted) {
+      tile_count[tile] = -1;
+      return;
+    }
+  }
+  vec2 first = float(film_step) * vec2(first_pixel), last = float(film_step) * vec2(last_pixel);
   vec3 origin, axis;
   camera_ray(0.5 * (first + last), origin, axis);
   // How far other rays start from the middle one, and spread per metre; rounding counted against it.

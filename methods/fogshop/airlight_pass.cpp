@@ -18,6 +18,7 @@ struct Bundle {
   double spread = 0;  // |difference of unit directions|, < 1
 };
 
+// Corners are film positions.
 Bundle bundle_of(const scene::View& view, int x0, int y0, int x1, int y1) {
   Bundle b{camera_ray(view.camera, 0.5 * (x0 + x1), 0.5 * (y0 + y1), view.width, view.height)};
   // Of all rays through the tile those through its corners are farthest from the middle one.
@@ -41,34 +42,39 @@ bool touches(const Bundle& bundle, const Point3& center, double radius) {
   return least <= radius + bundle.width;
 }
 
-}  // namespace
-
-AirlightImage airlight_pass(const Model& model, const ViewModel& view_model, const scene::View& view,
-                            const std::vector<double>& distance, const scene::Execution& execution) {
-  AirlightImage image;
-  const std::size_t pixels = std::size_t(view.width) * view.height;
-  image.airlight.assign(pixels, Rgb::Zero());
-  image.depth.assign(pixels, 0.0);
-  const int rows = (view.height + tile_size - 1) / tile_size;
+// `only` may be null: all.
+void compute(const Model& model, const ViewModel& view_model, const scene::View& view,
+             const std::vector<double>& distance, int step, const std::vector<unsigned char>* only,
+             const scene::Execution& execution, AirlightImage& image) {
+  const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
+  const int rows = (height + tile_size - 1) / tile_size;
   std::vector<std::array<double, 3>> counts(rows);
   scene::parallel_rows(rows, execution, [&](int row) {
     RayAirlight rays(model, view_model);
-    const int y0 = row * tile_size, y1 = std::min(view.height, y0 + tile_size);
+    const int y0 = row * tile_size, y1 = std::min(height, y0 + tile_size);
     std::vector<int> places;
     double candidates = 0;
-    for (int x0 = 0; x0 < view.width; x0 += tile_size) {
-      const int x1 = std::min(view.width, x0 + tile_size);
-      const Bundle bundle = bundle_of(view, x0, y0, x1, y1);
+    for (int x0 = 0; x0 < width; x0 += tile_size) {
+      const int x1 = std::min(width, x0 + tile_size);
+      int wanted = (x1 - x0) * (y1 - y0);
+      if (only) {
+        wanted = 0;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) wanted += (*only)[std::size_t(y) * width + x] != 0;
+        if (wanted == 0) continue;
+      }
+      const Bundle bundle = bundle_of(view, step * x0, step * y0, step * x1, step * y1);
       places.clear();
       for (int i = 0; i < model.gaussians.count; ++i)
         if (touches(bundle, model.gaussians.center(i), std::sqrt(model.gaussians.radius_squared[i])))
           places.push_back(i);
       const GaussianArrays near = subset(model.gaussians, places);
-      candidates += double(places.size()) * (x1 - x0) * (y1 - y0);
+      candidates += double(places.size()) * wanted;
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) {
-          const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-          const std::size_t i = std::size_t(y) * view.width + x;
+          const std::size_t i = std::size_t(y) * width + x;
+          if (only && !(*only)[i]) continue;
+          const Ray ray = camera_ray(view.camera, step * (x + 0.5), step * (y + 0.5), view.width, view.height);
           rays.evaluate(near, {ray.origin, ray.direction, distance[i]}, image.airlight[i], image.depth[i]);
         }
     }
@@ -79,7 +85,23 @@ AirlightImage airlight_pass(const Model& model, const ViewModel& view_model, con
     image.crossed += crossed;
     image.candidates += candidates;
   }
+}
+
+}  // namespace
+
+AirlightImage airlight_pass(const Model& model, const ViewModel& view_model, const scene::View& view,
+                            const std::vector<double>& distance, const scene::Execution& execution, int step) {
+  AirlightImage image;
+  image.airlight.assign(distance.size(), Rgb::Zero());
+  image.depth.assign(distance.size(), 0.0);
+  compute(model, view_model, view, distance, step, nullptr, execution, image);
   return image;
+}
+
+void airlight_again(const Model& model, const ViewModel& view_model, const scene::View& view,
+                    const std::vector<double>& distance, const std::vector<unsigned char>& only,
+                    const scene::Execution& execution, AirlightImage& image) {
+  compute(model, view_model, view, distance, 1, &only, execution, image);
 }
 
 }  // namespace airlight::fogshop

@@ -7,6 +7,7 @@
 
 #include "methods/fogshop/airlight_pass.h"
 #include "methods/fogshop/environment_lighting.h"
+#include "methods/fogshop/low_resolution.h"
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
 #include "methods/fogshop/surface_pass.h"
@@ -108,9 +109,12 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   // Step 6: airlight and T(v,p).
   std::vector<double> depth(pixels, 0.0);
   if (needs.airlight) {
-    const AirlightImage image =
-        airlight_pass(model_, view_model, view,
-                      needs.environment ? up_to_environment(model_.options, hits.distance) : hits.distance, execution);
+    const std::vector<double> ends =
+        needs.environment ? up_to_environment(model_.options, hits.distance) : hits.distance;
+    const AirlightImage image = needs.low_resolution
+                                    ? low_resolution_airlight(*scene_, model_, view_model, view, ends, needs.distances,
+                                                              execution, result.times, result.counters)
+                                    : airlight_pass(model_, view_model, view, ends, execution);
     for (std::size_t i = 0; i < pixels; ++i) {
       const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
       for (int c = 0; c < 3; ++c) {
@@ -122,7 +126,8 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
     evaluations += image.evaluations;
     result.counters["gaussians_crossed"] = image.crossed;
     result.counters["gaussians_in_tiles"] = image.candidates;
-    result.times.push_back({"airlight", watch.lap()});
+    const double seconds = watch.lap();
+    if (!needs.low_resolution) result.times.push_back({"airlight", seconds});
   } else {
     std::fill(transmittance.begin(), transmittance.end(), 1.0f);
   }

@@ -41,6 +41,9 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
              "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
       real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),
+      choice("downsample", "1", {"1", "2", "4"}, "airlight for one ray per so many pixels to each side, section 5.4"),
+      choice("upsample", "recompute", {"bilinear", "paper", "recompute"},
+             "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -69,6 +72,12 @@ Options read_options(const scene::Settings& settings) {
   const std::string& psf = settings.text("environment_psf");
   o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
   o.environment_distance = settings.real("environment_distance");
+  o.downsample = std::stoi(settings.text("downsample"));
+  const std::string& upsample = settings.text("upsample");
+  using Upsample = Options::Upsample;
+  o.upsample = upsample == "bilinear" ? Upsample::bilinear
+               : upsample == "paper"  ? Upsample::paper
+                                      : Upsample::recompute;
   return o;
 }
 

@@ -32,6 +32,10 @@ struct Options {
   int sh_order = 6;                        // bands of the NPSF and of the environment
   Psf environment_psf = Psf::ball;         // what spreads light of an environment
   double environment_distance = infinity;  // D [m]: view rays that nothing ends, and Eq. 26, reach so far
+  // Airlight for one pixel in downsample^2; how the others get theirs.
+  enum class Upsample { bilinear, paper, recompute };
+  int downsample = 1;
+  Upsample upsample = Upsample::recompute;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -37,6 +37,7 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.airlight = gaussians || constant;
   needs.environment = model.environment && !walled_in(model);
   needs.surfaces = !scene.surfaces.empty() && (lit || needs.environment);
+  needs.low_resolution = needs.airlight && model.options.downsample > 1;
   needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
   needs.point_harmonics = needs.scattered && lit;
   needs.environment_airlight = needs.environment && needs.airlight;
@@ -85,6 +86,15 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                                           o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
+  using Upsample = Options::Upsample;
+  stage("low resolution", needs.low_resolution,
+        !needs.airlight     ? "there is no medium"
+        : o.downsample == 1 ? "downsample = 1"
+        : !needs.distances  ? fmt::format("one ray per {0} x {0} pixels, bilinear: no surface, no edges", o.downsample)
+        : o.upsample == Upsample::bilinear ? fmt::format("one ray per {0} x {0} pixels, bilinear", o.downsample)
+        : o.upsample == Upsample::paper
+            ? fmt::format("one ray per {0} x {0} pixels, the most alike neighbour at edges", o.downsample)
+            : fmt::format("one ray per {0} x {0} pixels, edges at full resolution", o.downsample));
   stage("surfaces", needs.surfaces,
         scene.surfaces.empty() ? "there are none"
         : needs.surfaces       ? "direct light through the medium, Eq. 29"

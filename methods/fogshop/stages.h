@@ -11,6 +11,7 @@ struct Needs {
   bool f_table;                // the paper's table of F
   bool airlight;               // there is a medium
   bool surfaces;               // something to light
+  bool low_resolution;         // airlight for some pixels only, and upsampling
   bool scattered;              // light that the medium scatters onto surfaces
   bool point_harmonics;        // that of point lights: harmonics of the NPSF
   bool environment;            // an environment light that reaches the scene: the background

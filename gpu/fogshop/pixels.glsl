@@ -1,0 +1,12 @@
+// Which pixels a dispatch computes: those of the film, one in the middle of each block of film_step x film_step, or the edges
+// alone (methods/fogshop/low_resolution.h). Depths of the results are those of T(v, p), hue 1.
+layout(std430, binding = 3) readonly buffer Distances { float distances[]; };  // of the pixels that are computed
+layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };        // airlight, depth
+layout(std430, binding = 9) readonly buffer Edges { int edge_of[]; };
+uniform int grid_width, grid_height, film_step, has_distances, only_edges;
+
+int place_of(ivec2 pixel) { return pixel.y * grid_width + pixel.x; }
+bool is_computed(ivec2 pixel) {
+  return pixel.x < grid_width && pixel.y < grid_height && (only_edges == 0 || edge_of[place_of(pixel)] != 0);
+}
+vec2 film_position(ivec2 pixel) { return float(film_step) * (vec2(pixel) + 0.5); }
