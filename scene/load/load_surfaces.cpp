@@ -101,6 +101,7 @@ Shape read_shape(const std::string& type, TableReader& reader, const std::string
     reader.allow(surface_keys_and({"center", "radius"}));
     return Sphere{reader.vector("center"), reader.number("radius", positive)};
   }
+  if (type != "plane") return transformed(read_procedural(type, reader), reader);
   reader.allow(surface_keys_and({"point", "normal"}));
   return Plane{reader.vector("point"), reader.direction("normal", Vec3::UnitY())};
 }
@@ -114,7 +115,9 @@ std::vector<std::string> surface_keys_and(const std::vector<std::string>& keys) 
 }
 
 Surface read_surface(TableReader reader, const std::string& folder) {
-  const std::string type = reader.type({"mesh", "sphere", "box", "plane", "height_field"});
+  std::vector<std::string> types = {"mesh", "sphere", "box", "plane", "height_field"};
+  types.insert(types.end(), procedural_types().begin(), procedural_types().end());
+  const std::string type = reader.type(types);
   Surface surface;
   surface.shape = read_shape(type, reader, folder);
   surface.name = reader.text("name", "");

@@ -20,6 +20,10 @@ Surface read_surface(TableReader, const std::string& folder);
 GaussianSum read_gaussian_sum(TableReader&, const std::string& folder);
 std::shared_ptr<const VoxelGrid> read_grid(TableReader&, const std::string& folder);
 
+// Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
+const std::vector<std::string>& procedural_types();
+TriangleMesh read_procedural(const std::string& type, TableReader&);
+
 // `keys` and those of every medium, of every surface.
 std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys);
 std::vector<std::string> surface_keys_and(const std::vector<std::string>& keys);

@@ -1,0 +1,120 @@
+// Procedural shapes of a scene file: their keys, and the mesh that they become.
+#include "scene/error.h"
+#include "scene/geometry/city.h"
+#include "scene/geometry/round_shapes.h"
+#include "scene/geometry/teapot.h"
+#include "scene/load/parts.h"
+
+namespace airlight::scene::load {
+namespace {
+
+constexpr long long most = 4096;  // vertices along one direction
+
+TriangleMesh read_displaced_sphere(TableReader& reader) {
+  reader.allow(surface_keys_and({"center", "radius", "radii", "size", "waves", "bumps", "transform"}));
+  DisplacedSphere sphere;
+  sphere.center = reader.vector("center", Vec3(Vec3::Zero()));
+  if (reader.one_of({"radius", "radii"}) == "radius") {
+    sphere.radii.setConstant(reader.number("radius", positive));
+  } else {
+    const auto radii = reader.numbers("radii", positive, 3);
+    sphere.radii = {radii[0], radii[1], radii[2]};
+  }
+  const auto size = reader.integers("size", 2, 3, most);
+  sphere.around = int(size[0]);
+  sphere.rings = int(size[1]);
+  for (TableReader wave : reader.tables("waves")) {
+    wave.allow({"amplitude", "wave_vector", "phase"});
+    sphere.waves.push_back(
+        {wave.number("amplitude", any_number), wave.vector("wave_vector"), wave.number("phase", any_number, 0)});
+  }
+  for (TableReader bump : reader.tables("bumps")) {
+    bump.allow({"direction", "width", "height"});
+    sphere.bumps.push_back(
+        {bump.direction("direction"), bump.number("width", positive), bump.number("height", any_number)});
+  }
+  return make_displaced_sphere(sphere);
+}
+
+TriangleMesh read_torus(TableReader& reader) {
+  reader.allow(surface_keys_and({"center", "axis", "radius", "tube_radius", "size", "transform"}));
+  Torus torus;
+  torus.center = reader.vector("center", Vec3(Vec3::Zero()));
+  torus.axis = reader.direction("axis", Vec3(Vec3::UnitY()));
+  torus.radius = reader.number("radius", positive);
+  torus.tube_radius = reader.number("tube_radius", {0, torus.radius, true, true});
+  const auto size = reader.integers("size", 2, 3, most);
+  torus.around = int(size[0]);
+  torus.across = int(size[1]);
+  return make_torus(torus);
+}
+
+TriangleMesh read_tube(TableReader& reader) {
+  reader.allow(surface_keys_and({"path", "radius", "end_radius", "size", "caps", "transform"}));
+  Tube tube;
+  for (const Rgb& point : reader.colors("path", any_number)) tube.path.push_back(point.matrix());
+  if (tube.path.size() < 2) reader.expected("path", "at least 2 points");
+  tube.radius = reader.number("radius", positive);
+  tube.end_radius = reader.number("end_radius", positive, tube.radius);
+  const auto size = reader.integers("size", 2, 2, most);
+  if (size[1] < 3) reader.expected("size", "at least 3 vertices around");
+  tube.along = int(size[0]);
+  tube.around = int(size[1]);
+  tube.caps = reader.flag("caps", true);
+  return make_tube(tube);
+}
+
+TriangleMesh read_prism(TableReader& reader) {
+  reader.allow(surface_keys_and({"base", "sides", "radius", "top_radius", "height", "caps", "transform"}));
+  Prism prism;
+  prism.base = reader.vector("base", Vec3(Vec3::Zero()));
+  prism.sides = int(reader.integer("sides", 3, most));
+  prism.radius = reader.number("radius", positive);
+  prism.top_radius = reader.number("top_radius", positive, prism.radius);
+  prism.height = reader.number("height", positive);
+  prism.caps = reader.flag("caps", true);
+  return make_prism(prism);
+}
+
+TriangleMesh read_city(TableReader& reader) {
+  reader.allow(
+      surface_keys_and({"origin", "boxes", "columns", "block", "lot", "street", "heights", "seed", "transform"}));
+  City city;
+  city.origin = reader.vector("origin", Vec3(Vec3::Zero()));
+  city.boxes = int(reader.integer("boxes", 1, 100'000));
+  city.columns = int(reader.integer("columns", 1, 10'000));
+  city.block = int(reader.integer("block", 1, 10'000, city.block));
+  city.lot = reader.number("lot", positive);
+  city.street = reader.number("street", not_negative);
+  const auto heights = reader.numbers("heights", positive, 2);
+  if (!(heights[0] <= heights[1])) reader.expected("heights", "[least, greatest]");
+  city.least_height = heights[0];
+  city.greatest_height = heights[1];
+  city.seed = std::uint32_t(reader.integer("seed", 0, 0xFFFFFFFFll, 0));
+  return make_city(city);
+}
+
+}  // namespace
+
+const std::vector<std::string>& procedural_types() {
+  static const std::vector<std::string> types = {"displaced_sphere", "torus", "tube", "prism", "teapot", "city"};
+  return types;
+}
+
+TriangleMesh read_procedural(const std::string& type, TableReader& reader) {
+  try {
+    if (type == "displaced_sphere") return read_displaced_sphere(reader);
+    if (type == "torus") return read_torus(reader);
+    if (type == "tube") return read_tube(reader);
+    if (type == "prism") return read_prism(reader);
+    if (type == "city") return read_city(reader);
+    reader.allow(surface_keys_and({"size", "transform"}));
+    return make_teapot(int(reader.integer("size", 2, 1024)));
+  } catch (const Error& e) {
+    // What the shape itself complains about does not know where it stands.
+    if (std::string(e.what()).find(reader.where()) != std::string::npos) throw;
+    reader.fail("", e.what());
+  }
+}
+
+}  // namespace airlight::scene::load
