@@ -60,6 +60,22 @@ std::vector<LightData> light_data(const fogshop::Model& model) {
   return data;
 }
 
+void look(Program& p, const scene::View& view) {
+  const scene::Camera& camera = view.camera;
+  const bool perspective = camera.kind == scene::Camera::Kind::perspective;
+  const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
+  p.set("perspective", perspective);
+  p.set("camera_position", camera.position);
+  p.set("camera_forward", camera.forward);
+  p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
+  p.set("camera_up", Vec3(camera.up * half));
+  p.set("width", view.width);
+  p.set("height", view.height);
+}
+
+const std::map<std::string, std::string> square = {{"LOCAL_SIZE_X", std::to_string(tile)},
+                                                   {"LOCAL_SIZE_Y", std::to_string(tile)}};
+
 }  // namespace
 
 struct Segment {
@@ -143,40 +159,66 @@ void FogOnDevice::fill_view_depths(const Point3& view) {
   fill_depths(segments, std::size_t(model_.gaussians.count) * model_.lights.size());
 }
 
+void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
+  const Use use(context_);
+  std::vector<std::array<float, 4>> light;
+  for (int l = 0; l < lighting.order(); ++l)
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
+      const Rgb value = std::sqrt(4 * pi / (2 * l + 1)) * model_.fog.albedo * lighting.light()[i];
+      light.push_back({float(value[0]), float(value[1]), float(value[2]), 0});
+    }
+  const std::vector<double>& table = lighting.bands().values();
+  light_ = std::make_unique<Buffer>(context_, "harmonics of the environment", light);
+  band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
+  bands_ = lighting.order();
+  band_depths_ = lighting.bands().depths();
+}
+
+void FogOnDevice::add_environment(const scene::View& view, const std::vector<unsigned>& open) {
+  const Buffer open_pixels(context_, "open pixels", open);
+  light_->bind(9);
+  band_table_->bind(10);
+  open_pixels.bind(11);
+  auto definitions = square;
+  definitions["SH_ORDER"] = std::to_string(bands_);
+  Program& p = context_.program("fogshop/environment.comp", definitions);
+  using Table = fogshop::PsfBands;
+  look(p, view);
+  p.set("hue", model_.fog.hue);
+  p.set("has_open", !open.empty());
+  p.set("band_depths", band_depths_);
+  p.set("log_least_depth", std::log(Table::least_depth));
+  p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
+  p.dispatch(view.width, view.height);
+}
+
 std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
-                                                 StageTimer& timer) {
+                                                 const std::vector<unsigned>& open, StageTimer& timer) {
   const Use use(context_);
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
   const Buffer distances(context_, "distances", distance);
   const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
-  const auto look = [&](Program& p) {
-    const scene::Camera& camera = view.camera;
-    const bool perspective = camera.kind == scene::Camera::Kind::perspective;
-    const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
-    p.set("perspective", perspective);
-    p.set("camera_position", camera.position);
-    p.set("camera_forward", camera.forward);
-    p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
-    p.set("camera_up", Vec3(camera.up * half));
-    p.set("width", view.width);
-    p.set("height", view.height);
+  const auto finish = [&] {
+    if (bands_ > 0) {
+      add_environment(view, open);
+      timer.stage("environment");
+    }
+    return pixels.download<PixelAirlight>();
   };
-  const std::map<std::string, std::string> square = {{"LOCAL_SIZE_X", std::to_string(tile)},
-                                                     {"LOCAL_SIZE_Y", std::to_string(tile)}};
   bind();
   distances.bind(3);
   pixels.bind(6);
 
   if (n == 0) {
     Program& p = program("fogshop/homogeneous.comp", square);
-    look(p);
+    look(p, view);
     p.set("has_distances", !distance.empty());
     p.set("light_count", lights);
     p.set("source_radius", o.source_radius);
     p.dispatch(view.width, view.height);
     timer.stage("airlight");
-    return pixels.download<PixelAirlight>();
+    return finish();
   }
 
   const int columns = (view.width + tile - 1) / tile, rows = (view.height + tile - 1) / tile;
@@ -195,8 +237,8 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
     definitions["EXACT_LIGHT_DEPTH"] = o.map ? "0" : "1";
   }
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
-  look(tiles);
-  look(p);
+  look(tiles, view);
+  look(p, view);
   p.set("has_distances", !distance.empty());
   p.set("source_radius", o.source_radius);
   if (!model_.paper()) {
@@ -217,7 +259,7 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
     p.dispatch(columns * tile, count * tile);
     timer.stage("airlight");
   }
-  return pixels.download<PixelAirlight>();
+  return finish();
 }
 
 }  // namespace airlight::gpu
