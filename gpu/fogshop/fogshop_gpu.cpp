@@ -43,6 +43,11 @@ class PreparedFogshopGpu final : public scene::Prepared {
           options.sh_order, options.reflectance == fogshop::Options::Reflectance::npsf_by_depth);
       timer.stage("harmonics of the NPSF");
     }
+    if (needs_.environment_harmonics) {
+      environment_ = std::make_unique<fogshop::EnvironmentLighting>(*scene_, options, needs_.environment_airlight);
+      if (needs_.environment_airlight) fog_.upload_environment(*environment_);
+      timer.stage("harmonics of the environment");
+    }
     times_ = timer.times();
   }
 
@@ -60,7 +65,8 @@ class PreparedFogshopGpu final : public scene::Prepared {
   fogshop::Needs needs_;
   Context& context_;
   mutable FogOnDevice fog_;
-  std::unique_ptr<fogshop::ScatteredReflection> reflection_;  // null: left out
+  std::unique_ptr<fogshop::ScatteredReflection> reflection_;   // null: left out
+  std::unique_ptr<fogshop::EnvironmentLighting> environment_;  // the same
   std::vector<scene::StageTime> times_;
 };
 
@@ -78,14 +84,22 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   // Section 5.4, step 1: distances, by Embree.
   const std::size_t pixels = film.pixels();
   std::vector<float> distance, low_distance;
-  fogshop::FirstHits hits;
+  std::vector<unsigned> open;
+  fogshop::FirstHits hits{std::vector<double>(pixels, infinity), {}};
+  // What ends the rays, the environment's distance included.
+  const auto on_device = [&](const std::vector<double>& from, std::vector<float>& to) {
+    for (const double t : needs_.environment ? up_to_environment(model_.options, from) : from)
+      to.push_back(t < far_away ? float(t) : far_away);
+  };
+  const bool all_end = needs_.environment && model_.options.environment_distance < infinity;
   if (needs_.distances) {
     hits = fogshop::first_hits(*scene_, view, execution);
-    const auto on_device = [](const std::vector<double>& from, std::vector<float>& to) {
-      for (const double t : from) to.push_back(t < far_away ? float(t) : far_away);
-    };
-    on_device(hits.distance, distance);
+    if (needs_.environment_airlight)
+      for (const double t : hits.distance) open.push_back(t == infinity);
     timer.stage("distances");
+  }
+  if (needs_.distances || all_end) {
+    on_device(hits.distance, distance);
     if (needs_.low_resolution) {
       const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
       on_device(low_distances(*scene_, view, low, execution), low_distance);
@@ -93,19 +107,21 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
     }
   }
 
+  std::vector<double> depth(pixels, 0.0);
   if (needs_.airlight) {
     if (needs_.center_depths) {
       fog_.fill_view_depths(view.camera.position);
       timer.stage("depths to centres");
     }
-    const std::vector<PixelAirlight> image = needs_.low_resolution
-                                                 ? fog_.low_resolution_airlight(view, distance, low_distance, timer)
-                                                 : fog_.airlight(view, distance, timer);
+    const std::vector<PixelAirlight> image =
+        needs_.low_resolution ? fog_.low_resolution_airlight(view, distance, low_distance, open, timer)
+                              : fog_.airlight(view, distance, open, timer);
     for (std::size_t i = 0; i < pixels; ++i)
       for (int c = 0; c < 3; ++c) {
         airlight[3 * i + c] = image[i].airlight[c];
         const double hue = model_.fog.hue[c];
         transmittance[3 * i + c] = hue > 0 ? float(std::exp(-hue * image[i].depth)) : 1.0f;
+        depth[i] = image[i].depth;
       }
     timer.stage("read back");
   } else {
@@ -114,9 +130,13 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs_.surfaces) {
-    surface_pass(*scene_, model_, reflection_.get(), nullptr, view, hits.points, transmittance, execution, surface,
-                 needs_.scattered ? &film.add("reflected_airlight") : nullptr);
+    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points, transmittance, execution,
+                 surface, needs_.scattered ? &film.add("reflected_airlight") : nullptr);
     timer.stage("surfaces");
+  }
+  if (needs_.environment) {  // the background: its airlight is there
+    environment_pass(*scene_, model_, nullptr, view, hits.distance, depth, execution, airlight, surface);
+    timer.stage("background");
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
   result.times = timer.times();
@@ -141,9 +161,6 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
-  for (const scene::Light& light : scene.lights)
-    if (std::holds_alternative<scene::EnvironmentLight>(light))
-      reasons.push_back("environment lights are for the CPU");
   if (scene.lights.size() > most_lights)
     reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
   return reasons;

@@ -62,6 +62,19 @@ std::vector<LightData> light_data(const fogshop::Model& model) {
   return data;
 }
 
+void look(Program& p, const scene::View& view) {
+  const scene::Camera& camera = view.camera;
+  const bool perspective = camera.kind == scene::Camera::Kind::perspective;
+  const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
+  p.set("perspective", perspective);
+  p.set("camera_position", camera.position);
+  p.set("camera_forward", camera.forward);
+  p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
+  p.set("camera_up", Vec3(camera.up * half));
+  p.set("width", view.width);
+  p.set("height", view.height);
+}
+
 }  // namespace
 
 struct Segment {
@@ -149,22 +162,47 @@ void FogOnDevice::fill_view_depths(const Point3& view) {
   fill_depths(segments, std::size_t(model_.gaussians.count) * model_.lights.size());
 }
 
+void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
+  const Use use(context_);
+  std::vector<std::array<float, 4>> light;
+  for (int l = 0; l < lighting.order(); ++l)
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
+      const Rgb value = std::sqrt(4 * pi / (2 * l + 1)) * model_.fog.albedo * lighting.light()[i];
+      light.push_back({float(value[0]), float(value[1]), float(value[2]), 0});
+    }
+  const std::vector<double>& table = lighting.bands().values();
+  light_ = std::make_unique<Buffer>(context_, "harmonics of the environment", light);
+  band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
+  bands_ = lighting.order();
+  band_depths_ = lighting.bands().depths();
+}
+
+void FogOnDevice::add_environment(const scene::View& view, const std::vector<unsigned>& open, StageTimer& timer) {
+  const Buffer open_pixels(context_, "open pixels", open);
+  light_->bind(9);
+  band_table_->bind(10);
+  open_pixels.bind(11);
+  auto definitions = square;
+  definitions["SH_ORDER"] = std::to_string(bands_);
+  Program& p = context_.program("fogshop/environment.comp", definitions);
+  using Table = fogshop::PsfBands;
+  look(p, view);
+  p.set("hue", model_.fog.hue);
+  p.set("has_open", !open.empty());
+  p.set("band_depths", band_depths_);
+  p.set("log_least_depth", std::log(Table::least_depth));
+  p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
+  p.dispatch(view.width, view.height);
+  timer.stage("environment");
+}
+
 void FogOnDevice::compute(const scene::View& view, int step, bool has_distances, bool only_edges, StageTimer& timer) {
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
   const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
   const std::string stage = only_edges ? "edges at full resolution" : "airlight";
-  const auto look = [&](Program& p) {
-    const scene::Camera& camera = view.camera;
-    const bool perspective = camera.kind == scene::Camera::Kind::perspective;
-    const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
-    p.set("perspective", perspective);
-    p.set("camera_position", camera.position);
-    p.set("camera_forward", camera.forward);
-    p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
-    p.set("camera_up", Vec3(camera.up * half));
-    p.set("width", view.width);
-    p.set("height", view.height);
+  const auto prepare = [&](Program& p) {
+    look(p, view);
     p.set("grid_width", width);
     p.set("grid_height", height);
     p.set("film_step", step);
@@ -172,7 +210,7 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   };
   if (n == 0) {
     Program& p = program("fogshop/homogeneous.comp", square);
-    look(p);
+    prepare(p);
     p.set("has_distances", has_distances);
     p.set("light_count", lights);
     p.set("source_radius", o.source_radius);
@@ -197,8 +235,8 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     definitions["EXACT_LIGHT_DEPTH"] = o.map ? "0" : "1";
   }
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
-  look(tiles);
-  look(p);
+  prepare(tiles);
+  prepare(p);
   p.set("has_distances", has_distances);
   p.set("source_radius", o.source_radius);
   if (!model_.paper()) {
@@ -222,7 +260,7 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
 }
 
 std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
-                                                 StageTimer& timer) {
+                                                 const std::vector<unsigned>& open, StageTimer& timer) {
   const Use use(context_);
   const Buffer distances(context_, "distances", distance);
   const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
@@ -230,13 +268,14 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
   distances.bind(3);
   pixels.bind(6);
   compute(view, 1, !distance.empty(), false, timer);
+  if (light_) add_environment(view, open, timer);
   return pixels.download<PixelAirlight>();
 }
 
 std::vector<PixelAirlight> FogOnDevice::low_resolution_airlight(const scene::View& view,
                                                                 const std::vector<float>& distance,
                                                                 const std::vector<float>& low_distance,
-                                                                StageTimer& timer) {
+                                                                const std::vector<unsigned>& open, StageTimer& timer) {
   const Use use(context_);
   const fogshop::Options& o = model_.options;
   const fogshop::LowResolution r{view.width, view.height, o.downsample};
@@ -267,6 +306,7 @@ std::vector<PixelAirlight> FogOnDevice::low_resolution_airlight(const scene::Vie
   p.dispatch(r.width, r.height);
   timer.stage("upsampling");
   if (find_edges && o.upsample == fogshop::Options::Upsample::recompute) compute(view, 1, true, true, timer);
+  if (light_) add_environment(view, open, timer);
   return pixels.download<PixelAirlight>();
 }
 

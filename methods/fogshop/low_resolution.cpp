@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "methods/fogshop/environment_lighting.h"
+
 namespace airlight::fogshop {
 namespace {
 
@@ -128,6 +130,7 @@ AirlightImage low_resolution_airlight(const scene::Scene& scene, const Model& mo
     low_distance = low_distances(scene, view, r, execution);
     lap("distances, low resolution");
   }
+  if (model.environment) low_distance = up_to_environment(o, low_distance);
   const AirlightImage low = airlight_pass(model, view_model, view, low_distance, execution, r.factor);
   lap("airlight");
   std::vector<unsigned char> edge;

@@ -65,6 +65,43 @@ TEST_CASE("fogshop: GPU agrees with CPU", "[gpu]") {
   CHECK(worst < 2e-3);
 }
 
+// The sky alone, with a point light, over a constant up to its distance, on surfaces; every PSF.
+TEST_CASE("fogshop: GPU agrees with CPU under an environment", "[gpu]") {
+  if (!gpu::test::device()) return;
+  const fogshop::Fogshop cpu;
+  const gpu::FogshopGpu gpu;
+  const auto from = [](const char* name, scene::Overrides overrides) {
+    overrides.insert({{"film.width", "24"}, {"film.height", "18"}});
+    return std::make_shared<scene::Scene>(
+        scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/") + name, overrides));
+  };
+  auto sky = from("environment_cloud.toml", {{"medium.0.sigma_t", "[0.25, 0.15, 0.05]"}, {"medium.0.albedo", "0.8"}});
+  auto both = std::make_shared<scene::Scene>(*sky);
+  both->lights.emplace_back(scene::PointLight{Point3(4, 5, 3), Rgb(300, 200, 100), 0.5});
+  both->surfaces.push_back({"floor", scene::Plane{Point3(0, -1, 0), Vec3::UnitY()},
+                            scene::Phong{Rgb::Constant(0.3), Rgb::Constant(0.3), 5}});
+  finish(*both);
+  auto constant = std::make_shared<scene::Scene>(*both);
+  std::get<scene::GaussianSum>(constant->media[0].field).constant = 0.1;
+  finish(*constant);
+  auto alone = std::make_shared<scene::Scene>(*constant);
+  std::get<scene::GaussianSum>(alone->media[0].field).gaussians.clear();
+  finish(*alone);
+  for (const auto& scene : {sky, both, constant, alone})
+    for (Pairs given : {Pairs{{"environment_psf", "npsf"}, {"variant", "paper"}},
+                        Pairs{{"environment_psf", "npsfT"}, {"sh_order", "12"}}, Pairs{{"environment_psf", "ball"}}}) {
+      given.insert({{"erf", "erf10"}, {"reflectance", "npsfT"}});
+      if (scene == constant || scene == alone) given["environment_distance"] = "40";
+      const scene::Film a = render(cpu, scene, given), b = render(gpu, scene, given);
+      CAPTURE(scene == sky, scene == both, scene == constant, given);
+      CHECK(*std::max_element(a.layer("airlight").begin(), a.layer("airlight").end()) > 0);
+      for (const char* layer : {"airlight", "transmittance", "surface", "mean"}) {
+        CAPTURE(layer, p99(a, b, layer));
+        CHECK(p99(a, b, layer) < 1e-4);
+      }
+    }
+}
+
 TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
   if (!gpu::test::device()) return;
   const gpu::FogshopGpu method;
@@ -80,6 +117,8 @@ TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
   scene->lights.clear();
   CHECK(dispatches({}) == 2);  // the depth alone
   CHECK(dispatches({{"variant", "paper"}}) == 2);
+  scene->lights.emplace_back(scene::make_constant_environment(Rgb::Ones()));
+  CHECK(dispatches({}) == 3);  // and the environment's airlight
   scene->media.clear();
   CHECK(dispatches({}) == 0);
 }

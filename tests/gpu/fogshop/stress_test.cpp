@@ -33,7 +33,7 @@ gpu::PixelAirlight one_ray(gpu::Context& context, const Options& options, const 
   }
   gpu::StageTimer timer(context);
   const scene::View one{scene::look_at(view, view + Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
-  return device.airlight(one, {length < gpu::far_away ? float(length) : gpu::far_away}, timer).at(0);
+  return device.airlight(one, {length < gpu::far_away ? float(length) : gpu::far_away}, {}, timer).at(0);
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// Real spherical harmonics of SH_ORDER bands for a unit direction, as scene/math/spherical_harmonics.h: orthonormal,
+// Condon-Shortley, index l(l+1)+m, polar axis z. The same recurrence upwards in l.
+void evaluate_sh(vec3 direction, out float values[SH_ORDER * SH_ORDER]) {
+  float c = 1, s = 0;                          // of (x + iy)^m
+  float diagonal = 0.25 / acos(-1.0);          // 1 / (4 pi)
+  for (int m = 0; m < SH_ORDER; ++m) {
+    if (m > 0) diagonal *= (2.0 * m + 1) / (2.0 * m);
+    float before = 0, q = (m % 2 != 0 ? -1 : 1) * sqrt((m > 0 ? 2 : 1) * diagonal);
+    for (int l = m; l < SH_ORDER; ++l) {
+      if (l > m) {
+        float span = float(l - m) * float(l + m);
+        float next = sqrt((2.0 * l - 1) * (2.0 * l + 1) / span) * direction.z * q;
+        if (l > m + 1)
+          next -= sqrt((2.0 * l + 1) * (l - 1.0 - m) * (l - 1.0 + m) / ((2.0 * l - 3) * span)) * before;
+        before = q;
+        q = next;
+      }
+      values[l * (l + 1) + m] = q * c;
+      if (m > 0) values[l * (l + 1) - m] = q * s;
+    }
+    float turned = c * direction.x - s * direction.y;
+    s = c * direction.y + s * direction.x;
+    c = turned;
+  }
+}

@@ -1,0 +1,41 @@
+// Last loop of section 5.3 of Zhou et al. 2007: light of the environment scattered once (Eq. 28), added to every pixel
+// whose ray nothing ends. T(v,p) is there already.
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "common/camera.glsl"
+#include "common/spherical_harmonics.glsl"
+
+layout(std430, binding = 6) buffer Pixels { vec4 pixels[]; };             // airlight, T(v,p)
+layout(std430, binding = 9) readonly buffer Light { vec4 light[]; };      // sqrt(4 pi / (2l+1)) albedo L_lm
+layout(std430, binding = 10) readonly buffer Bands { float bands[]; };    // g_l, [depth][l]
+layout(std430, binding = 11) readonly buffer Open { uint open_pixels[]; };  // 0: something ends the ray
+uniform int has_open;
+uniform vec3 hue;
+uniform int band_depths;                         // 1: the same for every depth
+uniform float log_least_depth, log_depth_range;  // of the table
+
+float band(int l, float place) {
+  if (band_depths == 1) return bands[l];
+  int k = min(band_depths - 2, int(place));
+  float low = bands[k * SH_ORDER + l];
+  return low + (place - k) * (bands[(k + 1) * SH_ORDER + l] - low);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (pixel.x >= width || pixel.y >= height) return;
+  int index = pixel.y * width + pixel.x;
+  if (has_open != 0 && open_pixels[index] == 0) return;
+  vec3 origin, direction;
+  camera_ray(vec2(pixel) + 0.5, origin, direction);
+  float y[SH_ORDER * SH_ORDER];
+  evaluate_sh(direction, y);
+  // The tiny number keeps the logarithm finite; below the table's first depth the place is its first anyway.
+  vec3 T = pixels[index].w * hue, sum = vec3(0);
+  vec3 place = clamp((log(max(T, 1e-30)) - log_least_depth) / log_depth_range, 0, 1) * (band_depths - 1);
+  for (int l = 0; l < SH_ORDER; ++l) {
+    vec3 value = vec3(0);
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += light[i].rgb * y[i];
+    sum += value * vec3(band(l, place.r), band(l, place.g), band(l, place.b));
+  }
+  pixels[index].rgb += max(sum * T * exp(-T), vec3(0));
+}
