@@ -16,6 +16,10 @@ uniform int gaussian_count;
 uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m]
 uniform vec3 hue;        // extinction per channel over the greatest
 uniform vec3 albedo;
+#if COLOURED  // what each Gaussian, by place, and the constant scatter of that
+layout(std430, binding = 12) readonly buffer Colours { vec4 colour_of[]; };
+uniform vec3 constant_colour;
+#endif
 
 // x times a polynomial in z = ERF_SCALE x^2 - 1 up to ERF_CUT, +-1 beyond: the coefficients of methods/fogshop/erf-inl.h.
 const float erf_coefficient[ERF_COUNT] = float[ERF_COUNT](ERF_COEFFICIENTS);

@@ -19,6 +19,9 @@ const int node_room = even_steps + 1 + LIGHTS * light_steps;
 
 float node[node_room], share[node_room];
 float edge[K + 1], view_depth[K + 1], depth_of_light[K + 1];
+#if COLOURED
+vec3 scattering[K + 1];  // what the medium up to an edge scatters, hue 1
+#endif
 
 // Optical depth of all Gaussians between two points.
 float gaussian_depth(vec3 from, vec3 to) {
@@ -61,7 +64,12 @@ vec3 sum_slices(LightFromRay seen, int stride) {
     vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
     for (int c = 0; c < 3; ++c) {
       float mean = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * s1)) / q[c];
-      sum[c] += mean_inverse_square * hue[c] * step_ * mean;
+#if COLOURED
+      float scattered = max(scattering[k + stride][c] - scattering[k][c], 0);
+#else
+      float scattered = step_;
+#endif
+      sum[c] += mean_inverse_square * hue[c] * scattered * mean;
     }
   }
   return sum / (4 * pi);
@@ -148,12 +156,24 @@ void main() {
 
   // Exact depths at the edges.
   for (int k = 0; k <= K; ++k) view_depth[k] = constant * edge[k];
+#if COLOURED
+  for (int k = 0; k <= K; ++k) scattering[k] = constant_colour * constant * edge[k];
+#endif
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
       Crossing c = cross_line(near_block[i], origin, direction, end);
       if (!c.met) continue;
+#if COLOURED
+      vec3 colour = colour_of[int(near_block[i].place)].rgb;
+      for (int k = 0; k <= K; ++k) {
+        float part = depth_at(c, edge[k]);
+        view_depth[k] += part;
+        scattering[k] += colour * part;
+      }
+#else
       for (int k = 0; k <= K; ++k) view_depth[k] += depth_at(c, edge[k]);
+#endif
     }
   }
 
