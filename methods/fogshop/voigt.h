@@ -26,8 +26,8 @@ struct VoigtNode {
   int crossing;
 };
 
-// Appends the nodes of one crossed Gaussian: two; or 32 of a quadrature at even angles from the light where an end of
-// the ray [0, length] cuts it within three widths of its middle. The light stands at ray parameter `along`, `h` > 0
+// Appends the two nodes of one crossed Gaussian. Where an end of the ray [0, length] cuts it within three widths of its
+// middle the moments are those of the part that is left, by quadrature. The light stands at ray parameter `along`, `h`
 // away.
 void append_voigt_nodes(const Crossings&, int crossing, double length, double along, double h,
                         std::vector<VoigtNode>& nodes);

@@ -29,9 +29,15 @@ struct Weideman {
 std::complex<double> rational(std::complex<double> z) {
   static const Weideman table;
   const std::complex<double> iz(-z.imag(), z.real()), below = table.L - iz, q = (table.L + iz) / below;
-  std::complex<double> sum = table.a[terms - 1];
-  for (int n = terms - 2; n >= 0; --n) sum = sum * q + table.a[n];
-  return 2.0 * sum / (below * below) + 1 / root_pi / below;
+  // By parts: products of std::complex look for infinities, which costs as much again.
+  const double qr = q.real(), qi = q.imag();
+  double re = table.a[terms - 1], im = 0;
+  for (int n = terms - 2; n >= 0; --n) {
+    const double next = re * qr - im * qi + table.a[n];
+    im = re * qi + im * qr;
+    re = next;
+  }
+  return 2.0 * std::complex<double>(re, im) / (below * below) + 1 / root_pi / below;
 }
 
 }  // namespace

@@ -131,3 +131,19 @@ TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu]") {
     }
   }
 }
+
+// Radii are those of the CPU side, by either rule: what is culled is the same.
+TEST_CASE("fogshop: culling, GPU agrees with CPU", "[gpu]") {
+  if (!gpu::test::device()) return;
+  for (const char* name : {"f100", "f100_large", "f100_small"})
+    for (const Pairs& cull :
+         {Pairs{{"cull", "paper"}}, Pairs{{"eps_T", "1e-2"}}, Pairs{{"eps_T", "1e-2"}, {"variant", "paper"}}}) {
+      Pairs given = cull;
+      given["erf"] = "erf10";
+      const auto scene = scene_named(name);
+      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      CAPTURE(name, given);
+      CHECK(p99(a, b, "airlight") < 2e-3);
+      CHECK(p99(a, b, "transmittance") < 2e-3);
+    }
+}

@@ -51,7 +51,7 @@ TEST_CASE("moments of a Gaussian over a squared distance", "[fogshop]") {
 }
 
 // Nodes carry the integral of the extinction over d^2, and polynomials of degree three over it, where the ray passes
-// the Gaussian; where an end cuts it, they are a quadrature.
+// the Gaussian as where an end cuts it.
 TEST_CASE("nodes of a Gaussian over a squared distance", "[fogshop]") {
   for (const double length : {20.0, 4.5, 3.0, infinity})
     for (const double along : {4.2, 1.0, -5.0})
@@ -64,7 +64,7 @@ TEST_CASE("nodes of a Gaussian over a squared distance", "[fogshop]") {
         std::vector<VoigtNode> nodes;
         append_voigt_nodes(crossings, 0, length, along, h, nodes);
         const bool whole = length > 10;
-        CHECK(nodes.size() == (whole ? 2u : 32u));
+        CHECK(nodes.size() == 2);
         for (int power = 0; power <= 3; ++power) {
           const auto f = [&](double t) { return std::pow(0.3 * (t - 4), power); };
           double sum = 0;
