@@ -16,6 +16,10 @@ uniform int gaussian_count;
 uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m]
 uniform vec3 hue;        // extinction per channel over the greatest
 uniform vec3 albedo;
+#if COLOURED  // what each Gaussian, by place, and the constant scatter of that
+layout(std430, binding = 12) readonly buffer Colours { vec4 colour_of[]; };
+uniform vec3 constant_colour;
+#endif
 
 // erfc(|x|): what the error function lacks to its limit. Two of these can be subtracted far out in the tails of a
 // Gaussian, where two error functions are both 1.

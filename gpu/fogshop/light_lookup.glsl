@@ -89,5 +89,8 @@ vec3 homogeneous_airlight(LightFromRay light, float length_) {
   result.x = homogeneous_airlight(light, length_, constant * hue.x);
   result.y = hue.y == hue.x ? result.x : homogeneous_airlight(light, length_, constant * hue.y);
   result.z = hue.z == hue.x ? result.x : homogeneous_airlight(light, length_, constant * hue.z);
+#if COLOURED
+  result *= constant_colour;
+#endif
   return result;
 }

@@ -42,7 +42,11 @@ void main() {
         float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
                          depth_at(towards, distance_) - before;
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
-        sum[l] += hue * weight * exp(hue * exponent);
+        vec3 term = hue * weight * exp(hue * exponent);
+#if COLOURED
+        term *= colour_of[int(g.place)].rgb;
+#endif
+        sum[l] += term;
       }
     }
   }

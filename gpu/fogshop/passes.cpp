@@ -43,6 +43,14 @@ std::vector<GaussianData> gaussian_data(const fogshop::GaussianArrays& g) {
   return data;
 }
 
+// Empty where all albedos are equal.
+std::vector<std::array<float, 4>> colour_data(const fogshop::GaussianArrays& g) {
+  std::vector<std::array<float, 4>> data;
+  for (int i = 0; i < g.count && g.has_colours(); ++i)
+    data.push_back({float(g.colour[0][i]), float(g.colour[1][i]), float(g.colour[2][i]), 0});
+  return data;
+}
+
 std::size_t map_values(const fogshop::Options& o) {
   return std::size_t(o.map_directions + 2) * (o.map_directions + 2) * (o.map_edges + 1);
 }
@@ -92,7 +100,8 @@ FogOnDevice::FogOnDevice(Context& context, const fogshop::Model& model)
       maps_(context, "light maps", has_maps(model) ? map_values(model.options) * model.lights.size() * 4 : 0),
       depths_(context, "depths to centres",
               model.paper() ? (std::size_t(model.gaussians.count) * (model.lights.size() + 1) + model.lights.size()) * 4
-                            : 0) {}
+                            : 0),
+      colours_(context, "colours", colour_data(model.gaussians)) {}
 
 Program& FogOnDevice::program(const char* file, std::map<std::string, std::string> definitions) {
   if (model_.options.erf == fogshop::Erf::precise) {
@@ -106,7 +115,9 @@ Program& FogOnDevice::program(const char* file, std::map<std::string, std::strin
     definitions["ERF_COUNT"] = std::to_string(coefficients.size());
     definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
   }
+  definitions["COLOURED"] = model_.fog.one_albedo() ? "0" : "1";
   Program& p = context_.program(file, definitions);
+  if (!model_.fog.one_albedo()) p.set("constant_colour", model_.fog.constant_colour);
   p.set("gaussian_count", model_.gaussians.count);
   p.set("constant", model_.fog.sum.constant);
   p.set("hue", model_.fog.hue);
@@ -119,6 +130,7 @@ void FogOnDevice::bind() const {
   lights_.bind(4);
   maps_.bind(5);
   depths_.bind(8);
+  if (!model_.fog.one_albedo()) colours_.bind(12);
 }
 
 void FogOnDevice::fill_light_maps() {

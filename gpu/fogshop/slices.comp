@@ -19,7 +19,11 @@ const int node_room = even_steps + 1 + LIGHTS * light_steps;
 
 float node[node_room], share[node_room];
 float edge[K + 1], view_depth[K + 1], depth_of_light[K + 1];
-float slice_depth[K];  // not differences of view_depth: those lose the tails of the Gaussians
+// Of the slices; not differences of view_depth, which lose the tails of the Gaussians.
+float slice_depth[K];
+#if COLOURED
+vec3 slice_scattering[K];  // what the medium in the slice scatters, hue 1
+#endif
 
 // Optical depth of all Gaussians between two points.
 float gaussian_depth(vec3 from, vec3 to) {
@@ -63,7 +67,13 @@ vec3 sum_slices(LightFromRay seen, int stride) {
     vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
     for (int c = 0; c < 3; ++c) {
       float mean = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * s1)) / q[c];
-      sum[c] += mean_inverse_square * hue[c] * step_ * mean;
+#if COLOURED
+      float scattered = slice_scattering[k][c];
+      if (stride == 2) scattered += slice_scattering[k + 1][c];
+#else
+      float scattered = step_;
+#endif
+      sum[c] += mean_inverse_square * hue[c] * scattered * mean;
     }
   }
   return sum / (4 * pi);
@@ -151,16 +161,26 @@ void main() {
   // Exact depths of the slices, and up to their edges.
   view_depth[0] = constant * edge[0];
   for (int k = 0; k < K; ++k) slice_depth[k] = constant * (edge[k + 1] - edge[k]);
+#if COLOURED
+  for (int k = 0; k < K; ++k) slice_scattering[k] = constant_colour * slice_depth[k];
+#endif
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
       Crossing c = cross_line(near_block[i], origin, direction, end);
       if (!c.met) continue;
+#if COLOURED
+      vec3 colour = colour_of[int(near_block[i].place)].rgb;
+#endif
       Place begin = place_at(c, edge[0]);
       view_depth[0] += c.depth * erf_between(c.start, begin);
       for (int k = 0; k < K; ++k) {
         Place end_ = place_at(c, edge[k + 1]);
-        slice_depth[k] += c.depth * erf_between(begin, end_);
+        float part = c.depth * erf_between(begin, end_);
+        slice_depth[k] += part;
+#if COLOURED
+        slice_scattering[k] += colour * part;
+#endif
         begin = end_;
       }
     }

@@ -53,8 +53,6 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
       first = &medium;
       continue;
     }
-    if (((medium.albedo - first->albedo).abs() > 1e-12).any())
-      object("has another albedo than the first, and this method has one");
     const Rgb hue = medium.sigma_t / medium.sigma_t.maxCoeff(), other = first->sigma_t / first->sigma_t.maxCoeff();
     if (((hue - other).abs() > 1e-12).any()) object("extinguishes in another hue than the first");
   }
@@ -64,6 +62,9 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
 Fog make_fog(const std::vector<Medium>& media) {
   Fog fog;
   bool first = true;
+  std::vector<Rgb> albedos;           // of the Gaussians
+  Rgb from_constant = Rgb::Zero();    // what the constants scatter [1/m], hue 1
+  std::vector<Rgb> constant_albedos;  // of media with a constant
   for (const Medium& medium : media) {
     if (!extinguishes(medium)) continue;
     const double strength = medium.sigma_t.maxCoeff();
@@ -72,17 +73,34 @@ Fog make_fog(const std::vector<Medium>& media) {
       fog.albedo = medium.albedo;
       first = false;
     }
+    const auto add_constant = [&](double extinction) {
+      if (!(extinction > 0)) return;
+      fog.sum.constant += extinction;
+      from_constant += extinction * medium.albedo;
+      constant_albedos.push_back(medium.albedo);
+    };
     if (const auto* homogeneous = std::get_if<Homogeneous>(&medium.field)) {
-      fog.sum.constant += strength * homogeneous->density;
+      add_constant(strength * homogeneous->density);
       continue;
     }
     const GaussianSum& sum = std::get<GaussianSum>(medium.field);
-    fog.sum.constant += strength * sum.constant;
+    add_constant(strength * sum.constant);
     for (scene::Gaussian g : sum.gaussians) {
       g.amplitude *= strength;
       fog.sum.gaussians.push_back(g);
+      albedos.push_back(medium.albedo);
     }
   }
+  const auto differs = [&](const Rgb& albedo) { return ((albedo - fog.albedo).abs() > 1e-12).any(); };
+  if (std::none_of(albedos.begin(), albedos.end(), differs) &&
+      std::none_of(constant_albedos.begin(), constant_albedos.end(), differs))
+    return fog;
+  const Rgb constant_albedo = fog.sum.constant > 0 ? Rgb(from_constant / fog.sum.constant) : Rgb(Rgb::Zero());
+  fog.albedo = constant_albedo;
+  for (const Rgb& albedo : albedos) fog.albedo = fog.albedo.max(albedo);
+  const Rgb most = (fog.albedo > 0).select(fog.albedo, 1.0);
+  for (const Rgb& albedo : albedos) fog.colours.push_back(albedo / most);
+  fog.constant_colour = constant_albedo / most;
   return fog;
 }
 

@@ -11,17 +11,22 @@ namespace airlight::fogshop {
 // extinction per channel = hue * (constant + sum of Gaussians). Channels of one colour differ only by that factor, so
 // every optical depth is computed once and scaled.
 struct Fog {
-  scene::GaussianSum sum;  // amplitudes and constant are extinctions [1/m] where the hue is 1; no cutoff
-  Rgb hue = Rgb::Ones();   // [-], the greatest is 1
-  Rgb albedo = Rgb::Ones();
+  scene::GaussianSum sum;    // amplitudes and constant are extinctions [1/m] where the hue is 1; no cutoff
+  Rgb hue = Rgb::Ones();     // [-], the greatest is 1
+  Rgb albedo = Rgb::Ones();  // of everything, or the greatest of all where they differ
+  // What each Gaussian scatters of what `albedo` would, in [0, 1]; empty where all albedos are equal. It scales the
+  // scattering and not the extinction: the "color" of the paper's sections 6 and 7.
+  std::vector<Rgb> colours;
+  Rgb constant_colour = Rgb::Ones();
 
   bool grey() const { return (hue == 1).all(); }
+  bool one_albedo() const { return colours.empty(); }
   bool empty() const { return sum.gaussians.empty() && !(sum.constant > 0); }
 };
 
 // Why these media are none such; empty if they are. Accepted: any number of homogeneous media and Gaussian sums, each
-// unbounded, isotropic, without negative amplitudes or a cutoff that shows (below 6 widths, e^-36 of the peak), all
-// with the same albedo and with sigma_t that differ by a factor. Media that do not extinguish are ignored.
+// unbounded, isotropic, without negative amplitudes or a cutoff that shows (below 6 widths, e^-36 of the peak), with
+// sigma_t that differ by a factor; albedos may differ. Media that do not extinguish are ignored.
 std::vector<std::string> objections(const std::vector<scene::Medium>&);
 
 // Requires that there are no objections.

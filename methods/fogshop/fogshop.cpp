@@ -171,14 +171,17 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
                                     scene::light_name(scene.lights[i])));
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
-  if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)
+  if (options.variant != Options::Variant::paper && options.extrapolate && options.slices % 2 != 0)
     reasons.push_back(fmt::format("K = {} is odd: extrapolation needs an even number of slices", options.slices));
   const double side = options.map_directions + 2, entries = side * side * (options.map_edges + 1);
-  if (options.variant == Options::Variant::slices && options.map && entries > 1 << 28)
+  if (options.variant != Options::Variant::paper && options.map && entries > 1 << 28)
     reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
                                   options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
   if (reasons.empty()) {
-    const std::string objection = objection_to_view(scene, make_fog(scene.media), options, scene.camera);
+    const Fog fog = make_fog(scene.media);
+    if (!fog.one_albedo() && options.reflectance != Options::Reflectance::direct)
+      reasons.push_back("the media differ in albedo, and Eq. 25 has one: reflectance = direct leaves it out");
+    const std::string objection = objection_to_view(scene, fog, options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);
   }
   return reasons;

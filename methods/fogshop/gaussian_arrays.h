@@ -1,6 +1,7 @@
 // The Gaussians of the medium as the kernels want them: one array per quantity, padded to whole vectors, each Gaussian
 // with the radius beyond which it is left out.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "scene/math/types.h"
@@ -31,6 +32,9 @@ struct GaussianArrays {
   std::vector<double> half_depth;      // c sqrt(pi) / (2 a) [-]: half the optical depth through the centre
   std::vector<double> radius_squared;  // R_i^2 [m^2], -1 in the padding
   std::vector<int> index;              // place in the arrays that this is a part of; its own place in the whole
+  // Fog::colours by channel; empty where all albedos are equal.
+  std::array<std::vector<double>, 3> colour;
+  bool has_colours() const { return !colour[0].empty(); }
 
   Point3 center(int i) const { return {x[i], y[i], z[i]}; }
 };
@@ -41,7 +45,8 @@ struct CulledGaussians {
   GaussianArrays arrays;
   int dropped = 0;
 };
-CulledGaussians make_arrays(const std::vector<scene::Gaussian>&, Cull, double threshold);
+CulledGaussians make_arrays(const std::vector<scene::Gaussian>&, Cull, double threshold,
+                            const std::vector<Rgb>& colours = {});
 
 // The Gaussians at these places of `whole`; their `index` points there.
 GaussianArrays subset(const GaussianArrays& whole, const std::vector<int>& places);

@@ -92,6 +92,28 @@ void DepthsAt(const Crossings& c, const double* t, int count, double* depth) {
 }
 
 template <Erf kind>
+void ScatteringDepthsAt(const Crossings& c, const GaussianArrays& g, const double* t, int count, double* depth,
+                        double* const scattering[3]) {
+  for (int k = 0; k < count; k += int(hn::Lanes(d))) {
+    const V end = hn::LoadU(d, t + k);
+    V sum = hn::Zero(d), red = sum, green = sum, blue = sum;
+    for (int i = 0; i < c.count; ++i) {
+      const V far = Erf_<kind>(d, hn::Mul(set(c.a[i]), hn::Sub(end, set(c.middle[i]))));
+      const V part = hn::Mul(set(c.depth[i]), hn::Max(hn::Add(far, set(c.base[i])), hn::Zero(d)));
+      const int place = c.place[i];
+      sum = hn::Add(sum, part);
+      red = hn::MulAdd(set(g.colour[0][place]), part, red);
+      green = hn::MulAdd(set(g.colour[1][place]), part, green);
+      blue = hn::MulAdd(set(g.colour[2][place]), part, blue);
+    }
+    hn::StoreU(sum, d, depth + k);
+    hn::StoreU(red, d, scattering[0] + k);
+    hn::StoreU(green, d, scattering[1] + k);
+    hn::StoreU(blue, d, scattering[2] + k);
+  }
+}
+
+template <Erf kind>
 void DepthsFromPoint(const GaussianArrays& g, const Point3& from, const Line& ray, const double* t, int count,
                      double* depth) {
   const Vec3 offset = ray.origin - from;
@@ -155,6 +177,13 @@ void DepthsAtAny(const Crossings& c, const double* t, int count, double* depth, 
   return DepthsAt<Erf::paper>(c, t, count, depth);
 }
 
+void ScatteringDepthsAtAny(const Crossings& c, const GaussianArrays& g, const double* t, int count, double* depth,
+                           double* const scattering[3], Erf erf) {
+  if (erf == Erf::precise) return ScatteringDepthsAt<Erf::precise>(c, g, t, count, depth, scattering);
+  if (erf == Erf::erf10) return ScatteringDepthsAt<Erf::erf10>(c, g, t, count, depth, scattering);
+  return ScatteringDepthsAt<Erf::paper>(c, g, t, count, depth, scattering);
+}
+
 void DepthsFromPointAny(const GaussianArrays& g, const Point3& from, const Line& ray, const double* t, int count,
                         double* depth, Erf erf) {
   if (erf == Erf::precise) return DepthsFromPoint<Erf::precise>(g, from, ray, t, count, depth);
@@ -189,6 +218,7 @@ namespace airlight::fogshop {
 HWY_EXPORT(CrossAny);
 HWY_EXPORT(TotalDepthAny);
 HWY_EXPORT(DepthsAtAny);
+HWY_EXPORT(ScatteringDepthsAtAny);
 HWY_EXPORT(DepthsFromPointAny);
 HWY_EXPORT(ErrorFunctionAny);
 HWY_EXPORT(NearPrism);
@@ -226,6 +256,11 @@ double total_depth(const Crossings& crossings, double length, Erf erf) {
 
 void depths_at(const Crossings& crossings, const double* t, int count, double* depth, Erf erf) {
   HWY_DYNAMIC_DISPATCH(DepthsAtAny)(crossings, t, count, depth, erf);
+}
+
+void scattering_depths_at(const Crossings& crossings, const GaussianArrays& gaussians, const double* t, int count,
+                          double* depth, double* const scattering[3], Erf erf) {
+  HWY_DYNAMIC_DISPATCH(ScatteringDepthsAtAny)(crossings, gaussians, t, count, depth, scattering, erf);
 }
 
 void depths_from_point(const GaussianArrays& gaussians, const Point3& from, const Line& ray, const double* t, int count,

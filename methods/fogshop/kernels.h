@@ -57,6 +57,11 @@ double total_depth(const Crossings&, double length, Erf);
 // The same at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
 void depths_at(const Crossings&, const double* t, int count, double* depth, Erf);
 
+// The same, and for each channel the sum of the depths times the colours of their Gaussians: what the medium up to
+// there scatters. `gaussians` are those that were crossed; they have colours.
+void scattering_depths_at(const Crossings&, const GaussianArrays& gaussians, const double* t, int count, double* depth,
+                          double* const scattering[3], Erf);
+
 // Optical depth from `from` to each of the points at parameters t of a ray; `t` and `depth` as above. All Gaussians are
 // summed: choose them first by `near_triangle`.
 void depths_from_point(const GaussianArrays&, const Point3& from, const Line& ray, const double* t, int count,

@@ -24,7 +24,8 @@ scene::SettingSpec real(const char* name, const char* fallback, double least, do
 
 std::vector<scene::SettingSpec> setting_specs() {
   return {
-      choice("variant", "S", {"paper", "S"}, "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
+      choice("variant", "S", {"paper", "S", "VS2"},
+             "paper: Zhou et al. 2007; S: slices with exact depths at their edges; VS2: Gaussians over 1/d^2 exactly"),
       integer("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
       choice("edges", "S3", {"plain", "S3"}, "where S cuts: by length and lights, or by the Gaussians too"),
       {"extrapolate", Type::flag, "true", "S from K/2 and K slices (error K^-4 instead of K^-2); K even", 0, 0, {}},
@@ -50,7 +51,10 @@ std::vector<scene::SettingSpec> setting_specs() {
 
 Options read_options(const scene::Settings& settings) {
   Options o;
-  o.variant = settings.text("variant") == "paper" ? Options::Variant::paper : Options::Variant::slices;
+  const std::string& variant = settings.text("variant");
+  o.variant = variant == "paper" ? Options::Variant::paper
+              : variant == "S"   ? Options::Variant::slices
+                                 : Options::Variant::voigt;
   o.slices = int(settings.integer("K"));
   o.extrapolate = settings.flag("extrapolate");
   o.boxes = settings.text("edges") == "S3";
@@ -85,7 +89,8 @@ Model make_model(const scene::Scene& scene, const Options& options) {
   Model model;
   model.options = options;
   model.fog = make_fog(scene.media);
-  CulledGaussians culled = make_arrays(model.fog.sum.gaussians, options.cull, options.depth_threshold);
+  CulledGaussians culled =
+      make_arrays(model.fog.sum.gaussians, options.cull, options.depth_threshold, model.fog.colours);
   model.gaussians = std::move(culled.arrays);
   model.dropped = culled.dropped;
   for (const scene::Light& light : scene.lights) {

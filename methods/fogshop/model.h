@@ -13,7 +13,7 @@
 namespace airlight::fogshop {
 
 struct Options {
-  enum class Variant { paper, slices };
+  enum class Variant { paper, slices, voigt };
   Variant variant = Variant::slices;
   int slices = 24;          // K
   bool extrapolate = true;  // from K/2 and K slices; K is even

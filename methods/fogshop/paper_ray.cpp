@@ -28,13 +28,14 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
   const Vec3 from_light = view.origin - light.position;
   V sum[3] = {zero, zero, zero};
   for (int first = 0; first < c.count; first += int(hn::Lanes(d))) {
-    alignas(64) double bx[8] = {}, by[8] = {}, bz[8] = {}, half[8] = {}, e[8] = {};
+    alignas(64) double bx[8] = {}, by[8] = {}, bz[8] = {}, half[8] = {}, e[8] = {}, colour[3][8] = {};
     const int lanes = std::min(int(hn::Lanes(d)), c.count - first);
     for (int k = 0; k < lanes; ++k) {
       const int i = c.place[first + k];
       bx[k] = g.x[i] - light.position.x(), by[k] = g.y[i] - light.position.y(), bz[k] = g.z[i] - light.position.z();
       half[k] = g.half_depth[i];
       e[k] = light.exponent[g.index[i]];
+      for (int j = 0; j < 3 && g.has_colours(); ++j) colour[j][k] = g.colour[j][i];
     }
     const V a = hn::LoadU(d, &c.a[first]), m = hn::LoadU(d, &c.middle[first]);
     const V scale = hn::LoadU(d, &c.depth[first]), base = hn::LoadU(d, &c.base[first]);
@@ -60,7 +61,8 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
     const V weight = hn::Div(view_depth(length), hn::Mul(set(4 * pi), hn::Add(dd, set(light.softness))));
     const auto valid = hn::FirstN(d, std::size_t(lanes));
     for (int k = 0; k < channels; ++k) {
-      const V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), exponent)));
+      V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), exponent)));
+      if (g.has_colours()) term = hn::Mul(term, hn::Load(d, colour[k]));
       sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
     }
   }

@@ -14,7 +14,8 @@ struct PaperLight {
 };
 
 // Adds, per channel, sum over the crossed Gaussians of f^0 f^1 T_i(v,p) for an intensity of 1 W/sr. `gaussians` are
-// those that were crossed; `exponent` is by their `index`. Three channels if `coloured`, else the first only.
+// those that were crossed; `exponent` is by their `index`. Three channels if `coloured`, else the first only. Where the
+// Gaussians have colours, each term is scaled by its Gaussian's.
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings&, const Line& view, const PaperLight&, Erf,
                         const Rgb& hue, bool coloured, Rgb& airlight);
 

@@ -45,7 +45,7 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   if (model_.gaussians.count == 0)
     airlight = constant_alone(line.length);
   else
-    airlight = model_.paper() ? paper(near, line) : slices(line);
+    airlight = model_.paper() ? paper(near, line) : slices(near, line);
   airlight *= model_.fog.albedo;
 }
 
@@ -61,7 +61,7 @@ Rgb RayAirlight::homogeneous(const LightFromRay& light, double length) const {
     result[c] = model_.f_table ? model_.f_table->homogeneous_airlight(light, length, beta)
                                : softened_homogeneous_airlight(light, length, beta, model_.options.source_radius);
   }
-  return result;
+  return model_.fog.one_albedo() ? result : Rgb(model_.fog.constant_colour * result);
 }
 
 Rgb RayAirlight::constant_alone(double length) const {
@@ -73,13 +73,12 @@ Rgb RayAirlight::constant_alone(double length) const {
 
 // Section 5.3: L_0 by Eq. 17, then every Gaussian that the ray meets.
 Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
-  const bool coloured = !model_.fog.grey();
   Rgb airlight = Rgb::Zero();
   for (std::size_t k = 0; k < model_.lights.size(); ++k) {
     Rgb sum = Rgb::Zero();
-    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured, sum);
+    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(), sum);
     evaluations += 4.0 * crossings_.count;
-    if (!coloured) sum = Rgb::Constant(sum[0]);
+    if (!coloured()) sum = Rgb::Constant(sum[0]);
     if (model_.fog.sum.constant > 0)
       sum += (-model_.fog.hue * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);
     airlight += model_.lights[k].intensity * sum;
@@ -110,26 +109,42 @@ Interval RayAirlight::stretch(const Line& line) const {
 }
 
 // From the edges and depths at hand; per channel, for 1 W/sr.
-Rgb RayAirlight::sum_of_slices(const LightFromRay& light) {
+Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
   const Options& o = model_.options;
-  const bool coloured = !model_.fog.grey();
+  const double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
   Rgb sum = Rgb::Zero();
-  add_slices(t_.data(), view_depth_.data(), light_depth_.data(), o.slices, light, o.source_radius, model_.fog.hue,
-             coloured, sum);
+  add_slices(t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr, o.slices, light,
+             o.source_radius, model_.fog.hue, coloured(), sum);
   if (o.extrapolate) {
     // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
+    const double* const half_scattering[] = {half_scattering_[0].data(), half_scattering_[1].data(),
+                                             half_scattering_[2].data()};
     every_other(light_depth_, o.slices, half_light_depth_);
     Rgb half = Rgb::Zero();
-    add_slices(half_t_.data(), half_view_depth_.data(), half_light_depth_.data(), o.slices / 2, light, o.source_radius,
-               model_.fog.hue, coloured, half);
+    add_slices(half_t_.data(), half_view_depth_.data(), half_light_depth_.data(), separate ? half_scattering : nullptr,
+               o.slices / 2, light, o.source_radius, model_.fog.hue, coloured(), half);
     sum = (sum + (sum - half) / 3).max(0.0);
   }
-  return coloured ? sum : Rgb::Constant(sum[0]);
+  return coloured() ? sum : Rgb::Constant(sum[0]);
 }
 
-Rgb RayAirlight::slices(const Line& line) {
+// Depths from a light to points of the ray, without the constant; `t` is padded to whole vectors.
+void RayAirlight::depths_from_light(const LightModel& light, const Line& line, const Interval& range,
+                                    const std::vector<double>& t, int count, std::vector<double>& depth) {
+  if (light.map) {
+    light.map->depths(line, t.data(), count, depth.data());
+    return;
+  }
+  near_triangle(model_.gaussians, light.position, line, range.lo, range.hi, places_);
+  depths_from_point(subset(model_.gaussians, places_), light.position, line, t.data(), count, depth.data(),
+                    model_.options.erf);
+}
+
+Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
   const double constant = model_.fog.sum.constant;
-  const int slices = model_.options.slices;
+  const Options& o = model_.options;
+  const int slices = o.slices;
+  const bool voigt = o.variant == Options::Variant::voigt, separate = voigt || !model_.fog.one_albedo();
   const Interval range = stretch(line);
   Rgb airlight = Rgb::Zero();
   if (range.empty()) return airlight;
@@ -139,39 +154,78 @@ Rgb RayAirlight::slices(const Line& line) {
   t_.assign(padded(slices + 1) + GaussianArrays::padding, range.hi);
   view_depth_.resize(t_.size());
   light_depth_.resize(t_.size());
-  place_edges(range.lo, range.hi, seen_, model_.options.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
-  view_depth_[0] = range.lo > 0 ? total_depth(crossings_, range.lo, model_.options.erf) : 0;
-  depths_at(crossings_, &t_[1], padded(slices), &view_depth_[1], model_.options.erf);
+  place_edges(range.lo, range.hi, seen_, o.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
+  if (separate)
+    for (auto& channel : scattering_) channel.assign(t_.size(), 0.0);
+  if (separate && !voigt) {
+    double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
+    scattering_depths_at(crossings_, near, t_.data(), padded(slices + 1), view_depth_.data(), scattering, o.erf);
+  } else {
+    view_depth_[0] = range.lo > 0 ? total_depth(crossings_, range.lo, o.erf) : 0;
+    depths_at(crossings_, &t_[1], padded(slices), &view_depth_[1], o.erf);
+  }
   evaluations += double(crossings_.count) * (slices + 1);
   for (int k = 0; k <= slices; ++k) view_depth_[k] += constant * t_[k];
-  if (model_.options.extrapolate) {
+  for (int c = 0; separate && c < 3; ++c)
+    for (int k = 0; k <= slices; ++k) scattering_[c][k] += model_.fog.constant_colour[c] * constant * t_[k];
+  if (o.extrapolate) {
     every_other(t_, slices, half_t_);
     every_other(view_depth_, slices, half_view_depth_);
+    for (int c = 0; separate && c < 3; ++c) every_other(scattering_[c], slices, half_scattering_[c]);
   }
 
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];
-    if (light.map) {
-      light.map->depths(line, t_.data(), padded(slices + 1), light_depth_.data());
-    } else {
-      near_triangle(model_.gaussians, light.position, line, range.lo, range.hi, places_);
-      depths_from_point(subset(model_.gaussians, places_), light.position, line, t_.data(), padded(slices + 1),
-                        light_depth_.data(), model_.options.erf);
-      evaluations += 2.0 * double(places_.size()) * (slices + 1);
+    Rgb sum = Rgb::Zero();
+    if (voigt) sum = voigt_terms(near, line, range, l);
+    if (!voigt || constant > 0) {
+      depths_from_light(light, line, range, t_, padded(slices + 1), light_depth_);
+      if (!light.map) evaluations += 2.0 * double(places_.size()) * (slices + 1);
+      const double last_shadow = light_depth_[slices];
+      const double h2 = seen_[l].h * seen_[l].h;
+      for (int k = 0; constant > 0 && k <= slices; ++k) {
+        const double x = t_[k] - seen_[l].along;
+        light_depth_[k] += constant * std::sqrt(x * x + h2);
+      }
+      sum += sum_of_slices(seen_[l], separate);
+      if (constant > 0 && range.hi < line.length)
+        sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
+               homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
     }
-    const double last_shadow = light_depth_[slices];
-    const double h2 = seen_[l].h * seen_[l].h;
-    for (int k = 0; constant > 0 && k <= slices; ++k) {
-      const double x = t_[k] - seen_[l].along;
-      light_depth_[k] += constant * std::sqrt(x * x + h2);
-    }
-    Rgb sum = sum_of_slices(seen_[l]);
-    if (constant > 0 && range.hi < line.length)
-      sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
-             homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
     airlight += light.intensity * sum;
   }
   return airlight;
+}
+
+// Variant VS2: every Gaussian over 1/d^2 exactly, the attenuation at two nodes; per channel, for 1 W/sr. The depth from
+// the viewer is linear between the edges.
+Rgb RayAirlight::voigt_terms(const GaussianArrays& near, const Line& line, const Interval& range, std::size_t l) {
+  const LightFromRay& seen = seen_[l];
+  const double constant = model_.fog.sum.constant, soft = std::hypot(seen.h, model_.options.source_radius);
+  nodes_.clear();
+  for (int i = 0; i < crossings_.count; ++i) append_voigt_nodes(crossings_, i, line.length, seen.along, soft, nodes_);
+  const int count = int(nodes_.size());
+  const int padded = (count + GaussianArrays::padding - 1) & -GaussianArrays::padding;
+  node_t_.assign(padded, range.hi);
+  node_depth_.resize(padded);
+  for (int k = 0; k < count; ++k) node_t_[k] = std::clamp(nodes_[k].t, range.lo, range.hi);
+  depths_from_light(model_.lights[l], line, range, node_t_, padded, node_depth_);
+  if (!model_.lights[l].map) evaluations += 2.0 * double(places_.size()) * count;
+  Rgb sum = Rgb::Zero();
+  for (int k = 0; k < count; ++k) {
+    const double t = node_t_[k];
+    const auto first = t_.begin(), last = first + model_.options.slices;
+    const std::size_t e = std::upper_bound(first + 1, last, t) - first;  // t lies in [t_[e-1], t_[e]]
+    const double step = t_[e] - t_[e - 1], s = step > 0 ? std::min((t - t_[e - 1]) / step, 1.0) : 0;
+    const double to_view = view_depth_[e - 1] + s * (view_depth_[e] - view_depth_[e - 1]);
+    const double exponent = to_view + node_depth_[k] + constant * std::hypot(t - seen.along, seen.h);
+    const int place = crossings_.place[nodes_[k].crossing];
+    for (int c = 0; c < (coloured() ? 3 : 1); ++c) {
+      const double hue = model_.fog.hue[c], colour = near.has_colours() ? near.colour[c][place] : 1;
+      sum[c] += nodes_[k].weight / (4 * pi) * colour * hue * std::exp(-hue * exponent);
+    }
+  }
+  return coloured() ? sum : Rgb::Constant(sum[0]);
 }
 
 }  // namespace airlight::fogshop

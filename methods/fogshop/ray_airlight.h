@@ -1,8 +1,11 @@
 // Airlight and optical depth of single view rays, by the paper's formulas or by slices.
 #pragma once
+#include <array>
+
 #include "methods/fogshop/model.h"
 #include "methods/fogshop/paper_ray.h"
 #include "methods/fogshop/slices.h"
+#include "methods/fogshop/voigt.h"
 
 namespace airlight::fogshop {
 
@@ -27,11 +30,15 @@ class RayAirlight {
 
  private:
   Rgb paper(const GaussianArrays& near, const Line&);
-  Rgb slices(const Line&);
+  Rgb slices(const GaussianArrays& near, const Line&);
   Rgb constant_alone(double length) const;  // of a medium without Gaussians, where both variants are exact
   Rgb homogeneous(const LightFromRay&, double length) const;
   Interval stretch(const Line&) const;
-  Rgb sum_of_slices(const LightFromRay&);
+  bool coloured() const { return !model_.fog.grey() || !model_.fog.one_albedo(); }
+  Rgb sum_of_slices(const LightFromRay&, bool separate);
+  Rgb voigt_terms(const GaussianArrays& near, const Line&, const Interval& range, std::size_t light);
+  void depths_from_light(const LightModel&, const Line&, const Interval& range, const std::vector<double>& t, int count,
+                         std::vector<double>& depth);
 
   const Model& model_;
   const ViewModel& view_;
@@ -41,6 +48,10 @@ class RayAirlight {
   std::vector<int> places_;
   std::vector<double> t_, view_depth_, light_depth_;
   std::vector<double> half_t_, half_view_depth_, half_light_depth_;  // at every other edge
+  // What the medium up to an edge scatters, per channel [-], hue 1; unused where that is what is extinguished.
+  std::array<std::vector<double>, 3> scattering_, half_scattering_;
+  std::vector<VoigtNode> nodes_;
+  std::vector<double> node_t_, node_depth_;
 };
 
 }  // namespace airlight::fogshop

@@ -52,8 +52,8 @@ void AddBoxShare(const double* node, int count, const Crossings& c, const double
   }
 }
 
-void Slices(const double* t, const double* view_depth, const double* light_depth, int slices, double along, double h,
-            const double* hue, int channels, double* sums) {
+void Slices(const double* t, const double* view_depth, const double* light_depth, const double* const* scattering,
+            int slices, double along, double h, const double* hue, int channels, double* sums) {
   const V zero = hn::Zero(d);
   V sum[3] = {zero, zero, zero};
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {
@@ -78,7 +78,10 @@ void Slices(const double* t, const double* view_depth, const double* light_depth
       const V series = hn::MulAdd(q, hn::MulAdd(q, hn::MulAdd(q, set(-1.0 / 24), set(1.0 / 6)), set(-0.5)), set(1));
       const V mean =
           hn::IfThenElse(small, hn::Mul(e0, series), hn::Div(hn::Sub(e0, e1), hn::IfThenElse(small, set(1), q)));
-      const V slice = hn::Mul(hn::Mul(mean_inverse_square, hn::Mul(set(hue[c]), step)), mean);
+      V scattered = step;
+      if (scattering)
+        scattered = hn::Max(hn::Sub(hn::LoadU(d, scattering[c] + k + 1), hn::LoadU(d, scattering[c] + k)), zero);
+      const V slice = hn::Mul(hn::Mul(mean_inverse_square, hn::Mul(set(hue[c]), scattered)), mean);
       sum[c] = hn::Add(sum[c], hn::IfThenElseZero(used, slice));
     }
   }
@@ -176,11 +179,12 @@ void every_other(const std::vector<double>& all, int slices, std::vector<double>
   for (int k = 0; k <= slices / 2; ++k) half[k] = all[2 * k];
 }
 
-void add_slices(const double* t, const double* view_depth, const double* light_depth, int slices,
-                const LightFromRay& light, double source_radius, const Rgb& hue, bool coloured, Rgb& airlight) {
+void add_slices(const double* t, const double* view_depth, const double* light_depth, const double* const* scattering,
+                int slices, const LightFromRay& light, double source_radius, const Rgb& hue, bool coloured,
+                Rgb& airlight) {
   const double h = std::max(std::hypot(light.h, source_radius), least_h);
   HWY_DYNAMIC_DISPATCH(Slices)
-  (t, view_depth, light_depth, slices, light.along, h, hue.data(), coloured ? 3 : 1, airlight.data());
+  (t, view_depth, light_depth, scattering, slices, light.along, h, hue.data(), coloured ? 3 : 1, airlight.data());
 }
 
 }  // namespace airlight::fogshop

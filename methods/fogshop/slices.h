@@ -28,8 +28,10 @@ void every_other(const std::vector<double>& all, int slices, std::vector<double>
 
 // Adds, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1. view_depth and light_depth are
 // the depths [-], hue 1, from the camera and from the light to the edges, the medium's constant included; all three
-// arrays hold slices + 1 values and room for 8 more. source_radius softens 1/d^2 [m].
-void add_slices(const double* t, const double* view_depth, const double* light_depth, int slices, const LightFromRay&,
-                double source_radius, const Rgb& hue, bool coloured, Rgb& airlight);
+// arrays hold slices + 1 values and room for 8 more. source_radius softens 1/d^2 [m]. What the slices scatter is what
+// they extinguish, or, if `scattering` is not null, the differences of its array for each channel (as long as the
+// others).
+void add_slices(const double* t, const double* view_depth, const double* light_depth, const double* const* scattering,
+                int slices, const LightFromRay&, double source_radius, const Rgb& hue, bool coloured, Rgb& airlight);
 
 }  // namespace airlight::fogshop

@@ -80,10 +80,12 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                       : "light_depth = exact: sums per edge instead"));
   if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
   stage("airlight of Gaussians", gaussians && lit,
-        !gaussians ? no_gaussians
-                   : unlit_or(model.paper() ? "Eqs. 8 to 17"
-                                            : fmt::format("{} slices{}", o.slices,
-                                                          o.extrapolate ? ", extrapolated from half" : "")));
+        !gaussians
+            ? no_gaussians
+            : unlit_or(model.paper() ? "Eqs. 8 to 17"
+                       : o.variant == Options::Variant::voigt
+                           ? fmt::format("over 1/d^2 exactly, attenuated at two nodes each; {} slices", o.slices)
+                           : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
   using Upsample = Options::Upsample;
@@ -95,6 +97,9 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
         : o.upsample == Upsample::paper
             ? fmt::format("one ray per {0} x {0} pixels, the most alike neighbour at edges", o.downsample)
             : fmt::format("one ray per {0} x {0} pixels, edges at full resolution", o.downsample));
+  stage("colours of scattering", lit && !model.fog.one_albedo(),
+        model.fog.one_albedo() ? "one albedo for all"
+                               : unlit_or("one per Gaussian: it scales what scatters, not what extinguishes"));
   stage("surfaces", needs.surfaces,
         scene.surfaces.empty() ? "there are none"
         : needs.surfaces       ? "direct light through the medium, Eq. 29"

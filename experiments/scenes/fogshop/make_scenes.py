@@ -27,9 +27,10 @@ def vector(v):
 
 
 def write_scene(name, about, table, sigma_t, light, intensity, constant=0.0, position=(0, 1, -1), target=(0, 1, 8),
-                fov=FOV_50, wall=18.0):
+                fov=FOV_50, wall=18.0, wall_albedo=0.0, film=(24, 18), more="", albedo=None):
     """One light, or a list of places that share the intensity. A wall perpendicular to the view ends every ray; it is
-    black, so that the picture is airlight alone."""
+    black, so that the picture is airlight alone. `more` is the text of further tables.
+    """
     forward = [b - a for a, b in zip(position, target)]
     length = math.sqrt(sum(x * x for x in forward))
     forward = [x / length for x in forward]
@@ -45,8 +46,8 @@ intensity = {intensity / len(lights):.9g}
 name = "fogshop/{name}"
 
 [film]
-width = 24
-height = 18
+width = {film[0]}
+height = {film[1]}
 
 [camera]
 type = "perspective"
@@ -60,15 +61,15 @@ type = "gaussians"
 file = "{table}.csv"
 constant = {constant / sigma_t:.12g}
 sigma_t = {sigma_t:.9g}
-
+{f"albedo = {vector(albedo)}" + chr(10) if albedo else ""}
 {lights}
 [[surface]]
 name = "wall"
 type = "plane"
 point = {vector(on_wall)}
 normal = {vector([-x for x in forward])}
-material = {{ type = "lambert", albedo = 0.0 }}
-'''
+material = {{ type = "lambert", albedo = {wall_albedo:.1f} }}
+{more}'''
     (FOLDER / f"{name}.toml").write_text(text)
 
 
@@ -170,9 +171,63 @@ def many_lights():
                     ring, 1000)
 
 
+def edges():
+    """Balls and thin posts in fog: edges of the distance, for the upsampling of section 5.4."""
+    material = 'material = { type = "lambert", albedo = 0.5 }'
+    more = ""
+    balls = (((-2.2, 0.2, 5.5), 0.9), ((0.9, 1.6, 7), 1.0), ((2.6, -0.3, 4.5), 0.6), ((-0.4, -0.4, 3.6), 0.4),
+             ((-3.5, 2.2, 9), 1.1))
+    for i, (center, radius) in enumerate(balls):
+        more += f'\n[[surface]]\nname = "ball {i}"\ntype = "sphere"\ncenter = {vector(center)}\n'
+        more += f"radius = {radius:.9g}\n{material}\n"
+    posts = ((-1.2, 4.2, 0.03), (-0.2, 6, 0.04), (0.4, 4.8, 0.025), (1.7, 6.5, 0.05), (3, 9, 0.06), (-3, 7, 0.05),
+             (-2, 10, 0.06), (1, 3.4, 0.02))
+    for i, (x, z, half) in enumerate(posts):
+        lo, hi = (x - half, -1.5, z - half), (x + half, 3.2, z + half)
+        more += f'\n[[surface]]\nname = "post {i}"\ntype = "box"\nlo = {vector(lo)}\nhi = {vector(hi)}\n{material}\n'
+    write_scene("posts", "100 Gaussians around balls and thin posts: many edges of the distance (section 5.4).",
+                "cloud_100", 0.15, (4, 11, 3), 1000, film=(160, 120), wall_albedo=0.5, more=more)
+
+
+def scales():
+    """The same fog in other units of length: what is culled must not depend on them (section 5.3)."""
+    for unit, name in ((100, "f100_large"), (0.01, "f100_small")):
+        table = [(tuple(unit * x for x in center), unit * width, c) for center, width, c in cloud(100, 2)]
+        write_table(f"cloud_{name[5:]}", table)
+        write_scene(name, f"f100 with all lengths times {unit}.", f"cloud_{name[5:]}", 0.25 / unit,
+                    tuple(unit * x for x in (4, 11, 3)), 1000 * unit**2, position=(0, unit, -unit),
+                    target=(0, unit, 8 * unit), wall=18 * unit)
+
+
+def colours():
+    """White steam and brown smoke that extinguish alike: a colour per Gaussian, over a constant of a third one."""
+    gaussians = cloud(100, 2)
+    write_table("steam", gaussians[::2])
+    write_table("smoke", gaussians[1::2])
+    steam = '''
+[[medium]]
+name = "steam"
+type = "gaussians"
+file = "steam.csv"
+sigma_t = 0.25
+albedo = [0.98, 0.98, 0.98]
+
+[[medium]]
+name = "haze"
+type = "homogeneous"
+sigma_t = 0.01
+albedo = [0.4, 0.6, 0.9]
+'''
+    write_scene("colours", "Steam, smoke and haze of different albedo and one hue of extinction, the light outside.",
+                "smoke", 0.25, (4, 11, 3), 1000, more=steam, albedo=(0.7, 0.35, 0.1))
+
+
 if __name__ == "__main__":
     smooth_fog()
     halo()
     shaft()
     same_density()
     many_lights()
+    edges()
+    scales()
+    colours()

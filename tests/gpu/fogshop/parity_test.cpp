@@ -147,3 +147,43 @@ TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu]") {
           CHECK(p99(a, b, "mean") < 2e-3);
         }
 }
+
+// Media of different albedo: a colour per Gaussian, and one of the constant.
+TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu]") {
+  if (!gpu::test::device()) return;
+  auto scene = std::make_shared<scene::Scene>(*scene_named("f100_constant"));
+  scene::Medium other = scene->media[0];
+  auto& first = std::get<scene::GaussianSum>(scene->media[0].field);
+  auto& second = std::get<scene::GaussianSum>(other.field);
+  first.gaussians.resize(40);
+  second.gaussians.erase(second.gaussians.begin(), second.gaussians.begin() + 40);
+  second.constant = 0;
+  scene->media[0].albedo = Rgb(0.9, 0.2, 0.5);
+  other.albedo = Rgb(0.1, 0.6, 0.8);
+  scene->media.push_back(other);
+  for (const Rgb& hue : {Rgb(1, 1, 1), Rgb(0.5, 0.8, 1)}) {
+    for (auto& medium : scene->media) medium.sigma_t = 0.25 * hue;
+    for (const Pairs& given : {Pairs{{"variant", "paper"}, {"erf", "erf10"}}, Pairs{{"K", "24"}, {"erf", "erf10"}}}) {
+      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      CAPTURE(given);
+      CHECK(p99(a, b, "airlight") < 2e-3);
+      CHECK(p99(a, b, "transmittance") < 2e-3);
+    }
+  }
+}
+
+// Radii are those of the CPU side, by either rule: what is culled is the same.
+TEST_CASE("fogshop: culling, GPU agrees with CPU", "[gpu]") {
+  if (!gpu::test::device()) return;
+  for (const char* name : {"f100", "f100_large", "f100_small"})
+    for (const Pairs& cull :
+         {Pairs{{"cull", "paper"}}, Pairs{{"eps_T", "1e-2"}}, Pairs{{"eps_T", "1e-2"}, {"variant", "paper"}}}) {
+      Pairs given = cull;
+      given["erf"] = "erf10";
+      const auto scene = scene_named(name);
+      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      CAPTURE(name, given);
+      CHECK(p99(a, b, "airlight") < 2e-3);
+      CHECK(p99(a, b, "transmittance") < 2e-3);
+    }
+}

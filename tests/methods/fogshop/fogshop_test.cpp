@@ -87,7 +87,13 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
   };
   refused([](Scene& s) { s.media[0].region = scene::Sphere{Point3::Zero(), 3}; }, "bounded");
   refused([](Scene& s) { s.media[0].phase = scene::HenyeyGreenstein{0.5}; }, "isotropic");
-  refused([](Scene& s) { s.media[1].albedo = Rgb::Constant(0.5); }, "albedo");
+  refused(
+      [](Scene& s) {
+        s.media[1].albedo = Rgb::Constant(0.5);
+        s.surfaces.push_back({"wall", scene::Plane{Point3(0, 0, -6), Vec3(0, 0, 1)}, scene::Lambert{}});
+        finish(s);
+      },
+      "albedo", {{"reflectance", "npsf"}});
   refused([](Scene& s) { s.media[1].sigma_t = Rgb(1, 2, 3); }, "hue");
   refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).gaussians[0].amplitude = -1; }, "negative");
   refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).cutoff = 3; }, "widths");
@@ -279,4 +285,70 @@ TEST_CASE("fogshop layers are those of the deterministic reference", "[fogshop]"
     CHECK(relative_l2(film.layer("transmittance"), truth.layer("transmittance")) <= 1e-6);
     CHECK(relative_l2(film.layer("mean"), truth.layer("mean")) <= 1e-4);
   }
+}
+
+// Media of one hue and different albedos against the deterministic reference, which adds media up point by point: the
+// albedo scales what scatters and leaves the transmittance alone. Black smoke among white steam, a red constant.
+TEST_CASE("fogshop scatters in the colour of each Gaussian", "[fogshop]") {
+  Scene scene = small_scene();
+  scene.media = {gaussians({{Point3(0.5, 0.2, -4), 1, 0.5}, {Point3(-1, 0.5, -3), 0.6, 1}}),
+                 gaussians({{Point3(-0.3, -0.2, -5), 0.9, 0.7}, {Point3(0.2, 0.9, -3.5), 0.5, 0.6}}),
+                 homogeneous(0.03)};
+  scene.media[0].albedo = Rgb(0.2, 0.9, 0.6);
+  scene.media[1].albedo = Rgb(0.8, 0.1, 0.0);
+  scene.media[2].albedo = Rgb(0.9, 0.3, 0.3);
+  scene.surfaces.push_back({"wall", scene::Plane{Point3(0, 0, -7), Vec3(0, 0, 1)}, scene::Lambert{Rgb(0.5, 0.6, 0.7)}});
+  finish(scene);
+  for (const Rgb& hue : {Rgb(1, 1, 1), Rgb(0.4, 1, 0.7)}) {
+    for (auto& medium : scene.media) medium.sigma_t = hue;
+    const auto reference = deterministic::make_renderer();
+    const Film truth = reference->prepare(std::make_shared<const Scene>(scene), {reference->settings(), {}}, {})
+                           ->render(view_of(scene), {})
+                           .film;
+    const auto film = [&](const Pairs& given) { return render(scene, given).film; };
+    // S converges to it; VS2 attenuates at two nodes (specification, section 6: 0.022 at such depths), paper at one.
+    const Film s = film({{"K", "96"}, {"light_depth", "exact"}, {"eps_T", "1e-10"}});
+    CHECK(relative_l2(s.layer("airlight"), truth.layer("airlight")) <= 1e-4);
+    CHECK(relative_l2(s.layer("mean"), truth.layer("mean")) <= 1e-4);
+    CHECK(relative_l2(s.layer("transmittance"), truth.layer("transmittance")) <= 1e-6);
+    const Film vs2 = film({{"variant", "VS2"}, {"K", "96"}, {"light_depth", "exact"}, {"eps_T", "1e-10"}});
+    CHECK(relative_l2(vs2.layer("airlight"), truth.layer("airlight")) <= 0.03);
+    const Film paper = film({{"variant", "paper"}, {"eps_T", "1e-10"}});
+    CHECK(relative_l2(paper.layer("airlight"), truth.layer("airlight")) <= 0.3);
+    // Colours are linear: per channel, the picture is the sum of those where one medium scatters and the others are
+    // black. That pins each colour to its Gaussian in every variant.
+    for (const char* variant : {"paper", "S", "VS2"}) {
+      const Pairs given{{"variant", variant}, {"K", "8"}, {"extrapolate", "false"}};
+      const Film whole = film(given);
+      std::vector<double> sum(whole.layer("airlight").size(), 0.0);
+      const auto media = scene.media;
+      for (std::size_t lit = 0; lit < media.size(); ++lit) {
+        for (std::size_t m = 0; m < media.size(); ++m)
+          if (m != lit) scene.media[m].albedo.setZero();
+        const Film part = film(given);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.layer("airlight")[i];
+        scene.media = media;
+      }
+      for (std::size_t i = 0; i < sum.size(); ++i) CHECK(whole.layer("airlight")[i] == Approx(sum[i]).epsilon(1e-6));
+    }
+  }
+}
+
+// Equal albedos keep one number for all: the same list, and a picture with the bits of one medium.
+TEST_CASE("fogshop: equal albedos cost nothing", "[fogshop]") {
+  Scene one = small_scene(), two = one;
+  const scene::Gaussian a{Point3(0.5, 0.2, -4), 1, 0.5}, b{Point3(-1, 0.5, -3), 0.6, 1};
+  one.media = {gaussians({a, b}, 0.05)};
+  two.media = {gaussians({a}, 0.05), gaussians({b})};
+  for (Scene* scene : {&one, &two})
+    for (auto& medium : scene->media) medium.albedo = Rgb(0.9, 0.8, 0.7);
+  for (const char* variant : {"paper", "S", "VS2"}) {
+    const Pairs given{{"variant", variant}};
+    CHECK(render(one, given).film.layers == render(two, given).film.layers);
+    const auto prepared = method.prepare(std::make_shared<const Scene>(two), settings(given), {});
+    CHECK_FALSE(kept(prepared->stages(), "colours of scattering"));
+  }
+  two.media[1].albedo = Rgb(0.9, 0.8, 0.6);
+  const auto prepared = method.prepare(std::make_shared<const Scene>(two), settings({}), {});
+  CHECK(kept(prepared->stages(), "colours of scattering"));
 }
