@@ -44,7 +44,7 @@ class FogOnDevice {
 
   Context& context_;
   const fogshop::Model& model_;
-  Buffer gaussians_, lights_, maps_, depths_, colours_;
+  Buffer gaussians_, lights_, maps_, depths_, colours_, permutation_;
 };
 
 }  // namespace airlight::gpu

@@ -7,6 +7,7 @@
 #include "methods/fogshop/fog.h"
 #include "methods/fogshop/kernels.h"
 #include "methods/fogshop/light_map.h"
+#include "methods/fogshop/noise.h"
 #include "scene/renderer.h"
 
 namespace airlight::fogshop {
@@ -33,6 +34,9 @@ struct Options {
   enum class Upsample { bilinear, paper, recompute };
   int downsample = 1;
   Upsample upsample = Upsample::recompute;
+  // Rays bent by noise, section 5.5; 0: none.
+  double noise_scale = 0, noise_frequency = 1, noise_phase = 0;
+  std::uint32_t noise_seed = 0;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
@@ -51,7 +55,8 @@ struct Model {
   int dropped = 0;  // Gaussians that nothing would see
   std::vector<LightModel> lights;
   std::unique_ptr<FTable> f_table;
-  double evaluations = 0;  // of the error function
+  std::unique_ptr<Noise> noise;  // null: none
+  double evaluations = 0;        // of the error function
 
   bool paper() const { return options.variant == Options::Variant::paper; }
 };
