@@ -5,6 +5,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/pixels.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/near.glsl"
+#include "fogshop/noise.glsl"
 #include "fogshop/light.glsl"
 #include "fogshop/light_lookup.glsl"
 
@@ -32,6 +33,9 @@ void main() {
       Crossing c = cross_line(g, origin, direction, end);
       if (!c.met) continue;
       float whole = depth_at(c, end), t = clamp(c.middle, 0, end), before = depth_at(c, t);  // Eq. 10, clamped
+#if NOISE
+      whole = bent_depth(g, c, origin, direction, end);
+#endif
       vec3 x = origin + t * direction;
       depth += whole;
       for (int l = 0; l < LIGHTS; ++l) {

@@ -51,6 +51,12 @@ std::vector<std::array<float, 4>> colour_data(const fogshop::GaussianArrays& g) 
   return data;
 }
 
+// Empty without noise.
+std::vector<int> permutation(const fogshop::Model& model) {
+  if (!model.noise) return {};
+  return {model.noise->permutation().begin(), model.noise->permutation().end()};
+}
+
 std::size_t map_values(const fogshop::Options& o) {
   return std::size_t(o.map_directions + 2) * (o.map_directions + 2) * (o.map_edges + 1);
 }
@@ -101,7 +107,8 @@ FogOnDevice::FogOnDevice(Context& context, const fogshop::Model& model)
       depths_(context, "depths to centres",
               model.paper() ? (std::size_t(model.gaussians.count) * (model.lights.size() + 1) + model.lights.size()) * 4
                             : 0),
-      colours_(context, "colours", colour_data(model.gaussians)) {}
+      colours_(context, "colours", colour_data(model.gaussians)),
+      permutation_(context, "permutation", permutation(model)) {}
 
 Program& FogOnDevice::program(const char* file, std::map<std::string, std::string> definitions) {
   if (model_.options.erf == fogshop::Erf::precise) {
@@ -131,6 +138,7 @@ void FogOnDevice::bind() const {
   maps_.bind(5);
   depths_.bind(8);
   if (!model_.fog.one_albedo()) colours_.bind(12);
+  if (model_.noise) permutation_.bind(13);
 }
 
 void FogOnDevice::fill_light_maps() {
@@ -246,7 +254,15 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     definitions["K"] = std::to_string(o.slices);
     definitions["EXACT_LIGHT_DEPTH"] = o.map ? "0" : "1";
   }
+  definitions["NOISE"] = model_.noise ? "1" : "0";
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
+  if (model_.noise) {
+    p.set("noise_scale", model_.noise->scale());
+    p.set("noise_frequency", model_.noise->frequency());
+    // Whole periods are nothing, and would cost digits.
+    p.set("noise_phase", std::remainder(model_.noise->phase(), double(fogshop::Noise::period)));
+    p.set("noise_reach", fogshop::noise_reach(model_.noise->scale()));
+  }
   prepare(tiles);
   prepare(p);
   p.set("has_distances", has_distances);

@@ -53,7 +53,7 @@ class FogOnDevice {
 
   Context& context_;
   const fogshop::Model& model_;
-  Buffer gaussians_, lights_, maps_, depths_, colours_;
+  Buffer gaussians_, lights_, maps_, depths_, colours_, permutation_;
   int bands_ = 0, band_depths_ = 0;             // of the environment; 0: none
   std::unique_ptr<Buffer> light_, band_table_;  // its harmonics, those of the PSF
 };

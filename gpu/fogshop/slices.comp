@@ -6,6 +6,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/pixels.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/near.glsl"
+#include "fogshop/noise.glsl"
 #include "fogshop/light.glsl"
 #include "fogshop/light_lookup.glsl"
 
@@ -93,7 +94,7 @@ void main() {
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
-      Crossing c = cross_line(near_block[i], origin, direction, end);
+      Crossing c = cross_view(near_block[i], origin, direction, end);
       if (!c.met) continue;
       reach_lo = min(reach_lo, c.middle - c.chord);
       reach_hi = max(reach_hi, c.middle + c.chord);
@@ -140,7 +141,7 @@ void main() {
     for (int first = 0; first < count; first += group_size) {
       int loaded = load_near(first, count);
       for (int i = 0; i < loaded; ++i) {
-        Crossing c = cross_line(near_block[i], origin, direction, end);
+        Crossing c = cross_view(near_block[i], origin, direction, end);
         if (!c.met || !boxed) continue;
         float weight = (1 - exp(-2 * c.depth)) / (parts * opacity);
         for (int k = 0; k < nodes; ++k) share[k] += weight * clamp((node[k] - c.middle) * c.a / 3.2 + 0.5, 0, 1);
@@ -167,7 +168,7 @@ void main() {
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
-      Crossing c = cross_line(near_block[i], origin, direction, end);
+      Crossing c = cross_view(near_block[i], origin, direction, end);
       if (!c.met) continue;
 #if COLOURED
       vec3 colour = colour_of[int(near_block[i].place)].rgb;

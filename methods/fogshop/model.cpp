@@ -45,6 +45,10 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("downsample", "1", {"1", "2", "4"}, "airlight for one ray per so many pixels to each side, section 5.4"),
       choice("upsample", "recompute", {"bilinear", "paper", "recompute"},
              "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
+      real("noise_scale", "0", 0, 4, "how far noise bends rays, in radii of the Gaussian, section 5.5; 0: no noise"),
+      real("noise_frequency", "1", 1e-12, 1e12, "cells of the noise per metre; it repeats after 32"),
+      integer("noise_seed", "0", 0, 4294967295.0, "of the noise's gradients"),
+      real("noise_phase", "0", -1e6, 1e6, "shift of the noise along all axes, in cells"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -76,6 +80,10 @@ Options read_options(const scene::Settings& settings) {
   const std::string& psf = settings.text("environment_psf");
   o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
   o.environment_distance = settings.real("environment_distance");
+  o.noise_scale = settings.real("noise_scale");
+  o.noise_frequency = settings.real("noise_frequency");
+  o.noise_seed = std::uint32_t(settings.integer("noise_seed"));
+  o.noise_phase = settings.real("noise_phase");
   o.downsample = std::stoi(settings.text("downsample"));
   const std::string& upsample = settings.text("upsample");
   using Upsample = Options::Upsample;
@@ -93,6 +101,12 @@ Model make_model(const scene::Scene& scene, const Options& options) {
       make_arrays(model.fog.sum.gaussians, options.cull, options.depth_threshold, model.fog.colours);
   model.gaussians = std::move(culled.arrays);
   model.dropped = culled.dropped;
+  if (options.noise_scale > 0 && model.gaussians.count > 0) {
+    model.noise =
+        std::make_unique<Noise>(options.noise_scale, options.noise_frequency, options.noise_seed, options.noise_phase);
+    const double reach = noise_reach(options.noise_scale);
+    for (int i = 0; i < model.gaussians.count; ++i) model.gaussians.radius_squared[i] *= reach * reach;
+  }
   for (const scene::Light& light : scene.lights) {
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
       model.environment |= !environment->sh.empty() || environment_power(*environment) > 0;

@@ -8,6 +8,7 @@
 #include "methods/fogshop/fog.h"
 #include "methods/fogshop/kernels.h"
 #include "methods/fogshop/light_map.h"
+#include "methods/fogshop/noise.h"
 #include "scene/renderer.h"
 
 namespace airlight::fogshop {
@@ -36,6 +37,9 @@ struct Options {
   enum class Upsample { bilinear, paper, recompute };
   int downsample = 1;
   Upsample upsample = Upsample::recompute;
+  // Rays bent by noise, section 5.5; 0: none.
+  double noise_scale = 0, noise_frequency = 1, noise_phase = 0;
+  std::uint32_t noise_seed = 0;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
@@ -55,7 +59,8 @@ struct Model {
   std::vector<LightModel> lights;  // the point lights
   bool environment = false;        // an environment light shines
   std::unique_ptr<FTable> f_table;
-  double evaluations = 0;  // of the error function
+  std::unique_ptr<Noise> noise;  // null: none
+  double evaluations = 0;        // of the error function
 
   bool paper() const { return options.variant == Options::Variant::paper; }
 };

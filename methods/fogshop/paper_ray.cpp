@@ -22,7 +22,7 @@ HWY_INLINE V exp_of(V x) { return hn::Exp(d, hn::Max(x, set(-700))); }
 
 template <Erf kind>
 void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light,
-                   const double* hue, int channels, double* sums) {
+                   const double* hue, int channels, const double* whole, double* sums) {
   const V zero = hn::Zero(d), length = set(view.length);
   const V rx = set(view.direction.x()), ry = set(view.direction.y()), rz = set(view.direction.z());
   const Vec3 from_light = view.origin - light.position;
@@ -58,7 +58,10 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
         hn::Mul(hn::Mul(hn::Load(d, half), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp)))), hn::Max(ends, zero));
     // Eqs. 11 to 13, exponents added before the exponential.
     const V exponent = hn::Sub(hn::Sub(hn::Load(d, e), light_depth), view_depth(t));
-    const V weight = hn::Div(view_depth(length), hn::Mul(set(4 * pi), hn::Add(dd, set(light.softness))));
+    alignas(64) double given[8] = {};
+    if (whole) std::copy_n(whole + first, lanes, given);
+    const V weight = hn::Div(whole ? hn::Load(d, given) : view_depth(length),
+                             hn::Mul(set(4 * pi), hn::Add(dd, set(light.softness))));
     const auto valid = hn::FirstN(d, std::size_t(lanes));
     for (int k = 0; k < channels; ++k) {
       V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), exponent)));
@@ -70,10 +73,10 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
 }
 
 void GaussianTermsAny(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light, Erf erf,
-                      const double* hue, int channels, double* sums) {
-  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, hue, channels, sums);
-  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, hue, channels, sums);
-  return GaussianTerms<Erf::paper>(g, c, view, light, hue, channels, sums);
+                      const double* hue, int channels, const double* whole, double* sums) {
+  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, hue, channels, whole, sums);
+  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, hue, channels, whole, sums);
+  return GaussianTerms<Erf::paper>(g, c, view, light, hue, channels, whole, sums);
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE
@@ -85,9 +88,10 @@ namespace airlight::fogshop {
 HWY_EXPORT(GaussianTermsAny);
 
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings& crossings, const Line& view,
-                        const PaperLight& light, Erf erf, const Rgb& hue, bool coloured, Rgb& airlight) {
+                        const PaperLight& light, Erf erf, const Rgb& hue, bool coloured, const double* whole,
+                        Rgb& airlight) {
   HWY_DYNAMIC_DISPATCH(GaussianTermsAny)
-  (gaussians, crossings, view, light, erf, hue.data(), coloured ? 3 : 1, airlight.data());
+  (gaussians, crossings, view, light, erf, hue.data(), coloured ? 3 : 1, whole, airlight.data());
 }
 
 }  // namespace airlight::fogshop

@@ -100,6 +100,10 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   stage("colours of scattering", lit && !model.fog.one_albedo(),
         model.fog.one_albedo() ? "one albedo for all"
                                : unlit_or("one per Gaussian: it scales what scatters, not what extinguishes"));
+  stage("noise", model.noise != nullptr,
+        model.noise         ? fmt::format("rays bent by up to {:g} radii", o.noise_scale)
+        : o.noise_scale > 0 ? no_gaussians
+                            : "noise_scale = 0");
   stage("surfaces", needs.surfaces,
         scene.surfaces.empty() ? "there are none"
         : needs.surfaces       ? "direct light through the medium, Eq. 29"

@@ -187,3 +187,18 @@ TEST_CASE("fogshop: culling, GPU agrees with CPU", "[gpu]") {
       CHECK(p99(a, b, "transmittance") < 2e-3);
     }
 }
+
+// Section 5.5, the phase beyond a period included.
+TEST_CASE("fogshop: noise, GPU agrees with CPU", "[gpu]") {
+  if (!gpu::test::device()) return;
+  for (const char* name : {"f100", "a30", "tube"})
+    for (const char* variant : {"S", "paper"}) {
+      const Pairs given{{"variant", variant}, {"erf", "erf10"},         {"noise_scale", "0.4"},
+                        {"noise_seed", "3"},  {"noise_phase", "100.3"}, {"noise_frequency", "1.7"}};
+      const auto scene = scene_named(name);
+      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      CAPTURE(name, given);
+      CHECK(p99(a, b, "airlight") < 2e-3);
+      CHECK(p99(a, b, "transmittance") < 2e-3);
+    }
+}

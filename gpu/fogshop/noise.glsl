@@ -1,0 +1,55 @@
+// Section 5.5: depths of Gaussians along rays that noise bends, as methods/fogshop/noise.cpp. After fog.glsl.
+#if NOISE
+layout(std430, binding = 13) readonly buffer Permutation { int permutation[256]; };
+uniform float noise_scale, noise_frequency, noise_phase, noise_reach;
+const int noise_period = 32;
+const ivec3 gradient[12] =
+    ivec3[12](ivec3(1, 1, 0), ivec3(-1, 1, 0), ivec3(1, -1, 0), ivec3(-1, -1, 0), ivec3(1, 0, 1), ivec3(-1, 0, 1),
+              ivec3(1, 0, -1), ivec3(-1, 0, -1), ivec3(0, 1, 1), ivec3(0, -1, 1), ivec3(0, 1, -1), ivec3(0, -1, -1));
+
+vec3 noise_at(vec3 x) {
+  vec3 place = x * noise_frequency + noise_phase, whole = floor(place), f = place - whole;
+  ivec3 cell = ivec3(whole - float(noise_period) * floor(whole / float(noise_period)));
+  vec3 blend = f * f * f * (f * (6 * f - 15) + 10), sum = vec3(0);
+  for (int corner = 0; corner < 8; ++corner) {
+    ivec3 far = ivec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    ivec3 at = (cell + far) % noise_period;
+    vec3 offset = f - vec3(far), w = mix(1 - blend, blend, vec3(far));
+    float weight = w.x * w.y * w.z;
+    for (int channel = 0; channel < 3; ++channel) {
+      int a = permutation[at.x + 2 * noise_period * channel];
+      int hash = permutation[(permutation[(a + at.y) & 255] + at.z) & 255];
+      sum[channel] += weight * dot(vec3(gradient[hash % 12]), offset);
+    }
+  }
+  return clamp(sum, -1, 1);
+}
+
+vec3 bent_direction(Gaussian g, vec3 origin, vec3 direction, vec3 nearest) {
+  float distance_ = length(g.center - origin), radius = sqrt(g.radius_squared) / noise_reach;
+  float share = distance_ > radius ? radius / distance_ : 1;
+  return normalize(direction + noise_scale * share * noise_at(nearest));
+}
+
+// y' = T_i(v, p) along the bent ray over the unchanged length.
+float bent_depth(Gaussian g, Crossing c, vec3 origin, vec3 direction, float length_) {
+  vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction), q = g.center - origin;
+  float m = dot(q, r);
+  vec3 p = q - m * r;
+  return g.half_depth * exp(-g.a * g.a * dot(p, p)) *
+         erf_between(place_at(-g.a * m), place_at(g.a * (length_ - m)));
+}
+#endif
+
+// A Gaussian as a view ray meets it; with noise its depth is that of the bent ray and its place that of the straight one.
+Crossing cross_view(Gaussian g, vec3 origin, vec3 direction, float length_) {
+  Crossing c = cross_line(g, origin, direction, length_);
+#if NOISE
+  if (c.met) {
+    vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction);
+    vec3 q = g.center - origin, p = q - dot(q, r) * r;
+    c.depth = g.half_depth * exp(-g.a * g.a * dot(p, p));
+  }
+#endif
+  return c;
+}
