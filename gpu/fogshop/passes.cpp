@@ -143,13 +143,11 @@ void FogOnDevice::fill_view_depths(const Point3& view) {
   fill_depths(segments, std::size_t(model_.gaussians.count) * model_.lights.size());
 }
 
-std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
-                                                 StageTimer& timer) {
+std::unique_ptr<Buffer> FogOnDevice::airlight(const scene::View& view, const Buffer* distances, StageTimer& timer) {
   const Use use(context_);
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
-  const Buffer distances(context_, "distances", distance);
-  const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
+  auto pixels = std::make_unique<Buffer>(context_, "pixels", std::size_t(view.width) * view.height * 16);
   const auto look = [&](Program& p) {
     const scene::Camera& camera = view.camera;
     const bool perspective = camera.kind == scene::Camera::Kind::perspective;
@@ -165,18 +163,18 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
   const std::map<std::string, std::string> square = {{"LOCAL_SIZE_X", std::to_string(tile)},
                                                      {"LOCAL_SIZE_Y", std::to_string(tile)}};
   bind();
-  distances.bind(3);
-  pixels.bind(6);
+  if (distances) distances->bind(3);
+  pixels->bind(6);
 
   if (n == 0) {
     Program& p = program("fogshop/homogeneous.comp", square);
     look(p);
-    p.set("has_distances", !distance.empty());
+    p.set("has_distances", distances != nullptr);
     p.set("light_count", lights);
     p.set("source_radius", o.source_radius);
     p.dispatch(view.width, view.height);
     timer.stage("airlight");
-    return pixels.download<PixelAirlight>();
+    return pixels;
   }
 
   const int columns = (view.width + tile - 1) / tile, rows = (view.height + tile - 1) / tile;
@@ -197,7 +195,7 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
   look(tiles);
   look(p);
-  p.set("has_distances", !distance.empty());
+  p.set("has_distances", distances != nullptr);
   p.set("source_radius", o.source_radius);
   if (!model_.paper()) {
     p.set("boxes", o.boxes);
@@ -217,7 +215,24 @@ std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const 
     p.dispatch(columns * tile, count * tile);
     timer.stage("airlight");
   }
-  return pixels.download<PixelAirlight>();
+  return pixels;
+}
+
+void FogOnDevice::compose(const Buffer* pixels, const Buffer* surface, const Buffer& airlight,
+                          const Buffer& transmittance, const Buffer& mean) {
+  const Use use(context_);
+  Program& p = program("fogshop/composition.comp", {{"LOCAL_SIZE_X", "64"}});
+  bind();
+  if (pixels) pixels->bind(6);
+  if (surface) surface->bind(7);
+  airlight.bind(1);
+  transmittance.bind(2);
+  mean.bind(3);
+  const int count = int(mean.bytes() / 12);
+  p.set("has_airlight", pixels != nullptr);
+  p.set("has_surface", surface != nullptr);
+  p.set("pixel_count", count);
+  p.dispatch(count);
 }
 
 }  // namespace airlight::gpu

@@ -1,11 +1,10 @@
 // The dispatches of one fog: what lies on the device, and the shaders that read it.
 #pragma once
-#include <array>
+#include <memory>
 #include <vector>
 
 #include "gpu/buffer.h"
 #include "gpu/program.h"
-#include "gpu/raster/hit_image.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/model.h"
 #include "scene/renderer.h"
@@ -13,11 +12,6 @@
 namespace airlight::gpu {
 
 inline constexpr int most_slices = 128, most_lights = 16;  // arrays of the shaders
-
-struct PixelAirlight {
-  std::array<float, 3> airlight;  // [W/m^2/sr]
-  float depth;                    // T(v, p) [-], hue 1
-};
 
 class FogOnDevice {
  public:
@@ -27,13 +21,22 @@ class FogOnDevice {
   void fill_light_depths();                   // variant paper: T(s,b_i)
   void fill_view_depths(const Point3& view);  // variant paper: T(v,b_i), T(s,v)
 
-  // `distance` is d_vp of every pixel [m], empty where every ray is infinite. Tiles first list the Gaussians that their
-  // rays may meet; images are done in strips whose lists fit into one storage block.
-  std::vector<PixelAirlight> airlight(const scene::View&, const std::vector<float>& distance, StageTimer&);
+  // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
+  // null: every ray is infinite. Tiles first list the Gaussians that their rays may meet; images are done in strips
+  // whose lists fit into one storage block.
+  std::unique_ptr<Buffer> airlight(const scene::View&, const Buffer* distances, StageTimer&);
 
- private:
+  // The film's layers, 3 floats per pixel: `pixels` of airlight() (null: there is no medium) and the surfaces' light
+  // through the medium (null: there is none).
+  void compose(const Buffer* pixels, const Buffer* surface, const Buffer& airlight, const Buffer& transmittance,
+               const Buffer& mean);
+
+  // A program that includes fog.glsl, with the medium's uniforms set; bind() gives it the Gaussians (0), lights (4),
+  // their maps (5) and depths (8).
   Program& program(const char* file, std::map<std::string, std::string> definitions);
   void bind() const;
+
+ private:
   void fill_depths(const std::vector<struct Segment>&, std::size_t first);
 
   Context& context_;

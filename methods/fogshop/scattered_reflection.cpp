@@ -10,10 +10,6 @@
 namespace airlight::fogshop {
 namespace {
 
-// The table's depths: 64, even in log T. Below the first, g_l changes by less than 1 % and the light is T times it.
-constexpr int entries = 64;
-constexpr double least_depth = 1e-3, greatest_depth = 30;
-
 // sum_l w_l P_l(x).
 double legendre_sum(const std::vector<double>& weights, double x) {
   double before = 1, value = x, sum = weights[0];
@@ -46,13 +42,19 @@ std::vector<double> clamped_cosine(int order) {
 }  // namespace
 
 ScatteredReflection::ScatteredReflection(int order, bool follows_depth) : order_(order), follows_depth_(follows_depth) {
-  for (int k = 0; k < (follows_depth ? entries : 1); ++k) {
-    const double T =
-        follows_depth ? least_depth * std::pow(greatest_depth / least_depth, double(k) / (entries - 1)) : 1;
+  for (const double T : depths()) {
     std::vector<double> g;
     for (int l = 0; l < order; ++l) g.push_back(npsf_coefficient(l, T));
     table_.push_back(g);
   }
+}
+
+std::vector<double> ScatteredReflection::depths() const {
+  if (!follows_depth_) return {1};
+  std::vector<double> result;
+  for (int k = 0; k < entries; ++k)
+    result.push_back(least_depth * std::pow(greatest_depth / least_depth, double(k) / (entries - 1)));
+  return result;
 }
 
 std::vector<double> ScatteredReflection::bands(double T) const {

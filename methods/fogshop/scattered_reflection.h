@@ -15,6 +15,10 @@ namespace airlight::fogshop {
 
 class ScatteredReflection {
  public:
+  // The table's depths: even in log T. Below the first, g_l changes by less than 1 % and the light is T times it.
+  static constexpr int entries = 64;
+  static constexpr double least_depth = 1e-3, greatest_depth = 30;
+
   // `follows_depth`: g_l of the depth at hand, from a table (improved); else those of T = 1 for every depth, as
   // printed. `order` bands, 1 to 12; the paper uses 4 to 6.
   ScatteredReflection(int order, bool follows_depth);
@@ -23,6 +27,8 @@ class ScatteredReflection {
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
                  double& evaluations) const;
 
+  // The depths of the table, ascending; one where it does not follow the depth.
+  std::vector<double> depths() const;
   // g_l, l < order, at depth T.
   std::vector<double> bands(double T) const;
   // Integral of brdf * cosine * (the light spread by these bands around `to_light`) over the hemisphere, per channel.
