@@ -35,7 +35,7 @@ inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const s
   if (!end.hit) return std::abs(pixel.distance - end.t) <= 1e-2 * end.t;
   const Vec3 n = end.hit->normal, got(pixel.normal[0], pixel.normal[1], pixel.normal[2]);
   const double t = n.dot(end.hit->position - centre.origin) / n.dot(centre.direction);
-  return (got - n).norm() < 1e-4 && (std::abs(pixel.distance - t) <= 1e-4 * end.t || t < 0 || n.dot(got) < 0);
+  return (got - n).norm() < 1e-4 && std::abs(pixel.distance - t) <= 1e-4 * end.t;
 }
 
 inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view) {
@@ -76,7 +76,7 @@ inline Agreement compare(Context& context, const scene::Scene& scene, const scen
         const Ray moved = ray(r * std::cos(angle), r * std::sin(angle));
         const scene::RayEnd there = ray_end(scene, moved);
         seen = seen || shows(hit[i], surface[i], centre, there);
-        edge = edge || kind_of(there) != kind_of(end) || std::abs(there.t - end.t) > 1e-2 * end.t;
+        edge = edge || kind_of(there) != kind_of(end) || std::abs(there.t - end.t) > 1e-4 * end.t;
         if (scene.geometry)
           for (const scene::Hit& any : scene.geometry->all_hits(moved))
             met = met || shows(hit[i], surface[i], centre, {any.t, any, false});
