@@ -17,11 +17,6 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index >= segment_count) return;
   Segment s = segments[index];
-  float length_ = length(s.to - s.from), sum = 0;
-  vec3 direction = length_ > 0 ? (s.to - s.from) / length_ : vec3(0, 0, 1);
-  for (int i = 0; i < gaussian_count; ++i) {
-    Crossing c = cross_line(gaussians[i], s.from, direction, length_);
-    if (c.met && i != s.without) sum += depth_at(c, length_);
-  }
-  segment_depth[first_depth + index] = sum + s.constant_part * constant * length_;
+  segment_depth[first_depth + index] =
+      depth_between(s.from, s.to, s.without) + s.constant_part * constant * length(s.to - s.from);
 }

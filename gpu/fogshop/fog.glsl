@@ -78,3 +78,20 @@ Crossing cross_line(Gaussian g, vec3 origin, vec3 direction, float length_) {
 Place place_at(Crossing c, float t) { return place_at(c.a * (t - c.middle)); }
 // Optical depth over [0, t].
 float depth_at(Crossing c, float t) { return c.depth * erf_between(c.start, place_at(c, t)); }
+
+// Optical depth of the Gaussians between two points, each cut off at its radius.
+float depth_between(vec3 from, vec3 to, int without) {
+  float length_ = length(to - from), sum = 0;
+  vec3 direction = length_ > 0 ? (to - from) / length_ : vec3(0, 0, 1);
+  for (int i = 0; i < gaussian_count; ++i) {
+    Gaussian g = gaussians[i];
+    vec3 q = g.center - from, p = q - dot(q, direction) * direction;
+    if (dot(p, p) > g.radius_squared || i == without) continue;  // most, before any exponential
+    Crossing c = cross_line(g, from, direction, length_);
+    if (c.met) sum += depth_at(c, length_);
+  }
+  return sum;
+}
+
+// Of a depth where the hue is 1; a channel that the medium does not dim stays 1 however deep it is.
+vec3 transmittance_of(float depth) { return mix(vec3(1), exp(-hue * depth), greaterThan(hue, vec3(0))); }

@@ -7,10 +7,11 @@
 
 #include "gpu/buffer.h"
 #include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/surface_shading.h"
+#include "gpu/raster_program.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/fogshop.h"
-#include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/stages.h"
 #include "scene/error.h"
 
@@ -23,12 +24,15 @@ using scene::View;
 
 class PreparedFogshopGpu final : public scene::Prepared {
  public:
-  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const fogshop::Options& options)
+  // `map_side`: texels to a face of the light-distance maps.
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const fogshop::Options& options, int map_side)
       : scene_(std::move(scene)),
         model_(fogshop::make_model(*scene_, options)),
         needs_(fogshop::needs_of(*scene_, model_)),
         context_(Context::get()),
-        fog_(context_, model_) {
+        fog_(context_, model_),
+        map_side_(map_side) {
+    if (needs_.distances) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
     StageTimer timer(context_);
     if (needs_.light_maps) {
       fog_.fill_light_maps();
@@ -48,100 +52,156 @@ class PreparedFogshopGpu final : public scene::Prepared {
       if (needs_.environment_airlight) fog_.upload_environment(*environment_);
       timer.stage("harmonics of the environment");
     }
+    // Light of an environment on surfaces is for the CPU, and theirs of points with it.
+    if (needs_.surfaces && !needs_.environment) {
+      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, reflection_.get());
+      if (casts_shadows(*scene_)) {
+        shading_->fill_light_distances(map_side);
+        timer.stage("light-distance maps");
+      }
+    }
     times_ = timer.times();
   }
 
-  std::vector<scene::Stage> stages() const override {
-    auto stages = fogshop::describe_stages(*scene_, model_);
-    stages.insert(stages.begin(), {"device", true, context_.description()});
-    return stages;
-  }
+  std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
+  std::unique_ptr<Buffer> low_resolution_distances(const View&, const Execution&) const;
+  void add_environment(const View&, const Buffer* image, const Execution&, scene::Film&, StageTimer&) const;
+
   std::shared_ptr<const Scene> scene_;
   fogshop::Model model_;
   fogshop::Needs needs_;
   Context& context_;
   mutable FogOnDevice fog_;
+  int map_side_;
+  std::unique_ptr<FirstHits> first_hits_;                      // null: rays are infinite
+  std::unique_ptr<SurfaceShading> shading_;                    // null: left out, or on the CPU
   std::unique_ptr<fogshop::ScatteredReflection> reflection_;   // null: left out
   std::unique_ptr<fogshop::EnvironmentLighting> environment_;  // the same
   std::vector<scene::StageTime> times_;
 };
+
+std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
+  auto stages = fogshop::describe_stages(*scene_, model_);
+  stages.insert(stages.begin(), {"device", true, context_.description()});
+  const bool maps = needs_.surfaces && !needs_.environment && casts_shadows(*scene_);
+  const std::string why_not = needs_.environment && needs_.surfaces ? "surfaces under an environment are lit on the CPU"
+                              : !scene_->surfaces.empty() && needs_.surfaces ? "a lone plane or sphere casts no shadow"
+                              : scene_->surfaces.empty()                     ? "there are no surfaces"
+                                                                             : "no light shines";
+  const std::string why = fmt::format("shadows of surfaces: 6 faces of {0}^2 for each of {1} point light{2}", map_side_,
+                                      model_.lights.size(), model_.lights.size() == 1 ? "" : "s");
+  const auto surfaces =
+      std::find_if(stages.begin(), stages.end(), [](const scene::Stage& stage) { return stage.name == "surfaces"; });
+  stages.insert(surfaces, {"light-distance maps", maps, maps ? why : why_not});
+  return stages;
+}
+
+// d_vp of the low pixels [m]. A film whose sides the factor divides is the same view with fewer pixels; else the last
+// blocks reach beyond its edge, and Embree answers.
+std::unique_ptr<Buffer> PreparedFogshopGpu::low_resolution_distances(const View& view,
+                                                                     const Execution& execution) const {
+  const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
+  const std::size_t count = std::size_t(low.low_width()) * low.low_height();
+  if (view.width % low.factor == 0 && view.height % low.factor == 0) {
+    auto result = std::make_unique<Buffer>(context_, "low distances", count * 4);
+    first_hits_->draw({view.camera, low.low_width(), low.low_height()}).read_distances(*result, 0);
+    return result;
+  }
+  std::vector<float> values;
+  for (const double t : low_distances(*scene_, view, low, execution))
+    values.push_back(t < far_away ? float(t) : far_away);
+  return std::make_unique<Buffer>(context_, "low distances", values);
+}
+
+// On the CPU: surfaces under an environment, and the background; the airlight of an environment is in the film already.
+void PreparedFogshopGpu::add_environment(const View& view, const Buffer* image, const Execution& execution,
+                                         scene::Film& film, StageTimer& timer) const {
+  std::vector<float>&airlight = film.layers["airlight"], &surface = film.layers["surface"], &mean = film.layers["mean"];
+  fogshop::FirstHits hits{std::vector<double>(film.pixels(), infinity), {}};
+  if (needs_.distances) hits = fogshop::first_hits(*scene_, view, execution);
+  if (needs_.surfaces) {
+    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points,
+                 film.layers["transmittance"], execution, surface,
+                 needs_.scattered ? &film.add("reflected_airlight") : nullptr);
+    timer.stage("surfaces");
+  }
+  std::vector<double> depth(film.pixels(), 0.0);
+  if (image) {
+    const auto values = image->download<std::array<float, 4>>();
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = values[i][3];
+  }
+  environment_pass(*scene_, model_, nullptr, view, hits.distance, depth, execution, airlight, surface);
+  timer.stage("background");
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
+}
 
 scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
   const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  std::vector<float>&airlight = film.add("airlight"), &surface = film.add("surface"),
-  &transmittance = film.add("transmittance"), &mean = film.add("mean");
-  const long dispatches = Program::dispatches();
+  const std::size_t pixels = film.pixels();
+  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
   const Use use(context_);
   StageTimer timer(context_);
+  const auto layer = [&](const char* name) { return std::make_unique<Buffer>(context_, name, pixels * 12); };
 
-  // Section 5.4, step 1: distances, by Embree.
-  const std::size_t pixels = film.pixels();
-  std::vector<float> distance, low_distance;
-  std::vector<unsigned> open;
-  fogshop::FirstHits hits{std::vector<double>(pixels, infinity), {}};
-  // What ends the rays, the environment's distance included.
-  const auto on_device = [&](const std::vector<double>& from, std::vector<float>& to) {
-    for (const double t : needs_.environment ? up_to_environment(model_.options, from) : from)
-      to.push_back(t < far_away ? float(t) : far_away);
-  };
-  const bool all_end = needs_.environment && model_.options.environment_distance < infinity;
-  if (needs_.distances) {
-    hits = fogshop::first_hits(*scene_, view, execution);
-    if (needs_.environment_airlight)
-      for (const double t : hits.distance) open.push_back(t == infinity);
+  // Section 5.4, step 1: distances, by a raster pass.
+  std::unique_ptr<Buffer> distances, low_distances, primitives, image, surface, scattered;
+  if (first_hits_) {
+    const HitImage& hits = first_hits_->draw(view);
+    distances = std::make_unique<Buffer>(context_, "distances", pixels * 4);
+    hits.read_distances(*distances, 0);
+    if (shading_) {
+      primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
+      hits.read_primitives(*primitives, 0);
+    }
     timer.stage("distances");
-  }
-  if (needs_.distances || all_end) {
-    on_device(hits.distance, distance);
     if (needs_.low_resolution) {
-      const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
-      on_device(low_distances(*scene_, view, low, execution), low_distance);
+      low_distances = low_resolution_distances(view, execution);
       timer.stage("distances, low resolution");
     }
   }
-
-  std::vector<double> depth(pixels, 0.0);
   if (needs_.airlight) {
     if (needs_.center_depths) {
       fog_.fill_view_depths(view.camera.position);
       timer.stage("depths to centres");
     }
-    const std::vector<PixelAirlight> image =
-        needs_.low_resolution ? fog_.low_resolution_airlight(view, distance, low_distance, open, timer)
-                              : fog_.airlight(view, distance, open, timer);
-    for (std::size_t i = 0; i < pixels; ++i)
-      for (int c = 0; c < 3; ++c) {
-        airlight[3 * i + c] = image[i].airlight[c];
-        const double hue = model_.fog.hue[c];
-        transmittance[3 * i + c] = hue > 0 ? float(std::exp(-hue * image[i].depth)) : 1.0f;
-        depth[i] = image[i].depth;
-      }
-    timer.stage("read back");
-  } else {
-    std::fill(transmittance.begin(), transmittance.end(), 1.0f);
+    image = needs_.low_resolution ? fog_.low_resolution_airlight(view, distances.get(), low_distances.get(), timer)
+                                  : fog_.airlight(view, distances.get(), timer);
   }
-
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
-  if (needs_.surfaces) {
-    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points, transmittance, execution,
-                 surface, needs_.scattered ? &film.add("reflected_airlight") : nullptr);
+  if (shading_) {
+    surface = layer("surface");
+    if (needs_.scattered) scattered = layer("reflected_airlight");
+    shading_->shade(fog_, first_hits_->surfaces(), view, *primitives, image.get(), *surface, scattered.get());
     timer.stage("surfaces");
   }
-  if (needs_.environment) {  // the background: its airlight is there
-    environment_pass(*scene_, model_, nullptr, view, hits.distance, depth, execution, airlight, surface);
-    timer.stage("background");
+  if (image || surface) {
+    const auto airlight = layer("airlight"), transmittance = layer("transmittance"), mean = layer("mean");
+    fog_.compose(image.get(), surface.get(), *airlight, *transmittance, *mean);
+    timer.stage("composition");
+    film.layers["airlight"] = airlight->download<float>();
+    film.layers["transmittance"] = transmittance->download<float>();
+    film.layers["mean"] = mean->download<float>();
+  } else {  // no medium, and nothing that shines
+    film.add("airlight");
+    film.add("mean");
+    film.layers["transmittance"].assign(3 * pixels, 1.0f);
   }
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
+  if (surface) film.layers["surface"] = surface->download<float>();
+  film.add("surface");
+  if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
+  timer.stage("read back");
+  if (needs_.environment) add_environment(view, image.get(), execution, film, timer);
   result.times = timer.times();
   result.counters["rays"] = double(pixels);
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
+  result.counters["draws"] = double(RasterProgram::draws() - draws);
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
   return result;
@@ -153,7 +213,17 @@ std::string FogshopGpu::about() const {
   return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
 }
 
-std::vector<scene::SettingSpec> FogshopGpu::settings() const { return fogshop::Fogshop().settings(); }
+std::vector<scene::SettingSpec> FogshopGpu::settings() const {
+  auto settings = fogshop::Fogshop().settings();
+  settings.push_back({"light_distance_side",
+                      scene::SettingSpec::Type::integer,
+                      "512",
+                      "texels to a side of a light-distance map's six faces",
+                      1,
+                      8192,
+                      {}});
+  return settings;
+}
 
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
@@ -173,7 +243,8 @@ std::unique_ptr<scene::Prepared> FogshopGpu::prepare(std::shared_ptr<const Scene
   const std::vector<std::string> reasons = supports(*scene, settings);
   if (!reasons.empty())
     throw Error(fmt::format("{}: fogshop_gpu cannot render this: {}", scene->name, reasons.front()));
-  return std::make_unique<PreparedFogshopGpu>(std::move(scene), fogshop::read_options(settings));
+  return std::make_unique<PreparedFogshopGpu>(std::move(scene), fogshop::read_options(settings),
+                                              int(settings.integer("light_distance_side")));
 }
 
 }  // namespace airlight::gpu

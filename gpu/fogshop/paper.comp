@@ -2,8 +2,8 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
-#include "fogshop/pixels.glsl"
 #include "fogshop/fog.glsl"
+#include "fogshop/pixels.glsl"
 #include "fogshop/near.glsl"
 #include "fogshop/noise.glsl"
 #include "fogshop/light.glsl"
@@ -18,7 +18,7 @@ void main() {
   bool visible = is_computed(pixel);  // the others still help to load
   vec3 origin, direction;
   camera_ray(film_position(pixel), origin, direction);
-  float end = visible && has_distances != 0 ? distances[place_of(pixel)] : far_away;
+  float end = visible ? ray_length(pixel) : far_away;
   int count = near_count();
   if (count < 0) return;  // the whole tile
   const int to_view = LIGHTS * gaussian_count, to_lights = to_view + gaussian_count;

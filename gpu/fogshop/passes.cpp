@@ -182,6 +182,11 @@ void FogOnDevice::fill_view_depths(const Point3& view) {
   fill_depths(segments, std::size_t(model_.gaussians.count) * model_.lights.size());
 }
 
+float FogOnDevice::open_distance() const {
+  const double d = model_.environment ? model_.options.environment_distance : infinity;
+  return d < far_away ? float(d) : far_away;
+}
+
 void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
   const Use use(context_);
   std::vector<std::array<float, 4>> light;
@@ -197,18 +202,16 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
   band_depths_ = lighting.bands().depths();
 }
 
-void FogOnDevice::add_environment(const scene::View& view, const std::vector<unsigned>& open, StageTimer& timer) {
-  const Buffer open_pixels(context_, "open pixels", open);
+void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
   light_->bind(9);
   band_table_->bind(10);
-  open_pixels.bind(11);
   auto definitions = square;
   definitions["SH_ORDER"] = std::to_string(bands_);
   Program& p = context_.program("fogshop/environment.comp", definitions);
   using Table = fogshop::PsfBands;
   look(p, view);
   p.set("hue", model_.fog.hue);
-  p.set("has_open", !open.empty());
+  p.set("has_distances", has_distances);
   p.set("band_depths", band_depths_);
   p.set("log_least_depth", std::log(Table::least_depth));
   p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
@@ -227,6 +230,7 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     p.set("grid_height", height);
     p.set("film_step", step);
     p.set("only_edges", only_edges);
+    p.set("open_distance", open_distance());
   };
   if (n == 0) {
     Program& p = program("fogshop/homogeneous.comp", square);
@@ -287,43 +291,38 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   }
 }
 
-std::vector<PixelAirlight> FogOnDevice::airlight(const scene::View& view, const std::vector<float>& distance,
-                                                 const std::vector<unsigned>& open, StageTimer& timer) {
+std::unique_ptr<Buffer> FogOnDevice::airlight(const scene::View& view, const Buffer* distances, StageTimer& timer) {
   const Use use(context_);
-  const Buffer distances(context_, "distances", distance);
-  const Buffer pixels(context_, "pixels", std::size_t(view.width) * view.height * sizeof(PixelAirlight));
+  auto pixels = std::make_unique<Buffer>(context_, "pixels", std::size_t(view.width) * view.height * 16);
   bind();
-  distances.bind(3);
-  pixels.bind(6);
-  compute(view, 1, !distance.empty(), false, timer);
-  if (light_) add_environment(view, open, timer);
-  return pixels.download<PixelAirlight>();
+  if (distances) distances->bind(3);
+  pixels->bind(6);
+  compute(view, 1, distances != nullptr, false, timer);
+  if (light_) add_environment(view, distances != nullptr, timer);
+  return pixels;
 }
 
-std::vector<PixelAirlight> FogOnDevice::low_resolution_airlight(const scene::View& view,
-                                                                const std::vector<float>& distance,
-                                                                const std::vector<float>& low_distance,
-                                                                const std::vector<unsigned>& open, StageTimer& timer) {
+std::unique_ptr<Buffer> FogOnDevice::low_resolution_airlight(const scene::View& view, const Buffer* distances,
+                                                             const Buffer* low_distances, StageTimer& timer) {
   const Use use(context_);
   const fogshop::Options& o = model_.options;
   const fogshop::LowResolution r{view.width, view.height, o.downsample};
   const std::size_t count = std::size_t(view.width) * view.height;
-  const bool has_distances = !distance.empty(),
+  const bool has_distances = distances != nullptr,
              find_edges = has_distances && o.upsample != fogshop::Options::Upsample::bilinear;
-  const Buffer distances(context_, "distances", distance), low_distances(context_, "low distances", low_distance);
-  const Buffer pixels(context_, "pixels", count * sizeof(PixelAirlight));
-  const Buffer low(context_, "low pixels", std::size_t(r.low_width()) * r.low_height() * sizeof(PixelAirlight));
+  auto pixels = std::make_unique<Buffer>(context_, "pixels", count * 16);
+  const Buffer low(context_, "low pixels", std::size_t(r.low_width()) * r.low_height() * 16);
   const Buffer edges(context_, "edges", find_edges ? count * 4 : 0);
   bind();
   edges.bind(9);
-  low_distances.bind(3);
+  if (low_distances) low_distances->bind(3);
   low.bind(6);
   compute(view, r.factor, has_distances, false, timer);
 
-  distances.bind(3);
-  pixels.bind(6);
+  if (distances) distances->bind(3);
+  pixels->bind(6);
   low.bind(10);
-  low_distances.bind(11);
+  if (low_distances) low_distances->bind(11);
   Program& p = context_.program("fogshop/upsample.comp", square);
   p.set("width", r.width);
   p.set("height", r.height);
@@ -331,11 +330,29 @@ std::vector<PixelAirlight> FogOnDevice::low_resolution_airlight(const scene::Vie
   p.set("low_height", r.low_height());
   p.set("factor", r.factor);
   p.set("find_edges", find_edges);
+  p.set("open_distance", open_distance());
   p.dispatch(r.width, r.height);
   timer.stage("upsampling");
   if (find_edges && o.upsample == fogshop::Options::Upsample::recompute) compute(view, 1, true, true, timer);
-  if (light_) add_environment(view, open, timer);
-  return pixels.download<PixelAirlight>();
+  if (light_) add_environment(view, has_distances, timer);
+  return pixels;
+}
+
+void FogOnDevice::compose(const Buffer* pixels, const Buffer* surface, const Buffer& airlight,
+                          const Buffer& transmittance, const Buffer& mean) {
+  const Use use(context_);
+  Program& p = program("fogshop/composition.comp", {{"LOCAL_SIZE_X", "64"}});
+  bind();
+  if (pixels) pixels->bind(6);
+  if (surface) surface->bind(7);
+  airlight.bind(1);
+  transmittance.bind(2);
+  mean.bind(3);
+  const int count = int(mean.bytes() / 12);
+  p.set("has_airlight", pixels != nullptr);
+  p.set("has_surface", surface != nullptr);
+  p.set("pixel_count", count);
+  p.dispatch(count);
 }
 
 }  // namespace airlight::gpu

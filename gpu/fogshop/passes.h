@@ -1,6 +1,5 @@
 // The dispatches of one fog: what lies on the device, and the shaders that read it.
 #pragma once
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -17,11 +16,6 @@ namespace airlight::gpu {
 
 inline constexpr int most_slices = 128, most_lights = 16;  // arrays of the shaders
 
-struct PixelAirlight {
-  std::array<float, 3> airlight;  // [W/m^2/sr]
-  float depth;                    // T(v, p) [-], hue 1
-};
-
 class FogOnDevice {
  public:
   FogOnDevice(Context&, const fogshop::Model&);
@@ -32,23 +26,30 @@ class FogOnDevice {
 
   void upload_environment(const fogshop::EnvironmentLighting&);  // from now on airlight() adds Eq. 28
 
-  // `distance` is d_vp of every pixel [m], empty where every ray is infinite. Tiles first list the Gaussians that their
-  // rays may meet; images are done in strips whose lists fit into one storage block. `open` is 1 for pixels whose ray
-  // nothing ends, empty where that is all of them; read if there is an environment.
-  std::vector<PixelAirlight> airlight(const scene::View&, const std::vector<float>& distance,
-                                      const std::vector<unsigned>& open, StageTimer&);
+  // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
+  // null: every ray is infinite (or reaches to the environment's distance). Tiles first list the Gaussians that their
+  // rays may meet; images are done in strips whose lists fit into one storage block.
+  std::unique_ptr<Buffer> airlight(const scene::View&, const Buffer* distances, StageTimer&);
 
-  // The same at the settings' lower resolution, brought back to the film's on the device: `low_distance` is d_vp of the
-  // low pixels [m]; both are empty where every ray is infinite.
-  std::vector<PixelAirlight> low_resolution_airlight(const scene::View&, const std::vector<float>& distance,
-                                                     const std::vector<float>& low_distance,
-                                                     const std::vector<unsigned>& open, StageTimer&);
+  // The same at the settings' lower resolution, brought back to the film's on the device: `low_distances` holds d_vp of
+  // the low pixels [m]; both are null where every ray is infinite.
+  std::unique_ptr<Buffer> low_resolution_airlight(const scene::View&, const Buffer* distances,
+                                                  const Buffer* low_distances, StageTimer&);
 
- private:
+  // The film's layers, 3 floats per pixel: `pixels` of airlight() (null: there is no medium) and the surfaces' light
+  // through the medium (null: there is none).
+  void compose(const Buffer* pixels, const Buffer* surface, const Buffer& airlight, const Buffer& transmittance,
+               const Buffer& mean);
+
+  // A program that includes fog.glsl, with the medium's uniforms set; bind() gives it the Gaussians (0), lights (4),
+  // their maps (5) and depths (8).
   Program& program(const char* file, std::map<std::string, std::string> definitions);
   void bind() const;
+
+ private:
+  float open_distance() const;  // [m] of rays that nothing ends
   void compute(const scene::View&, int step, bool has_distances, bool only_edges, StageTimer&);
-  void add_environment(const scene::View&, const std::vector<unsigned>& open, StageTimer&);
+  void add_environment(const scene::View&, bool has_distances, StageTimer&);
   void fill_depths(const std::vector<struct Segment>&, std::size_t first);
 
   Context& context_;

@@ -4,9 +4,14 @@ layout(std430, binding = 3) readonly buffer Distances { float distances[]; };  /
 layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };        // airlight, depth
 layout(std430, binding = 9) readonly buffer Edges { int edge_of[]; };
 uniform int grid_width, grid_height, film_step, has_distances, only_edges;
+uniform float open_distance;  // [m] of rays that nothing ends
 
 int place_of(ivec2 pixel) { return pixel.y * grid_width + pixel.x; }
 bool is_computed(ivec2 pixel) {
   return pixel.x < grid_width && pixel.y < grid_height && (only_edges == 0 || edge_of[place_of(pixel)] != 0);
 }
 vec2 film_position(ivec2 pixel) { return float(film_step) * (vec2(pixel) + 0.5); }
+float ray_length(ivec2 pixel) {
+  float t = has_distances != 0 ? distances[place_of(pixel)] : far_away;
+  return t < far_away ? t : open_distance;
+}

@@ -8,7 +8,10 @@ layout(std430, binding = 10) readonly buffer LowPixels { vec4 low_pixels[]; };
 layout(std430, binding = 11) readonly buffer LowDistances { float low_distances[]; };
 uniform int width, height, low_width, low_height, factor;
 uniform int find_edges;  // 0: bilinear everywhere
-const float edge_ratio = 1.1, black = 1e30;
+uniform float open_distance;  // [m] of rays that nothing ends
+const float edge_ratio = 1.1, black = 1e30, far_away = 1e37;
+
+float ended(float t) { return t < far_away ? t : open_distance; }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -21,24 +24,26 @@ void main() {
   float weight[4] = float[4]((1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y);
 
   if (find_edges != 0) {
-    float least = distances[i], most = least;
+    float here = ended(distances[i]), least = here, most = here;
     int reach = factor / 2;
     for (int y = max(0, pixel.y - reach); y <= min(height - 1, pixel.y + reach); ++y)
       for (int x = max(0, pixel.x - reach); x <= min(width - 1, pixel.x + reach); ++x) {
-        least = min(least, distances[y * width + x]);
-        most = max(most, distances[y * width + x]);
+        float t = ended(distances[y * width + x]);
+        least = min(least, t);
+        most = max(most, t);
       }
     for (int k = 0; k < 4; ++k) {
-      least = min(least, low_distances[place[k]]);
-      most = max(most, low_distances[place[k]]);
+      float t = ended(low_distances[place[k]]);
+      least = min(least, t);
+      most = max(most, t);
     }
     bool edge = most > edge_ratio * least;
     edge_of[i] = edge ? 1 : 0;
     if (edge) {
       int best = 0;
       for (int k = 1; k < 4; ++k) {
-        float here = abs(low_distances[place[k]] - distances[i]), so_far = abs(low_distances[place[best]] - distances[i]);
-        if (here < so_far || (here == so_far && weight[k] > weight[best])) best = k;
+        float off = abs(ended(low_distances[place[k]]) - here), so_far = abs(ended(low_distances[place[best]]) - here);
+        if (off < so_far || (off == so_far && weight[k] > weight[best])) best = k;
       }
       for (int k = 0; k < 4; ++k) weight[k] = k == best ? 1 : 0;
     }

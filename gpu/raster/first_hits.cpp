@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu/raster/view_uniforms.h"
 #include "gpu/raster_program.h"
 #include "scene/error.h"
 
@@ -11,16 +12,6 @@ namespace {
 
 using scene::Camera;
 using scene::View;
-
-struct HalfFilm {
-  double x, y;  // at distance 1, or [m]
-};
-
-HalfFilm half_film(const View& view) {
-  const Camera& camera = view.camera;
-  const double y = camera.kind == Camera::Kind::perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
-  return {y * view.width / view.height, y};
-}
 
 // Range of x/z (perspective) or x of a sphere whose centre is at (x, z) in the camera's frame; all if it reaches behind
 // the camera. Tangents of the circle that the sphere is seen as from above.
@@ -56,19 +47,6 @@ std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, c
   return result;
 }
 
-void look(RasterProgram& program, const View& view, double extent) {
-  const Camera& camera = view.camera;
-  const HalfFilm half = half_film(view);
-  program.set("view_perspective", camera.kind == Camera::Kind::perspective);
-  program.set_double("view_position", camera.position);
-  program.set_double("view_forward", camera.forward);
-  program.set_double("view_right", Vec3(half.x * camera.right));
-  program.set_double("view_up", Vec3(half.y * camera.up));
-  program.set("view_width", view.width);
-  program.set("view_height", view.height);
-  program.set_double("depth_scale", std::ldexp(1.0, -std::min(120, std::ilogb(extent) + 41)));
-}
-
 }  // namespace
 
 FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls)
@@ -89,7 +67,8 @@ const HitImage& FirstHits::draw(const View& view) {
   image_->begin();
   for (const SurfacesOnDevice::Run& run : surfaces_.runs()) {
     RasterProgram& program = context_.raster_program(run.mesh ? "raster/mesh" : "raster/solid");
-    look(program, view, extent);
+    set_view(program, view);
+    program.set_double("depth_scale", std::ldexp(1.0, -std::min(120, std::ilogb(extent) + 41)));
     if (run.mesh) {
       program.set_double("view_across", Vec3(view.camera.right / half.x));
       program.set_double("view_upwards", Vec3(view.camera.up / half.y));

@@ -42,6 +42,15 @@ std::vector<double> clamped_cosine(int order) {
 ScatteredReflection::ScatteredReflection(int order, bool follows_depth)
     : bands_(follows_depth ? Psf::npsf_by_depth : Psf::npsf, order) {}
 
+std::vector<double> ScatteredReflection::depths() const {
+  if (bands_.depths() == 1) return {1};
+  std::vector<double> result;
+  for (int k = 0; k < PsfBands::entries; ++k)
+    result.push_back(PsfBands::least_depth *
+                     std::pow(PsfBands::greatest_depth / PsfBands::least_depth, double(k) / (PsfBands::entries - 1)));
+  return result;
+}
+
 Rgb ScatteredReflection::reflect(const scene::Material& material, const Vec3& normal, const Vec3& to_view,
                                  const Vec3& to_light, const std::vector<double>& bands) {
   const int order = int(bands.size());

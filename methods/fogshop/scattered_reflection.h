@@ -24,6 +24,8 @@ class ScatteredReflection {
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
                  double& evaluations) const;
 
+  // The depths of the bands' table, ascending, even in log T; one where it does not follow the depth.
+  std::vector<double> depths() const;
   // g_l, l < order, at depth T.
   std::vector<double> bands(double T) const { return bands_(T); }
   // Integral of brdf * cosine * (the light spread by these bands around `to_light`) over the hemisphere, per channel.

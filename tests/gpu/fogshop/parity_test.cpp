@@ -5,6 +5,7 @@
 
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/program.h"
+#include "gpu/raster_program.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
@@ -111,15 +112,31 @@ TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
     render(method, scene, given);
     return gpu::Program::dispatches() - before;
   };
-  CHECK(dispatches({}) == 3);  // one light map, tiles, airlight
-  CHECK(dispatches({{"light_depth", "exact"}}) == 2);
-  CHECK(dispatches({{"variant", "paper"}}) == 4);  // T(s,b_i), T(v,b_i), tiles, airlight
+  const auto draws = [&] {
+    const long before = gpu::RasterProgram::draws();
+    render(method, scene, {});
+    return gpu::RasterProgram::draws() - before;
+  };
+  CHECK(dispatches({}) == 5);  // one light map, tiles, airlight, the wall, composition
+  CHECK(dispatches({{"light_depth", "exact"}}) == 4);
+  CHECK(dispatches({{"variant", "paper"}}) == 6);  // T(s,b_i), T(v,b_i), tiles, airlight, the wall, composition
+  CHECK(draws() == 1);                             // the wall, which has nothing to cast a shadow on
+  const auto lights = scene->lights;
   scene->lights.clear();
-  CHECK(dispatches({}) == 2);  // the depth alone
-  CHECK(dispatches({{"variant", "paper"}}) == 2);
+  CHECK(dispatches({}) == 3);  // the depth alone, composition
+  CHECK(dispatches({{"variant", "paper"}}) == 3);
   scene->lights.emplace_back(scene::make_constant_environment(Rgb::Ones()));
-  CHECK(dispatches({}) == 3);  // and the environment's airlight
+  CHECK(dispatches({}) == 4);  // and the environment's airlight
   scene->media.clear();
+  CHECK(dispatches({}) == 0);
+  scene->lights = lights;
+  CHECK(dispatches({}) == 2);  // the wall in vacuum
+  scene->surfaces.push_back({"ball", scene::Sphere{{0, 1, 10}, 1}, scene::Lambert{}});
+  finish(*scene);
+  CHECK(draws() == 7);  // the view, and six faces around the light
+  scene->surfaces.clear();
+  finish(*scene);
+  CHECK(draws() == 0);
   CHECK(dispatches({}) == 0);
 }
 

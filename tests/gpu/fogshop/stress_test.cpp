@@ -18,9 +18,14 @@ namespace {
 // a = 1/width, c = amplitude.
 Gaussian gaussian(double a, double c, const Point3& b) { return {b, 1 / a, c}; }
 
+struct RayAnswer {
+  std::array<float, 3> airlight;
+  float depth;
+};
+
 // One ray along +z.
-gpu::PixelAirlight one_ray(gpu::Context& context, const Options& options, const Fog& fog, const Point3& view,
-                           double length, const Point3* light) {
+RayAnswer one_ray(gpu::Context& context, const Options& options, const Fog& fog, const Point3& view, double length,
+                  const Point3* light) {
   Model model;
   model.options = options;
   model.fog = fog;
@@ -33,7 +38,9 @@ gpu::PixelAirlight one_ray(gpu::Context& context, const Options& options, const 
   }
   gpu::StageTimer timer(context);
   const scene::View one{scene::look_at(view, view + Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
-  return device.airlight(one, {length < gpu::far_away ? float(length) : gpu::far_away}, {}, timer).at(0);
+  const gpu::Buffer distance(context, "distances",
+                             std::vector<float>{length < gpu::far_away ? float(length) : gpu::far_away});
+  return device.airlight(one, &distance, timer)->download<RayAnswer>().at(0);
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ struct PixelHit {
 
 struct Agreement {
   int pixels = 0, hits = 0;
-  int moved = 0;           // agree with a ray within 1/32 pixel of the centre instead: silhouettes, edges of triangles
+  int moved = 0;           // agree with a ray within 1/32 pixel of the centre instead: silhouettes, and
+                           // slivers right behind them
   int wrong = 0;           // neither
   std::string first;       // of the wrong
   double distance = 0;     // greatest relative error of the others
@@ -34,7 +35,7 @@ inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const s
   if (!end.hit) return std::abs(pixel.distance - end.t) <= 1e-2 * end.t;
   const Vec3 n = end.hit->normal, got(pixel.normal[0], pixel.normal[1], pixel.normal[2]);
   const double t = n.dot(end.hit->position - centre.origin) / n.dot(centre.direction);
-  return (got - n).norm() < 1e-4 && (std::abs(pixel.distance - t) <= 1e-4 * end.t || t < 0 || n.dot(got) < 0);
+  return (got - n).norm() < 1e-4 && std::abs(pixel.distance - t) <= 1e-4 * end.t;
 }
 
 inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view) {
@@ -68,11 +69,19 @@ inline Agreement compare(Context& context, const scene::Scene& scene, const scen
         result.normal = std::max(result.normal, turned);
         continue;
       }
-      bool beside = false;
-      for (int k = 0; k < 16 && !beside; ++k) {
+      // Beside the centre: what is shown is met by a ray there, and if something hides it, then not everywhere.
+      bool met = false, seen = false, edge = false;
+      for (int k = 0; k < 16; ++k) {
         const double angle = 2 * pi * k / 8, r = k < 8 ? 1.0 / 32 : 1.0 / 256;
-        beside = shows(hit[i], surface[i], centre, ray_end(scene, ray(r * std::cos(angle), r * std::sin(angle))));
+        const Ray moved = ray(r * std::cos(angle), r * std::sin(angle));
+        const scene::RayEnd there = ray_end(scene, moved);
+        seen = seen || shows(hit[i], surface[i], centre, there);
+        edge = edge || kind_of(there) != kind_of(end) || std::abs(there.t - end.t) > 1e-4 * end.t;
+        if (scene.geometry)
+          for (const scene::Hit& any : scene.geometry->all_hits(moved))
+            met = met || shows(hit[i], surface[i], centre, {any.t, any, false});
       }
+      const bool beside = seen || (met && edge);
       ++(beside ? result.moved : result.wrong);
       if (!beside && result.first.empty())
         result.first = fmt::format("pixel {} {}: surface {} at {}, expected {} at {}, normals differ by {}", x, y,

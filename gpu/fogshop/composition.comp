@@ -1,0 +1,22 @@
+// The layers of the film: L = L_a + e^-T L_p, Eq. 29.
+layout(local_size_x = LOCAL_SIZE_X) in;
+#include "fogshop/fog.glsl"
+
+layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };                // airlight, depth
+layout(std430, binding = 7) readonly buffer Surface { float surface_layer[]; };       // through the medium
+layout(std430, binding = 1) writeonly buffer Airlight { float airlight_layer[]; };
+layout(std430, binding = 2) writeonly buffer Transmittance { float transmittance_layer[]; };
+layout(std430, binding = 3) writeonly buffer Mean { float mean_layer[]; };
+uniform int has_airlight, has_surface, pixel_count;
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= pixel_count) return;
+  vec3 airlight = has_airlight != 0 ? pixels[i].rgb : vec3(0);
+  vec3 visible = has_airlight != 0 ? transmittance_of(pixels[i].w) : vec3(1);
+  for (int c = 0; c < 3; ++c) {
+    airlight_layer[3 * i + c] = airlight[c];
+    transmittance_layer[3 * i + c] = visible[c];
+    mean_layer[3 * i + c] = airlight[c] + (has_surface != 0 ? surface_layer[3 * i + c] : 0);
+  }
+}

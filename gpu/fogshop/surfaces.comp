@@ -1,0 +1,69 @@
+// Surfaces seen through the medium: Zhou et al. 2007, Eq. 29 with L_p by Eqs. 19 and 25, every pixel that a surface ends
+// (methods/fogshop/surface_pass.cpp, scattered_reflection.cpp). Points are met again in double precision: shadows start there.
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "raster/view.glsl"
+#include "raster/light_distances.glsl"
+#include "fogshop/fog.glsl"
+#include "fogshop/light.glsl"
+#include "fogshop/reflection.glsl"
+
+layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
+layout(std430, binding = 3) readonly buffer LightPlaces { double light_place[]; };  // [m], not rounded: maps start there
+layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };           // airlight, depth
+layout(std430, binding = 7) writeonly buffer Surface { float surface_layer[]; };
+layout(std430, binding = 8) writeonly buffer Scattered { float scattered_layer[]; };
+uniform int has_airlight, has_scattered;
+uniform double nudge;  // [m] off the surface, where shadow rays start
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (pixel.x >= view_width || pixel.y >= view_height) return;
+  int place = pixel.y * view_width + pixel.x, primitive = primitive_of[place];
+  vec3 direct = vec3(0), scattered = vec3(0);
+  if (primitive >= 0) {
+    dvec3 origin, direction, normal;
+    view_ray(dvec2(pixel) + 0.5LF, origin, direction);
+    int surface;
+    double t;
+    if (primitive < triangle_count) {
+      surface = triangles[primitive].w;
+      t = meet_triangle_plane(triangles[primitive], origin, direction, view_forward, normal);
+    } else {
+      Solid s = solids[primitive - triangle_count];
+      surface = s.surface;
+      t = meet_solid(s, origin, direction, normal);
+    }
+    // Not on the ball of a light, and not on what reflects nothing.
+    if (surface >= 0 && any(greaterThan(materials[surface].diffuse.rgb + materials[surface].specular.rgb, vec3(0)))) {
+      if (dot(normal, direction) > 0) normal = -normal;
+      dvec3 point = origin + t * direction;
+      Material material = materials[surface];
+      vec3 n = vec3(normal), to_view = vec3(-direction);
+      for (int l = 0; l < light_count; ++l) {
+        dvec3 offset = dvec3(light_place[3 * l], light_place[3 * l + 1], light_place[3 * l + 2]) - point;
+        double distance_ = length(offset);
+        if (!(distance_ > 0)) continue;
+        dvec3 to_light = offset / distance_;
+        float d = float(distance_), cosine = float(dot(normal, to_light));
+        vec3 irradiance = lights[l].intensity / (d * d), towards = vec3(to_light), reflectance = vec3(0);
+        if (cosine > 0) {
+          reflectance = brdf(material, n, towards, to_view);
+          if (any(greaterThan(reflectance, vec3(0))) &&
+              in_shadow(l, primitive, point + nudge * normal, to_light, distance_))
+            reflectance = vec3(0);
+        }
+        if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;
+        float depth = depth_between(lights[l].position, vec3(point), -1) + constant * d;
+        direct += reflectance * cosine * irradiance * exp(-depth * hue);
+        if (has_scattered != 0)
+          scattered += irradiance * scattered_reflection(material, normal, to_view, towards, depth * hue);
+      }
+      scattered = max(scattered * albedo, vec3(0));  // harmonics cut off at a band may swing below 0
+    }
+  }
+  vec3 visible = has_airlight != 0 ? transmittance_of(pixels[place].w) : vec3(1);
+  for (int c = 0; c < 3; ++c) {
+    surface_layer[3 * place + c] = visible[c] * (direct[c] + scattered[c]);
+    if (has_scattered != 0) scattered_layer[3 * place + c] = visible[c] * scattered[c];
+  }
+}

@@ -1,0 +1,34 @@
+#include "gpu/raster/light_distances.h"
+
+namespace airlight::gpu {
+
+scene::View LightDistances::face_view(const Point3& position, int face, int side) {
+  const int axis = face / 2;
+  const double sign = face % 2 == 0 ? 1 : -1;
+  scene::Camera camera;
+  camera.position = position;
+  camera.forward = sign * Vec3::Unit(axis);
+  camera.up = Vec3::Unit((axis + 1) % 3);
+  camera.right = sign * Vec3::Unit((axis + 2) % 3);
+  camera.vertical_fov = pi / 2;
+  return {camera, side, side};
+}
+
+LightDistances::LightDistances(Context& context, const scene::Scene& scene, const std::vector<Point3>& positions,
+                               int side)
+    : side_(side),
+      distances_(context, "light-distance maps", positions.size() * 6 * side * side * 4),
+      primitives_(context, "light-distance maps, primitives", positions.size() * 6 * side * side * 4) {
+  const Use use(context);
+  FirstHits pass(context, scene, false);
+  std::size_t offset = 0;
+  for (const Point3& position : positions)
+    for (int face = 0; face < 6; ++face) {
+      const HitImage& image = pass.draw(face_view(position, face, side));
+      image.read_distances(distances_, offset);
+      image.read_primitives(primitives_, offset);
+      offset += std::size_t(side) * side * 4;
+    }
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,70 @@
+// Shadows by what a light sees (gpu/raster/light_distances.h).
+#include "raster/triangles.glsl"
+#include "raster/solids.glsl"
+
+layout(std430, binding = 5) readonly buffer LightPrimitives { int light_primitive[]; };
+layout(std430, binding = 14) readonly buffer LightDistances { float light_distance[]; };  // [m]
+uniform int map_side;        // texels; 0: there are no maps
+uniform int triangle_count;
+
+// Texel in which a direction from the light lies: the faces and their axes are those of LightDistances::face_view.
+int map_texel_of(vec3 u) {
+  vec3 m = abs(u);
+  int axis = m.x >= m.y && m.x >= m.z ? 0 : (m.y >= m.z ? 1 : 2);
+  bool negative = u[axis] < 0;
+  float across = (negative ? -1 : 1) * u[(axis + 2) % 3] / m[axis], upwards = u[(axis + 1) % 3] / m[axis];
+  ivec2 texel = clamp(ivec2(floor(0.5 * float(map_side) * vec2(1 + across, 1 - upwards))), ivec2(0), ivec2(map_side - 1));
+  return ((2 * axis + (negative ? 1 : 0)) * map_side + texel.y) * map_side + texel.x;
+}
+
+// Does it meet the ray in (0, end)? Moeller and Trumbore 1997 for triangles. The origin may lie on it if `own`.
+bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, double end) {
+  dvec3 normal;
+  if (primitive >= triangle_count) {
+    Solid s = solids[primitive - triangle_count];
+    if (own) {  // a plane has no other crossing, a sphere that of the whole chord
+      if (s.kind == 0) return false;
+      dvec3 offset = dvec3(s.point[0], s.point[1], s.point[2]) - origin;
+      double chord = 2 * dot(offset, direction);
+      return chord > 1e-12LF * s.radius && chord < end;
+    }
+    double t = meet_solid(s, origin, direction, normal);
+    return t > 0 && t < end;
+  }
+  if (own) return false;
+  ivec4 corners = triangles[primitive];
+  dvec3 a = mesh_vertex(corners.x), ab = mesh_vertex(corners.y) - a, ac = mesh_vertex(corners.z) - a;
+  dvec3 p = cross(direction, ac), from = origin - a, q = cross(from, ab);
+  double det = dot(ab, p);
+  if (det == 0) return false;
+  double u = dot(from, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
+  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
+}
+
+// Is anything between a point of primitive `own` and the light, `end` metres along `to_light`?
+bool in_shadow(int light, int own, dvec3 point, dvec3 to_light, double end) {
+  if (primitive_blocks(own, true, point, to_light, end)) return true;
+  if (map_side == 0) return false;
+  // The point's place on its face of the cube, and one texel to each side; across an edge that is the next face.
+  vec3 u = vec3(-to_light), m = abs(u);
+  int axis = m.x >= m.y && m.x >= m.z ? 0 : (m.y >= m.z ? 1 : 2);
+  u /= m[axis];
+  float step_ = 2 / float(map_side);
+  // A sliver that covers no texel's centre is missed. Where all nine texels see something well before the point, by four
+  // texels' width, the point lies inside a shadow, and the sliver that its ray meets was only one part of what casts it.
+  float before = float(end) * (1 - 4 * step_);
+  bool inside = true;
+  int last = own;
+  for (int i = 0; i < 9; ++i) {
+    vec3 beside = u;
+    beside[(axis + 1) % 3] += float(i % 3 - 1) * step_;
+    beside[(axis + 2) % 3] += float(i / 3 - 1) * step_;
+    int texel = light * 6 * map_side * map_side + map_texel_of(beside);
+    int primitive = light_primitive[texel];
+    inside = inside && light_distance[texel] < before;
+    if (primitive < 0 || primitive == own || primitive == last) continue;
+    last = primitive;
+    if (primitive_blocks(primitive, false, point, to_light, end)) return true;
+  }
+  return inside;
+}

@@ -1,0 +1,35 @@
+// What every point or spot light sees: light-distance maps, cube maps of first distances and of the primitives that are
+// met.
+//
+// Six raster passes per light, by the code of the camera's (first_hits.h): no near plane and no bias. Distances are
+// those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) do not compare distances:
+// they take the primitives of the nine texels around a direction and test each exactly, so the edge of a shadow is as
+// sharp as the geometry, and an occluder is missed only where it is thinner than a texel.
+#pragma once
+#include <vector>
+
+#include "gpu/raster/first_hits.h"
+#include "gpu/timer.h"
+
+namespace airlight::gpu {
+
+class LightDistances {
+ public:
+  // `positions` [m], one map each, `side` texels to a face's side, >= 1. Throws Unavailable above the device's limits:
+  // a map takes 24 side^2 bytes in each of two buffers.
+  LightDistances(Context&, const scene::Scene&, const std::vector<Point3>& positions, int side);
+
+  int side() const { return side_; }
+  int texels_per_light() const { return 6 * side_ * side_; }
+  const Buffer& distances() const { return distances_; }    // [m], far_away where there is nothing
+  const Buffer& primitives() const { return primitives_; }  // triangles in their order, then solids; -1: nothing
+
+  // Faces in order +x, -x, +y, -y, +z, -z. Texel (i, j) of a face, j = 0 its top row, looks along this ray.
+  static scene::View face_view(const Point3& position, int face, int side);
+
+ private:
+  int side_;
+  Buffer distances_, primitives_;
+};
+
+}  // namespace airlight::gpu
