@@ -28,13 +28,16 @@ std::string printable(std::string text) {
 }
 
 constexpr std::size_t most_points = 100'000;
+constexpr int most_levels = 16;  // printing and freeing are recursive
 
 }  // namespace
 
 Operation::Operation(const std::string& line, std::string where) : where_(std::move(where)) {
   std::vector<std::set<std::string>> keys;
   std::string twice;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (depth > most_levels)
+      throw Error(fmt::format("{}: found lists in more than {} levels, expected fewer", where_, most_levels));
     if (event == json::parse_event_t::object_start) keys.emplace_back();
     if (event == json::parse_event_t::object_end) keys.pop_back();
     if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second && twice.empty())

@@ -250,7 +250,9 @@ def queue_scripts():
         script = good.replace('frames.csv', write(f'frames {what}.csv', content))
         case(f'frames, {what}', ['author', write(f'script of frames {what}.jsonl', script), *out])
     for what, text in {'nan': good.replace('"c": 1', '"c": NaN'), 'huge': good.replace('"a": 2', '"a": 1e12'),
-                       'nested': '[' * 100000, 'no base': good.replace('author base', 'none'),
+                       'nested': '[' * 1000000, 'nested and closed': '[' * 1000000 + ']' * 1000000,
+                       'endless flight': good + '{"op": "airbrush", "pos": [0, 0, 0], "rate": 1e-9, "speed": 1e308, "diffusion": '
+                                                '0, "dt": 1e9, "steps": 3, "a": 1, "c": 1}\n', 'no base': good.replace('author base', 'none'),
                        'base is a folder': good.replace('author base.toml', '.'), 'zero byte': good + '\0\n',
                        'wrong type': good.replace('[1, 0, 0]', '"x"')}.items():
         case(f'script, {what}', ['author', write(f'script {what}.jsonl', text), *out])

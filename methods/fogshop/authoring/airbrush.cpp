@@ -25,6 +25,7 @@ Flight bounce(const scene::Geometry* geometry, const Point3& from, Vec3 displace
   Flight flight{from, velocity};
   for (int hits = 0; hits < 8; ++hits) {
     const double length = displacement.norm();
+    if (!std::isfinite(length)) throw Error("a particle moves further than numbers go, expected a smaller speed");
     if (!(length > 0)) return flight;
     const Ray ray{flight.position, displacement / length};
     const auto hit = geometry ? geometry->first_hit(ray) : std::nullopt;
@@ -80,7 +81,6 @@ std::vector<Id> airbrush(GaussianList& list, const Airbrush& op, const scene::Ge
   }
   std::vector<Id> ids;
   for (const Particle& p : particles) {
-    if (!p.gaussian.b.allFinite()) throw Error("a particle leaves the range of numbers, expected a smaller speed");
     if (p.old) list.change(p.position, p.gaussian);
     ids.push_back(p.old ? p.gaussian.id : list.add(p.gaussian));
   }

@@ -81,9 +81,10 @@ TEST_CASE("every kind has an example in the documentation", "[load]") {
   std::string all;
   for (const std::string& example : examples()) all += example;
   for (const char* kind :
-       {"perspective", "orthographic", "point",    "spot",   "directional", "environment", "homogeneous",
-        "gaussians",   "grid",         "mesh",     "sphere", "box",         "plane",       "height_field",
-        "lambert",     "phong",        "rayleigh", "hg",     "hazy",        "murky",       "slab"}) {
+       {"perspective", "orthographic", "point",  "spot", "directional", "environment",  "homogeneous",      "gaussians",
+        "grid",        "mesh",         "sphere", "box",  "plane",       "height_field", "displaced_sphere", "torus",
+        "tube",        "prism",        "teapot", "city", "lambert",     "phong",        "rayleigh",         "hg",
+        "hazy",        "murky",        "slab"}) {
     INFO(kind);
     CHECK(all.find("type = \"" + std::string(kind) + "\"") != std::string::npos);
   }
@@ -110,6 +111,12 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[surface]]\ntype = 'box'",
       "[[surface]]\ntype = 'plane'",
       "[[surface]]\ntype = 'height_field'",
+      "[[surface]]\ntype = 'displaced_sphere'",
+      "[[surface]]\ntype = 'torus'",
+      "[[surface]]\ntype = 'tube'",
+      "[[surface]]\ntype = 'prism'",
+      "[[surface]]\ntype = 'teapot'",
+      "[[surface]]\ntype = 'city'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'lambert'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'phong'",
   };
