@@ -2,14 +2,14 @@
 // met.
 //
 // Six raster passes per light, by the code of the camera's (first_hits.h): no near plane and no bias. Distances are
-// those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) do not compare distances:
+// those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) rarely compare distances:
 // they take the primitives of the nine texels around a direction and test each exactly, so the edge of a shadow is as
-// sharp as the geometry, and an occluder is missed only where it is thinner than a texel.
+// sharp as the geometry. Where triangles are about as small as texels, too few of them are among the nine: there the
+// texel itself decides, and the edge is good to half a texel. What covers no texel's centre casts no shadow.
 #pragma once
 #include <vector>
 
 #include "gpu/raster/first_hits.h"
-#include "gpu/timer.h"
 
 namespace airlight::gpu {
 
