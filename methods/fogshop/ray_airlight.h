@@ -30,6 +30,7 @@ class RayAirlight {
   Rgb slices(const Line&);
   Rgb constant_alone(double length) const;  // of a medium without Gaussians, where both variants are exact
   Rgb homogeneous(const LightFromRay&, double length) const;
+  Rgb sky(const Line&);  // by Model::sky
   Interval stretch(const Line&) const;
   Rgb sum_of_slices(const LightFromRay&);
 
