@@ -48,7 +48,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       timer.stage("harmonics of the NPSF");
     }
     if (needs_.environment_harmonics) {
-      environment_ = std::make_unique<fogshop::EnvironmentLighting>(*scene_, options, needs_.environment_airlight);
+      environment_ = std::make_unique<fogshop::EnvironmentLighting>(*scene_, options, needs_.environment_psf);
       if (needs_.environment_airlight) fog_.upload_environment(*environment_);
       timer.stage("harmonics of the environment");
     }
@@ -231,6 +231,7 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   if (options.variant == fogshop::Options::Variant::voigt)
     reasons.push_back("variant = VS2 is for the CPU: shaders have no Faddeeva function");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
+  if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
   if (scene.lights.size() > most_lights)

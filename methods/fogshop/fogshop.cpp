@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -78,8 +79,14 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     times_.push_back({"harmonics of the NPSF", watch.lap()});
   }
   if (needs.environment_harmonics) {
-    environment_ = std::make_unique<EnvironmentLighting>(*scene_, options, needs.environment_airlight);
+    environment_ = std::make_unique<EnvironmentLighting>(*scene_, options, needs.environment_psf);
     times_.push_back({"harmonics of the environment", watch.lap()});
+  }
+  if (needs.sky_volume) {
+    model_.sky = std::make_unique<SkyVolume>(*scene_, model_.fog, model_.gaussians, options.erf, options.sky_cells,
+                                             options.sky_directions, execution);
+    model_.evaluations += model_.sky->evaluations();
+    times_.push_back({"sky volume", watch.lap()});
   }
 }
 
@@ -140,8 +147,9 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
     result.times.push_back({"surfaces", watch.lap()});
   }
   if (needs.environment) {
-    environment_pass(*scene_, model_, needs.environment_airlight ? environment_.get() : nullptr, view, hits.distance,
-                     depth, execution, airlight, surface);
+    const bool by_psf = needs.environment_airlight && !needs.sky_volume;
+    environment_pass(*scene_, model_, by_psf ? environment_.get() : nullptr, view, hits.distance, depth, execution,
+                     airlight, surface);
     result.times.push_back({"environment", watch.lap()});
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
@@ -169,6 +177,8 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
         !std::holds_alternative<scene::EnvironmentLight>(scene.lights[i]))
       reasons.push_back(fmt::format("light {} is a {} light, expected point and environment lights", i,
                                     scene::light_name(scene.lights[i])));
+  if (options.sky_volume && reasons.empty() && make_fog(scene.media).sum.constant > 0)
+    reasons.push_back("environment_airlight = volume is for Gaussians alone, and the medium has a constant");
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
   if (options.variant != Options::Variant::paper && options.extrapolate && options.slices % 2 != 0)
@@ -181,6 +191,11 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     const Fog fog = make_fog(scene.media);
     if (!fog.one_albedo() && options.reflectance != Options::Reflectance::direct)
       reasons.push_back("the media differ in albedo, and Eq. 25 has one: reflectance = direct leaves it out");
+    const bool environment = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+      return std::holds_alternative<scene::EnvironmentLight>(light);
+    });
+    if (!fog.one_albedo() && environment)
+      reasons.push_back("the media differ in albedo, and Eq. 28 has one: expected point lights only");
     const std::string objection = objection_to_view(scene, fog, options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);
   }

@@ -41,6 +41,10 @@ std::vector<scene::SettingSpec> setting_specs() {
       integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
       choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
              "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
+      choice("environment_airlight", "psf", {"psf", "volume"},
+             "light of the environment in the air: by Eq. 28, or by slices and a grid of what arrives unscattered"),
+      integer("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
+      integer("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
       real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),
       choice("downsample", "1", {"1", "2", "4"}, "airlight for one ray per so many pixels to each side, section 5.4"),
       choice("upsample", "recompute", {"bilinear", "paper", "recompute"},
@@ -79,6 +83,9 @@ Options read_options(const scene::Settings& settings) {
   o.sh_order = int(settings.integer("sh_order"));
   const std::string& psf = settings.text("environment_psf");
   o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
+  o.sky_volume = settings.text("environment_airlight") == "volume";
+  o.sky_cells = int(settings.integer("sky_cells"));
+  o.sky_directions = int(settings.integer("sky_directions"));
   o.environment_distance = settings.real("environment_distance");
   o.noise_scale = settings.real("noise_scale");
   o.noise_frequency = settings.real("noise_frequency");

@@ -9,6 +9,7 @@
 #include "methods/fogshop/kernels.h"
 #include "methods/fogshop/light_map.h"
 #include "methods/fogshop/noise.h"
+#include "methods/fogshop/sky_volume.h"
 #include "scene/renderer.h"
 
 namespace airlight::fogshop {
@@ -30,8 +31,11 @@ struct Options {
   // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, or by that of the depth at hand.
   enum class Reflectance { direct, npsf, npsf_by_depth };
   Reflectance reflectance = Reflectance::direct;
-  int sh_order = 6;                        // bands of the NPSF and of the environment
-  Psf environment_psf = Psf::ball;         // what spreads light of an environment
+  int sh_order = 6;                 // bands of the NPSF and of the environment
+  Psf environment_psf = Psf::ball;  // what spreads light of an environment
+  bool sky_volume = false;          // airlight of the environment by SkyVolume instead of Eq. 28
+  int sky_cells = 24;
+  int sky_directions = 64;
   double environment_distance = infinity;  // D [m]: view rays that nothing ends, and Eq. 26, reach so far
   // Airlight for one pixel in downsample^2; how the others get theirs.
   enum class Upsample { bilinear, paper, recompute };
@@ -59,8 +63,9 @@ struct Model {
   std::vector<LightModel> lights;  // the point lights
   bool environment = false;        // an environment light shines
   std::unique_ptr<FTable> f_table;
-  std::unique_ptr<Noise> noise;  // null: none
-  double evaluations = 0;        // of the error function
+  std::unique_ptr<Noise> noise;    // null: none
+  std::unique_ptr<SkyVolume> sky;  // the same
+  double evaluations = 0;          // of the error function
 
   bool paper() const { return options.variant == Options::Variant::paper; }
 };

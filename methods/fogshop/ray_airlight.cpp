@@ -47,14 +47,37 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   }
   if (model_.fog.sum.constant > 0) depth += model_.fog.sum.constant * line.length;
   airlight.setZero();
+  if (model_.sky) airlight = sky(line) * model_.fog.albedo;
   if (model_.lights.empty()) return;
   seen_.clear();
   for (const LightModel& light : model_.lights) seen_.push_back(light_from_ray(light.position, line));
+  Rgb points;
   if (model_.gaussians.count == 0)
-    airlight = constant_alone(line.length);
+    points = constant_alone(line.length);
   else
-    airlight = model_.paper() ? paper(near, line) : slices(near, line);
-  airlight *= model_.fog.albedo;
+    points = model_.paper() ? paper(near, line) : slices(near, line);
+  airlight += points * model_.fog.albedo;
+}
+
+// Slices of equal length over what the line meets; the environment's light is taken in their middle.
+Rgb RayAirlight::sky(const Line& line) {
+  const Interval range = stretch(line);
+  Rgb sum = Rgb::Zero();
+  if (range.empty()) return sum;
+  const int slices = model_.options.slices;
+  constexpr int vector = GaussianArrays::padding;
+  t_.assign((slices + vector) / vector * vector, range.hi);
+  view_depth_.resize(t_.size());
+  for (int k = 0; k < slices; ++k) t_[k] = range.lo + range.length() * k / slices;
+  depths_at(crossings_, t_.data(), int(t_.size()), view_depth_.data(), model_.options.erf);
+  evaluations += double(crossings_.count) * (slices + 1);
+  Rgb visible = (-view_depth_[0] * model_.fog.hue).exp();
+  for (int k = 0; k < slices; ++k) {
+    const Rgb next = (-view_depth_[k + 1] * model_.fog.hue).exp();
+    sum += model_.sky->at(line.origin + 0.5 * (t_[k] + t_[k + 1]) * line.direction) * (visible - next).max(0.0);
+    visible = next;
+  }
+  return sum;
 }
 
 // L_a^h per channel [W/m^2/sr] for 1 W/sr.

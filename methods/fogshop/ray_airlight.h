@@ -33,6 +33,7 @@ class RayAirlight {
   Rgb slices(const GaussianArrays& near, const Line&);
   Rgb constant_alone(double length) const;  // of a medium without Gaussians, where both variants are exact
   Rgb homogeneous(const LightFromRay&, double length) const;
+  Rgb sky(const Line&);  // by Model::sky
   Interval stretch(const Line&) const;
   bool coloured() const { return !model_.fog.grey() || !model_.fog.one_albedo(); }
   Rgb sum_of_slices(const LightFromRay&, bool separate);

@@ -41,7 +41,9 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
   needs.point_harmonics = needs.scattered && lit;
   needs.environment_airlight = needs.environment && needs.airlight;
-  needs.environment_harmonics = needs.environment && (needs.airlight || needs.surfaces);
+  needs.sky_volume = needs.environment_airlight && model.options.sky_volume && gaussians;
+  needs.environment_psf = (needs.environment_airlight && !needs.sky_volume) || (needs.environment && needs.scattered);
+  needs.environment_harmonics = needs.environment && (needs.environment_psf || needs.surfaces);
   return needs;
 }
 
@@ -131,11 +133,13 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   stage("background", needs.environment,
         unless_dark("the environment through the medium, Eq. 29, where no surface is"));
   stage("harmonics of the environment", needs.environment_harmonics,
-        unless_dark(needs.environment_harmonics ? fmt::format("{} bands", o.sh_order)
-                                                : "there is no medium and no surface"));
+        unless_dark(needs.environment_harmonics ? fmt::format("{} bands", o.sh_order) : "nothing reads them"));
   stage("airlight of the environment", needs.environment_airlight,
         unless_dark(!needs.airlight ? "there is no medium"
-                                    : fmt::format("Eq. 28, {}, where no surface is", psf_name(o.environment_psf))));
+                    : needs.sky_volume
+                        ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions", o.slices,
+                                      o.sky_cells, o.sky_directions)
+                        : fmt::format("Eq. 28, {}, where no surface is", psf_name(o.environment_psf))));
   stage("environment on surfaces", needs.environment && needs.surfaces,
         scene.surfaces.empty()
             ? "there are no surfaces"

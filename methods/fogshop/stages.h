@@ -16,7 +16,9 @@ struct Needs {
   bool point_harmonics;        // that of point lights: harmonics of the NPSF
   bool environment;            // an environment light that reaches the scene: the background
   bool environment_harmonics;  // its projection
-  bool environment_airlight;   // Eq. 28, and the PSF that spreads it
+  bool environment_airlight;   // light of the environment in the air
+  bool environment_psf;        // what Eqs. 27 and 28 spread it by
+  bool sky_volume;             // the grid instead of Eq. 28
 };
 Needs needs_of(const scene::Scene&, const Model&);
 

@@ -1,69 +1,20 @@
-// Environment light in Fogshop: Eqs. 26 to 28 of Zhou et al. 2007 against quadrature, closed forms and the path tracer.
+// Environment light in Fogshop: Eqs. 26 to 28 of Zhou et al. 2007 against quadrature and closed forms.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "methods/fogshop/environment_lighting.h"
-#include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/harmonic_reflection.h"
 #include "methods/fogshop/surface_psf.h"
-#include "reference/path_tracer/options.h"
-#include "reference/path_tracer/single_rays.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
-#include "tests/reference/path_tracer/scenes.h"
+#include "tests/methods/fogshop/sky.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
-using scene::Film;
-using scene::Scene;
-using Pairs = std::map<std::string, std::string>;
+using namespace airlight::fogshop::test;
 
 namespace {
-
-const Fogshop method;
-
-scene::Rendering render(const Scene& scene, const Pairs& given = {}, int threads = 1) {
-  const scene::Settings settings(method.settings(), given);
-  return method.prepare(std::make_shared<const Scene>(scene), settings, {threads, {}})
-      ->render(view_of(scene), {threads, {}});
-}
-
-bool kept(const Scene& scene, const std::string& name, const Pairs& given = {}) {
-  const scene::Settings settings(method.settings(), given);
-  for (const auto& stage : method.prepare(std::make_shared<const Scene>(scene), settings, {1, {}})->stages())
-    if (stage.name == name) return stage.kept;
-  FAIL("no stage " << name);
-  return false;
-}
-
-// Sixteen coefficients of a sky that is positive everywhere, brighter in one direction, coloured.
-std::vector<Rgb> sky() {
-  std::vector<Rgb> c(16, Rgb::Zero());
-  c[0] = Rgb(4, 4, 4);
-  for (int i = 1; i < 16; ++i) c[i] = Rgb(0.3 * std::cos(i), 0.25 * std::sin(2 * i + 1), 0.3 * std::cos(5 * i + 2));
-  return c;
-}
-
-scene::EnvironmentLight sky_light() { return scene::make_sh_environment(sky(), Mat3::Identity(), Rgb::Ones()); }
-
-// A camera at the origin that looks along -z into two Gaussians.
-Scene gaussians_under(const scene::Light& light) {
-  Scene scene;
-  scene.name = "sky";
-  scene.width = 6;
-  scene.height = 4;
-  scene.lights.push_back(light);
-  scene::Medium medium;
-  medium.name = "fog";
-  medium.field = scene::GaussianSum{
-      {{Point3(0.5, 0.2, -4), 1, 0.5}, {Point3(-1, 0.5, -3), 0.6, 1}, {Point3(0.3, 0, 3), 0.9, 0.4}}, 0, infinity};
-  scene.media.push_back(medium);
-  finish(scene);
-  return scene;
-}
-
-Ray pixel_ray(const Scene& s, int x, int y) { return camera_ray(s.camera, x + 0.5, y + 0.5, s.width, s.height); }
 
 // Integral over the sphere of f(w) in spherical coordinates around an axis, gamma = pi x^2, which takes away 1/gamma.
 template <class F>
@@ -319,64 +270,5 @@ TEST_CASE("point lights and environments add, on any number of threads", "[fogsh
           const Rgb sum = point.get(layer, x, y) + sky.get(layer, x, y);
           CHECK(((all.get(layer, x, y) - sum).abs() <= 1e-6 * sum).all());
         }
-  }
-}
-
-// A camera in the middle of a homogeneous ball under a smooth sky: what Eq. 28 with the PSF of a ball says exactly.
-// Nine estimates in three channels beyond 5.5 standard errors: a false alarm in 1e-6 runs. The two NPSFs are for points
-// in the medium, and the thinner it is, the more of the sky they show.
-TEST_CASE("single scattering of a sky at the middle of a ball, by path tracing", "[fogshop]") {
-  const Vec3 direction = Vec3(0.3, 0.8, -0.5).normalized();
-  for (const double T : {0.1, 1.0, 3.0}) {
-    Scene scene = gaussians_under(sky_light());
-    scene.media[0].field = scene::Homogeneous{T};
-    scene.camera = scene::look_at(Point3::Zero(), direction, Vec3(0, 0, 1));
-    scene.width = scene.height = 1;
-    finish(scene);
-    const auto airlight = [&](const char* psf) {
-      return render(scene, {{"environment_distance", "1"}, {"environment_psf", psf}}).film.get("airlight", 0, 0);
-    };
-    auto ball = std::make_shared<Scene>(scene);
-    ball->media[0].region = scene::Sphere{Point3::Zero(), 1};
-    finish(*ball);
-    const scene::Settings settings(path_tracer::setting_specs(), {{"max_order", "1"}});
-    const path_tracer::World world(ball, path_tracer::parse_options(settings));
-    const auto truth = path_tracer::radiance(world, {Point3::Zero(), direction}, 1 << 18, {1, {}}).orders[1];
-    CAPTURE(T, truth.mean, truth.error, airlight("ball"), airlight("npsf"), airlight("npsfT"));
-    CHECK((truth.error < 5e-3 * truth.mean).all());
-    // The table's linear interpolation, 2e-3, is part of the method.
-    CHECK(((airlight("ball") - truth.mean).abs() < 5.5 * truth.error + 2e-3 * truth.mean).all());
-    if (T == 0.1) {
-      CHECK((airlight("npsf") > 1.05 * truth.mean).all());
-      CHECK((airlight("npsfT") > 1.9 * truth.mean).all());
-    }
-  }
-}
-
-// What the NPSF is exact for: point lights inside an endless homogeneous medium. A shell of them, weighted so that it
-// is a uniform sky of radiance 1 (Gauss points in gamma = pi x^2), gives T e^-T sqrt(4 pi) g_0(T). False alarms as
-// above.
-TEST_CASE("Eq. 28 by depth is a shell of point lights, by path tracing", "[fogshop]") {
-  const scene::GaussLegendre rule = scene::gauss_legendre(10);
-  for (const double T : {0.2, 1.5}) {
-    auto scene = std::make_shared<Scene>(gaussians_under(sky_light()));
-    scene->media[0].field = scene::Homogeneous{T};
-    scene->lights.clear();
-    double expected = 0;
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const double x = 0.5 * (1 + rule.node[i]), gamma = pi * x * x;
-      const double ring = 0.5 * rule.weight[i] * 2 * pi * x * std::sin(gamma) * 2 * pi;
-      scene->lights.emplace_back(
-          scene::PointLight{Point3(std::sin(gamma), 0, -std::cos(gamma)), Rgb::Constant(ring), 0});
-      expected += ring * npsf(gamma, T);
-    }
-    CHECK(expected == Approx(std::sqrt(4 * pi) * npsf_coefficient(0, T)).epsilon(2e-3));
-    finish(*scene);
-    const scene::Settings settings(path_tracer::setting_specs(), {{"max_order", "1"}});
-    const path_tracer::World world(scene, path_tracer::parse_options(settings));
-    const auto truth = path_tracer::radiance(world, {Point3::Zero(), Vec3(0, 0, -1)}, 1 << 16, {1, {}}).orders[1];
-    CAPTURE(T, expected * T * std::exp(-T), truth.mean, truth.error);
-    CHECK(truth.error[0] < 0.01 * truth.mean[0]);
-    CHECK(std::abs(truth.mean[0] - expected * T * std::exp(-T)) < 5.5 * truth.error[0]);
   }
 }

@@ -1,0 +1,38 @@
+// Light of the environment inside the Gaussians, on a grid: what a point of the medium would scatter if everything that
+// reaches it unscattered were, not in the paper.
+//
+// Eq. 28 of Zhou et al. 2007 takes one depth, that of the view ray, for the way in and the way out, and is dark where a
+// cloud is thick. Here the way in has depths of its own: J(x) = 1/(4 pi) integral L(w) e^-T(x,w) dw at the nodes of a
+// grid, trilinear between them, and a ray adds up J (e^-T_k - e^-T_k+1) over slices with exact depths T_k. One grid
+// serves all rays, and those that end at a surface too.
+#pragma once
+#include <vector>
+
+#include "methods/fogshop/fog.h"
+#include "methods/fogshop/kernels.h"
+#include "scene/renderer.h"
+
+namespace airlight::fogshop {
+
+class SkyVolume {
+ public:
+  // `cells` along the longest side of the box around the Gaussians' spheres, cubes; `directions` per environment light,
+  // chosen by its radiance, the same at every node. Requires a Gaussian. The fog's constant is not in the depths.
+  SkyVolume(const scene::Scene&, const Fog&, const GaussianArrays&, Erf, int cells, int directions,
+            const scene::Execution&);
+
+  // J [W/m^2/sr] per channel; beyond the box that of its nearest point.
+  Rgb at(const Point3& x) const;
+
+  double evaluations() const { return evaluations_; }  // of the error function
+  std::size_t nodes() const { return values_.size(); }
+
+ private:
+  Point3 corner_;
+  double cell_ = 1;          // [m]
+  Eigen::Array3i last_;      // greatest node index per axis, >= 1
+  std::vector<Rgb> values_;  // x fastest
+  double evaluations_ = 0;
+};
+
+}  // namespace airlight::fogshop
