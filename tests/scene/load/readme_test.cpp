@@ -81,9 +81,9 @@ TEST_CASE("every kind has an example in the documentation", "[load]") {
   std::string all;
   for (const std::string& example : examples()) all += example;
   for (const char* kind :
-       {"perspective", "orthographic", "point",    "spot",   "directional", "environment", "homogeneous",
-        "gaussians",   "grid",         "mesh",     "sphere", "box",         "plane",       "height_field",
-        "lambert",     "phong",        "rayleigh", "hg",     "hazy",        "murky",       "slab"}) {
+       {"perspective", "orthographic", "point",  "spot", "directional", "environment",  "homogeneous", "gaussians",
+        "grid",        "mesh",         "sphere", "box",  "plane",       "height_field", "lambert",     "phong",
+        "tabulated",   "rayleigh",     "hg",     "hazy", "murky",       "slab"}) {
     INFO(kind);
     CHECK(all.find("type = \"" + std::string(kind) + "\"") != std::string::npos);
   }
@@ -112,6 +112,7 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[surface]]\ntype = 'height_field'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'lambert'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'phong'",
+      "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'tabulated'",
   };
   for (const std::string& table : tables)
     for (const std::string& key : keys_of(table)) {
