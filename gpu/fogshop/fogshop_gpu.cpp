@@ -127,6 +127,9 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const { return fogshop::F
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
   const fogshop::Options options = fogshop::read_options(settings);
+  if (options.reflectance == fogshop::Options::Reflectance::sun)
+    reasons.push_back("reflectance = sun is for the CPU: expected direct, npsf or npsfT");
+  if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));

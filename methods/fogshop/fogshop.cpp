@@ -70,9 +70,14 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     times_.push_back({"table of F", watch.lap()});
   }
   if (needs.scattered) {
-    reflection_ = std::make_unique<ScatteredReflection>(options.sh_order,
-                                                        options.reflectance == Options::Reflectance::npsf_by_depth);
-    times_.push_back({"harmonics of the NPSF", watch.lap()});
+    reflection_ = make_reflection(*scene_, options);
+    times_.push_back(
+        {options.reflectance == Options::Reflectance::sun ? "tables of Sun et al." : "harmonics of the NPSF",
+         watch.lap()});
+  }
+  if (needs.transfer) {
+    reflection_->shadow(RadianceTransfer(*scene_, options.sh_order, options.prt_rays, options.prt_reach, execution));
+    times_.push_back({"radiance transfer", watch.lap()});
   }
 }
 
@@ -155,6 +160,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   if (options.variant == Options::Variant::slices && options.map && entries > 1 << 28)
     reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
                                   options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
+  for (const std::string& reason : objections_to_surfaces(scene, options)) reasons.push_back(reason);
   if (reasons.empty()) {
     const std::string objection = objection_to_view(scene, make_fog(scene.media), options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);

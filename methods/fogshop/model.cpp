@@ -35,9 +35,13 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("erf", "precise", {"precise", "erf10", "paper"}, "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
       choice("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
       real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
-      choice("reflectance", "direct", {"direct", "npsf", "npsfT"},
-             "of surfaces: unscattered light alone; scattered too, by the printed NPSF or by that of the depth"),
+      choice("reflectance", "direct", {"direct", "npsf", "npsfT", "sun"},
+             "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
+             "Sun et al.'s integrals"),
       integer("sh_order", "6", 1, 12, "bands of the NPSF"),
+      {"prt", Type::flag, "false", "surfaces shadow the light scattered onto meshes: precomputed transfer", 0, 0, {}},
+      integer("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
+      real("prt_reach", "1e300", 0, 1e300, "distance [m] up to which surfaces shadow in the precomputed transfer"),
       real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
@@ -61,8 +65,12 @@ Options read_options(const scene::Settings& settings) {
   using Reflectance = Options::Reflectance;
   o.reflectance = reflectance == "direct" ? Reflectance::direct
                   : reflectance == "npsf" ? Reflectance::npsf
+                  : reflectance == "sun"  ? Reflectance::sun
                                           : Reflectance::npsf_by_depth;
   o.sh_order = int(settings.integer("sh_order"));
+  o.prt = settings.flag("prt");
+  o.prt_rays = int(settings.integer("prt_rays"));
+  o.prt_reach = settings.real("prt_reach");
   return o;
 }
 

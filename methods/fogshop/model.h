@@ -25,10 +25,14 @@ struct Options {
   Cull cull = Cull::depth;
   double depth_threshold = 1e-4;  // eps_T
   double source_radius = 0;       // [m]
-  // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, or by that of the depth at hand.
-  enum class Reflectance { direct, npsf, npsf_by_depth };
+  // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, by that of the depth at hand, or
+  // without harmonics.
+  enum class Reflectance { direct, npsf, npsf_by_depth, sun };
   Reflectance reflectance = Reflectance::direct;
-  int sh_order = 6;  // bands of the NPSF
+  int sh_order = 6;          // bands of the NPSF
+  bool prt = false;          // meshes: surfaces shadow the scattered light
+  int prt_rays = 256;        // per vertex
+  double prt_reach = 1e300;  // [m] of occluders
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

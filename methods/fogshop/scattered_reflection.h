@@ -6,9 +6,17 @@
 // the reflectance is the integral of the reflectance times a polynomial (Eq. 20 without the visibility of occluders).
 // Taking the medium between light and surface as homogeneous is the paper's approximation; it is exact where it is so
 // everywhere.
+//
+// Two more forms: Sun et al.'s without harmonics (sun_reflection.h), and light shadowed by surfaces, the triple product
+// with a visibility (radiance_transfer.h).
 #pragma once
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "methods/fogshop/radiance_transfer.h"
+#include "methods/fogshop/sun_reflection.h"
 #include "methods/fogshop/surface_pass.h"
 
 namespace airlight::fogshop {
@@ -18,6 +26,12 @@ class ScatteredReflection {
   // `follows_depth`: g_l of the depth at hand, from a table (improved); else those of T = 1 for every depth, as
   // printed. `order` bands, 1 to 12; the paper uses 4 to 6.
   ScatteredReflection(int order, bool follows_depth);
+
+  // Without harmonics instead: by these tables. The bands are then unused.
+  void use(SunReflection sun) { sun_ = std::move(sun); }
+  // Scattered light is shadowed by surfaces from now on. Not together with SunReflection, which has no harmonics.
+  void shadow(RadianceTransfer transfer) { transfer_ = std::move(transfer); }
+  const std::optional<RadianceTransfer>& transfer() const { return transfer_; }
 
   // L_p of the scattered light alone [W/m^2/sr] towards `to_view`, the medium's albedo included.
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
@@ -31,9 +45,20 @@ class ScatteredReflection {
                      const std::vector<double>& bands);
 
  private:
+  Rgb reflect_one(const scene::Material&, const SurfacePoint&, const Vec3& to_view, const Vec3& to_light,
+                  double T) const;
+
   int order_;
   bool follows_depth_;
   std::vector<std::vector<double>> table_;  // by log T
+  std::optional<SunReflection> sun_;
+  std::optional<RadianceTransfer> transfer_;
 };
+
+// What the settings ask for, without the transfer.
+std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene&, const Options&);
+
+// Why these surfaces cannot be lit so; empty if they can.
+std::vector<std::string> objections_to_surfaces(const scene::Scene&, const Options&);
 
 }  // namespace airlight::fogshop

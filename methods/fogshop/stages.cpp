@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "methods/fogshop/radiance_transfer.h"
+
 namespace airlight::fogshop {
 namespace {
 
@@ -26,6 +28,7 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.airlight = gaussians || constant;
   needs.surfaces = !scene.surfaces.empty() && lit;
   needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
+  needs.transfer = needs.scattered && model.options.prt && mesh_vertices(scene) > 0;
   return needs;
 }
 
@@ -83,9 +86,16 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
         : !lit                                          ? no_lights
         : !needs.airlight                               ? "there is no medium"
         : o.reflectance == Options::Reflectance::direct ? "reflectance = direct"
-        : o.reflectance == Options::Reflectance::npsf
-            ? fmt::format("Eq. 25, {} bands of the printed NPSF; occluders do not shadow it", o.sh_order)
-            : fmt::format("Eq. 25, {} bands of the NPSF of each depth; occluders do not shadow it", o.sh_order));
+        : o.reflectance == Options::Reflectance::npsf ? fmt::format("Eq. 25, {} bands of the printed NPSF", o.sh_order)
+        : o.reflectance == Options::Reflectance::sun
+            ? "Sun et al.'s integrals for Lambert and Phong, with the depth along the path"
+            : fmt::format("Eq. 25, {} bands of the NPSF of each depth", o.sh_order));
+  stage("radiance transfer", needs.transfer,
+        !needs.scattered  ? "no scattered light to shadow"
+        : !o.prt          ? "prt = false: occluders do not shadow scattered light"
+        : !needs.transfer ? "there are no meshes, and other shapes have no vertices"
+                          : fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays,
+                                        mesh_vertices(scene), o.sh_order));
   return stages;
 }
 

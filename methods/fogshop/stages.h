@@ -12,6 +12,7 @@ struct Needs {
   bool airlight;       // there is a medium
   bool surfaces;       // something to light
   bool scattered;      // light that the medium scatters onto surfaces
+  bool transfer;       // surfaces that shadow it
 };
 Needs needs_of(const scene::Scene&, const Model&);
 

@@ -36,7 +36,7 @@ FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const s
       const scene::RayEnd end =
           scene::ray_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       hits.distance[i] = end.t;
-      if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
+      if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface, end.hit->triangle};
     }
   });
   return hits;

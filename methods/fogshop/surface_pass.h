@@ -13,6 +13,7 @@ struct SurfacePoint {
   Point3 position;
   Vec3 normal;
   int surface;
+  int triangle = -1;  // of the surface's mesh, if it is one
 };
 
 // Section 5.4, step 1: what ends the camera rays.
