@@ -38,8 +38,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       timer.stage("depths to centres");
     }
     if (needs_.scattered) {
-      reflection_ = std::make_unique<fogshop::ScatteredReflection>(
-          options.sh_order, options.reflectance == fogshop::Options::Reflectance::npsf_by_depth);
+      reflection_ = fogshop::make_reflection(*scene_, options);
       timer.stage("harmonics of the NPSF");
     }
     times_ = timer.times();

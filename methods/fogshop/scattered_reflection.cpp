@@ -83,6 +83,8 @@ Rgb ScatteredReflection::reflect(const scene::Material& material, const Vec3& no
 Rgb ScatteredReflection::reflect_one(const scene::Material& material, const SurfacePoint& point, const Vec3& to_view,
                                      const Vec3& to_light, double T) const {
   if (sun_) return sun_->reflect(material, point.normal, to_view, to_light, T);
+  if (!reflectances_.empty() && reflectances_[point.surface])
+    return reflectances_[point.surface]->reflect(point.normal, to_view, to_light, bands(T));
   return reflect(material, point.normal, to_view, to_light, bands(T));
 }
 
@@ -130,7 +132,15 @@ std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene& scene, 
   const bool sun = options.reflectance == Reflectance::sun;
   auto reflection = std::make_unique<ScatteredReflection>(sun ? 1 : options.sh_order,
                                                           options.reflectance == Reflectance::npsf_by_depth);
-  if (sun) reflection->use(SunReflection(scene.surfaces));
+  if (sun) {
+    reflection->use(SunReflection(scene.surfaces));
+  } else {
+    std::vector<std::optional<ReflectanceTable>> tables(scene.surfaces.size());
+    for (std::size_t i = 0; i < tables.size(); ++i)
+      if (!std::holds_alternative<scene::Lambert>(scene.surfaces[i].material))
+        tables[i].emplace(scene.surfaces[i].material, options.sh_order);
+    reflection->use(std::move(tables));
+  }
   return reflection;
 }
 

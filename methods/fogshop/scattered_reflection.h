@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "methods/fogshop/radiance_transfer.h"
+#include "methods/fogshop/reflectance_table.h"
 #include "methods/fogshop/sun_reflection.h"
 #include "methods/fogshop/surface_pass.h"
 
@@ -29,6 +30,8 @@ class ScatteredReflection {
 
   // Without harmonics instead: by these tables. The bands are then unused.
   void use(SunReflection sun) { sun_ = std::move(sun); }
+  // Materials in harmonics by surface: for those that are not Lambert, in place of a quadrature for every light.
+  void use(std::vector<std::optional<ReflectanceTable>> tables) { reflectances_ = std::move(tables); }
   // Scattered light is shadowed by surfaces from now on. Not together with SunReflection, which has no harmonics.
   void shadow(RadianceTransfer transfer) { transfer_ = std::move(transfer); }
   const std::optional<RadianceTransfer>& transfer() const { return transfer_; }
@@ -52,6 +55,7 @@ class ScatteredReflection {
   bool follows_depth_;
   std::vector<std::vector<double>> table_;  // by log T
   std::optional<SunReflection> sun_;
+  std::vector<std::optional<ReflectanceTable>> reflectances_;  // by surface; none: quadrature
   std::optional<RadianceTransfer> transfer_;
 };
 
