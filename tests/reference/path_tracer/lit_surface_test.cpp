@@ -96,3 +96,40 @@ TEST_CASE("an environment scattered once on its way to a floor", "[path_tracer]"
   CHECK(std::abs(got.orders[0].mean[0] - unscattered.mean[0]) <
         z * std::hypot(unscattered.error[0], got.orders[0].error[0]));
 }
+
+// A Gaussian of fog above a floor, the light outside of it: the volume integral of density / (4 pi) * I / |x - light|^2
+// * albedo / pi * cosine / |x - p|^2 and the transmittances of both ways, in spherical coordinates about the floor's
+// point, which take the last square away.
+TEST_CASE("a Gaussian scatters light onto a floor", "[path_tracer]") {
+  const Point3 light(2.5, 2.5, 0.4), center(0.5, 1, 0);
+  const double width = 0.4, amplitude = 1.5;
+  scene::Medium fog = medium(scene::Unbounded{}, 1, 1);
+  scene::GaussianSum sum;
+  sum.gaussians = {{center, width, amplitude}};
+  fog.field = sum;
+  const auto world = scene_of({fog}, {scene::PointLight{light, Rgb::Constant(3), 0}},
+                              {{"floor", scene::Plane{Point3::Zero(), up}, scene::Lambert{Rgb::Constant(0.8)}}});
+  const auto depth = [&](const Point3& a, const Point3& b) {
+    const double length = (b - a).norm();
+    return scene::density_integral(fog, {a, (b - a) / length}, {0, length});
+  };
+  const int n = 48;
+  const scene::GaussLegendre rule = scene::gauss_legendre(n);
+  double expected = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < 2 * n; ++k) {
+        const double r = 1.5 * (1 + rule.node[i]), c = 0.5 * (1 + rule.node[j]), s = std::sqrt((1 - c) * (1 + c));
+        const double phi = pi * k / n;
+        const Point3 x = r * Vec3(s * std::cos(phi), c, s * std::sin(phi));
+        const double density = amplitude * std::exp(-(x - center).squaredNorm() / (width * width));
+        expected += 1.5 * rule.weight[i] * 0.5 * rule.weight[j] * pi / n * density / (4 * pi) * 3 /
+                    (x - light).squaredNorm() * 0.8 / pi * c * std::exp(-depth(x, light) - depth(x, Point3::Zero()));
+      }
+  const Point3 eye(-2, 1, 2);
+  expected *= std::exp(-depth(eye, Point3::Zero()));
+  const Estimate got = estimate(world, ray_of(eye, -eye), Options::Paths::scattered_to_surface, 1 << 18).total;
+  CAPTURE(expected, got.mean[0], got.error[0]);
+  CHECK(got.error[0] < 0.01 * expected);
+  CHECK(std::abs(got.mean[0] - expected) < threshold(1e-6, 1) * got.error[0]);
+}
