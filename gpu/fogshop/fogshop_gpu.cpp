@@ -43,8 +43,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       timer.stage("depths to centres");
     }
     if (needs_.point_harmonics) {
-      reflection_ = std::make_unique<fogshop::ScatteredReflection>(
-          options.sh_order, options.reflectance == fogshop::Options::Reflectance::npsf_by_depth);
+      reflection_ = fogshop::make_reflection(*scene_, options);
       timer.stage("harmonics of the NPSF");
     }
     if (needs_.environment_harmonics) {
@@ -124,7 +123,7 @@ void PreparedFogshopGpu::add_environment(const View& view, const Buffer* image, 
   fogshop::FirstHits hits{std::vector<double>(film.pixels(), infinity), {}};
   if (needs_.distances) hits = fogshop::first_hits(*scene_, view, execution);
   if (needs_.surfaces) {
-    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points,
+    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), nullptr, view, hits.points,
                  film.layers["transmittance"], execution, surface,
                  needs_.scattered ? &film.add("reflected_airlight") : nullptr);
     timer.stage("surfaces");
@@ -230,6 +229,12 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   const fogshop::Options options = fogshop::read_options(settings);
   if (options.variant == fogshop::Options::Variant::voigt)
     reasons.push_back("variant = VS2 is for the CPU: shaders have no Faddeeva function");
+  if (options.reflectance == fogshop::Options::Reflectance::sun)
+    reasons.push_back("reflectance = sun is for the CPU: expected direct, npsf or npsfT");
+  for (const scene::Surface& surface : scene.surfaces)
+    if (std::holds_alternative<scene::Tabulated>(surface.material))
+      reasons.push_back("surface " + surface.name + " has a tabulated reflectance, which is for the CPU");
+  if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");
   if (options.slices > most_slices)

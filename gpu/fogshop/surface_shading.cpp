@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "gpu/raster/view_uniforms.h"
+#include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::gpu {
@@ -22,6 +23,8 @@ std::array<float, 4> float4(const Rgb& color, double w) {
 }
 MaterialData data_of(const scene::Lambert& m) { return {float4(m.albedo, 0), float4(Rgb::Zero(), 0)}; }
 MaterialData data_of(const scene::Phong& m) { return {float4(m.diffuse, 1), float4(m.specular, m.exponent)}; }
+// FogshopGpu::supports refuses it.
+MaterialData data_of(const scene::Tabulated&) { throw Error("a tabulated reflectance is for the CPU"); }
 
 std::vector<MaterialData> material_data(const scene::Scene& scene) {
   std::vector<MaterialData> data;

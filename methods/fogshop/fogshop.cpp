@@ -45,6 +45,7 @@ class PreparedFogshop final : public scene::Prepared {
  private:
   std::shared_ptr<const Scene> scene_;
   Model model_;
+  std::shared_ptr<RadianceTransfer> transfer_;        // null: left out
   std::unique_ptr<ScatteredReflection> reflection_;   // null: left out
   std::unique_ptr<EnvironmentLighting> environment_;  // the same
   std::vector<scene::StageTime> times_;
@@ -74,9 +75,16 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     times_.push_back({"table of F", watch.lap()});
   }
   if (needs.point_harmonics) {
-    reflection_ = std::make_unique<ScatteredReflection>(options.sh_order,
-                                                        options.reflectance == Options::Reflectance::npsf_by_depth);
-    times_.push_back({"harmonics of the NPSF", watch.lap()});
+    reflection_ = make_reflection(*scene_, options);
+    times_.push_back(
+        {options.reflectance == Options::Reflectance::sun ? "tables of Sun et al." : "harmonics of the NPSF",
+         watch.lap()});
+  }
+  if (needs.transfer) {
+    transfer_ =
+        std::make_shared<RadianceTransfer>(*scene_, options.sh_order, options.prt_rays, options.prt_reach, execution);
+    if (reflection_) reflection_->shadow(transfer_);
+    times_.push_back({"radiance transfer", watch.lap()});
   }
   if (needs.environment_harmonics) {
     environment_ = std::make_unique<EnvironmentLighting>(*scene_, options, needs.environment_psf);
@@ -142,8 +150,8 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs.surfaces) {
     evaluations +=
-        surface_pass(*scene_, model_, reflection_.get(), environment_.get(), view, hits.points, transmittance,
-                     execution, surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
+        surface_pass(*scene_, model_, reflection_.get(), environment_.get(), transfer_.get(), view, hits.points,
+                     transmittance, execution, surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
     result.times.push_back({"surfaces", watch.lap()});
   }
   if (needs.environment) {
@@ -187,6 +195,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   if (options.variant != Options::Variant::paper && options.map && entries > 1 << 28)
     reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
                                   options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
+  for (const std::string& reason : objections_to_surfaces(scene, options)) reasons.push_back(reason);
   if (reasons.empty()) {
     const Fog fog = make_fog(scene.media);
     if (!fog.one_albedo() && options.reflectance != Options::Reflectance::direct)

@@ -1,80 +1,105 @@
 #include "methods/fogshop/harmonic_reflection.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "methods/fogshop/triple_product.h"
+#include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::fogshop {
 namespace {
 
-constexpr int most_bands = 12;
+constexpr int greatest_order = 12;
 
-// What each band of the radiance gives to the irradiance: 2 pi integral of x P_l(x) over [0, 1]. Odd bands but the
-// first give nothing.
-std::array<double, most_bands> cosine_bands() {
-  std::array<double, most_bands> bands{};
-  bands[0] = pi;
-  bands[1] = 2 * pi / 3;
-  double term = -1;  // (-1)^(l/2 - 1) l! / (2^l (l/2)!^2), for l = 0
-  for (int l = 2; l < most_bands; l += 2) {
-    term *= -double(l - 1) / l;
-    bands[l] = 2 * pi * term / ((l + 2.0) * (l - 1.0));
-  }
-  return bands;
+int order_of(std::size_t coefficients) {
+  for (int order = 1; order <= greatest_order; ++order)
+    if (coefficients == std::size_t(order) * order) return order;
+  throw Error(fmt::format("{} coefficients of harmonics, expected a square number from 1 to {}", coefficients,
+                          greatest_order * greatest_order));
 }
 
-// Irradiance [W/m^2].
-Rgb irradiance(const Vec3& normal, const std::vector<Rgb>& incident, int order) {
-  static const std::array<double, most_bands> bands = cosine_bands();
-  double y[most_bands * most_bands];
-  scene::evaluate_sh(order, normal, y);
-  Rgb sum = Rgb::Zero();
-  for (int l = 0; l < order; ++l)
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) sum += incident[i] * (bands[l] * y[i]);
-  return sum;
+std::vector<Rgb> lambert_harmonics(const Rgb& albedo, const Vec3& normal, int order) {
+  static const std::vector<double> cosine = clamped_cosine(greatest_order);
+  std::vector<Rgb> result;
+  for (const double b : turned_zonal({cosine.begin(), cosine.begin() + order}, normal))
+    result.push_back(albedo / pi * b);
+  return result;
 }
 
-// Integral of (n+2)/(2 pi) x^n * cosine * radiance around the mirrored view, x the cosine from there.
-Rgb lobe(double exponent, const Vec3& normal, const Vec3& to_view, const std::vector<Rgb>& incident, int order) {
-  const Vec3 axis = 2 * normal.dot(to_view) * normal - to_view;
-  const Vec3 a = axis.unitOrthogonal(), b = axis.cross(a);
-  static const scene::GaussLegendre rule = scene::gauss_legendre(12);
-  constexpr int around = 32;
-  double y[most_bands * most_bands];
-  Rgb sum = Rgb::Zero();
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    // u = x^(n+1) makes the lobe's weight constant.
-    const double u = 0.5 * (1 + rule.node[i]), x = std::pow(u, 1 / (exponent + 1)), s = std::sqrt((1 - x) * (1 + x));
-    const double weight = (exponent + 2) / (2 * pi) * 0.5 * rule.weight[i] / (exponent + 1) * 2 * pi / around;
-    for (int k = 0; k < around; ++k) {
-      const double phi = 2 * pi * (k + 0.5) / around;
-      const Vec3 in = x * axis + s * (std::cos(phi) * a + std::sin(phi) * b);
-      const double cosine = normal.dot(in);
-      if (!(cosine > 0)) continue;
-      scene::evaluate_sh(order, in, y);
-      Rgb radiance = Rgb::Zero();
-      for (int j = 0; j < order * order; ++j) radiance += incident[j] * y[j];
-      sum += weight * cosine * radiance;
-    }
-  }
-  return sum;
+// Rings of the rule over the hemisphere: a lobe cos^n is 1/sqrt(n) wide.
+int rings(const scene::Material& material) {
+  const auto* phong = std::get_if<scene::Phong>(&material);
+  return phong ? std::clamp(int(std::ceil(16 * std::sqrt(phong->exponent / 50))), 16, 256) : 16;
 }
 
 }  // namespace
 
+std::vector<double> clamped_cosine(int order) {
+  static const scene::GaussLegendre rule = scene::gauss_legendre(16);
+  std::vector<double> result(order, 0.0);
+  for (int i = 0; i < 16; ++i) {
+    const double x = 0.5 * (1 + rule.node[i]);
+    const std::vector<double> y = scene::evaluate_sh(order, Vec3(std::sqrt((1 - x) * (1 + x)), 0, x));
+    for (int l = 0; l < order; ++l) result[l] += 2 * pi * 0.5 * rule.weight[i] * x * y[scene::sh_index(l, 0)];
+  }
+  return result;
+}
+
+std::vector<double> turned_zonal(const std::vector<double>& bands, const Vec3& axis) {
+  const int order = int(bands.size());
+  std::vector<double> result = scene::evaluate_sh(order, axis);
+  for (int l = 0; l < order; ++l) {
+    const double factor = std::sqrt(4 * pi / (2 * l + 1)) * bands[l];
+    for (int m = -l; m <= l; ++m) result[scene::sh_index(l, m)] *= factor;
+  }
+  return result;
+}
+
+std::vector<Rgb> reflectance_harmonics(const scene::Material& material, const Vec3& normal, const Vec3& to_view,
+                                       int order) {
+  if (order < 1 || order > greatest_order)
+    throw Error(fmt::format("harmonics of order {}, expected 1 to {}", order, greatest_order));
+  std::vector<Rgb> result(order * order, Rgb::Zero());
+  if (!(normal.dot(to_view) > 0)) return result;
+  if (const auto* lambert = std::get_if<scene::Lambert>(&material))
+    return lambert_harmonics(lambert->albedo, normal, order);
+  const int count = rings(material), around = 2 * count;
+  static const scene::GaussLegendre usual = scene::gauss_legendre(16);
+  const scene::GaussLegendre own = count == 16 ? scene::GaussLegendre{} : scene::gauss_legendre(count);
+  const scene::GaussLegendre& rule = count == 16 ? usual : own;
+  const Vec3 a = normal.unitOrthogonal(), b = normal.cross(a);
+  std::vector<double> basis(order * order);
+  for (int i = 0; i < count; ++i) {
+    const double c = 0.5 * (1 + rule.node[i]), s = std::sqrt((1 - c) * (1 + c));
+    for (int k = 0; k < around; ++k) {
+      const double phi = 2 * pi * (k + 0.5) / around;
+      const Vec3 in = c * normal + s * (std::cos(phi) * a + std::sin(phi) * b);
+      const Rgb value = scene::brdf(material, normal, in, to_view) * (c * 0.5 * rule.weight[i] * (2 * pi / around));
+      if ((value == 0).all()) continue;
+      scene::evaluate_sh(order, in, basis.data());
+      for (std::size_t n = 0; n < basis.size(); ++n) result[n] += value * basis[n];
+    }
+  }
+  return result;
+}
+
 Rgb reflect_harmonics(const scene::Material& material, const Vec3& normal, const Vec3& to_view,
-                      const std::vector<Rgb>& incident) {
+                      const std::vector<Rgb>& incident, const std::vector<double>* visibility) {
+  const int order = order_of(incident.size());
+  if (visibility && visibility->size() != incident.size())
+    throw Error(fmt::format("a visibility of {} coefficients for light of {}, expected as many", visibility->size(),
+                            incident.size()));
   if (!(normal.dot(to_view) > 0)) return Rgb::Zero();
-  const int order = int(std::lround(std::sqrt(double(incident.size()))));
-  const Rgb diffuse = irradiance(normal, incident, order) / pi;
-  if (const auto* lambert = std::get_if<scene::Lambert>(&material)) return lambert->albedo * diffuse;
-  const auto& phong = std::get<scene::Phong>(material);
-  if (phong.exponent == 0) return (phong.diffuse + phong.specular) * diffuse;  // the whole hemisphere alike
-  return phong.diffuse * diffuse + phong.specular * lobe(phong.exponent, normal, to_view, incident, order);
+  const std::vector<Rgb> reflectance = reflectance_harmonics(material, normal, to_view, order);
+  if (visibility) return triple_product(order)(incident, reflectance, *visibility);
+  Rgb sum = Rgb::Zero();
+  for (std::size_t i = 0; i < incident.size(); ++i) sum += incident[i] * reflectance[i];
+  return sum;
 }
 
 }  // namespace airlight::fogshop

@@ -1,17 +1,29 @@
-// Incident radiance in spherical harmonics, reflected by a surface: Zhou et al. 2007, section 4.3, Eq. 20 without
-// visibility.
+// Reflection of light that is known by its spherical harmonics: Zhou et al. 2007, Eq. 20 and section 4.3.
+//
+// Real harmonics in world axes as in scene/math/spherical_harmonics.h, order^2 coefficients, order 1 to 12 (the paper
+// uses 4 to 6). Throws Error for a number of coefficients that is none of these.
 #pragma once
 #include <vector>
 
 #include "scene/geometry/surface.h"
+#include "scene/math/types.h"
 
 namespace airlight::fogshop {
 
-// Integral over the hemisphere of brdf * cosine * incident radiance [W/m^2/sr], per channel. `incident` holds order^2
-// coefficients [W/m^2/sr] of directions towards the light (scene/math/spherical_harmonics.h), order at most 12; the
-// result is linear in them. Vectors are unit; 0 if the view is below the surface. Lambert in closed form; the lobe of
-// Phong by 384 directions around its axis, which are as many for every exponent.
-Rgb reflect_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view,
-                      const std::vector<Rgb>& incident);
+// Radiance towards the viewer [W/m^2/sr] from `incident` radiance: the inner product with the reflectance times cosine
+// (B_pv), or with a `visibility` of as many coefficients the triple product <incident | visibility | B_pv>. `normal` is
+// on the viewer's side; zero if to_view is below the horizon. Not clamped: cut-off harmonics may swing below 0.
+Rgb reflect_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view, const std::vector<Rgb>& incident,
+                      const std::vector<double>* visibility);
+
+// B_pv: coefficients of brdf(in, to_view) max(0, normal . in) as a function of `in`. Lambert in closed form; others by
+// quadrature over the hemisphere, 512 directions and for Phong exponents above 50 in proportion to the exponent.
+std::vector<Rgb> reflectance_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view, int order);
+
+// A function that is circularly symmetric about z, given by its coefficients of m = 0, turned to another axis: Eq. 23.
+std::vector<double> turned_zonal(const std::vector<double>& bands, const Vec3& axis);
+
+// Coefficients of max(0, cos theta) about z, by band: 2 pi integral over x in [0, 1] of x Y_l0(x).
+std::vector<double> clamped_cosine(int order);
 
 }  // namespace airlight::fogshop

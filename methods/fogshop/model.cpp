@@ -36,8 +36,12 @@ std::vector<scene::SettingSpec> setting_specs() {
       choice("erf", "precise", {"precise", "erf10", "paper"}, "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
       choice("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
       real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
-      choice("reflectance", "direct", {"direct", "npsf", "npsfT"},
-             "of surfaces: unscattered light alone; scattered too, by the printed NPSF or by that of the depth"),
+      choice("reflectance", "direct", {"direct", "npsf", "npsfT", "sun"},
+             "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
+             "Sun et al.'s integrals"),
+      {"prt", Type::flag, "false", "surfaces shadow the light scattered onto meshes: precomputed transfer", 0, 0, {}},
+      integer("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
+      real("prt_reach", "1e300", 0, 1e300, "distance [m] up to which surfaces shadow in the precomputed transfer"),
       integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
       choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
              "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
@@ -79,6 +83,7 @@ Options read_options(const scene::Settings& settings) {
   using Reflectance = Options::Reflectance;
   o.reflectance = reflectance == "direct" ? Reflectance::direct
                   : reflectance == "npsf" ? Reflectance::npsf
+                  : reflectance == "sun"  ? Reflectance::sun
                                           : Reflectance::npsf_by_depth;
   o.sh_order = int(settings.integer("sh_order"));
   const std::string& psf = settings.text("environment_psf");
@@ -97,6 +102,9 @@ Options read_options(const scene::Settings& settings) {
   o.upsample = upsample == "bilinear" ? Upsample::bilinear
                : upsample == "paper"  ? Upsample::paper
                                       : Upsample::recompute;
+  o.prt = settings.flag("prt");
+  o.prt_rays = int(settings.integer("prt_rays"));
+  o.prt_reach = settings.real("prt_reach");
   return o;
 }
 

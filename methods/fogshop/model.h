@@ -28,8 +28,9 @@ struct Options {
   Cull cull = Cull::depth;
   double depth_threshold = 1e-4;  // eps_T
   double source_radius = 0;       // [m]
-  // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, or by that of the depth at hand.
-  enum class Reflectance { direct, npsf, npsf_by_depth };
+  // Light that the medium scatters onto surfaces: not at all, by the printed NPSF, by that of the depth at hand, or
+  // without harmonics.
+  enum class Reflectance { direct, npsf, npsf_by_depth, sun };
   Reflectance reflectance = Reflectance::direct;
   int sh_order = 6;                 // bands of the NPSF and of the environment
   Psf environment_psf = Psf::ball;  // what spreads light of an environment
@@ -44,6 +45,9 @@ struct Options {
   // Rays bent by noise, section 5.5; 0: none.
   double noise_scale = 0, noise_frequency = 1, noise_phase = 0;
   std::uint32_t noise_seed = 0;
+  bool prt = false;          // meshes: surfaces shadow the scattered light
+  int prt_rays = 256;        // per vertex
+  double prt_reach = 1e300;  // [m] of occluders
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

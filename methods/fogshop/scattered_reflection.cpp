@@ -1,8 +1,11 @@
 #include "methods/fogshop/scattered_reflection.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "methods/fogshop/harmonic_reflection.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::fogshop {
@@ -18,23 +21,6 @@ double legendre_sum(const std::vector<double>& weights, double x) {
     value = next;
   }
   return sum;
-}
-
-// Coefficients of the zonal harmonics of the clamped cosine, 2 pi integral over x in [0, 1] of x Y_l0(x).
-std::vector<double> clamped_cosine(int order) {
-  static const scene::GaussLegendre rule = scene::gauss_legendre(16);
-  std::vector<double> result;
-  for (int l = 0; l < order; ++l) {
-    std::vector<double> one(l + 1, 0.0);
-    one[l] = std::sqrt((2 * l + 1) / (4 * pi));
-    double sum = 0;
-    for (int i = 0; i < 16; ++i) {
-      const double x = 0.5 * (1 + rule.node[i]);
-      sum += 0.5 * rule.weight[i] * x * legendre_sum(one, x);
-    }
-    result.push_back(2 * pi * sum);
-  }
-  return result;
 }
 
 }  // namespace
@@ -80,31 +66,84 @@ Rgb ScatteredReflection::reflect(const scene::Material& material, const Vec3& no
   return sum;
 }
 
+Rgb ScatteredReflection::reflect_one(const scene::Material& material, const SurfacePoint& point, const Vec3& to_view,
+                                     const Vec3& to_light, double T) const {
+  if (sun_) return sun_->reflect(material, point.normal, to_view, to_light, T);
+  if (!reflectances_.empty() && reflectances_[point.surface])
+    return reflectances_[point.surface]->reflect(point.normal, to_view, to_light, bands(T));
+  return reflect(material, point.normal, to_view, to_light, bands(T));
+}
+
 Rgb ScatteredReflection::operator()(const scene::Scene& scene, const Model& model, const SurfacePoint& point,
                                     const Vec3& to_view, Crossings& crossings, double& evaluations) const {
   const scene::Material& material = scene.surfaces[point.surface].material;
+  const std::vector<double> visibility = transfer_ ? transfer_->visibility(scene, point) : std::vector<double>{};
+  std::vector<Rgb> incident(visibility.size(), Rgb::Zero());  // of all lights, where it is to be shadowed
   Rgb radiance = Rgb::Zero();
   for (const LightModel& light : model.lights) {
     const Vec3 offset = light.position - point.position;
     const double distance = offset.norm();
     if (!(distance > 0)) continue;
+    const Vec3 to_light = offset / distance;
+    const Rgb irradiance = light.intensity / (distance * distance);
     const double depth = gaussian_depth(model, light.position, point.position, crossings, evaluations) +
                          model.fog.sum.constant * distance;
     Rgb reflected = Rgb::Zero();
     for (int c = 0; c < 3; ++c) {
-      const double T = depth * model.fog.hue[c];
+      const double T = depth * model.fog.hue[c], share = T * std::exp(-T);
       if (!(T > 0)) continue;
-      const Rgb all = reflect(material, point.normal, to_view, offset / distance, bands(T)) * (T * std::exp(-T));
-      if (model.fog.grey()) {  // one depth for all
-        reflected = all;
-        break;
+      const bool grey = model.fog.grey();  // one depth for all
+      if (!visibility.empty()) {
+        const std::vector<double> spread = turned_zonal(bands(T), to_light);
+        for (std::size_t i = 0; i < spread.size(); ++i)
+          for (int to = c; to <= (grey ? 2 : c); ++to) incident[i][to] += irradiance[to] * share * spread[i];
+      } else {
+        const Rgb all = reflect_one(material, point, to_view, to_light, T) * share;
+        if (grey)
+          reflected = all;
+        else
+          reflected[c] = all[c];
       }
-      reflected[c] = all[c];
+      if (grey) break;
     }
-    radiance += light.intensity / (distance * distance) * reflected;
+    radiance += irradiance * reflected;
   }
+  if (!visibility.empty()) radiance = reflect_harmonics(material, point.normal, to_view, incident, &visibility);
   // Harmonics cut off at a band may swing below 0.
   return (radiance * model.fog.albedo).max(0.0);
+}
+
+std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene& scene, const Options& options) {
+  using Reflectance = Options::Reflectance;
+  const bool sun = options.reflectance == Reflectance::sun;
+  auto reflection = std::make_unique<ScatteredReflection>(sun ? 1 : options.sh_order,
+                                                          options.reflectance == Reflectance::npsf_by_depth);
+  if (sun) {
+    reflection->use(SunReflection(scene.surfaces));
+  } else {
+    std::vector<std::optional<ReflectanceTable>> tables(scene.surfaces.size());
+    for (std::size_t i = 0; i < tables.size(); ++i)
+      if (!std::holds_alternative<scene::Lambert>(scene.surfaces[i].material))
+        tables[i].emplace(scene.surfaces[i].material, options.sh_order);
+    reflection->use(std::move(tables));
+  }
+  return reflection;
+}
+
+std::vector<std::string> objections_to_surfaces(const scene::Scene& scene, const Options& options) {
+  std::vector<std::string> reasons;
+  const bool sun = options.reflectance == Options::Reflectance::sun;
+  if (sun && options.prt)
+    reasons.push_back(
+        "reflectance = sun has no harmonics that a shadow could multiply: prt = true needs npsf or npsfT");
+  for (std::size_t i = 0; sun && i < scene.surfaces.size(); ++i)
+    if (std::holds_alternative<scene::Tabulated>(scene.surfaces[i].material))
+      reasons.push_back(fmt::format("surface {} is tabulated: reflectance = sun knows lambert and phong alone", i));
+  if (options.prt && options.reflectance != Options::Reflectance::direct &&
+      mesh_vertices(scene) > most_transfer_vertices)
+    reasons.push_back(fmt::format("prt = true for meshes of {:.0f} vertices, expected {:.0f} at most",
+                                  mesh_vertices(scene), most_transfer_vertices));
+  return reasons;
 }
 
 }  // namespace airlight::fogshop

@@ -6,10 +6,19 @@
 // the reflectance is the integral of the reflectance times a polynomial (Eq. 20 without the visibility of occluders).
 // Taking the medium between light and surface as homogeneous is the paper's approximation; it is exact where it is so
 // everywhere.
+//
+// Two more forms: Sun et al.'s without harmonics (sun_reflection.h), and light shadowed by surfaces, the triple product
+// with a visibility (radiance_transfer.h).
 #pragma once
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "methods/fogshop/environment_psf.h"
+#include "methods/fogshop/radiance_transfer.h"
+#include "methods/fogshop/reflectance_table.h"
+#include "methods/fogshop/sun_reflection.h"
 #include "methods/fogshop/surface_pass.h"
 
 namespace airlight::fogshop {
@@ -19,6 +28,14 @@ class ScatteredReflection {
   // `follows_depth`: g_l of the depth at hand, from a table (improved); else those of T = 1 for every depth, as
   // printed. `order` bands, 1 to 12; the paper uses 4 to 6.
   ScatteredReflection(int order, bool follows_depth);
+
+  // Without harmonics instead: by these tables. The bands are then unused.
+  void use(SunReflection sun) { sun_ = std::move(sun); }
+  // Materials in harmonics by surface: for those that are not Lambert, in place of a quadrature for every light.
+  void use(std::vector<std::optional<ReflectanceTable>> tables) { reflectances_ = std::move(tables); }
+  // Scattered light is shadowed by surfaces from now on. Not together with SunReflection, which has no harmonics.
+  void shadow(std::shared_ptr<const RadianceTransfer> transfer) { transfer_ = std::move(transfer); }
+  const RadianceTransfer* transfer() const { return transfer_.get(); }
 
   // L_p of the scattered light alone [W/m^2/sr] towards `to_view`, the medium's albedo included.
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
@@ -35,6 +52,18 @@ class ScatteredReflection {
 
  private:
   PsfBands bands_;
+  Rgb reflect_one(const scene::Material&, const SurfacePoint&, const Vec3& to_view, const Vec3& to_light,
+                  double T) const;
+
+  std::optional<SunReflection> sun_;
+  std::vector<std::optional<ReflectanceTable>> reflectances_;  // by surface; none: quadrature
+  std::shared_ptr<const RadianceTransfer> transfer_;           // null: none
 };
+
+// What the settings ask for, without the transfer.
+std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene&, const Options&);
+
+// Why these surfaces cannot be lit so; empty if they can.
+std::vector<std::string> objections_to_surfaces(const scene::Scene&, const Options&);
 
 }  // namespace airlight::fogshop

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "methods/fogshop/radiance_transfer.h"
+
 namespace airlight::fogshop {
 namespace {
 
@@ -44,6 +46,8 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.sky_volume = needs.environment_airlight && model.options.sky_volume && gaussians;
   needs.environment_psf = (needs.environment_airlight && !needs.sky_volume) || (needs.environment && needs.scattered);
   needs.environment_harmonics = needs.environment && (needs.environment_psf || needs.surfaces);
+  needs.transfer =
+      model.options.prt && needs.surfaces && (needs.point_harmonics || needs.environment) && mesh_vertices(scene) > 0;
   return needs;
 }
 
@@ -121,9 +125,16 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
         : !lit                                          ? no_lights
         : !needs.airlight                               ? "there is no medium"
         : o.reflectance == Options::Reflectance::direct ? "reflectance = direct"
-        : o.reflectance == Options::Reflectance::npsf
-            ? fmt::format("Eq. 25, {} bands of the printed NPSF; occluders do not shadow it", o.sh_order)
-            : fmt::format("Eq. 25, {} bands of the NPSF of each depth; occluders do not shadow it", o.sh_order));
+        : o.reflectance == Options::Reflectance::npsf ? fmt::format("Eq. 25, {} bands of the printed NPSF", o.sh_order)
+        : o.reflectance == Options::Reflectance::sun
+            ? "Sun et al.'s integrals for Lambert and Phong, with the depth along the path"
+            : fmt::format("Eq. 25, {} bands of the NPSF of each depth", o.sh_order));
+  stage("radiance transfer", needs.transfer,
+        !needs.scattered  ? "no scattered light to shadow"
+        : !o.prt          ? "prt = false: occluders do not shadow scattered light"
+        : !needs.transfer ? "there are no meshes, and other shapes have no vertices"
+                          : fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays,
+                                        mesh_vertices(scene), o.sh_order));
   const std::string no_environment = !model.environment ? "no environment light shines"
                                      : walled_in(model) ? "the constant medium has no end: none of its light arrives"
                                                         : "";
@@ -143,10 +154,9 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
   stage("environment on surfaces", needs.environment && needs.surfaces,
         scene.surfaces.empty()
             ? "there are no surfaces"
-            : unless_dark(!needs.airlight    ? "no medium is in the way; occluders do not shadow it"
+            : unless_dark(!needs.airlight    ? "no medium is in the way"
                           : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
-                                             : fmt::format("Eqs. 26 and 27, {}; occluders do not shadow it",
-                                                           psf_name(o.environment_psf))));
+                                             : fmt::format("Eqs. 26 and 27, {}", psf_name(o.environment_psf))));
   return stages;
 }
 

@@ -5,6 +5,7 @@
 
 #include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/harmonic_reflection.h"
+#include "methods/fogshop/radiance_transfer.h"
 #include "methods/fogshop/scattered_reflection.h"
 
 namespace airlight::fogshop {
@@ -39,23 +40,29 @@ FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const s
       const scene::RayEnd end =
           scene::ray_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       hits.distance[i] = end.t;
-      if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface};
+      if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface, end.hit->triangle};
     }
   });
   return hits;
 }
 
 void reflect_environment(const scene::Scene& scene, const Model& model, const EnvironmentLighting& environment,
-                         const SurfacePoint& point, const Vec3& to_view, Rgb& direct, Rgb* scattered) {
+                         const RadianceTransfer* transfer, const SurfacePoint& point, const Vec3& to_view, Rgb& direct,
+                         Rgb* scattered) {
   const scene::Material& material = scene.surfaces[point.surface].material;
   const IncidentHarmonics in =
       environment.incident(model.fog, average_depth(model, point.position), scattered != nullptr);
-  direct += reflect_harmonics(material, point.normal, to_view, in.attenuated).max(0.0);
-  if (scattered) *scattered += reflect_harmonics(material, point.normal, to_view, in.scattered).max(0.0);
+  const std::vector<double> visibility = transfer ? transfer->visibility(scene, point) : std::vector<double>{};
+  const auto reflected = [&](const std::vector<Rgb>& light) -> Rgb {
+    return reflect_harmonics(material, point.normal, to_view, light, visibility.empty() ? nullptr : &visibility)
+        .max(0.0);
+  };
+  direct += reflected(in.attenuated);
+  if (scattered) *scattered += reflected(in.scattered);
 }
 
 double surface_pass(const scene::Scene& scene, const Model& model, const ScatteredReflection* points,
-                    const EnvironmentLighting* environment, const scene::View& view,
+                    const EnvironmentLighting* environment, const RadianceTransfer* transfer, const scene::View& view,
                     const std::vector<SurfacePoint>& hits, const std::vector<float>& transmittance,
                     const scene::Execution& execution, std::vector<float>& surface, std::vector<float>* scattered) {
   std::vector<double> calls(view.height, 0.0);
@@ -68,7 +75,8 @@ double surface_pass(const scene::Scene& scene, const Model& model, const Scatter
       Rgb radiance = direct_reflection(scene, model, hits[i], to_view, crossings, calls[y]), part = Rgb::Zero();
       if (points) part = (*points)(scene, model, hits[i], to_view, crossings, calls[y]);
       if (environment)
-        reflect_environment(scene, model, *environment, hits[i], to_view, radiance, scattered ? &part : nullptr);
+        reflect_environment(scene, model, *environment, transfer, hits[i], to_view, radiance,
+                            scattered ? &part : nullptr);
       for (int c = 0; scattered && c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
       radiance += part;
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * radiance[c]);

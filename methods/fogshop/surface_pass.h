@@ -13,6 +13,7 @@ struct SurfacePoint {
   Point3 position;
   Vec3 normal;
   int surface;
+  int triangle = -1;  // of the surface's mesh, if it is one
 };
 
 // Section 5.4, step 1: what ends the camera rays.
@@ -29,19 +30,22 @@ Rgb direct_reflection(const scene::Scene&, const Model&, const SurfacePoint&, co
 
 class ScatteredReflection;
 class EnvironmentLighting;
+class RadianceTransfer;
 
 // L_p lit by the environment [W/m^2/sr], Eqs. 26, 27 and 20: what reaches the point unscattered is added to `direct`,
 // what the medium scatters onto it, if asked for, to `scattered`. Harmonics cut off at a band may swing below 0: then a
-// part is 0.
-void reflect_environment(const scene::Scene&, const Model&, const EnvironmentLighting&, const SurfacePoint&,
-                         const Vec3& to_view, Rgb& direct, Rgb* scattered);
+// part is 0. Shadowed by the `transfer`, if there is one.
+void reflect_environment(const scene::Scene&, const Model&, const EnvironmentLighting&,
+                         const RadianceTransfer* transfer, const SurfacePoint&, const Vec3& to_view, Rgb& direct,
+                         Rgb* scattered);
 
 // Steps 4 and 7: L = e^-T L_p of every pixel that a surface ends, into `surface`; the part of it that the medium had
 // scattered into `scattered` too, if it is not null: that of point lights by `points`, that of the environment by
-// `environment`; null: left out. Other pixels are left alone. Returns calls of the error function.
+// `environment`, shadowed by `transfer`; null: left out. Other pixels are left alone. Returns calls of the error
+// function.
 double surface_pass(const scene::Scene&, const Model&, const ScatteredReflection* points,
-                    const EnvironmentLighting* environment, const scene::View&, const std::vector<SurfacePoint>&,
-                    const std::vector<float>& transmittance, const scene::Execution&, std::vector<float>& surface,
-                    std::vector<float>* scattered);
+                    const EnvironmentLighting* environment, const RadianceTransfer* transfer, const scene::View&,
+                    const std::vector<SurfacePoint>&, const std::vector<float>& transmittance, const scene::Execution&,
+                    std::vector<float>& surface, std::vector<float>* scattered);
 
 }  // namespace airlight::fogshop

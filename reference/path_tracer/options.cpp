@@ -56,6 +56,14 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        0,
        {"auto", "always", "never"}},
+      {"paths",
+       Type::choice,
+       "all",
+       "all; lit_surface: a surface's light seen through the medium, which scatters it at most once, on its way to the "
+       "surface; scattered_to_surface: exactly once",
+       0,
+       0,
+       {"all", "lit_surface", "scattered_to_surface"}},
   };
 }
 
@@ -79,6 +87,10 @@ Options parse_options(const scene::Settings& settings) {
   o.connection = connection == "always"  ? Options::Connection::always
                  : connection == "never" ? Options::Connection::never
                                          : Options::Connection::automatic;
+  const std::string& paths = settings.text("paths");
+  o.paths = paths == "lit_surface"            ? Options::Paths::lit_surface
+            : paths == "scattered_to_surface" ? Options::Paths::scattered_to_surface
+                                              : Options::Paths::all;
   return o;
 }
 

@@ -23,6 +23,9 @@ struct Options {
   bool column_transmittance = true;  // noise-free; false: ratio tracking
   bool forced = true;                // first collisions are forced where a camera ray meets no surface
   enum class Connection { automatic, always, never } connection = Connection::automatic;
+  // Which paths count: all; those from the light to a surface to the eye, scattered at most once on the way to the
+  // surface and not behind it; of these the scattered ones alone.
+  enum class Paths { all, lit_surface, scattered_to_surface } paths = Paths::all;
 };
 
 std::vector<scene::SettingSpec> setting_specs();

@@ -35,6 +35,8 @@ class Walk {
         counters_(counters) {}
 
   void run(const CameraRay&);
+  // Paths::lit_surface and scattered_to_surface.
+  void run_to_surface(const CameraRay&);
 
  private:
   // Transmittance of a whole segment, and the one that weights may use (1 where it would be noise).
@@ -59,6 +61,7 @@ class Walk {
                int reflections, double u);
   void connect_from(const Vertex&);
   void escape(const Ray&);
+  void escape_unscattered(const scene::RayEnd&);
   bool survive(double u);
 
   const World& world_;
@@ -149,6 +152,7 @@ void Walk::gather_delta(const Vertex& v, const Pick& pick, const Rgb& analog_pdf
   const Ray shadow{origin(v, in.to_light), in.to_light};
   if (!world_.visible(shadow, in.distance, pick.light)) return;
   const Rgb radiance = throughput_ * value * in.irradiance * transmittance(shadow, in.distance, 0) * weight;
+  if (v.hit && world_.options().paths == Options::Paths::scattered_to_surface) return;
   sample_.add(m_, s_ + (v.hit != nullptr), radiance);
 }
 
@@ -370,12 +374,80 @@ void Walk::run(const CameraRay& camera) {
   }
 }
 
+// Environments along ray_, which ends there, with its exact transmittance.
+void Walk::escape_unscattered(const scene::RayEnd& end) {
+  if (lights_.environments().empty() || end.hit || end.on_ball) return;
+  const Rgb before = throughput_;
+  throughput_ *= media_.transmittance(ray_, end.t, counters_);
+  escape(ray_);
+  throughput_ = before;
+}
+
+// From the eye to a surface without a collision, with the exact transmittance; from there at most one scattering, made
+// by the connection and by the walk's own flight, weighted as everywhere.
+void Walk::run_to_surface(const CameraRay& camera) {
+  const Options& options = world_.options();
+  if (!camera.end.hit) return;
+  if (!media_.grey()) hero_ = std::min(2, int(3 * random_.block(0, Purpose::camera, 1).coarse(0)));
+  ++counters_.rays;
+  if (!camera.hull.empty()) throughput_ *= media_.transmittance(camera.ray, camera.end.t, counters_);
+  vertex_ = 1;
+  Vertex v;
+  v.w = camera.ray.direction;
+  v.x = camera.end.hit->position;
+  v.hit = &*camera.end.hit;
+  if (options.paths == Options::Paths::lit_surface) gather(v, Rgb::Zero());
+  if (lights_.any_connected() && options.max_order != 0) connect_from(v);
+
+  const RandomBlock scatter = random_.block(vertex_, Purpose::scatter);
+  const scene::Material& material = world_.scene().surfaces[v.hit->surface].material;
+  const Vec3 out =
+      sample_reflection(material, v.hit->normal, -v.w, random_.block(vertex_, Purpose::scatter, 1).coarse(0),
+                        scatter.fine(0), scatter.coarse(2));
+  const Rgb value = scatter_value(v, out);
+  direction_pdf_ = scatter_pdf(v, out);
+  if (!(direction_pdf_ > 0) || !(value.maxCoeff() > 0)) return;
+  throughput_ *= value / direction_pdf_;
+  ++s_;
+  ray_ = {origin(v, out), out};
+  const scene::RayEnd end = scene::ray_end(world_.scene(), ray_);
+  hull_ = media_.hull(ray_, end.t);
+  if (options.paths == Options::Paths::lit_surface) escape_unscattered(end);
+  if (hull_.empty() || options.max_order == 0) return;
+  ++counters_.rays;
+  const std::optional<Collision> collision = media_.fly(ray_, end.t, hero_, random_, vertex_, 0, counters_);
+  if (!collision) return;
+  const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
+  const Rgb T = exact() ? media_.transmittance(ray_, collision->t, counters_) : Rgb(Rgb::Ones());
+  const Rgb arriving = T * medium.sigma_t * collision->density;
+  if (!(arriving.mean() > 0)) return;
+  throughput_ *= arriving / arriving.mean() * medium.albedo;
+  ++vertex_;
+  Vertex there;
+  there.w = ray_.direction;
+  there.x = ray_.at(collision->t);
+  there.medium = collision->medium;
+  ++m_;
+  gather(there, direction_pdf_ * arriving);
+  if (lights_.environments().empty()) return;
+  const RandomBlock again = random_.block(vertex_, Purpose::scatter);
+  const double c = scene::sample_phase_cosine(medium.phase, again.fine(0));
+  const Vec3 turned_out = turned(there.w, c, again.coarse(2));
+  direction_pdf_ = scene::phase_value(medium.phase, c);
+  ray_ = {there.x, turned_out};
+  escape_unscattered(scene::ray_end(world_.scene(), ray_));
+}
+
 }  // namespace
 
 void trace(const World& world, const CameraRay& camera, const SampleRandom& random, PathSample& sample,
            Counters& counters) {
   ++counters.paths;
-  Walk(world, random, sample, counters).run(camera);
+  Walk walk(world, random, sample, counters);
+  if (world.options().paths == Options::Paths::all)
+    walk.run(camera);
+  else
+    walk.run_to_surface(camera);
 }
 
 }  // namespace airlight::path_tracer

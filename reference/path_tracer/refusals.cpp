@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/geometry/brdf_table.h"
 #include "scene/math/random.h"
 
 namespace airlight::path_tracer {
@@ -35,6 +36,8 @@ double thinnest_depth(const scene::Medium& medium, int c) {
 
 bool reflects_all(const scene::Material& material, int c) {
   if (const auto* lambert = std::get_if<scene::Lambert>(&material)) return lambert->albedo[c] >= 1;
+  if (const auto* tabulated = std::get_if<scene::Tabulated>(&material))
+    return tabulated->table->greatest_albedo()[c] >= 1;
   const auto& phong = std::get<scene::Phong>(material);
   return phong.diffuse[c] + phong.specular[c] >= 1;
 }
@@ -69,7 +72,8 @@ bool white_room_with_light(const scene::Scene& scene) {
 
 std::vector<std::string> refusals(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
-  if (options.max_order < 0)
+  const bool all_paths = options.paths == Options::Paths::all;  // else they end after one scattering
+  if (options.max_order < 0 && all_paths)
     for (const scene::Medium& medium : scene.media) {
       double depth = 0;
       for (int c = 0; c < 3; ++c)
@@ -88,7 +92,7 @@ std::vector<std::string> refusals(const scene::Scene& scene, const Options& opti
           "the {} light stands on the camera, in a medium: every pixel is infinite; expected a distance or a radius",
           scene::light_name(light)));
   }
-  if (white_room_with_light(scene))
+  if (all_paths && white_room_with_light(scene))
     reasons.push_back(
         "the camera is in a closed room that reflects everything (albedo 1) with a light in it: there is no finite "
         "answer; expected an albedo below 1 or an opening");

@@ -1,4 +1,4 @@
-// Reflection by Lambert and Phong surfaces: a direction drawn by the cosine or the mirror lobe, with its density.
+// Reflection by surfaces: a direction drawn by the cosine or the mirror lobe of Phong, with its density.
 #pragma once
 #include "scene/geometry/surface.h"
 #include "scene/math/types.h"

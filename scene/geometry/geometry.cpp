@@ -140,7 +140,8 @@ std::optional<Hit> Geometry::first_hit(const Ray& ray, double tmax) const {
     return nearest.t * (1 + std::numeric_limits<double>::epsilon());  // ties are still to be seen
   });
   if (surface < 0) return std::nullopt;
-  return Hit{nearest.t, nearest.position, nearest.normal, surface};
+  return Hit{nearest.t, nearest.position, nearest.normal, surface,
+             primitive < 0 ? -1 : impl_->primitives[primitive].triangle};
 }
 
 bool Geometry::occluded(const Ray& ray, double tmax) const {
@@ -159,7 +160,8 @@ std::vector<Hit> Geometry::all_hits(const Ray& ray, double tmax) const {
   };
   std::vector<Found> found;
   impl_->for_each_crossing(ray, tmax, [&](const Crossing& crossing, int s, int p) {
-    found.push_back({{crossing.t, crossing.position, crossing.normal, s}, p});
+    const int triangle = p < 0 ? -1 : impl_->primitives[p].triangle;
+    found.push_back({{crossing.t, crossing.position, crossing.normal, s, triangle}, p});
     return tmax;
   });
   std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {

@@ -20,6 +20,7 @@ struct Hit {
   Point3 position;  // on the surface
   Vec3 normal;      // unit, geometric, on the side of the ray's origin
   int surface;      // index into the surfaces
+  int triangle;     // of the surface's mesh; -1 on other shapes
 };
 
 class Geometry {

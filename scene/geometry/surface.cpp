@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/geometry/brdf_table.h"
+
 namespace airlight::scene {
 namespace {
 
@@ -13,6 +15,10 @@ Rgb value(const Phong& material, const Vec3& normal, const Vec3& in, const Vec3&
   const double cosine = std::max(0.0, mirrored.dot(out));
   const double lobe = (material.exponent + 2) / (2 * pi) * std::pow(cosine, material.exponent);
   return material.diffuse / pi + material.specular * lobe;
+}
+
+Rgb value(const Tabulated& material, const Vec3& normal, const Vec3& in, const Vec3& out) {
+  return (*material.table)(normal, in, out);
 }
 
 }  // namespace

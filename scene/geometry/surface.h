@@ -1,6 +1,7 @@
 // Surfaces and their materials.
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,7 +21,12 @@ struct Phong {
   Rgb specular = Rgb::Constant(0.2);
   double exponent = 20;  // >= 0
 };
-using Material = std::variant<Lambert, Phong>;
+class BrdfTable;
+// Any isotropic reflectance, in a table (brdf_table.h).
+struct Tabulated {
+  std::shared_ptr<const BrdfTable> table;  // never null
+};
+using Material = std::variant<Lambert, Phong, Tabulated>;
 
 // Reflectance f(in, out) [1/sr]; `in` and `out` unit, both away from the surface, `normal` on their side. Zero below
 // the horizon.

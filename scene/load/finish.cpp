@@ -1,6 +1,7 @@
 // finish(): what a scene holds beside its description: the ray queries and the hash of its content.
 #include <string>
 
+#include "scene/geometry/brdf_table.h"
 #include "scene/load/content_hash.h"
 #include "scene/scene.h"
 
@@ -121,6 +122,13 @@ void add(ContentHash& hash, const Phong& material) {
   hash.add(material.diffuse);
   hash.add(material.specular);
   hash.add(material.exponent);
+}
+
+void add(ContentHash& hash, const Tabulated& material) {
+  const BrdfTable& table = *material.table;
+  hash.add(table.thetas());
+  hash.add(table.phis());
+  for (const Rgb& value : table.values()) hash.add(value);
 }
 
 void add(ContentHash& hash, const Surface& surface) {

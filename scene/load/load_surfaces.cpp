@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/geometry/brdf_table.h"
 #include "scene/geometry/mesh_io.h"
 #include "scene/geometry/shapes.h"
 #include "scene/load/assets.h"
@@ -12,8 +13,19 @@
 namespace airlight::scene::load {
 namespace {
 
-Material read_material(TableReader reader) {
-  const std::string type = reader.type({"lambert", "phong"});
+Tabulated read_tabulated(TableReader& reader, const std::string& folder) {
+  reader.allow({"type", "file"});
+  const std::string path = find_asset(reader, "file", folder);
+  try {
+    return {std::make_shared<const BrdfTable>(read_brdf_table(path))};
+  } catch (const Error& e) {
+    reader.fail("file", e.what());
+  }
+}
+
+Material read_material(TableReader reader, const std::string& folder) {
+  const std::string type = reader.type({"lambert", "phong", "tabulated"});
+  if (type == "tabulated") return read_tabulated(reader, folder);
   if (type == "lambert") {
     reader.allow({"type", "albedo"});
     return Lambert{reader.color("albedo", share, Lambert{}.albedo)};
@@ -121,7 +133,7 @@ Surface read_surface(TableReader reader, const std::string& folder) {
   Surface surface;
   surface.shape = read_shape(type, reader, folder);
   surface.name = reader.text("name", "");
-  if (const auto material = reader.table("material")) surface.material = read_material(*material);
+  if (const auto material = reader.table("material")) surface.material = read_material(*material, folder);
   return surface;
 }
 

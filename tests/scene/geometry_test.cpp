@@ -83,7 +83,7 @@ TEST_CASE("a scene scaled by a power of two gives the same bits", "[geometry]") 
       const auto a = one.all_hits(ray), b = other.all_hits({scale * ray.origin, ray.direction});
       REQUIRE(a.size() == b.size());
       for (std::size_t k = 0; k < a.size(); ++k) {
-        const Hit scaled{a[k].t * scale, a[k].position * scale, a[k].normal, a[k].surface};
+        const Hit scaled{a[k].t * scale, a[k].position * scale, a[k].normal, a[k].surface, a[k].triangle};
         REQUIRE(same_bits(scaled, b[k]));
         const Point3 moved_off = one.offset_origin(a[k].position, a[k].normal, ray.direction);
         REQUIRE(other.offset_origin(b[k].position, b[k].normal, ray.direction) == scale * moved_off);

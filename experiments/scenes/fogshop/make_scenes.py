@@ -222,7 +222,80 @@ albedo = [0.4, 0.6, 0.9]
                 "smoke", 0.25, (4, 11, 3), 1000, more=steam, albedo=(0.7, 0.35, 0.1))
 
 
+def lit_surfaces():
+    """Surfaces lit through fog from above: an open floor, and a floor with walls around a corner that shadow it."""
+    draw = random.Random(5)
+    gaussians = []
+    for _ in range(16):
+        center = (draw.uniform(-3, 3), draw.uniform(0, 2.5), draw.uniform(-3, 3))
+        gaussians.append((center, draw.uniform(0.5, 1.0), draw.uniform(0.5, 1.5)))
+    write_table("patches", gaussians)
+    constant = '[[medium]]\ntype = "homogeneous"\nsigma_t = 0.3\n'
+    patches = '[[medium]]\ntype = "gaussians"\nfile = "patches.csv"\nsigma_t = 0.5\n'
+    floor = '''[[surface]]
+name = "floor"
+type = "plane"
+point = [0, 0, 0]
+material = { type = "lambert", albedo = [0.8, 0.7, 0.6] }
+'''
+    walls = '''[[surface]]
+name = "floor"
+type = "height_field"
+origin = [-6, 0, -6]
+size = [97, 97]
+spacing = [0.125, 0.125]
+waves = []
+material = { type = "lambert", albedo = [0.8, 0.7, 0.6] }
+
+[[surface]]
+name = "post"
+type = "box"
+lo = [-1.03, -0.1, -1.03]
+hi = [-0.28, 1.6, 1.03]
+material = { type = "lambert", albedo = 0 }
+
+[[surface]]
+name = "roof"
+type = "box"
+lo = [0.65, 0.9, -1.2]
+hi = [2.4, 1.0, 0.6]
+material = { type = "lambert", albedo = 0 }
+'''
+    matte = 'type = "lambert", albedo = [0.8, 0.7, 0.6]'
+    phong_5 = floor.replace(matte, 'type = "phong", diffuse = 0.3, specular = 0.5, exponent = 5')
+    phong_50 = floor.replace(matte, 'type = "phong", diffuse = 0.1, specular = 0.8, exponent = 50')
+    for name, about, medium, surfaces in (
+            ("floor_phong_5", "An open, dull floor in constant fog, a lamp above it.", constant, phong_5),
+            ("floor_phong_50", "An open, shiny floor in constant fog, a lamp above it.", constant, phong_50),
+            ("patches_phong_5", "An open, dull floor in 16 patches of fog, a lamp above it.", patches, phong_5),
+            ("floor_constant", "An open floor in constant fog, a lamp above it.", constant, floor),
+            ("floor_patches", "An open floor in 16 patches of fog, a lamp above it.", patches, floor),
+            ("walls_constant", "A floor under a post and a roof in constant fog; they are black.", constant, walls),
+            ("walls_patches", "A floor under a post and a roof in 16 patches of fog; they are black.", patches, walls)):
+        (FOLDER / f"{name}.toml").write_text(f'''# {about}
+name = "fogshop/{name}"
+
+[film]
+width = 32
+height = 24
+
+[camera]
+type = "perspective"
+position = [0, 4.5, 4]
+look_at = [0, 0, 0]
+vertical_fov = 0.7
+
+{medium}
+[[light]]
+type = "point"
+position = [0.4, 2.2, 0.3]
+intensity = 10
+
+{surfaces}''')
+
+
 if __name__ == "__main__":
+    lit_surfaces()
     smooth_fog()
     halo()
     shaft()

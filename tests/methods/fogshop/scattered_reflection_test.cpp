@@ -41,9 +41,9 @@ const Vec3 to_view = Vec3(0.3, 1, -0.2).normalized();
 
 }  // namespace
 
-// The clamped cosine has no odd bands but the first. The first band that four leave out is l = 4, where its coefficient is
-// -0.1108: g_4 0.1108 over sum g_l a_l is 4.8 % for T = 5 and less for thinner media; the next ones alternate in sign.
-// From twelve on: l = 12, 0.0136, below 0.6 %. Errors relative to the light from straight above.
+// The clamped cosine has no odd bands but the first. The first band that four leave out is l = 4, where its coefficient
+// is -0.1108: g_4 0.1108 over sum g_l a_l is 4.8 % for T = 5 and less for thinner media; the next ones alternate in
+// sign. From twelve on: l = 12, 0.0136, below 0.6 %. Errors relative to the light from straight above.
 TEST_CASE("scattered light on a Lambert surface, by bands", "[fogshop]") {
   const scene::Material lambert = scene::Lambert{Rgb(0.8, 0.5, 0.2)};
   for (const double T : {0.01, 1.0, 5.0}) {

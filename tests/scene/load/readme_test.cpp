@@ -83,8 +83,8 @@ TEST_CASE("every kind has an example in the documentation", "[load]") {
   for (const char* kind :
        {"perspective", "orthographic", "point",  "spot", "directional", "environment",  "homogeneous",      "gaussians",
         "grid",        "mesh",         "sphere", "box",  "plane",       "height_field", "displaced_sphere", "torus",
-        "tube",        "prism",        "teapot", "city", "lambert",     "phong",        "rayleigh",         "hg",
-        "hazy",        "murky",        "slab"}) {
+        "tube",        "prism",        "teapot", "city", "lambert",     "phong",        "tabulated",        "rayleigh",
+        "hg",          "hazy",         "murky",  "slab"}) {
     INFO(kind);
     CHECK(all.find("type = \"" + std::string(kind) + "\"") != std::string::npos);
   }
@@ -119,6 +119,7 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[surface]]\ntype = 'city'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'lambert'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'phong'",
+      "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'tabulated'",
   };
   for (const std::string& table : tables)
     for (const std::string& key : keys_of(table)) {

@@ -1,0 +1,105 @@
+#include "methods/fogshop/triple_product.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "scene/error.h"
+#include "scene/math/gauss_legendre.h"
+#include "scene/math/spherical_harmonics.h"
+
+namespace airlight::fogshop {
+namespace {
+
+constexpr int greatest_order = 12;
+
+// Integrals over azimuth of three of the functions 1, cos(m phi), sin(|m| phi). The trapezoidal rule is exact.
+class Azimuth {
+ public:
+  explicit Azimuth(int order) : side_(2 * order - 1), reach_(order - 1), values_(side_ * side_ * side_, 0.0) {
+    const int points = 4 * order;
+    for (int p = 0; p < points; ++p) {
+      const double phi = 2 * pi * p / points;
+      std::vector<double> f(side_);
+      for (int m = -reach_; m <= reach_; ++m) f[m + reach_] = m < 0 ? std::sin(-m * phi) : std::cos(m * phi);
+      for (int a = 0; a < side_; ++a)
+        for (int b = 0; b < side_; ++b)
+          for (int c = 0; c < side_; ++c) values_[(a * side_ + b) * side_ + c] += 2 * pi / points * f[a] * f[b] * f[c];
+    }
+  }
+  double operator()(int m1, int m2, int m3) const {
+    return values_[((m1 + reach_) * side_ + m2 + reach_) * side_ + m3 + reach_];
+  }
+
+ private:
+  int side_, reach_;
+  std::vector<double> values_;
+};
+
+struct Index {
+  int l, m;
+};
+
+}  // namespace
+
+TripleProduct::TripleProduct(int order) : order_(order) {
+  if (order < 1 || order > greatest_order)
+    throw Error(fmt::format("products of harmonics of order {}, expected 1 to {}", order, greatest_order));
+  // The parts that depend on theta, at the nodes of a rule for polynomials of degree 3 (order - 1).
+  const int nodes = (3 * order) / 2 + 1, size = order * order;
+  const scene::GaussLegendre rule = scene::gauss_legendre(nodes);
+  std::vector<Index> index;
+  for (int l = 0; l < order; ++l)
+    for (int m = -l; m <= l; ++m) index.push_back({l, m});
+  std::vector<std::vector<double>> polar(size, std::vector<double>(nodes));
+  for (int n = 0; n < nodes; ++n) {
+    const double z = rule.node[n];
+    const std::vector<double> y = scene::evaluate_sh(order, Vec3(std::sqrt((1 - z) * (1 + z)), 0, z));  // phi = 0
+    for (int i = 0; i < size; ++i) polar[i][n] = y[scene::sh_index(index[i].l, std::abs(index[i].m))];
+  }
+  const Azimuth azimuth(order);
+  for (int i = 0; i < size; ++i)
+    for (int j = i; j < size; ++j)
+      for (int k = j; k < size; ++k) {
+        const auto &a = index[i], &b = index[j], &c = index[k];  // l ascends with the index
+        if ((a.l + b.l + c.l) % 2 != 0 || c.l > a.l + b.l) continue;
+        const double around = azimuth(a.m, b.m, c.m);
+        if (std::abs(around) < 1e-12) continue;
+        double sum = 0;
+        for (int n = 0; n < nodes; ++n) sum += rule.weight[n] * polar[i][n] * polar[j][n] * polar[k][n];
+        if (std::abs(sum * around) > 1e-13) terms_.push_back({i, j, k, sum * around});
+      }
+}
+
+Rgb TripleProduct::operator()(const std::vector<Rgb>& f, const std::vector<Rgb>& g,
+                              const std::vector<double>& h) const {
+  Rgb sum = Rgb::Zero();
+  for (const Term& t : terms_) {
+    const auto [i, j, k, value] = t;
+    // Every distinct order of the three indices once.
+    if (i == j && j == k)
+      sum += value * h[i] * (f[i] * g[i]);
+    else if (i == j)
+      sum += value * (h[i] * (f[i] * g[k] + f[k] * g[i]) + h[k] * (f[i] * g[i]));
+    else if (j == k)
+      sum += value * (h[j] * (f[i] * g[j] + f[j] * g[i]) + h[i] * (f[j] * g[j]));
+    else
+      sum += value * (h[i] * (f[j] * g[k] + f[k] * g[j]) + h[j] * (f[i] * g[k] + f[k] * g[i]) +
+                      h[k] * (f[i] * g[j] + f[j] * g[i]));
+  }
+  return sum;
+}
+
+const TripleProduct& triple_product(int order) {
+  static std::mutex mutex;
+  static std::array<std::unique_ptr<const TripleProduct>, greatest_order + 1> kept;
+  if (order < 1 || order > greatest_order) TripleProduct refused(order);  // throws
+  const std::lock_guard lock(mutex);
+  if (!kept[order]) kept[order] = std::make_unique<const TripleProduct>(order);
+  return *kept[order];
+}
+
+}  // namespace airlight::fogshop

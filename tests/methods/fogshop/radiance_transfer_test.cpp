@@ -1,0 +1,162 @@
+// Precomputed visibility of meshes against closed forms.
+#include "methods/fogshop/radiance_transfer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "methods/fogshop/fogshop.h"
+#include "scene/geometry/shapes.h"
+#include "scene/math/gauss_legendre.h"
+#include "scene/math/spherical_harmonics.h"
+
+using namespace airlight;
+using namespace airlight::fogshop;
+
+namespace {
+
+scene::Scene floor_scene() {
+  scene::Scene scene;
+  scene.name = "floor";
+  scene.width = 6;
+  scene.height = 4;
+  scene.camera = scene::look_at({0, 2, 4}, {0, 0, 0}, {0, 1, 0});
+  scene.lights.emplace_back(scene::PointLight{{1, 3, 0}, Rgb(4, 5, 6), 0});
+  scene::Medium fog;
+  fog.field = scene::Homogeneous{1};
+  fog.sigma_t = Rgb(0.4, 0.2, 0.1);
+  scene.media.push_back(fog);
+  scene::TriangleMesh mesh;
+  mesh.vertices = {{-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.surfaces.push_back({"floor", mesh, scene::Lambert{Rgb::Constant(0.7)}});
+  return scene;
+}
+
+const SurfacePoint on_floor{{0.3, 0, 0.2}, {0, 1, 0}, 0, 0};
+
+scene::Film render(const scene::Scene& scene, std::map<std::string, std::string> values, int threads = 1) {
+  const Fogshop method;
+  return method
+      .prepare(std::make_shared<const scene::Scene>(scene), scene::Settings(method.settings(), values), {threads, {}})
+      ->render(view_of(scene), {threads, {}})
+      .film;
+}
+
+}  // namespace
+
+// Under an endless ceiling that slopes so that it hides directions d with d . m > 0 (m its normal, on the far side), a
+// floor of normal +y sees what is above the horizon and not hidden; below the horizon counts as open. Hidden is the
+// lune between the two half-spaces: of y_lm its integral, by quadrature in coordinates about the lune's edge (the z
+// axis), where it is a range of azimuth and of all polar angles.
+TEST_CASE("a floor under a half-space hides a lune", "[fogshop]") {
+  constexpr int order = 6;
+  // m = (cos a, sin a, 0): the lune from azimuth max(0, a - pi/2) to min(pi, a + pi/2).
+  for (const double a : {0.5 * pi, 0.9, 0.2}) {
+    scene::Scene scene = floor_scene();
+    const Vec3 m(std::cos(a), std::sin(a), 0);
+    scene.surfaces.push_back({"ceiling", scene::Plane{Point3(0, 0, 0) + 20 * m, m}, scene::Lambert{}});
+    finish(scene);
+    const RadianceTransfer transfer(scene, order, 16384, infinity, {1, {}});
+    const std::vector<double> got = transfer.visibility(scene, on_floor);
+    REQUIRE(got.size() == order * order);
+    const double from = std::max(0.0, a - 0.5 * pi), to = std::min(pi, a + 0.5 * pi);
+    std::vector<double> hidden(order * order, 0.0);
+    const scene::GaussLegendre rule = scene::gauss_legendre(200);
+    for (int i = 0; i < 200; ++i)
+      for (int k = 0; k < 200; ++k) {
+        const double z = rule.node[i], r = std::sqrt((1 - z) * (1 + z));
+        const double phi = from + (to - from) * 0.5 * (1 + rule.node[k]);
+        const std::vector<double> y = scene::evaluate_sh(order, Vec3(r * std::cos(phi), r * std::sin(phi), z));
+        for (std::size_t n = 0; n < y.size(); ++n)
+          hidden[n] += rule.weight[i] * rule.weight[k] * 0.5 * (to - from) * y[n];
+      }
+    CHECK(hidden[0] == Approx(2 * (to - from) / std::sqrt(4 * pi)).epsilon(1e-12));  // a lune of 2 (to - from)
+    for (int n = 0; n < order * order; ++n) {
+      CAPTURE(a, n);
+      // The spiral's error at a boundary of length 2 pi: about N^(-3/4) = 7e-4 of the sphere, times |y| below 2.
+      CHECK(got[n] == Approx((n == 0 ? std::sqrt(4 * pi) : 0.0) - hidden[n]).margin(5e-3));
+    }
+  }
+}
+
+TEST_CASE("a convex mesh does not shadow itself", "[fogshop]") {
+  scene::Scene scene = floor_scene();
+  scene.surfaces[0].shape = scene::make_box({{-1, -1, -1}, {1, 1, 1}});
+  finish(scene);
+  const RadianceTransfer transfer(scene, 5, 512, infinity, {1, {}});
+  CHECK(transfer.rays_cast() > 8 * 256);
+  for (int t = 0; t < 12; ++t) {
+    const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[0].shape);
+    const auto& corner = mesh.triangles[t];
+    const Point3 middle = (mesh.vertices[corner[0]] + mesh.vertices[corner[1]] + mesh.vertices[corner[2]]) / 3;
+    Vec3 normal = (mesh.vertices[corner[1]] - mesh.vertices[corner[0]])
+                      .cross(mesh.vertices[corner[2]] - mesh.vertices[corner[0]])
+                      .normalized();
+    const std::vector<double> v = transfer.visibility(scene, {middle, normal, 0, t});
+    REQUIRE(v.size() == 25);
+    CHECK(v[0] == Approx(std::sqrt(4 * pi)).epsilon(1e-6));
+    for (int n = 1; n < 25; ++n) CHECK(v[n] == 0);
+    CHECK(transfer.visibility(scene, {middle, -normal, 0, t}).empty());  // seen from inside
+  }
+  // The same picture, then, with and without.
+  const scene::Film plain = render(scene, {{"reflectance", "npsfT"}});
+  const scene::Film shadowed = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}});
+  double brightest = 0;
+  for (std::size_t i = 0; i < plain.layer("reflected_airlight").size(); ++i) {
+    const double a = plain.layer("reflected_airlight")[i];
+    brightest = std::max(brightest, a);
+    CHECK(shadowed.layer("reflected_airlight")[i] == Approx(a).epsilon(1e-5).margin(1e-9));
+  }
+  CHECK(brightest > 1e-4);
+}
+
+// A wall beside the floor takes light away, from beyond its reach none; threads do not matter; direct light stays.
+TEST_CASE("shadows of scattered light", "[fogshop]") {
+  scene::Scene scene = floor_scene();
+  scene::TriangleMesh wall;
+  wall.vertices = {{-5, -1, -6}, {5, -1, -6}, {5, 30, -6}, {-5, 30, -6}};
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.surfaces.push_back({"wall", wall, scene::Lambert{Rgb::Constant(0.5)}});
+  finish(scene);
+  const scene::Film plain = render(scene, {{"reflectance", "npsfT"}});
+  const scene::Film shadowed = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}});
+  const scene::Film again = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}}, 2);
+  const scene::Film near = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}, {"prt_reach", "0.5"}});
+  CHECK(shadowed.layer("reflected_airlight") == again.layer("reflected_airlight"));
+  double before = 0, after = 0, direct = 0;
+  for (std::size_t i = 0; i < plain.layer("surface").size(); ++i) {
+    before += plain.layer("reflected_airlight")[i];
+    after += shadowed.layer("reflected_airlight")[i];
+    CHECK(near.layer("reflected_airlight")[i] ==
+          Approx(plain.layer("reflected_airlight")[i]).epsilon(1e-5).margin(1e-9));
+    direct = std::max(direct, std::abs(double(plain.layer("surface")[i] - plain.layer("reflected_airlight")[i]) -
+                                       (shadowed.layer("surface")[i] - shadowed.layer("reflected_airlight")[i])));
+  }
+  CHECK(after < 0.98 * before);
+  CHECK(after > 0.3 * before);
+  CHECK(direct < 1e-6);
+}
+
+TEST_CASE("the transfer is made where it is needed", "[fogshop]") {
+  const auto kept = [](const scene::Scene& scene, std::map<std::string, std::string> values) {
+    const Fogshop method;
+    const auto prepared = method.prepare(std::make_shared<const scene::Scene>(scene),
+                                         scene::Settings(method.settings(), values), {1, {}});
+    bool timed = false, stage = false;
+    for (const auto& time : prepared->prepare_times()) timed = timed || time.name == "radiance transfer";
+    for (const auto& s : prepared->stages()) stage = stage || (s.name == "radiance transfer" && s.kept);
+    CHECK(timed == stage);
+    return stage;
+  };
+  scene::Scene scene = floor_scene();
+  finish(scene);
+  CHECK(kept(scene, {{"reflectance", "npsfT"}, {"prt", "true"}}));
+  CHECK_FALSE(kept(scene, {{"reflectance", "npsfT"}}));
+  CHECK_FALSE(kept(scene, {{"reflectance", "direct"}, {"prt", "true"}}));
+  const Fogshop method;
+  CHECK_FALSE(
+      method.supports(scene, scene::Settings(method.settings(), {{"reflectance", "sun"}, {"prt", "true"}})).empty());
+  scene.surfaces[0].shape = scene::Plane{Point3::Zero(), Vec3::UnitY()};
+  finish(scene);
+  CHECK_FALSE(kept(scene, {{"reflectance", "npsfT"}, {"prt", "true"}}));
+}
