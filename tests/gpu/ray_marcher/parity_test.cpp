@@ -80,6 +80,21 @@ TEST_CASE("ray marcher: GPU agrees with CPU", "[gpu][ray_marcher]") {
   CHECK(worst < 1e-4);
 }
 
+// Triangles, which the scenes above have not.
+TEST_CASE("ray marcher: meshes cast shadows on the GPU", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  const auto scene = std::make_shared<const scene::Scene>(
+      scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/crosscheck/mesh_in_fog.toml"));
+  scene::View view = view_of(*scene);
+  view.width = 24, view.height = 18;
+  const Given given{{"steps", "24"}, {"environment_directions", "4"}};
+  const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
+  CHECK(p99(cpu.film, gpu.film, "airlight") < 2e-3);  // a step at a shadow's edge may fall to the other side
+  CHECK(gpu.counters.at("occlusion_rays") == cpu.counters.at("occlusion_rays"));
+  CHECK(gpu.counters.at("shadow_rays") == Approx(cpu.counters.at("shadow_rays")).epsilon(2e-3));
+  CHECK(gpu.counters.at("shadow_rays") < 0.999 * gpu.counters.at("occlusion_rays"));  // some are hidden
+}
+
 TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
   if (!gpu::test::device()) return;
   for (const auto& [name, scene] : assorted_scenes()) {
