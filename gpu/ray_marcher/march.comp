@@ -151,8 +151,7 @@ bool grids_alone(Part part) {
 
 // A march along the parts from where it is. False: no budget left.
 bool march(vec3 origin, vec3 direction, int own, Approach seen) {
-  float total = 0;
-  for (int i = 0; i < part_count; ++i) total += measure(part_at(i));
+  float total = measure_of_all();
   for (; at_part < part_count; ++at_part) {
     Part part = part_at(at_part);
     float share = measure(part);

@@ -71,9 +71,13 @@ void put_part(int i, Part p) {
 bvec3 never_ends;  // per channel: the medium behind the last step goes on for ever
 
 float measure(Part p) {
-  if (p.zone != 0) return p.weight * (p.u_hi - p.u_lo);
-  if (p.rate > 0) return p.weight * (2 / p.rate) * -exp_minus_one(-0.5 * p.rate * (p.hi - p.lo));
-  return p.weight * (p.hi - p.lo);
+  float fall = p.rate > 0 ? -exp_minus_one(-0.5 * p.rate * (p.hi - p.lo)) * 2 / p.rate : p.hi - p.lo;
+  return p.weight * (p.zone != 0 ? p.u_hi - p.u_lo : fall);
+}
+float measure_of_all() {
+  float sum = 0;
+  for (int i = 0; i < part_count; ++i) sum += measure(part_at(i));
+  return sum;
 }
 
 void cut_ray(vec3 origin, vec3 direction, float t_end) {
@@ -136,8 +140,7 @@ void split_at(float t) {
 
 // Splits the parts at the zone around the light. False if there is no zone on this ray.
 bool grade_light(Approach light) {
-  float whole = 0;
-  for (int i = 0; i < part_count; ++i) whole += measure(part_at(i));
+  float whole = measure_of_all();
   float radius = pow(whole / 12, 0.75) * pow(light.h, 0.25), lo = light.t - radius, hi = light.t + radius;
   if (!(radius > light.h)) return false;
   split_at(lo);
@@ -183,10 +186,9 @@ bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approac
   // At most as many steps for the constant parts as for the varying ones.
   float varied = 0, constant = 0;
   for (int i = 0; i < part_count; ++i) {
-    if (part_in_varied[i] != 0u)
-      varied += measure(part_at(i));
-    else
-      constant += measure(part_at(i));
+    float share = measure(part_at(i));
+    varied += part_in_varied[i] != 0u ? share : 0;
+    constant += part_in_varied[i] != 0u ? 0 : share;
   }
   if (varied > 0 && constant > varied)
     for (int i = 0; i < part_count; ++i)
