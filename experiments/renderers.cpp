@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "methods/fogshop/fogshop.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
@@ -18,6 +19,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(deterministic::make_renderer());
     list.push_back(std::make_unique<path_tracer::PathTracer>());
     list.push_back(std::make_unique<ray_marcher::RayMarcher>());
+    list.push_back(std::make_unique<gpu::RayMarcherGpu>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::FogshopGpu>());
     return list;

@@ -1,5 +1,6 @@
 #include "reference/ray_marcher/plan.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace airlight::ray_marcher {
@@ -24,6 +25,14 @@ Rgb background(const scene::Scene& scene, const Vec3& direction) {
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
       sum += radiance(*environment, direction);
   return sum;
+}
+
+double length_unit(const scene::Scene& scene) {
+  double unit = infinity;
+  for (const scene::Medium& medium : scene.media)
+    if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
+      unit = std::min(unit, (*grid)->voxel_size);
+  return unit == infinity ? 1 : unit;
 }
 
 Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {

@@ -18,6 +18,9 @@ struct Plan {
   bool scatters = false;             // some medium has an albedo, and there is light for it
 };
 
+// Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
+double length_unit(const scene::Scene&);
+
 Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
 
 // `count` directional lights that stand for an environment: direction k is the environment's own sample for the k-th

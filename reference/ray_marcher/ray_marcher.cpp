@@ -10,6 +10,7 @@
 
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/scalar.h"
+#include "reference/ray_marcher/stages.h"
 #include "reference/ray_marcher/tile.h"
 #include "scene/error.h"
 
@@ -31,19 +32,6 @@ class FlushSubnormals {
   unsigned before_;
 };
 
-// Size of the finest voxels [m]; 1 without a grid.
-double length_unit(const scene::Scene& scene) {
-  double unit = infinity;
-  for (const scene::Medium& medium : scene.media)
-    if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
-      unit = std::min(unit, (*grid)->voxel_size);
-  return unit == infinity ? 1 : unit;
-}
-
-bool has_environment(const scene::Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
-}
-
 // The integral of 1/t^2 along every camera ray diverges there; steps would make any number of it.
 bool light_on_camera(const scene::Scene& scene) {
   if (scene.camera.kind != scene::Camera::Kind::perspective) return false;
@@ -52,49 +40,6 @@ bool light_on_camera(const scene::Scene& scene) {
       for (const scene::Medium& m : scene.media)
         if ((m.albedo * m.sigma_t).maxCoeff() * scene::density(m, ball->center) > 0) return true;
   return false;
-}
-
-std::vector<scene::Stage> explain(const Plan& plan) {
-  std::vector<scene::Stage> stages;
-  const auto add = [&](const char* name, bool kept, const std::string& reason) {
-    stages.push_back({name, kept, reason});
-  };
-  const scene::Scene& scene = *plan.scene;
-  const auto varying = std::count_if(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.varies; });
-  const bool constants =
-      std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
-  const bool lit = !plan.lights.empty();
-  const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
-  add("camera_rays", true,
-      plan.options.graded ? "one per pixel, and its steps, graded" : "one per pixel, and its steps");
-  add("camera_march", !plan.layers.empty(),
-      plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
-  add("shadows", shadows,
-      !lit                        ? "no light"
-      : plan.layers.empty()       ? "no medium with extinction"
-      : !shadows                  ? "no medium scatters, no surface is lit"
-      : varying == 0              ? "closed form: no medium varies"
-      : plan.options.exact_shadow ? fmt::format("exact, {} lights", plan.lights.size())
-                                  : fmt::format("marched, {} varying media, {} lights", varying, plan.lights.size()));
-  add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? "no light" : "no medium scatters");
-  add("constant_media", constants,
-      constants ? "constants are integrated in closed form" : "no medium has a constant part");
-  const bool grids = std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return bool(l.grid); });
-  add("empty_space_skipping", grids && plan.options.skip_empty,
-      !grids                     ? "no voxel grid"
-      : !plan.options.skip_empty ? "empty_space_skipping = false"
-                                 : "bricks of 4^3 voxels");
-  add("environment_directions", has_environment(scene),
-      has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
-                             : "no environment light");
-  add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
-  const bool seen = (bool(scene.geometry) && lit) || has_environment(scene);
-  add("surfaces", seen,
-      scene.geometry && lit    ? "surfaces are lit directly"
-      : has_environment(scene) ? "the environment is seen through the media"
-                               : "nothing behind the media");
-  if (!(scene.ambient_in_scatter == 0).all()) add("ambient", false, "the ray marcher has no ambient term");
-  return stages;
 }
 
 // The wall clock, shared among the stages that are kept as the threads' time was; what it costs to find that another
@@ -121,7 +66,7 @@ class PreparedMarch final : public scene::Prepared {
   PreparedMarch(Plan plan, std::string settings, double seconds)
       : plan_(std::move(plan)), settings_(std::move(settings)), prepare_seconds_(seconds) {}
 
-  std::vector<scene::Stage> stages() const override { return explain(plan_); }
+  std::vector<scene::Stage> stages() const override { return describe_stages(plan_); }
   std::vector<scene::StageTime> prepare_times() const override { return {{"prepare", prepare_seconds_}}; }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {

@@ -63,7 +63,7 @@ inline Agreement compare(Context& context, const scene::Scene& scene, const scen
       const Vec3 got(hit[i].normal[0], hit[i].normal[1], hit[i].normal[2]);
       const double error = end.t < infinity ? std::abs(hit[i].distance / end.t - 1) : 0;
       const double turned = end.hit ? (got - end.hit->normal).norm() : 0;
-      if (kind_of(end) == surface[i] && error < 1e-6 && turned < 1e-5) {
+      if (kind_of(end) == surface[i] && error < 1e-6 && turned < 1e-6) {
         errors.push_back(error);
         result.distance = std::max(result.distance, error);
         result.normal = std::max(result.normal, turned);

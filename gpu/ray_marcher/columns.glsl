@@ -1,0 +1,115 @@
+// Integrals of densities from a point towards a light: reference/ray_marcher/columns.cpp and its kernels.
+uniform int shadow_steps;
+uniform float shadow_step;  // [m]; > 0: instead of the count
+uniform int exact_shadow;
+
+uint shadow_step_count = 0;  // density evaluations of this invocation
+
+float steps_of(float length_) {
+  return shadow_step > 0 ? clamp(ceil(length_ / shadow_step), 1, 1048576) : float(shadow_steps);
+}
+
+#if GRIDS
+float grid_column(int k, vec3 o, vec3 d, vec2 t) {
+  float length_ = t.y - t.x, n = steps_of(length_), h = length_ / n, sum = 0;
+  vec3 start = o + (t.x + 0.5 * h) * d, delta = h * d;
+  float pace = 1 / max(max(abs(delta.x), abs(delta.y)), abs(delta.z));  // steps per cell of the largest component
+  for (float i = 0; i < n; ++i) {
+    vec3 p = start + i * delta;
+    float value = grid_density(k, p);
+    sum += value;
+    ++shadow_step_count;
+    ++work;
+    if (skip_empty != 0 && value == 0) i += floor(max(free_at(k, p), 0) * pace);
+  }
+  return sum * h;
+}
+#endif
+
+#if GAUSSIANS
+// A Gaussian along a ray: amplitude * exp(-(near2 + ((t - middle) * rate)^2)), for |t - middle| <= spread.
+struct Profile {
+  bool met;
+  float middle, rate, near2, spread;
+};
+Profile profile(Gaussian g, vec3 o, vec3 d) {
+  Profile p;
+  vec3 q = g.inverse_width * (g.center - o), w = g.inverse_width * d;
+  float rate2 = dot(w, w);
+  p.rate = sqrt(rate2);
+  p.middle = dot(q, w) / rate2;
+  vec3 away = q - p.middle * w;  // not |q|^2 less its part along the ray, which loses all digits far away
+  p.near2 = dot(away, away);
+  p.met = p.near2 <= g.limit;
+  p.spread = sqrt(max(0, g.limit - p.near2)) / p.rate;
+  return p;
+}
+
+float gaussian_column(int k, vec3 o, vec3 d, vec2 t) {
+  float length_ = t.y - t.x, n = steps_of(length_), h = length_ / n, sum = 0;
+  shadow_step_count += uint(n);
+  work += uint(layers[k].count);
+  if (layers[k].negative != 0) {
+    // The clamp at zero density acts on the sum of all Gaussians at each step.
+    for (float j = 0; j < n; ++j) sum += gaussian_density(k, o + (t.x + (j + 0.5) * h) * d);
+    return sum * h;
+  }
+  for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
+    Gaussian g = gaussians[i];
+    Profile p = profile(g, o, d);
+    if (!p.met) continue;
+    // Steps within reach.
+    float from = max(floor((p.middle - p.spread - t.x) / h - 1), 0), to = min(n, (p.middle + p.spread - t.x) / h + 1);
+    float u0 = p.rate * (t.x + 0.5 * h - p.middle), du = p.rate * h, part = 0;
+    work += uint(max(to - from, 0)) / 4;
+    for (float j = from; j < to; j += 4) {
+      vec4 at = j + vec4(0, 1, 2, 3), u = u0 + at * du, d2 = u * u + p.near2;
+      bvec4 counts = bvec4(uvec4(lessThan(at, vec4(to))) & uvec4(lessThanEqual(d2, vec4(g.limit))));
+      part += dot(mix(vec4(0), exp(-d2), counts), vec4(1));
+    }
+    sum += g.amplitude * part;
+  }
+  return sum * h;
+}
+
+// erf, absolute error 1.5e-7: Abramowitz and Stegun, formula 7.1.26. Absolute is what counts, in optical depths.
+float error_function(float x) {
+  float size = abs(x), t = 1 / (1 + 0.3275911 * size);
+  float sum = 0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)));
+  float value = 1 - sum * t * exp(-size * size);
+  return x < 0 ? -value : value;
+}
+
+// Zhou et al. 2007, Eq. 31: sqrt(pi)/2 * amplitude * exp(-near^2) / rate * (erf(u1) - erf(u0)).
+float gaussian_integral(int k, vec3 o, vec3 d, vec2 t) {
+  float sum = 0;
+  work += uint(layers[k].count);
+  for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
+    Gaussian g = gaussians[i];
+    Profile p = profile(g, o, d);
+    if (!p.met) continue;
+    float reach = p.rate * p.spread;  // where it is cut off, or as good as zero, is outside
+    vec2 u = clamp(p.rate * (t - p.middle), -reach, reach);
+    sum += 0.886226925 * g.amplitude * exp(-p.near2) / p.rate * (error_function(u.y) - error_function(u.x));
+  }
+  return sum;
+}
+#endif
+
+// Of layer k from x over a distance in a unit direction [m].
+float column_of(int k, vec3 x, vec3 direction, float distance_) {
+  vec2 t = clip_region(k, x, direction, vec2(0, distance_));
+  if (!(t.x < t.y)) return 0;
+  float column = layers[k].constant > 0 ? min(layers[k].constant * min(t.y - t.x, endless), endless) : 0;
+  if (layers[k].field == field_none) return column;
+  t = clip_field(k, x, direction, t);
+  if (!(t.x < t.y)) return column;
+  vec3 o = to_local(layers[k].field_frame, x), d = rotate_to_local(layers[k].field_frame, direction);
+#if GRIDS
+  if (layers[k].field == field_grid) return column + grid_column(k, o, d, t);
+#endif
+#if GAUSSIANS
+  return column + (exact_shadow != 0 ? gaussian_integral(k, o, d, t) : gaussian_column(k, o, d, t));
+#endif
+  return column;
+}

@@ -1,0 +1,132 @@
+// The media as the marcher sees them: reference/ray_marcher/layer.h and kernels.h. World coordinates here are relative to a
+// middle of the scene that the host subtracts in double; local coordinates are those of the CPU's kernels.
+const float far_away = 1e37;  // [m] and beyond: an infinite ray
+const float endless = 1e30;   // [m] stands for an endless column: any extinction makes it black, zero extinction does not
+
+const int shape_everything = 0, shape_box = 1, shape_sphere = 2, shape_slab = 3;
+const int field_none = 0, field_grid = 1, field_gaussians = 2;
+
+struct Layer {
+  vec3 sigma_t;    // [1/m]
+  float constant;  // density in the whole region [-]
+  vec3 albedo;
+  int field;
+  vec3 half_size;  // of the region in its frame
+  int shape;
+  vec4 shape_frame[3];  // local = xyz . world + w
+  vec4 field_frame[3];
+  vec3 lo;  // support of the field, local
+  int first;  // of its Gaussians or grid values
+  vec3 hi;
+  int count;  // of its Gaussians
+  ivec3 size;  // padded samples of a grid
+  int first_brick;
+  ivec3 bricks;
+  int phase;
+  float g;  // of Henyey-Greenstein
+  int negative;  // some Gaussian is: the sum is clamped at -constant
+  int unused[2];
+};
+
+struct Gaussian {
+  vec3 center;          // local [m]
+  float inverse_width;  // [1/m]
+  float amplitude;      // [-]
+  float limit;          // (distance / width)^2 beyond which it is zero
+  float unused[2];
+};
+
+layout(std430, binding = 0) readonly buffer Layers { Layer layers[]; };
+#if GAUSSIANS
+layout(std430, binding = 1) readonly buffer GaussianList { Gaussian gaussians[]; };
+#endif
+#if GRIDS
+layout(std430, binding = 2) readonly buffer GridValues { float grid_value[]; };      // x fastest
+layout(std430, binding = 3) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
+#endif
+
+uint work = 0;  // iterations of loops by this invocation, roughly
+
+vec3 to_local(vec4 frame[3], vec3 x) {
+  return vec3(dot(frame[0].xyz, x) + frame[0].w, dot(frame[1].xyz, x) + frame[1].w, dot(frame[2].xyz, x) + frame[2].w);
+}
+vec3 rotate_to_local(vec4 frame[3], vec3 v) {
+  return vec3(dot(frame[0].xyz, v), dot(frame[1].xyz, v), dot(frame[2].xyz, v));
+}
+
+// Ranges [x, y] of a ray [m]; empty unless x < y.
+const vec2 nothing = vec2(far_away, -far_away);
+
+vec2 clip_axis(float o, float d, float lo, float hi, vec2 t) {
+  if (abs(d) < 1e-20) return o >= lo && o <= hi ? t : nothing;
+  float a = (lo - o) / d, b = (hi - o) / d;
+  return vec2(max(t.x, min(a, b)), min(t.y, max(a, b)));
+}
+vec2 clip_box(vec3 lo, vec3 hi, vec3 o, vec3 d, vec2 t) {
+  t = clip_axis(o.x, d.x, lo.x, hi.x, t);
+  t = clip_axis(o.y, d.y, lo.y, hi.y, t);
+  return clip_axis(o.z, d.z, lo.z, hi.z, t);
+}
+vec2 clip_region(int k, vec3 x, vec3 direction, vec2 t) {
+  if (layers[k].shape == shape_everything) return t;
+  vec3 o = to_local(layers[k].shape_frame, x), d = rotate_to_local(layers[k].shape_frame, direction);
+  if (layers[k].shape == shape_box) return clip_box(-layers[k].half_size, layers[k].half_size, o, d, t);
+  if (layers[k].shape == shape_slab) return clip_axis(o.x, d.x, -layers[k].half_size.x, layers[k].half_size.x, t);
+  // Unit sphere: from the point of closest approach, which loses no digits for origins far away.
+  float dd = dot(d, d), nearest = -dot(o, d) / dd;
+  vec3 q = o + nearest * d;
+  float inside = 1 - dot(q, q);
+  if (!(inside > 0)) return nothing;
+  float reach = sqrt(inside / dd);
+  return vec2(max(t.x, nearest - reach), min(t.y, nearest + reach));
+}
+// Of a ray that is clipped to the region already.
+vec2 clip_field(int k, vec3 x, vec3 direction, vec2 t) {
+  return clip_box(layers[k].lo, layers[k].hi, to_local(layers[k].field_frame, x),
+                  rotate_to_local(layers[k].field_frame, direction), t);
+}
+
+#if GRIDS
+// Trilinear at local coordinates: sample coordinates plus 2. Nothing outside the array is read, whatever comes.
+float grid_density(int k, vec3 p) {
+  ivec3 size = layers[k].size;
+  ivec3 i = clamp(ivec3(p), ivec3(0), size - 2);
+  vec3 f = p - vec3(i);
+  int at = layers[k].first + i.x + size.x * (i.y + size.y * i.z), row = size.x, slice = size.x * size.y;
+  vec4 near = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
+  at += slice;
+  vec4 beyond = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
+  vec4 v = near + f.z * (beyond - near);
+  vec2 w = v.xy + f.y * (v.zw - v.xy);
+  return w.x + f.x * (w.y - w.x);
+}
+// How far one may go from there and still be where the density is zero [cells, Chebyshev].
+float free_at(int k, vec3 p) {
+  ivec3 i = clamp(ivec3(p) >> 2, ivec3(0), layers[k].bricks - 1);
+  return free_distance[layers[k].first_brick + i.x + layers[k].bricks.x * (i.y + layers[k].bricks.y * i.z)];
+}
+#endif
+
+#if GAUSSIANS
+float gaussian_density(int k, vec3 p) {
+  float sum = 0;
+  work += uint(layers[k].count);
+  for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
+    vec3 q = gaussians[i].inverse_width * (p - gaussians[i].center);
+    float d2 = dot(q, q);
+    if (d2 <= gaussians[i].limit) sum += gaussians[i].amplitude * exp(-d2);
+  }
+  return layers[k].negative != 0 ? max(sum, -layers[k].constant) : sum;
+}
+#endif
+
+// Density without the constant [-].
+float varied_density(int k, vec3 x) {
+#if GRIDS
+  if (layers[k].field == field_grid) return grid_density(k, to_local(layers[k].field_frame, x));
+#endif
+#if GAUSSIANS
+  if (layers[k].field == field_gaussians) return gaussian_density(k, to_local(layers[k].field_frame, x));
+#endif
+  return 0;
+}

@@ -1,0 +1,35 @@
+// Surfaces as shaders test shadow rays against them: occluders.glsl.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "scene/geometry/surface.h"
+
+namespace airlight::gpu {
+
+struct OccluderNode {
+  std::array<float, 3> lo;
+  int behind;  // the node that follows when this one is missed
+  std::array<float, 3> hi;
+  int leaf;  // 8 * first triangle + their number; -1 for a branch
+};
+struct OccluderTriangle {
+  std::array<float, 4> a, b, c;
+};
+struct OccluderSolid {
+  std::array<float, 3> place;
+  float radius;  // 0: a plane
+  std::array<float, 3> normal;
+  float unused;
+};
+struct Occluders {
+  std::vector<OccluderNode> nodes;  // depth first
+  std::vector<OccluderTriangle> triangles;
+  std::vector<OccluderSolid> solids;
+};
+
+// Positions relative to `middle`. Branches are cut at the median of the centres along the longest side; at most 4
+// triangles in a leaf; boxes are widened by more than the rounding of a ray in single precision.
+Occluders make_occluders(const std::vector<scene::Surface>&, const Point3& middle);
+
+}  // namespace airlight::gpu

@@ -1,0 +1,19 @@
+// The brute-force ray marcher in compute shaders: the settings and the steps of reference/ray_marcher.
+#pragma once
+#include "scene/renderer.h"
+
+namespace airlight::gpu {
+
+class RayMarcherGpu final : public scene::Renderer {
+ public:
+  std::string name() const override { return "ray_marcher_gpu"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  // What the CPU refuses; and, one line each, what the shaders do not do.
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+  // Throws Unavailable without a device, or where it has no room.
+  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                           const scene::Execution&) const override;
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,122 @@
+#include "gpu/ray_marcher/scene_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/ray_marcher/shapes.h"
+
+namespace airlight::gpu {
+namespace {
+
+using ray_marcher::Frame;
+using ray_marcher::Layer;
+
+Float3 float3(const Vec3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+Float3 float3(const float v[3]) { return {v[0], v[1], v[2]}; }
+
+// local = m (x + middle) + b, for x relative to the middle.
+std::array<Float4, 3> frame_data(const Frame& frame, const Point3& middle) {
+  const Point3 shift = frame.point(middle);
+  std::array<Float4, 3> rows;
+  for (int i = 0; i < 3; ++i)
+    rows[i] = {float(frame.m[3 * i]), float(frame.m[3 * i + 1]), float(frame.m[3 * i + 2]), float(shift[i])};
+  return rows;
+}
+
+std::size_t samples(const ray_marcher::GridField& grid) {
+  return std::size_t(grid.size[0]) * grid.size[1] * grid.size[2];
+}
+
+}  // namespace
+
+Point3 middle_of(const ray_marcher::Plan& plan) {
+  Box box;
+  for (const Layer& layer : plan.layers) {
+    const Box own = bounding_box(*layer.medium), varied = layer.varies ? support(layer.medium->field) : own;
+    for (const Box& b : {own, varied})
+      if (!b.empty() && b.size().allFinite()) box = unite(box, b);
+    if (layer.gaussians) {
+      const auto& lo = layer.gaussians->lo;
+      const auto& hi = layer.gaussians->hi;
+      const Point3 center =
+          -Vec3(layer.gaussians->frame.b[0], layer.gaussians->frame.b[1], layer.gaussians->frame.b[2]);
+      box = unite(box, {center + Vec3(lo[0], lo[1], lo[2]), center + Vec3(hi[0], hi[1], hi[2])});
+    }
+  }
+  return box.empty() ? plan.scene->camera.position : box.center();
+}
+
+std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& middle) {
+  std::vector<LayerData> data;
+  std::size_t gaussians = 0, values = 0, bricks = 0;
+  for (const Layer& layer : plan.layers) {
+    LayerData d{};
+    d.sigma_t = float3(Vec3(layer.medium->sigma_t));
+    d.albedo = float3(Vec3(layer.medium->albedo));
+    d.constant = float(layer.constant);
+    d.half_size = float3(layer.shape.half);
+    d.shape = int(layer.shape.kind);
+    d.shape_frame = frame_data(layer.shape_frame, middle);
+    const ray_marcher::PhaseShape phase = ray_marcher::phase_shape(layer.medium->phase);
+    d.phase = int(phase.kind);
+    d.g = phase.g;
+    if (layer.grid) {
+      const ray_marcher::GridField& grid = *layer.grid;
+      d.field = 1;
+      d.field_frame = frame_data(grid.frame, middle);
+      d.lo = float3(grid.lo), d.hi = float3(grid.hi);
+      d.first = int(values), d.first_brick = int(bricks);
+      d.size = {grid.size[0], grid.size[1], grid.size[2]};
+      d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
+      values += samples(grid), bricks += grid.free_distance.size();
+    } else if (layer.gaussians) {
+      const ray_marcher::GaussianField& field = *layer.gaussians;
+      d.field = 2;
+      d.field_frame = frame_data(field.frame, middle);
+      d.lo = float3(field.lo), d.hi = float3(field.hi);
+      d.first = int(gaussians), d.count = int(field.count);
+      d.negative = field.any_negative;
+      gaussians += field.count;
+    }
+    data.push_back(d);
+  }
+  return data;
+}
+
+FieldData field_data(const ray_marcher::Plan& plan) {
+  FieldData data;
+  for (const Layer& layer : plan.layers) {
+    if (layer.grid) {
+      // The CPU keeps each sample with its neighbour along z; here only the samples.
+      const std::size_t count = samples(*layer.grid);
+      data.grids.reserve(data.grids.size() + count);
+      for (std::size_t i = 0; i < count; ++i) data.grids.push_back(layer.grid->pairs[2 * i]);
+      data.bricks.insert(data.bricks.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
+    }
+    if (layer.gaussians) {
+      const ray_marcher::GaussianField& f = *layer.gaussians;
+      for (std::size_t i = 0; i < f.count; ++i) {
+        const float reach = f.reach[i] * f.inverse_width[i];
+        data.gaussians.push_back({{f.x[i], f.y[i], f.z[i]}, f.inverse_width[i], f.amplitude[i], reach * reach, {0, 0}});
+      }
+    }
+  }
+  return data;
+}
+
+std::vector<LightData> light_data(const ray_marcher::Plan& plan, const Point3& middle) {
+  std::vector<LightData> data;
+  // Point and spot lights first: only they may have marches of their own.
+  std::vector<scene::Light> lights = plan.lights;
+  std::stable_partition(lights.begin(), lights.end(), [](const scene::Light& light) { return bool(ball(light)); });
+  for (const scene::Light& light : lights) {
+    const ray_marcher::LightShape shape = ray_marcher::light_shape(light);
+    const Vec3 position(shape.position[0], shape.position[1], shape.position[2]),
+        axis(shape.axis[0], shape.axis[1], shape.axis[2]);
+    data.push_back({float3(Vec3(position - middle)), int(shape.kind), float3(axis), float(shape.cos_inner),
+                    float3(Vec3(ray_marcher::light_colour(light))), float(shape.cos_outer)});
+  }
+  return data;
+}
+
+}  // namespace airlight::gpu

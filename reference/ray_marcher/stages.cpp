@@ -1,0 +1,59 @@
+#include "reference/ray_marcher/stages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace airlight::ray_marcher {
+namespace {
+
+bool has_environment(const scene::Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
+}
+
+}  // namespace
+
+std::vector<scene::Stage> describe_stages(const Plan& plan) {
+  std::vector<scene::Stage> stages;
+  const auto add = [&](const char* name, bool kept, const std::string& reason) {
+    stages.push_back({name, kept, reason});
+  };
+  const scene::Scene& scene = *plan.scene;
+  const auto varying = std::count_if(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.varies; });
+  const bool constants =
+      std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
+  const bool lit = !plan.lights.empty();
+  const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
+  add("camera_rays", true,
+      plan.options.graded ? "one per pixel, and its steps, graded" : "one per pixel, and its steps");
+  add("camera_march", !plan.layers.empty(),
+      plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
+  add("shadows", shadows,
+      !lit                        ? "no light"
+      : plan.layers.empty()       ? "no medium with extinction"
+      : !shadows                  ? "no medium scatters, no surface is lit"
+      : varying == 0              ? "closed form: no medium varies"
+      : plan.options.exact_shadow ? fmt::format("exact, {} lights", plan.lights.size())
+                                  : fmt::format("marched, {} varying media, {} lights", varying, plan.lights.size()));
+  add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? "no light" : "no medium scatters");
+  add("constant_media", constants,
+      constants ? "constants are integrated in closed form" : "no medium has a constant part");
+  const bool grids = std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return bool(l.grid); });
+  add("empty_space_skipping", grids && plan.options.skip_empty,
+      !grids                     ? "no voxel grid"
+      : !plan.options.skip_empty ? "empty_space_skipping = false"
+                                 : "bricks of 4^3 voxels");
+  add("environment_directions", has_environment(scene),
+      has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
+                             : "no environment light");
+  add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
+  const bool seen = (bool(scene.geometry) && lit) || has_environment(scene);
+  add("surfaces", seen,
+      scene.geometry && lit    ? "surfaces are lit directly"
+      : has_environment(scene) ? "the environment is seen through the media"
+                               : "nothing behind the media");
+  if (!(scene.ambient_in_scatter == 0).all()) add("ambient", false, "the ray marcher has no ambient term");
+  return stages;
+}
+
+}  // namespace airlight::ray_marcher
