@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/error.h"
+
 namespace airlight::gpu {
 namespace {
 
@@ -141,12 +143,19 @@ void FogOnDevice::bind() const {
   if (model_.noise) permutation_.bind(13);
 }
 
+void check_iterations(const Context& context, double iterations, const char* what) {
+  if (context.software() && iterations > most_iterations)
+    throw Unavailable(fmt::format("gpu: {} takes about {:.0f} loop iterations, {} ends loops after 65535", what,
+                                  iterations, context.renderer()));
+}
+
 void FogOnDevice::fill_light_maps() {
   const Use use(context_);
   bind();
   Program& p = program("fogshop/light_map.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}});
   p.set("map_directions", model_.options.map_directions);
   p.set("map_edges", model_.options.map_edges);
+  check_iterations(context_, (model_.options.map_edges / 8 + 1.0) * (model_.gaussians.count + 17), "a light map");
   for (int l = 0; l < int(model_.lights.size()); ++l) {
     p.set("light_index", l);
     p.dispatch(model_.options.map_directions + 2, model_.options.map_directions + 2);
@@ -155,6 +164,7 @@ void FogOnDevice::fill_light_maps() {
 
 void FogOnDevice::fill_depths(const std::vector<Segment>& segments, std::size_t first) {
   if (segments.empty()) return;
+  check_iterations(context_, model_.gaussians.count, "depths to centres");
   const Use use(context_);
   const Buffer input(context_, "segments", segments);
   bind();
@@ -278,12 +288,24 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     p.set("map_directions", o.map_directions);
     p.set("map_edges", o.map_edges);
   }
+  // Loop iterations of one invocation, for each Gaussian of its tile and apart from them.
+  const double light_steps = lights > 0 ? std::max(8, o.slices / lights) : 0;
+  const double each = model_.paper()
+                          ? 1 + lights
+                          : 3 + std::ceil((1.5 * o.slices + 1 + lights * light_steps) / 8) + std::ceil(o.slices / 8.0);
+  const double apart = model_.paper() ? 0 : lights * (10.0 * o.slices + (o.map ? 0.0 : (o.slices + 1.0) * n));
   for (int first = 0; first < rows; first += strip) {
     const int count = std::min(strip, rows - first);
     tiles.set("tile_row", first);
     tiles.set("tile_rows", count);
     tiles.set("tile_columns", columns);
     tiles.dispatch(columns * count);
+    if (context_.software() && each * n + apart > most_iterations) {
+      const std::vector<int> near = counts.download<int>();
+      const int most = *std::max_element(near.begin(), near.begin() + columns * count);
+      check_iterations(context_, each * most + apart,
+                       model_.paper() ? "the paper's airlight" : "the airlight by slices");
+    }
     timer.stage("tiles");
     p.set("tile_row", first);
     p.dispatch(columns * tile, count * tile);

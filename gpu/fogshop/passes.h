@@ -16,6 +16,11 @@ namespace airlight::gpu {
 
 inline constexpr int most_slices = 128, most_lights = 16;  // arrays of the shaders
 
+// llvmpipe ends all loops of an invocation after 65535 iterations in all and says nothing: the picture would be wrong.
+// Throws Unavailable on a software renderer instead.
+inline constexpr double most_iterations = 65000;
+void check_iterations(const Context&, double iterations, const char* what);
+
 class FogOnDevice {
  public:
   FogOnDevice(Context&, const fogshop::Model&);

@@ -18,12 +18,17 @@ const int even_steps = K + K / 2;
 const int light_steps = LIGHTS > 0 ? max(8, K / max(LIGHTS, 1)) : 0;
 const int node_room = even_steps + 1 + LIGHTS * light_steps;
 
-float node[node_room], share[node_room];
-float edge[K + 1], view_depth[K + 1], depth_of_light[K + 1];
+// The inner loops take eight at a time, so that llvmpipe's limit of 65535 iterations is far (passes.cpp watches it).
+// Arrays have room for it: nodes and edges beyond the last are at its place, slices beyond the last are empty.
+#define EIGHT_FROM(k, DO) DO(k) DO(k + 1) DO(k + 2) DO(k + 3) DO(k + 4) DO(k + 5) DO(k + 6) DO(k + 7)
+const int node_space = (node_room + 7) / 8 * 8, slice_space = (K + 7) / 8 * 8;
+
+float node[node_space], share[node_space];
+float edge[slice_space + 1], view_depth[K + 1], depth_of_light[K + 1];
 // Of the slices; not differences of view_depth, which lose the tails of the Gaussians.
-float slice_depth[K];
+float slice_depth[slice_space];
 #if COLOURED
-vec3 slice_scattering[K];  // what the medium in the slice scatters, hue 1
+vec3 slice_scattering[slice_space];  // what the medium in the slice scatters, hue 1
 #endif
 
 // Optical depth of all Gaussians between two points.
@@ -124,6 +129,7 @@ void main() {
   for (; nodes <= even_steps; ++nodes) node[nodes] = lo + (hi - lo) * float(nodes) / float(even_steps);
   node[even_steps] = hi;
   for (int l = 0; l < LIGHTS; ++l) nodes = add_even_angles(light_from_ray(lights[l], origin, direction), lo, hi, nodes);
+  for (int k = nodes; k < node_space; ++k) node[k] = hi, share[k] = 0;
   bool boxed = boxes != 0 && opacity > 0;
   float parts = 1 + (LIGHTS > 0 ? 1 : 0) + (boxed ? 1 : 0);
   for (int k = 0; k < nodes; ++k) share[k] = (node[k] - lo) / ((hi - lo) * parts);
@@ -144,7 +150,8 @@ void main() {
         Crossing c = cross_view(near_block[i], origin, direction, end);
         if (!c.met || !boxed) continue;
         float weight = (1 - exp(-2 * c.depth)) / (parts * opacity);
-        for (int k = 0; k < nodes; ++k) share[k] += weight * clamp((node[k] - c.middle) * c.a / 3.2 + 0.5, 0, 1);
+#define ADD_SHARE(k) share[k] += weight * clamp((node[k] - c.middle) * c.a / 3.2 + 0.5, 0, 1);
+        for (int k = 0; k < nodes; k += 8) { EIGHT_FROM(k, ADD_SHARE) }
       }
     }
   float first_share = share[0], total = share[nodes - 1] - first_share;
@@ -157,13 +164,13 @@ void main() {
     edge[i] = node[at] + s * (node[at + 1] - node[at]);
   }
   edge[0] = lo;
-  edge[K] = hi;
+  for (int k = K; k <= slice_space; ++k) edge[k] = hi;
 
   // Exact depths of the slices, and up to their edges.
   view_depth[0] = constant * edge[0];
-  for (int k = 0; k < K; ++k) slice_depth[k] = constant * (edge[k + 1] - edge[k]);
+  for (int k = 0; k < slice_space; ++k) slice_depth[k] = constant * (edge[k + 1] - edge[k]);
 #if COLOURED
-  for (int k = 0; k < K; ++k) slice_scattering[k] = constant_colour * slice_depth[k];
+  for (int k = 0; k < slice_space; ++k) slice_scattering[k] = constant_colour * slice_depth[k];
 #endif
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
@@ -175,15 +182,20 @@ void main() {
 #endif
       Place begin = place_at(c, edge[0]);
       view_depth[0] += c.depth * erf_between(c.start, begin);
-      for (int k = 0; k < K; ++k) {
-        Place end_ = place_at(c, edge[k + 1]);
-        float part = c.depth * erf_between(begin, end_);
-        slice_depth[k] += part;
+      Place next;
+      float part;
 #if COLOURED
-        slice_scattering[k] += colour * part;
+#define ADD_SCATTERING(k) slice_scattering[k] += colour * part;
+#else
+#define ADD_SCATTERING(k)
 #endif
-        begin = end_;
-      }
+#define ADD_DEPTH(k)                             \
+  next = place_at(c, edge[k + 1]);               \
+  part = c.depth * erf_between(begin, next);     \
+  slice_depth[k] += part;                        \
+  ADD_SCATTERING(k)                              \
+  begin = next;
+      for (int k = 0; k < K; k += 8) { EIGHT_FROM(k, ADD_DEPTH) }
     }
   }
   for (int k = 0; k < K; ++k) view_depth[k + 1] = view_depth[k] + slice_depth[k];

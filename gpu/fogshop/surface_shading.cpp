@@ -126,6 +126,12 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   // As Geometry::offset_origin: 32 ulp of the largest coordinate, of what is seen too.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
+  const bool lobes = std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), [](const scene::Surface& each) {
+    return std::holds_alternative<scene::Phong>(each.material);
+  });
+  const double directions = scattered_ && scattered && lobes ? cosines * (1 + 32.0 * (1 + model_.options.sh_order)) : 0;
+  check_iterations(context_, double(model_.lights.size()) * (model_.gaussians.count + directions + 60),
+                   "light on surfaces");
   p.dispatch(view.width, view.height);
 }
 
