@@ -8,7 +8,7 @@ layout(std430, binding = 6) buffer Pixels { vec4 pixels[]; };             // air
 layout(std430, binding = 9) readonly buffer Light { vec4 light[]; };      // sqrt(4 pi / (2l+1)) albedo L_lm
 layout(std430, binding = 10) readonly buffer Bands { float bands[]; };    // g_l, [depth][l]
 layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
-uniform int has_distances;
+uniform int has_distances, everywhere;
 const float far_away = 1e37;  // [m]: an infinite ray
 uniform vec3 hue;
 uniform int band_depths;                         // 1: the same for every depth
@@ -25,7 +25,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= width || pixel.y >= height) return;
   int index = pixel.y * width + pixel.x;
-  if (has_distances != 0 && distances[index] < far_away) return;  // something ends the ray
+  if (everywhere == 0 && has_distances != 0 && distances[index] < far_away) return;  // something ends the ray
   vec3 origin, direction;
   camera_ray(vec2(pixel) + 0.5, origin, direction);
   float y[SH_ORDER * SH_ORDER];

@@ -37,6 +37,13 @@ void main() {
     if (surface >= 0 && any(greaterThan(materials[surface].diffuse.rgb + materials[surface].specular.rgb, vec3(0)))) {
       if (dot(normal, direction) > 0) normal = -normal;
       dvec3 point = origin + t * direction;
+      // Coverage is good to 1/256 pixel. Where the centre lies beside its triangle the point may be behind the next one, by
+      // as much as the plane runs on over that stretch: shadow rays start beyond it.
+      double lift = nudge;
+      if (primitive < triangle_count && !triangle_contains(triangles[primitive], point)) {
+        double pixel_size = 2 * length(view_up) / double(view_height) * (view_perspective != 0 ? t : 1.0LF);
+        lift = max(lift, pixel_size / 128 / max(abs(dot(normal, direction)), 0.02LF));
+      }
       Material material = materials[surface];
       vec3 n = vec3(normal), to_view = vec3(-direction);
       for (int l = 0; l < light_count; ++l) {
@@ -49,7 +56,7 @@ void main() {
         if (cosine > 0) {
           reflectance = brdf(material, n, towards, to_view);
           if (any(greaterThan(reflectance, vec3(0))) &&
-              in_shadow(l, primitive, point + nudge * normal, to_light, distance_))
+              in_shadow(l, primitive, point + lift * normal, to_light, distance_))
             reflectance = vec3(0);
         }
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;

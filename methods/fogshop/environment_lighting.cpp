@@ -78,13 +78,14 @@ void environment_pass(const scene::Scene& scene, const Model& model, const Envir
   scene::parallel_rows(view.height, execution, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
-      if (distance[i] < infinity) continue;
+      const bool open = distance[i] == infinity;
+      if (!open && !(lighting && model.options.environment_everywhere)) continue;
       const Vec3 direction = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
       const Rgb seen = (-depth[i] * model.fog.hue).exp() * background(scene, direction);
       const Rgb scattered = lighting ? lighting->airlight(model.fog, depth[i], direction) : Rgb(Rgb::Zero());
       for (int c = 0; c < 3; ++c) {
         airlight[3 * i + c] += float(scattered[c]);
-        surface[3 * i + c] = float(seen[c]);
+        if (open) surface[3 * i + c] = float(seen[c]);
       }
     }
   });

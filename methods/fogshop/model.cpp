@@ -45,8 +45,9 @@ std::vector<scene::SettingSpec> setting_specs() {
       integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
       choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
              "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
-      choice("environment_airlight", "psf", {"psf", "volume"},
-             "light of the environment in the air: by Eq. 28, or by slices and a grid of what arrives unscattered"),
+      choice("environment_airlight", "psf", {"psf", "everywhere", "volume"},
+             "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
+             "grid of what arrives unscattered"),
       integer("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
       integer("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
       real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),
@@ -88,6 +89,7 @@ Options read_options(const scene::Settings& settings) {
   o.sh_order = int(settings.integer("sh_order"));
   const std::string& psf = settings.text("environment_psf");
   o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
+  o.environment_everywhere = settings.text("environment_airlight") == "everywhere";
   o.sky_volume = settings.text("environment_airlight") == "volume";
   o.sky_cells = int(settings.integer("sky_cells"));
   o.sky_directions = int(settings.integer("sky_directions"));

@@ -150,7 +150,8 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                     : needs.sky_volume
                         ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions", o.slices,
                                       o.sky_cells, o.sky_directions)
-                        : fmt::format("Eq. 28, {}, where no surface is", psf_name(o.environment_psf))));
+                        : fmt::format("Eq. 28, {}, {}", psf_name(o.environment_psf),
+                                      o.environment_everywhere ? "before surfaces too" : "where no surface is")));
   stage("environment on surfaces", needs.environment && needs.surfaces,
         scene.surfaces.empty()
             ? "there are no surfaces"

@@ -1,4 +1,6 @@
 // Surfaces of Fogshop in shaders against the CPU: first hits, shadows, reflected light, everything through the medium.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,4 +1,6 @@
 // First hits by the raster pass: the scenes of the experiments, and scenes made to break it.
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "gpu/raster_program.h"

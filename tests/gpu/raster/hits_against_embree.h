@@ -1,5 +1,7 @@
 // Every pixel of the raster pass against scene::ray_end.
 #pragma once
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>

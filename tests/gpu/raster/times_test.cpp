@@ -1,4 +1,6 @@
 // Not a test but a measurement, by name only: airlight_tests "[times]". Times of the stages that surfaces take.
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "gpu/fogshop/fogshop_gpu.h"
