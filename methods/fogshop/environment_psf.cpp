@@ -10,17 +10,6 @@
 namespace airlight::fogshop {
 namespace {
 
-double legendre(int l, double x) {
-  double before = 1, value = x;
-  if (l == 0) return 1;
-  for (int n = 1; n < l; ++n) {
-    const double next = ((2 * n + 1) * x * value - n * before) / (n + 1);
-    before = value;
-    value = next;
-  }
-  return value;
-}
-
 double coefficient(Psf psf, int l, double T) {
   return psf == Psf::ball ? ball_psf_coefficient(l, T) : npsf_coefficient(l, psf == Psf::npsf ? 1 : T);
 }
@@ -47,7 +36,7 @@ double ball_psf_coefficient(int l, double T) {
   for (int half = 0; half < 2; ++half)
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double gamma = 0.25 * pi * (1 + rule.node[i]) + 0.5 * pi * half;
-      sum += 0.25 * pi * rule.weight[i] * ball_psf(gamma, T) * legendre(l, std::cos(gamma)) * std::sin(gamma);
+      sum += 0.25 * pi * rule.weight[i] * ball_psf(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) * std::sin(gamma);
     }
   return 2 * pi * std::sqrt((2 * l + 1) / (4 * pi)) * sum;
 }

@@ -17,17 +17,6 @@ double scattered(double gamma, double T) {
   return scene::scaled_exponential_integral({2 * T * half * half, -T * std::sin(gamma)}).imag();
 }
 
-double legendre(int l, double x) {
-  double before = 1, value = x;
-  if (l == 0) return 1;
-  for (int n = 1; n < l; ++n) {
-    const double next = ((2 * n + 1) * x * value - n * before) / (n + 1);
-    before = value;
-    value = next;
-  }
-  return value;
-}
-
 }  // namespace
 
 double npsf(double gamma, double T) { return scattered(gamma, T) / (2 * pi * std::sin(gamma)); }
@@ -39,7 +28,7 @@ double npsf_coefficient(int l, double T) {
   double sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double x = 0.5 * (1 + rule.node[i]), x2 = x * x, gamma = pi * x2 * x2 * x2;
-    sum += 0.5 * rule.weight[i] * scattered(gamma, T) * legendre(l, std::cos(gamma)) * 6 * pi * x2 * x2 * x;
+    sum += 0.5 * rule.weight[i] * scattered(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) * 6 * pi * x2 * x2 * x;
   }
   return std::sqrt((2 * l + 1) / (4 * pi)) * sum;
 }

@@ -6,6 +6,7 @@
 #include "gpu/fogshop/passes.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/fogshop/ray_model.h"
+#include "tests/methods/fogshop/stress_cases.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -80,26 +81,8 @@ TEST_CASE("depths under extreme inputs on the device", "[gpu]") {
 TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
-  struct Case {
-    double a, c;
-    Point3 b, light;
-    double d;
-    Point3 view;
-    double expected;
-  };
-  const Point3 usual(0, 0, 4), origin(0, 0, 0);
-  const Case cases[] = {
-      {0.8, 0.5, usual, {0.3, 0, 4.2}, 5, usual, 0.1611462240454},
-      {0.8, 5e-9, usual, {2, 2, 3}, 8, origin, 9.330471919883e-11},
-      {0.8, 5000, usual, {0, 4, 1}, 8, origin, 2.78194093587e-4},
-      {0.8, 0.5, usual, {1e-4, 0, 4}, 8, origin, 718.1102659714},
-      {50, 40, {0, 0.01, 4}, {1, 1, 3}, 8, origin, 0.01062543614511},
-      {1e-3, 0.05, usual, {2, 2, 3}, 8, origin, 0.001875333476337},
-      {0.8, 0.5, usual, {0.001, 0, 8}, 8, origin, 0.00294825824928},
-      {0.8, 0.5, {0, 0, -3}, {2, 2, 3}, 8, origin, 1.939165723248e-6},
-  };
-  for (const Case& c : cases) {
-    const Fog fog = grey_fog({{gaussian(c.a, c.c, c.b)}, 0, infinity});
+  for (const fogshop_test::StressCase& c : fogshop_test::stress_cases) {
+    const Fog fog = grey_fog({{c.gaussian()}, 0, infinity});
     INFO(c.expected);
     // With the 128 slices that a shader has room for, what is left of K^-4 is below 2e-4. The nearest light, 1e-4 from
     // the ray, shines on slices so short that their depths have four digits.

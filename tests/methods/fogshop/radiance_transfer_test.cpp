@@ -137,6 +137,25 @@ TEST_CASE("shadows of scattered light", "[fogshop]") {
   CHECK(direct < 1e-6);
 }
 
+// A uniform sky behind the endless ceiling: the share of it that the floor sees is (1 - n . m)/2, by cosine.
+TEST_CASE("shadows of an environment's light", "[fogshop]") {
+  for (const double a : {0.9, 0.2}) {
+    scene::Scene scene = floor_scene();
+    const Vec3 m(std::cos(a), std::sin(a), 0);
+    scene.surfaces.push_back({"ceiling", scene::Plane{20 * m, m}, scene::Lambert{}});
+    scene.media.clear();
+    scene.lights.assign(1, scene::make_constant_environment(Rgb(1, 2, 3)));
+    finish(scene);
+    const auto middle = [&](const char* prt) {
+      return render(scene, {{"prt", prt}, {"prt_rays", "4096"}}).get("surface", 3, 2);
+    };
+    CAPTURE(a);
+    CHECK(((middle("false") / Rgb(1, 2, 3) - 0.7).abs() < 1e-6).all());
+    // Six bands of a step that falls along a great circle.
+    CHECK(((middle("true") / Rgb(1, 2, 3) - 0.7 * (1 - std::sin(a)) / 2).abs() < 0.03).all());
+  }
+}
+
 TEST_CASE("the transfer is made where it is needed", "[fogshop]") {
   const auto kept = [](const scene::Scene& scene, std::map<std::string, std::string> values) {
     const Fogshop method;
