@@ -61,7 +61,8 @@ double average_depth(const Model& model, const Point3& point) {
   const double constant = model.fog.sum.constant;
   double sum = 0;
   for (int i = 0; i < g.count; ++i)
-    sum += g.half_depth[i] * average_depth(g.a[i] * (g.center(i) - point).norm());  // half_depth: c sqrt(pi) / (2 a)
+    sum += g.half_depth[i] *
+           tabulated_average_depth(g.a[i] * (g.center(i) - point).norm());  // half_depth: c sqrt(pi) / (2 a)
   sum *= 2 / std::sqrt(pi);
   return constant > 0 ? sum + constant * model.options.environment_distance : sum;
 }

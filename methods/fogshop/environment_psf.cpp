@@ -36,7 +36,8 @@ double ball_psf_coefficient(int l, double T) {
   for (int half = 0; half < 2; ++half)
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double gamma = 0.25 * pi * (1 + rule.node[i]) + 0.5 * pi * half;
-      sum += 0.25 * pi * rule.weight[i] * ball_psf(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) * std::sin(gamma);
+      sum += 0.25 * pi * rule.weight[i] * ball_psf(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) *
+             std::sin(gamma);
     }
   return 2 * pi * std::sqrt((2 * l + 1) / (4 * pi)) * sum;
 }

@@ -45,9 +45,10 @@ std::vector<scene::SettingSpec> setting_specs() {
       integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
       choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
              "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
-      choice("environment_airlight", "psf", {"psf", "everywhere", "volume"},
-             "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
-             "grid of what arrives unscattered"),
+      choice(
+          "environment_airlight", "psf", {"psf", "everywhere", "volume"},
+          "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
+          "grid of what arrives unscattered"),
       integer("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
       integer("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
       real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),

@@ -32,10 +32,10 @@ struct Options {
   // without harmonics.
   enum class Reflectance { direct, npsf, npsf_by_depth, sun };
   Reflectance reflectance = Reflectance::direct;
-  int sh_order = 6;                 // bands of the NPSF and of the environment
-  Psf environment_psf = Psf::ball;  // what spreads light of an environment
+  int sh_order = 6;                     // bands of the NPSF and of the environment
+  Psf environment_psf = Psf::ball;      // what spreads light of an environment
   bool environment_everywhere = false;  // Eq. 28 where a surface ends the ray, too
-  bool sky_volume = false;          // airlight of the environment by SkyVolume instead of Eq. 28
+  bool sky_volume = false;              // airlight of the environment by SkyVolume instead of Eq. 28
   int sky_cells = 24;
   int sky_directions = 64;
   double environment_distance = infinity;  // D [m]: view rays that nothing ends, and Eq. 26, reach so far

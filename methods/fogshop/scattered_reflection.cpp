@@ -75,7 +75,8 @@ Rgb ScatteredReflection::reflect_one(const scene::Material& material, const Surf
 }
 
 Rgb ScatteredReflection::operator()(const scene::Scene& scene, const Model& model, const SurfacePoint& point,
-                                    const Vec3& to_view, Crossings& crossings, double& evaluations) const {
+                                    const Vec3& to_view, Crossings& crossings, double& evaluations,
+                                    std::vector<LightDepth>* found) const {
   const scene::Material& material = scene.surfaces[point.surface].material;
   const std::vector<double> visibility = transfer_ ? transfer_->visibility(scene, point) : std::vector<double>{};
   std::vector<Rgb> incident(visibility.size(), Rgb::Zero());  // of all lights, where it is to be shadowed
@@ -86,8 +87,7 @@ Rgb ScatteredReflection::operator()(const scene::Scene& scene, const Model& mode
     if (!(distance > 0)) continue;
     const Vec3 to_light = offset / distance;
     const Rgb irradiance = light.intensity / (distance * distance);
-    const double depth = gaussian_depth(model, light.position, point.position, crossings, evaluations) +
-                         model.fog.sum.constant * distance;
+    const double depth = light_depth(model, light.position, point.position, crossings, evaluations, found);
     Rgb reflected = Rgb::Zero();
     for (int c = 0; c < 3; ++c) {
       const double T = depth * model.fog.hue[c], share = T * std::exp(-T);

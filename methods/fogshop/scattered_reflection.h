@@ -39,7 +39,7 @@ class ScatteredReflection {
 
   // L_p of the scattered light alone [W/m^2/sr] towards `to_view`, the medium's albedo included.
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
-                 double& evaluations) const;
+                 double& evaluations, std::vector<LightDepth>* found = nullptr) const;
 
   // The depths of the bands' table, ascending, even in log T; one where it does not follow the depth.
   std::vector<double> depths() const;

@@ -10,8 +10,19 @@
 
 namespace airlight::fogshop {
 
+double light_depth(const Model& model, const Point3& source, const Point3& point, Crossings& crossings,
+                   double& evaluations, std::vector<LightDepth>* found) {
+  if (found)
+    for (const LightDepth& known : *found)
+      if (known.source == source) return known.depth;
+  const double depth =
+      gaussian_depth(model, source, point, crossings, evaluations) + model.fog.sum.constant * (source - point).norm();
+  if (found) found->push_back({source, depth});
+  return depth;
+}
+
 Rgb direct_reflection(const scene::Scene& scene, const Model& model, const SurfacePoint& point, const Vec3& to_view,
-                      Crossings& crossings, double& evaluations) {
+                      Crossings& crossings, double& evaluations, std::vector<LightDepth>* found) {
   Rgb radiance = Rgb::Zero();
   for (const scene::Light& light : scene.lights) {
     if (!scene::is_delta(light)) continue;
@@ -22,9 +33,8 @@ Rgb direct_reflection(const scene::Scene& scene, const Model& model, const Surfa
     if ((reflectance == 0).all()) continue;
     const Point3 start = scene.geometry->offset_origin(point.position, point.normal, in.to_light);
     if (scene.geometry->occluded({start, in.to_light}, in.distance)) continue;
-    const Point3 source = point.position + in.distance * in.to_light;
-    const double depth =
-        gaussian_depth(model, source, point.position, crossings, evaluations) + model.fog.sum.constant * in.distance;
+    const Point3 source = std::get<scene::PointLight>(light).position;
+    const double depth = light_depth(model, source, point.position, crossings, evaluations, found);
     radiance += reflectance * cosine * in.irradiance * (-depth * model.fog.hue).exp();
   }
   return radiance;
@@ -68,12 +78,14 @@ double surface_pass(const scene::Scene& scene, const Model& model, const Scatter
   std::vector<double> calls(view.height, 0.0);
   scene::parallel_rows(view.height, execution, [&](int y) {
     Crossings crossings;
+    std::vector<LightDepth> found;
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       if (hits[i].surface < 0) continue;
+      found.clear();
       const Vec3 to_view = -camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
-      Rgb radiance = direct_reflection(scene, model, hits[i], to_view, crossings, calls[y]), part = Rgb::Zero();
-      if (points) part = (*points)(scene, model, hits[i], to_view, crossings, calls[y]);
+      Rgb radiance = direct_reflection(scene, model, hits[i], to_view, crossings, calls[y], &found), part = Rgb::Zero();
+      if (points) part = (*points)(scene, model, hits[i], to_view, crossings, calls[y], &found);
       if (environment)
         reflect_environment(scene, model, *environment, transfer, hits[i], to_view, radiance,
                             scattered ? &part : nullptr);

@@ -23,10 +23,18 @@ struct FirstHits {
 };
 FirstHits first_hits(const scene::Scene&, const scene::View&, const scene::Execution&);
 
+// T(s,p) of a point light, constant included [-], hue 1: computed once for direct and for scattered light.
+struct LightDepth {
+  Point3 source;
+  double depth;
+};
+double light_depth(const Model&, const Point3& source, const Point3& point, Crossings&, double& evaluations,
+                   std::vector<LightDepth>* found);
+
 // L_p [W/m^2/sr] towards `view`: sum over the lights of brdf cos I/d^2 e^(-T(s,p)), 0 where another surface is in the
 // way.
 Rgb direct_reflection(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
-                      double& evaluations);
+                      double& evaluations, std::vector<LightDepth>* found = nullptr);
 
 class ScatteredReflection;
 class EnvironmentLighting;

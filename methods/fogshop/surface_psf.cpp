@@ -1,6 +1,8 @@
 #include "methods/fogshop/surface_psf.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scene/math/exponential_integral.h"
 #include "scene/math/gauss_legendre.h"
@@ -28,7 +30,8 @@ double npsf_coefficient(int l, double T) {
   double sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double x = 0.5 * (1 + rule.node[i]), x2 = x * x, gamma = pi * x2 * x2 * x2;
-    sum += 0.5 * rule.weight[i] * scattered(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) * 6 * pi * x2 * x2 * x;
+    sum +=
+        0.5 * rule.weight[i] * scattered(gamma, T) * std::legendre(unsigned(l), std::cos(gamma)) * 6 * pi * x2 * x2 * x;
   }
   return std::sqrt((2 * l + 1) / (4 * pi)) * sum;
 }
@@ -37,6 +40,34 @@ double average_depth(double u) {
   const double half_root_pi = 0.88622692545275801;  // sqrt(pi) / 2
   // D(u)/u = 1 - 2/3 u^2 + ...
   return std::abs(u) < 1e-9 ? half_root_pi : half_root_pi * dawson(u) / u;
+}
+
+double tabulated_average_depth(double u) {
+  // Cubic between values and slopes; beyond, the asymptotic series of D(u)/u, whose next term is below 1e-9.
+  constexpr int count = 1280;
+  constexpr double end = 10, step = end / count;
+  struct Node {
+    double value, slope;  // slope per step
+  };
+  static const std::vector<Node> nodes = [] {
+    std::vector<Node> table;
+    for (int i = 0; i <= count; ++i) {
+      const double x = i * step, f = average_depth(x);
+      // D' = 1 - 2 u D.
+      const double slope = i == 0 ? 0 : (0.5 * std::sqrt(pi) - f * (2 * x * x + 1)) / x;
+      table.push_back({f, slope * step});
+    }
+    return table;
+  }();
+  if (u >= end) {
+    const double w = 0.5 / (u * u);
+    return 0.25 * std::sqrt(pi) / (u * u) * (1 + w * (1 + w * (3 + w * (15 + w * (105 + w * 945)))));
+  }
+  const double place = u / step;
+  const int k = std::min(int(place), count - 1);
+  const double s = place - k, r = 1 - s;
+  const Node &a = nodes[std::size_t(k)], &b = nodes[std::size_t(k) + 1];
+  return r * r * (a.value * (1 + 2 * s) + a.slope * s) + s * s * (b.value * (1 + 2 * r) - b.slope * r);
 }
 
 }  // namespace airlight::fogshop

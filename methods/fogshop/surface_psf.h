@@ -18,5 +18,7 @@ double npsf_coefficient(int l, double T);
 // Mean optical depth of a Gaussian around a point, over the directions from that point, where its centre is u widths
 // away: c / a times this [-]. sqrt(pi)/2 D(u)/u with Dawson's integral D, the paper's table in closed form.
 double average_depth(double u);
+// The same from a table, to 1e-8 of itself or better: for loops over Gaussians at every pixel.
+double tabulated_average_depth(double u);
 
 }  // namespace airlight::fogshop
