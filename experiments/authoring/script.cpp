@@ -71,7 +71,8 @@ class Run {
   void line(Operation op, int number) {
     const std::string name = op.name(
         {"scene", "view", "paint", "erase", "select", "copy", "move", "emit", "airbrush", "freeze", "import", "undo"});
-    if (name == "scene") return scene(op, number);
+    const bool first = number_of_operations_++ == 0;
+    if (name == "scene") return scene(op, number, first);
     if (name == "view") return view(op);
     if (name == "undo") return undo(op);
     // A selection is no change of the list: there is nothing to undo.
@@ -105,13 +106,11 @@ class Run {
     return (name.is_absolute() ? name : folder_ / name).string();
   }
 
-  void scene(const Operation& op, int number) {
+  void scene(const Operation& op, int number, bool first) {
     op.allow({"base"});
-    if (out_.scene || number_of_operations_ > 0)
-      op.fail(fmt::format("found at line {}, expected it once, as the first operation", number));
+    if (!first) op.fail(fmt::format("found at line {}, expected it once, as the first operation", number));
     out_.base = found(op, "base");
     out_.scene = airlight::scene::load_scene(out_.base);
-    ++number_of_operations_;
   }
 
   void view(const Operation& op) {
@@ -123,7 +122,6 @@ class Run {
     view.width = int(op.integer("width", 1, 16384, 800));
     view.height = int(op.integer("height", 1, 16384, 600));
     out_.view = view;
-    ++number_of_operations_;
   }
 
   View view_for(const Operation& op) const {

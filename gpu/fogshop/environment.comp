@@ -1,5 +1,5 @@
 // Last loop of section 5.3 of Zhou et al. 2007: light of the environment scattered once (Eq. 28), added to every pixel
-// whose ray nothing ends. T(v,p) is there already.
+// whose ray nothing ends, or to all. T(v,p) is there already.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/spherical_harmonics.glsl"

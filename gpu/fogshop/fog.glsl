@@ -17,7 +17,7 @@ uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m
 uniform vec3 hue;        // extinction per channel over the greatest
 uniform vec3 albedo;
 #if COLOURED  // what each Gaussian, by place, and the constant scatter of that
-layout(std430, binding = 12) readonly buffer Colours { vec4 colour_of[]; };
+layout(std430, binding = 15) readonly buffer Colours { vec4 colour_of[]; };
 uniform vec3 constant_colour;
 #endif
 

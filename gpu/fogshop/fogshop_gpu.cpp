@@ -43,7 +43,8 @@ class PreparedFogshopGpu final : public scene::Prepared {
       timer.stage("depths to centres");
     }
     if (needs_.point_harmonics) {
-      reflection_ = fogshop::make_reflection(*scene_, options);
+      // Tables of reflectances serve the CPU alone.
+      reflection_ = fogshop::make_reflection(*scene_, options, needs_.environment);
       timer.stage("harmonics of the NPSF");
     }
     if (needs_.environment_harmonics) {
@@ -234,6 +235,16 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   for (const scene::Surface& surface : scene.surfaces)
     if (std::holds_alternative<scene::Tabulated>(surface.material))
       reasons.push_back("surface " + surface.name + " has a tabulated reflectance, which is for the CPU");
+  const bool environment = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+    return std::holds_alternative<scene::EnvironmentLight>(light);
+  });
+  // Under an environment the CPU lights surfaces.
+  for (const scene::Surface& surface : scene.surfaces)
+    if (const auto* phong = std::get_if<scene::Phong>(&surface.material);
+        phong && phong->exponent > 50 && !environment && options.reflectance != fogshop::Options::Reflectance::direct)
+      reasons.push_back(
+          fmt::format("surface {} has a Phong exponent of {:g}: scattered light in shaders is for 50 at most",
+                      surface.name, phong->exponent));
   if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");

@@ -139,7 +139,7 @@ void FogOnDevice::bind() const {
   lights_.bind(4);
   maps_.bind(5);
   depths_.bind(8);
-  if (!model_.fog.one_albedo()) colours_.bind(12);
+  if (!model_.fog.one_albedo()) colours_.bind(15);
   if (model_.noise) permutation_.bind(13);
 }
 

@@ -57,14 +57,23 @@ FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_ball
 
 const HitImage& FirstHits::draw(const View& view) {
   const Use use(context_);
-  if (!image_ || image_->width() != view.width || image_->height() != view.height)
-    image_ = std::make_unique<HitImage>(context_, view.width, view.height);
+  // Two sizes are kept: a low resolution is drawn beside the film's.
+  const auto found = std::find_if(images_.begin(), images_.end(), [&](const std::unique_ptr<HitImage>& image) {
+    return image->width() == view.width && image->height() == view.height;
+  });
+  if (found != images_.end()) {
+    std::rotate(images_.begin(), found, found + 1);
+  } else {
+    images_.insert(images_.begin(), std::make_unique<HitImage>(context_, view.width, view.height));
+    images_.resize(std::min<std::size_t>(images_.size(), 2));
+  }
+  const HitImage& image = *images_.front();
   const double extent = surfaces_.extent(view.camera.position);
   const HalfFilm half = half_film(view);
   const Buffer rectangle_buffer(context_, "rectangles", rectangles(surfaces_.solids(), view));
   surfaces_.bind();
   rectangle_buffer.bind(13);
-  image_->begin();
+  image.begin();
   for (const SurfacesOnDevice::Run& run : surfaces_.runs()) {
     RasterProgram& program = context_.raster_program(run.mesh ? "raster/mesh" : "raster/solid");
     set_view(program, view);
@@ -81,8 +90,8 @@ const HitImage& FirstHits::draw(const View& view) {
       program.draw(6, run.count);
     }
   }
-  image_->end();
-  return *image_;
+  image.end();
+  return image;
 }
 
 }  // namespace airlight::gpu

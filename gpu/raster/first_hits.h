@@ -7,6 +7,7 @@
 // scene is taken.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "gpu/raster/hit_image.h"
 #include "gpu/raster/surfaces_on_device.h"
@@ -27,7 +28,7 @@ class FirstHits {
  private:
   Context& context_;
   SurfacesOnDevice surfaces_;
-  std::unique_ptr<HitImage> image_;  // of the last size
+  std::vector<std::unique_ptr<HitImage>> images_;  // of the last two sizes, the latest first
 };
 
 }  // namespace airlight::gpu

@@ -54,8 +54,8 @@ double average_depth(const Model&, const Point3&);
 std::vector<double> up_to_environment(const Options&, std::vector<double> distance);
 
 // Last loop of section 5.3, and Eq. 29 with L_p = L_in: adds Eq. 28 to `airlight` and the background, seen through the
-// medium, to `surface`, of every pixel whose ray nothing ends. `distance` [m] is infinite there; `depth` is T(v,p).
-// `lighting` may be null: then there is no airlight.
+// medium, to `surface`, of every pixel whose ray nothing ends (Eq. 28 of all pixels with `everywhere`). `distance` [m]
+// is infinite there; `depth` is T(v,p). `lighting` may be null: then there is no airlight.
 void environment_pass(const scene::Scene&, const Model&, const EnvironmentLighting* lighting, const scene::View&,
                       const std::vector<double>& distance, const std::vector<double>& depth, const scene::Execution&,
                       std::vector<float>& airlight, std::vector<float>& surface);

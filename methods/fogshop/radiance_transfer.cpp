@@ -82,7 +82,6 @@ RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int ray
         for (int k = 0; k < size; ++k) into[k] = float((k == 0 ? std::sqrt(4 * pi) : 0.0) - sum[k] * (4 * pi / rays));
       }
     });
-    vertices_ += count;
     rays_cast_ += std::accumulate(cast.begin(), cast.end(), 0.0);
   }
 }

@@ -1,10 +1,10 @@
 // Precomputed radiance transfer of static meshes: which directions other surfaces hide from a point, in spherical
 // harmonics. Zhou et al. 2007, V_p of Eq. 20, after Sloan et al. 2002.
 //
-// Computed at the vertices, interpolated over the triangle of a hit. It shadows scattered light alone; direct light
-// keeps its exact test. Directions that point into the surface at a vertex (below the horizon of every face there)
-// count as open: the reflectance is 0 in them, and so a convex mesh shadows itself not at all instead of by what
-// harmonics cut off at a band make of its horizon.
+// Computed at the vertices, interpolated over the triangle of a hit. It shadows scattered light, and all light of
+// environments; direct light of points keeps its exact test. Directions that point into the surface at a vertex (below
+// the horizon of every face there) count as open: the reflectance is 0 in them, and so a convex mesh shadows itself not
+// at all instead of by what harmonics cut off at a band make of its horizon.
 #pragma once
 #include <vector>
 
@@ -27,11 +27,9 @@ class RadianceTransfer {
   std::vector<double> visibility(const scene::Scene&, const SurfacePoint&) const;
 
   double rays_cast() const { return rays_cast_; }
-  int vertices() const { return vertices_; }
 
  private:
   int order_;
-  int vertices_ = 0;
   double rays_cast_ = 0;
   std::vector<std::vector<float>> coefficients_;  // by surface: order^2 for every vertex; empty for other shapes
 };

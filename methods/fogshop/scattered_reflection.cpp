@@ -113,14 +113,14 @@ Rgb ScatteredReflection::operator()(const scene::Scene& scene, const Model& mode
   return (radiance * model.fog.albedo).max(0.0);
 }
 
-std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene& scene, const Options& options) {
+std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene& scene, const Options& options, bool tabulate) {
   using Reflectance = Options::Reflectance;
   const bool sun = options.reflectance == Reflectance::sun;
   auto reflection = std::make_unique<ScatteredReflection>(sun ? 1 : options.sh_order,
                                                           options.reflectance == Reflectance::npsf_by_depth);
   if (sun) {
     reflection->use(SunReflection(scene.surfaces));
-  } else {
+  } else if (tabulate) {
     std::vector<std::optional<ReflectanceTable>> tables(scene.surfaces.size());
     for (std::size_t i = 0; i < tables.size(); ++i)
       if (!std::holds_alternative<scene::Lambert>(scene.surfaces[i].material))
@@ -139,8 +139,7 @@ std::vector<std::string> objections_to_surfaces(const scene::Scene& scene, const
   for (std::size_t i = 0; sun && i < scene.surfaces.size(); ++i)
     if (std::holds_alternative<scene::Tabulated>(scene.surfaces[i].material))
       reasons.push_back(fmt::format("surface {} is tabulated: reflectance = sun knows lambert and phong alone", i));
-  if (options.prt && options.reflectance != Options::Reflectance::direct &&
-      mesh_vertices(scene) > most_transfer_vertices)
+  if (options.prt && mesh_vertices(scene) > most_transfer_vertices)
     reasons.push_back(fmt::format("prt = true for meshes of {:.0f} vertices, expected {:.0f} at most",
                                   mesh_vertices(scene), most_transfer_vertices));
   return reasons;

@@ -35,7 +35,6 @@ class ScatteredReflection {
   void use(std::vector<std::optional<ReflectanceTable>> tables) { reflectances_ = std::move(tables); }
   // Scattered light is shadowed by surfaces from now on. Not together with SunReflection, which has no harmonics.
   void shadow(std::shared_ptr<const RadianceTransfer> transfer) { transfer_ = std::move(transfer); }
-  const RadianceTransfer* transfer() const { return transfer_.get(); }
 
   // L_p of the scattered light alone [W/m^2/sr] towards `to_view`, the medium's albedo included.
   Rgb operator()(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
@@ -60,8 +59,8 @@ class ScatteredReflection {
   std::shared_ptr<const RadianceTransfer> transfer_;           // null: none
 };
 
-// What the settings ask for, without the transfer.
-std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene&, const Options&);
+// What the settings ask for, without the transfer; `tables` of the reflectances make it quick.
+std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene&, const Options&, bool tables = true);
 
 // Why these surfaces cannot be lit so; empty if they can.
 std::vector<std::string> objections_to_surfaces(const scene::Scene&, const Options&);

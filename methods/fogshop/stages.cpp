@@ -130,9 +130,9 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
             ? "Sun et al.'s integrals for Lambert and Phong, with the depth along the path"
             : fmt::format("Eq. 25, {} bands of the NPSF of each depth", o.sh_order));
   stage("radiance transfer", needs.transfer,
-        !needs.scattered  ? "no scattered light to shadow"
-        : !o.prt          ? "prt = false: occluders do not shadow scattered light"
-        : !needs.transfer ? "there are no meshes, and other shapes have no vertices"
+        !o.prt                                         ? "prt = false: occluders shadow direct light of points alone"
+        : !needs.point_harmonics && !needs.environment ? "no light that it would shadow"
+        : !needs.transfer                              ? "there are no meshes, and other shapes have no vertices"
                           : fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays,
                                         mesh_vertices(scene), o.sh_order));
   const std::string no_environment = !model.environment ? "no environment light shines"

@@ -188,6 +188,8 @@ TEST_CASE("bad scripts are one line with the place, and leave nothing", "[author
   refused(R"({"op": "import", "file": "none.csv", "frame": 1})", "none.csv");
   refused(R"({"op": "undo"})", "at most 0");
   refused(R"({"op": "scene", "base": "none.toml"})", "first operation");
+  CHECK_THROWS_WITH(run(folder, stroke + "\n" + R"({"op": "scene", "base": "none.toml"})" + "\n"),
+                    Contains(":2: ") && Contains("first operation"));
   folder.write("f.csv", "frame,id,x,y,z,radius,density\n1,7,0,0,0,-1,2\n");
   refused(R"({"op": "import", "file": "f.csv", "frame": 1})", "f.csv:2:11: radius = -1, expected a number > 0");
   folder.write("f.csv", "frame,id,x,y,z,radius,density\n1,7,0,0,0,1,2\n");

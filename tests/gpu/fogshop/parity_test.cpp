@@ -90,6 +90,7 @@ TEST_CASE("fogshop: GPU agrees with CPU under an environment", "[gpu]") {
   finish(*alone);
   for (const auto& scene : {sky, both, constant, alone})
     for (Pairs given : {Pairs{{"environment_psf", "npsf"}, {"variant", "paper"}},
+                        Pairs{{"environment_airlight", "everywhere"}, {"downsample", "2"}},
                         Pairs{{"environment_psf", "npsfT"}, {"sh_order", "12"}}, Pairs{{"environment_psf", "ball"}}}) {
       given.insert({{"erf", "erf10"}, {"reflectance", "npsfT"}});
       if (scene == constant || scene == alone) given["environment_distance"] = "40";
