@@ -9,8 +9,10 @@
 #include "methods/fogshop/fogshop.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
 
 using namespace airlight;
+using gpu::test::p99;
 using Pairs = std::map<std::string, std::string>;
 
 namespace {
@@ -19,19 +21,6 @@ scene::Film render(const scene::Renderer& renderer, const std::shared_ptr<const 
                    const Pairs& given) {
   const auto prepared = renderer.prepare(scene, {renderer.settings(), given}, {1, {}});
   return prepared->render(view_of(*scene), {1, {}}).film;
-}
-
-// 99th percentile of |b - a| / (a + 1 % of the greatest a); infinite if anything is not finite.
-double p99(const scene::Film& a, const scene::Film& b, const std::string& layer) {
-  const std::vector<float>&x = a.layer(layer), &y = b.layer(layer);
-  const double most = *std::max_element(x.begin(), x.end());
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) return infinity;
-    errors.push_back(std::abs(double(y[i]) - x[i]) / (x[i] + 0.01 * most + 1e-300));
-  }
-  std::sort(errors.begin(), errors.end());
-  return errors[std::size_t(0.99 * double(errors.size() - 1))];
 }
 
 std::shared_ptr<const scene::Scene> scene_named(const std::string& name) {

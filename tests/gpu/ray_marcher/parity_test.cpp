@@ -9,9 +9,11 @@
 #include "reference/deterministic/airlight.h"
 #include "scene/error.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
 using namespace airlight;
+using gpu::test::p99;
 using namespace airlight::ray_marcher;
 
 namespace {
@@ -28,19 +30,6 @@ scene::View look() {
 scene::Rendering render_gpu(std::shared_ptr<const scene::Scene> scene, const scene::View& view, const Given& given) {
   const gpu::RayMarcherGpu marcher;
   return marcher.prepare(std::move(scene), {marcher.settings(), given}, {1, {}})->render(view, {1, {}});
-}
-
-// 99th percentile of |b - a| / (a + 1 % of the greatest a); infinite if anything is not finite.
-double p99(const scene::Film& a, const scene::Film& b, const std::string& layer) {
-  const std::vector<float>&x = a.layer(layer), &y = b.layer(layer);
-  const double most = *std::max_element(x.begin(), x.end());
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) return infinity;
-    errors.push_back(std::abs(double(y[i]) - x[i]) / (x[i] + 0.01 * most + 1e-300));
-  }
-  std::sort(errors.begin(), errors.end());
-  return errors[std::size_t(0.99 * double(errors.size() - 1))];
 }
 
 }  // namespace

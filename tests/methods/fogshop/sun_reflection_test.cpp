@@ -8,32 +8,13 @@
 #include "methods/fogshop/surface_psf.h"
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
+#include "tests/methods/fogshop/exact_reflection.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
+using fogshop_test::exact_reflection;
 
 namespace {
-
-// Integral of brdf * cosine * NPSF_T over the hemisphere, in coordinates around the light; gamma = pi x^4 takes the
-// NPSF's peak.
-Rgb exact_reflection(const scene::Material& material, const Vec3& normal, const Vec3& to_view, const Vec3& to_light,
-                     double T) {
-  static const scene::GaussLegendre rule = scene::gauss_legendre(160);
-  const Vec3 a = to_light.unitOrthogonal(), b = to_light.cross(a);
-  Rgb sum = Rgb::Zero();
-  constexpr int around = 720;
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const double x = 0.5 * (1 + rule.node[i]), gamma = pi * x * x * x * x;
-    const double ring = 0.5 * rule.weight[i] * 4 * pi * x * x * x * npsf(gamma, T) * std::sin(gamma) * 2 * pi / around;
-    for (int k = 0; k < around; ++k) {
-      const double phi = 2 * pi * (k + 0.5) / around;
-      const Vec3 in = std::cos(gamma) * to_light + std::sin(gamma) * (std::cos(phi) * a + std::sin(phi) * b);
-      const double cosine = normal.dot(in);
-      if (cosine > 0) sum += scene::brdf(material, normal, in, to_view) * (cosine * ring);
-    }
-  }
-  return sum;
-}
 
 const Vec3 normal(0, 1, 0);
 
