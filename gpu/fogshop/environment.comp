@@ -28,14 +28,13 @@ void main() {
   if (everywhere == 0 && has_distances != 0 && distances[index] < far_away) return;  // something ends the ray
   vec3 origin, direction;
   camera_ray(vec2(pixel) + 0.5, origin, direction);
-  float y[SH_ORDER * SH_ORDER];
-  evaluate_sh(direction, y);
+  evaluate_sh(direction);
   // The tiny number keeps the logarithm finite; below the table's first depth the place is its first anyway.
   vec3 T = pixels[index].w * hue, sum = vec3(0);
   vec3 place = clamp((log(max(T, 1e-30)) - log_least_depth) / log_depth_range, 0, 1) * (band_depths - 1);
-  for (int l = 0; l < SH_ORDER; ++l) {
+  for (int l = 0; l < sh_order; ++l) {
     vec3 value = vec3(0);
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += light[i].rgb * y[i];
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += light[i].rgb * sh[i];
     sum += value * vec3(band(l, place.r), band(l, place.g), band(l, place.b));
   }
   pixels[index].rgb += max(sum * T * exp(-T), vec3(0));

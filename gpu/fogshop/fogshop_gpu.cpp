@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "gpu/buffer.h"
+#include "gpu/fogshop/background.h"
 #include "gpu/fogshop/passes.h"
 #include "gpu/fogshop/surface_shading.h"
 #include "gpu/raster_program.h"
 #include "gpu/timer.h"
-#include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/fogshop.h"
-#include "methods/fogshop/stages.h"
+#include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
@@ -25,7 +25,8 @@ using scene::View;
 class PreparedFogshopGpu final : public scene::Prepared {
  public:
   // `map_side`: texels to a face of the light-distance maps.
-  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const fogshop::Options& options, int map_side)
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const fogshop::Options& options, int map_side,
+                     const Execution& execution)
       : scene_(std::move(scene)),
         model_(fogshop::make_model(*scene_, options)),
         needs_(fogshop::needs_of(*scene_, model_)),
@@ -42,20 +43,17 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
-    if (needs_.point_harmonics) {
-      // Tables of reflectances serve the CPU alone.
-      reflection_ = fogshop::make_reflection(*scene_, options, needs_.environment);
-      timer.stage("harmonics of the NPSF");
+    lighting_ = fogshop::make_lighting(*scene_, options, needs_, execution,
+                                       [&](const std::string& stage) { timer.stage(stage); });
+    if (needs_.environment_airlight) fog_.upload_environment(*lighting_.environment);
+    if (needs_.environment) {
+      background_ = std::make_unique<Background>(context_, *scene_);
+      timer.stage("background");
     }
-    if (needs_.environment_harmonics) {
-      environment_ = std::make_unique<fogshop::EnvironmentLighting>(*scene_, options, needs_.environment_psf);
-      if (needs_.environment_airlight) fog_.upload_environment(*environment_);
-      timer.stage("harmonics of the environment");
-    }
-    // Light of an environment on surfaces is for the CPU, and theirs of points with it.
-    if (needs_.surfaces && !needs_.environment) {
-      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, reflection_.get());
-      if (casts_shadows(*scene_)) {
+    if (needs_.surfaces) {
+      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_);
+      timer.stage("tables of surfaces");
+      if (casts_shadows(*scene_, model_)) {
         shading_->fill_light_distances(map_side);
         timer.stage("light-distance maps");
       }
@@ -69,7 +67,6 @@ class PreparedFogshopGpu final : public scene::Prepared {
 
  private:
   std::unique_ptr<Buffer> low_resolution_distances(const View&, const Execution&) const;
-  void add_environment(const View&, const Buffer* image, const Execution&, scene::Film&, StageTimer&) const;
 
   std::shared_ptr<const Scene> scene_;
   fogshop::Model model_;
@@ -77,21 +74,20 @@ class PreparedFogshopGpu final : public scene::Prepared {
   Context& context_;
   mutable FogOnDevice fog_;
   int map_side_;
-  std::unique_ptr<FirstHits> first_hits_;                      // null: rays are infinite
-  std::unique_ptr<SurfaceShading> shading_;                    // null: left out, or on the CPU
-  std::unique_ptr<fogshop::ScatteredReflection> reflection_;   // null: left out
-  std::unique_ptr<fogshop::EnvironmentLighting> environment_;  // the same
+  fogshop::SurfaceLighting lighting_;
+  std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
+  std::unique_ptr<SurfaceShading> shading_;  // null: left out
+  std::unique_ptr<Background> background_;   // the same
   std::vector<scene::StageTime> times_;
 };
 
 std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
   auto stages = fogshop::describe_stages(*scene_, model_);
   stages.insert(stages.begin(), {"device", true, context_.description()});
-  const bool maps = needs_.surfaces && !needs_.environment && casts_shadows(*scene_);
-  const std::string why_not = needs_.environment && needs_.surfaces ? "surfaces under an environment are lit on the CPU"
-                              : !scene_->surfaces.empty() && needs_.surfaces ? "a lone plane or sphere casts no shadow"
-                              : scene_->surfaces.empty()                     ? "there are no surfaces"
-                                                                             : "no light shines";
+  const bool maps = needs_.surfaces && casts_shadows(*scene_, model_);
+  const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
+                              : model_.lights.empty()  ? "no point light shines"
+                                                       : "a lone plane or sphere casts no shadow";
   const std::string why = fmt::format("shadows of surfaces: 6 faces of {0}^2 for each of {1} point light{2}", map_side_,
                                       model_.lights.size(), model_.lights.size() == 1 ? "" : "s");
   const auto surfaces =
@@ -115,28 +111,6 @@ std::unique_ptr<Buffer> PreparedFogshopGpu::low_resolution_distances(const View&
   for (const double t : low_distances(*scene_, view, low, execution))
     values.push_back(t < far_away ? float(t) : far_away);
   return std::make_unique<Buffer>(context_, "low distances", values);
-}
-
-// On the CPU: surfaces under an environment, and the background; the airlight of an environment is in the film already.
-void PreparedFogshopGpu::add_environment(const View& view, const Buffer* image, const Execution& execution,
-                                         scene::Film& film, StageTimer& timer) const {
-  std::vector<float>&airlight = film.layers["airlight"], &surface = film.layers["surface"], &mean = film.layers["mean"];
-  fogshop::FirstHits hits{std::vector<double>(film.pixels(), infinity), {}};
-  if (needs_.distances) hits = fogshop::first_hits(*scene_, view, execution);
-  if (needs_.surfaces) {
-    surface_pass(*scene_, model_, reflection_.get(), environment_.get(), nullptr, view, hits.points,
-                 film.layers["transmittance"], execution, surface,
-                 needs_.scattered ? &film.add("reflected_airlight") : nullptr);
-    timer.stage("surfaces");
-  }
-  std::vector<double> depth(film.pixels(), 0.0);
-  if (image) {
-    const auto values = image->download<std::array<float, 4>>();
-    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = values[i][3];
-  }
-  environment_pass(*scene_, model_, nullptr, view, hits.distance, depth, execution, airlight, surface);
-  timer.stage("background");
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
 }
 
 scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
@@ -175,11 +149,15 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
                                   : fog_.airlight(view, distances.get(), timer);
   }
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
+  if (shading_ || background_) surface = layer("surface");
   if (shading_) {
-    surface = layer("surface");
     if (needs_.scattered) scattered = layer("reflected_airlight");
     shading_->shade(fog_, first_hits_->surfaces(), view, *primitives, image.get(), *surface, scattered.get());
     timer.stage("surfaces");
+  }
+  if (background_) {
+    background_->draw(fog_, view, distances.get(), image.get(), *surface);
+    timer.stage("background");
   }
   if (image || surface) {
     const auto airlight = layer("airlight"), transmittance = layer("transmittance"), mean = layer("mean");
@@ -197,7 +175,6 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   film.add("surface");
   if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
   timer.stage("read back");
-  if (needs_.environment) add_environment(view, image.get(), execution, film, timer);
   result.times = timer.times();
   result.counters["rays"] = double(pixels);
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
@@ -230,22 +207,6 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   const fogshop::Options options = fogshop::read_options(settings);
   if (options.variant == fogshop::Options::Variant::voigt)
     reasons.push_back("variant = VS2 is for the CPU: shaders have no Faddeeva function");
-  if (options.reflectance == fogshop::Options::Reflectance::sun)
-    reasons.push_back("reflectance = sun is for the CPU: expected direct, npsf or npsfT");
-  for (const scene::Surface& surface : scene.surfaces)
-    if (std::holds_alternative<scene::Tabulated>(surface.material))
-      reasons.push_back("surface " + surface.name + " has a tabulated reflectance, which is for the CPU");
-  const bool environment = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
-    return std::holds_alternative<scene::EnvironmentLight>(light);
-  });
-  // Under an environment the CPU lights surfaces.
-  for (const scene::Surface& surface : scene.surfaces)
-    if (const auto* phong = std::get_if<scene::Phong>(&surface.material);
-        phong && phong->exponent > 50 && !environment && options.reflectance != fogshop::Options::Reflectance::direct)
-      reasons.push_back(
-          fmt::format("surface {} has a Phong exponent of {:g}: scattered light in shaders is for 50 at most",
-                      surface.name, phong->exponent));
-  if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");
   if (options.slices > most_slices)
@@ -256,12 +217,13 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
 }
 
 std::unique_ptr<scene::Prepared> FogshopGpu::prepare(std::shared_ptr<const Scene> scene,
-                                                     const scene::Settings& settings, const Execution&) const {
+                                                     const scene::Settings& settings,
+                                                     const Execution& execution) const {
   const std::vector<std::string> reasons = supports(*scene, settings);
   if (!reasons.empty())
     throw Error(fmt::format("{}: fogshop_gpu cannot render this: {}", scene->name, reasons.front()));
   return std::make_unique<PreparedFogshopGpu>(std::move(scene), fogshop::read_options(settings),
-                                              int(settings.integer("light_distance_side")));
+                                              int(settings.integer("light_distance_side")), execution);
 }
 
 }  // namespace airlight::gpu

@@ -223,6 +223,7 @@ void FogOnDevice::add_environment(const scene::View& view, bool has_distances, S
   p.set("hue", model_.fog.hue);
   p.set("has_distances", has_distances);
   p.set("everywhere", model_.options.environment_everywhere);
+  p.set("sh_order", bands_);
   p.set("band_depths", band_depths_);
   p.set("log_least_depth", std::log(Table::least_depth));
   p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));

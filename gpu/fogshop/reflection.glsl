@@ -1,76 +1,41 @@
-// Reflectances, and what they make of light that the medium scatters onto a surface (methods/fogshop/scattered_reflection.cpp;
-// Zhou et al. 2007, Eqs. 20 to 25).
+// Reflectances (scene/geometry/surface.h). Needs `tables`.
+#include "common/angle.glsl"
+
 struct Material {
-  vec4 diffuse;   // albedo of Lambert; w: 0 Lambert, 1 Phong
+  vec4 diffuse;   // albedo of Lambert; w: 0 Lambert, 1 Phong, 2 a table
   vec4 specular;  // w: exponent
+  ivec4 table;    // tabulated: its place, polar angles, azimuthal angles
+  ivec4 places;   // in harmonics: its place, entries; lobe of Sun et al., -1: none
 };
 layout(std430, binding = 2) readonly buffer Materials { Material materials[]; };  // by surface
-// Quadrature over cosines (nodes, weights), bands of the clamped cosine, then sh_order bands of the NPSF for each depth.
-layout(std430, binding = 9) readonly buffer Harmonics { float harmonics[]; };
-uniform int sh_order, depth_entries;        // entries even in log T; one: for every depth
-uniform float least_depth, greatest_depth;  // of the first and the last
 
-const int cosines = 16, around = 32, most_bands = 12;
-const int first_band = 2 * cosines + most_bands;
+float angle_between(vec3 a, vec3 b) { return angle_of(length(cross(a, b)), dot(a, b)); }
 
-vec3 brdf(Material m, vec3 normal, vec3 to_light, vec3 to_view) {
-  if (!(dot(normal, to_light) > 0) || !(dot(normal, to_view) > 0)) return vec3(0);
-  if (m.diffuse.w == 0) return m.diffuse.rgb / pi;
-  vec3 mirrored = 2 * dot(normal, to_light) * normal - to_light;
-  float cosine = max(0.0, dot(mirrored, to_view)), n = m.specular.w;
-  float power = n == 0 ? 1.0 : (cosine > 0 ? pow(cosine, n) : 0.0);
-  return m.diffuse.rgb / pi + m.specular.rgb * ((n + 2) / (2 * pi) * power);
-}
+vec3 rgb_at(int place) { return vec3(tables[place], tables[place + 1], tables[place + 2]); }
 
-// sum_l weights_l P_l(x), per channel.
-vec3 legendre_sum(vec3 weights[most_bands], float x) {
-  float before = 1, value = x;
-  vec3 sum = weights[0];
-  for (int l = 1; l < sh_order; ++l) {
-    sum += weights[l] * value;
-    float next = (float(2 * l + 1) * x * value - float(l) * before) / float(l + 1);
-    before = value;
-    value = next;
+// Linear in both polar angles and in the azimuth between them; scene/geometry/brdf_table.h.
+vec3 tabulated_brdf(ivec4 table, vec3 normal, vec3 to_light, vec3 to_view) {
+  float c_in = dot(normal, to_light), c_out = dot(normal, to_view);
+  float turn = angle_of(abs(dot(normal, cross(to_light, to_view))), dot(to_light, to_view) - c_in * c_out);
+  vec3 angles = vec3(angle_between(normal, to_light), angle_between(normal, to_view), turn) / vec3(0.5 * pi, 0.5 * pi, pi);
+  ivec3 size = table.yyz;
+  vec3 place = clamp(angles, 0, 1) * vec3(size - 1);
+  ivec3 entry = min(size - 2, ivec3(place));
+  vec3 share = place - vec3(entry), sum = vec3(0);
+  for (int corner = 0; corner < 8; ++corner) {
+    ivec3 up = ivec3(corner & 1, corner >> 1 & 1, corner >> 2), at = entry + up;
+    vec3 weight = mix(1 - share, share, equal(up, ivec3(1)));
+    sum += weight.x * weight.y * weight.z * rgb_at(table.x + 3 * (size.z * (size.x * at.x + at.y) + at.z));
   }
   return sum;
 }
 
-// g_l at the depth of each channel.
-vec3 band(int l, vec3 T) {
-  if (depth_entries == 1) return vec3(harmonics[first_band + l]);
-  vec3 g;
-  for (int c = 0; c < 3; ++c) {
-    float place = clamp(log(T[c] / least_depth) / log(greatest_depth / least_depth), 0.0, 1.0) * float(depth_entries - 1);
-    int k = min(depth_entries - 2, int(place)), at = first_band + k * sh_order + l;
-    g[c] = mix(harmonics[at], harmonics[at + sh_order], place - float(k));
-  }
-  return g;
-}
-
-// The reflected part of what the medium at depth T from the light scatters onto the surface, per unit of I/d^2, without its
-// albedo. A channel of depth 0 gets none.
-vec3 scattered_reflection(Material m, dvec3 exact_normal, vec3 to_view, vec3 to_light, vec3 T) {
-  vec3 normal = vec3(exact_normal), weights[most_bands], amount = max(T, vec3(0)) * exp(-T), sum = vec3(0);
-  for (int l = 0; l < sh_order; ++l) weights[l] = band(l, max(T, vec3(1e-30)));
-  if (m.diffuse.w == 0) {
-    if (!(dot(normal, to_view) > 0)) return vec3(0);
-    for (int l = 0; l < sh_order; ++l) weights[l] *= harmonics[2 * cosines + l];
-    return m.diffuse.rgb * amount * legendre_sum(weights, dot(normal, to_light)) / pi;
-  }
-  for (int l = 0; l < sh_order; ++l) weights[l] *= sqrt(float(2 * l + 1) / (4 * pi));
-  // The same frame as the CPU's (Eigen's unitOrthogonal): its directions are the same.
-  dvec3 e = exact_normal;
-  bool up = abs(e.x) <= 1e-12LF * abs(e.z) && abs(e.y) <= 1e-12LF * abs(e.z);
-  vec3 a = vec3(normalize(up ? dvec3(0, -e.z, e.y) : dvec3(-e.y, e.x, 0))), b = cross(normal, a);
-  for (int i = 0; i < cosines; ++i) {
-    float c = harmonics[i], s = sqrt((1 - c) * (1 + c));
-    vec3 ring = vec3(0);
-    for (int k = 0; k < around; ++k) {
-      float phi = 2 * pi * (float(k) + 0.5) / float(around);
-      vec3 from = c * normal + s * (cos(phi) * a + sin(phi) * b);
-      ring += brdf(m, normal, from, to_view) * legendre_sum(weights, dot(from, to_light));
-    }
-    sum += harmonics[cosines + i] * (2 * pi / float(around)) * c * ring;
-  }
-  return sum * amount;
+vec3 brdf(Material m, vec3 normal, vec3 to_light, vec3 to_view) {
+  if (!(dot(normal, to_light) > 0) || !(dot(normal, to_view) > 0)) return vec3(0);
+  if (m.diffuse.w == 0) return m.diffuse.rgb / pi;
+  if (m.diffuse.w == 2) return tabulated_brdf(m.table, normal, to_light, to_view);
+  vec3 mirrored = 2 * dot(normal, to_light) * normal - to_light;
+  float cosine = max(0.0, dot(mirrored, to_view)), n = m.specular.w;
+  float power = n == 0 ? 1.0 : (cosine > 0 ? pow(cosine, n) : 0.0);
+  return m.diffuse.rgb / pi + m.specular.rgb * ((n + 2) / (2 * pi) * power);
 }

@@ -1,17 +1,18 @@
-// Surfaces in shaders: direct light with shadows, and scattered light (methods/fogshop/surface_pass.h).
+// Surfaces in shaders: direct light with shadows, scattered light, light of the environment
+// (methods/fogshop/surface_pass.h), and the environment behind everything.
 #pragma once
 #include <memory>
 
 #include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/surface_tables.h"
 #include "gpu/raster/light_distances.h"
-#include "methods/fogshop/scattered_reflection.h"
 
 namespace airlight::gpu {
 
 class SurfaceShading {
  public:
-  // Uploads materials, light positions and the NPSF's harmonics (`reflection`, null: direct light alone).
-  SurfaceShading(Context&, const scene::Scene&, const fogshop::Model&, const fogshop::ScatteredReflection* reflection);
+  // Uploads materials, light positions and the tables of `lighting`. Both it and the model must live on.
+  SurfaceShading(Context&, const scene::Scene&, const fogshop::Model&, const fogshop::SurfaceLighting& lighting);
 
   // Light-distance maps of `side` texels to a face, where anything can cast a shadow (casts_shadows).
   void fill_light_distances(int side);
@@ -25,13 +26,15 @@ class SurfaceShading {
   Context& context_;
   const scene::Scene& scene_;
   const fogshop::Model& model_;
+  const fogshop::SurfaceLighting& lighting_;
   double magnitude_;  // the largest coordinate [m]
-  bool scattered_;
-  Buffer materials_, light_places_, harmonics_;
+  SurfaceTables places_;
+  Buffer materials_, light_places_, tables_, transfer_;
   std::unique_ptr<LightDistances> maps_;  // null: nothing casts a shadow
 };
 
-// A lone plane or sphere shadows itself only where it is turned away.
-bool casts_shadows(const scene::Scene&);
+// A point light shines on something that is not a lone plane or sphere, which shadows itself only where it is turned
+// away.
+bool casts_shadows(const scene::Scene&, const fogshop::Model&);
 
 }  // namespace airlight::gpu

@@ -1,18 +1,28 @@
-// Surfaces seen through the medium: Zhou et al. 2007, Eq. 29 with L_p by Eqs. 19 and 25, every pixel that a surface ends
-// (methods/fogshop/surface_pass.cpp, scattered_reflection.cpp). Points are met again in double precision: shadows start there.
+// Surfaces seen through the medium: Zhou et al. 2007, Eq. 29 with L_p by Eqs. 19 to 27, every pixel that a surface ends
+// (methods/fogshop/surface_pass.cpp, surface_lighting.cpp). Points are met again in double precision: shadows start there.
+// HARMONICS: light or reflectance in harmonics of SH_ORDER bands; SUN: what points scatter without them; TRANSFER: shadows of
+// what is in harmonics; ENVIRONMENT: light of one.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/light_distances.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
-#include "fogshop/reflection.glsl"
 
+layout(std430, binding = 9) readonly buffer Tables { float tables[]; };  // all that is precomputed, one after the other
 layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
 layout(std430, binding = 3) readonly buffer LightPlaces { double light_place[]; };  // [m], not rounded: maps start there
 layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };           // airlight, depth
 layout(std430, binding = 7) writeonly buffer Surface { float surface_layer[]; };
 layout(std430, binding = 8) writeonly buffer Scattered { float scattered_layer[]; };
 uniform int has_airlight, has_scattered;
+uniform float environment_depth;  // of the constant up to the environment [-]
+#include "fogshop/reflection.glsl"
+#if HARMONICS
+#include "fogshop/harmonics.glsl"
+#endif
+#if SUN
+#include "fogshop/sun.glsl"
+#endif
 uniform double nudge;  // [m] off the surface, where shadow rays start
 
 void main() {
@@ -46,6 +56,12 @@ void main() {
       }
       Material material = materials[surface];
       vec3 n = vec3(normal), to_view = vec3(-direction);
+#if HARMONICS
+      int reflected = reflectance_harmonics(material, n, to_view);
+#if TRANSFER
+      if (primitive < triangle_count) reflected = shadow_harmonics(triangles[primitive], point, normal);
+#endif
+#endif
       for (int l = 0; l < light_count; ++l) {
         dvec3 offset = dvec3(light_place[3 * l], light_place[3 * l + 1], light_place[3 * l + 2]) - point;
         double distance_ = length(offset);
@@ -62,10 +78,19 @@ void main() {
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;
         float depth = depth_between(lights[l].position, vec3(point), -1) + constant * d;
         direct += reflectance * cosine * irradiance * exp(-depth * hue);
-        if (has_scattered != 0)
-          scattered += irradiance * scattered_reflection(material, normal, to_view, towards, depth * hue);
+#if SUN
+        scattered += irradiance * reflect_sun(material, n, to_view, towards, depth * hue);
+#elif HARMONICS
+        if (has_scattered != 0) scattered += irradiance * reflect_point(reflected, towards, depth * hue);
+#endif
       }
       scattered = max(scattered * albedo, vec3(0));  // harmonics cut off at a band may swing below 0
+#if ENVIRONMENT
+      vec3 arriving, spread;
+      reflect_environment(reflected, (average_depth(vec3(point)) + environment_depth) * hue, arriving, spread);
+      direct += arriving;
+      scattered += albedo * spread;
+#endif
     }
   }
   vec3 visible = has_airlight != 0 ? transmittance_of(pixels[place].w) : vec3(1);

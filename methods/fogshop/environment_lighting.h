@@ -30,6 +30,7 @@ class EnvironmentLighting {
   IncidentHarmonics incident(const Fog&, double depth, bool scattered) const;
 
   const std::vector<Rgb>& light() const { return light_; }
+  bool spreads() const { return bands_ != nullptr; }
   const PsfBands& bands() const { return *bands_; }  // requires spreads
   int order() const { return order_; }
 

@@ -7,10 +7,8 @@
 #include <cmath>
 
 #include "methods/fogshop/airlight_pass.h"
-#include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/low_resolution.h"
-#include "methods/fogshop/scattered_reflection.h"
-#include "methods/fogshop/stages.h"
+#include "methods/fogshop/surface_lighting.h"
 #include "methods/fogshop/surface_pass.h"
 #include "scene/error.h"
 
@@ -45,9 +43,7 @@ class PreparedFogshop final : public scene::Prepared {
  private:
   std::shared_ptr<const Scene> scene_;
   Model model_;
-  std::shared_ptr<RadianceTransfer> transfer_;        // null: left out
-  std::unique_ptr<ScatteredReflection> reflection_;   // null: left out
-  std::unique_ptr<EnvironmentLighting> environment_;  // the same
+  SurfaceLighting lighting_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -74,22 +70,9 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     model_.f_table = std::make_unique<FTable>();
     times_.push_back({"table of F", watch.lap()});
   }
-  if (needs.point_harmonics) {
-    reflection_ = make_reflection(*scene_, options);
-    times_.push_back(
-        {options.reflectance == Options::Reflectance::sun ? "tables of Sun et al." : "harmonics of the NPSF",
-         watch.lap()});
-  }
-  if (needs.transfer) {
-    transfer_ =
-        std::make_shared<RadianceTransfer>(*scene_, options.sh_order, options.prt_rays, options.prt_reach, execution);
-    if (reflection_) reflection_->shadow(transfer_);
-    times_.push_back({"radiance transfer", watch.lap()});
-  }
-  if (needs.environment_harmonics) {
-    environment_ = std::make_unique<EnvironmentLighting>(*scene_, options, needs.environment_psf);
-    times_.push_back({"harmonics of the environment", watch.lap()});
-  }
+  lighting_ = make_lighting(*scene_, options, needs, execution, [&](const std::string& stage) {
+    times_.push_back({stage, watch.lap()});
+  });
   if (needs.sky_volume) {
     model_.sky = std::make_unique<SkyVolume>(*scene_, model_.fog, model_.gaussians, options.erf, options.sky_cells,
                                              options.sky_directions, execution);
@@ -149,15 +132,14 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
   if (needs.surfaces) {
-    evaluations +=
-        surface_pass(*scene_, model_, reflection_.get(), environment_.get(), transfer_.get(), view, hits.points,
-                     transmittance, execution, surface, needs.scattered ? &film.add("reflected_airlight") : nullptr);
+    evaluations += surface_pass(*scene_, model_, lighting_, view, hits.points, transmittance, execution, surface,
+                                needs.scattered ? &film.add("reflected_airlight") : nullptr);
     result.times.push_back({"surfaces", watch.lap()});
   }
   if (needs.environment) {
     const bool by_psf = needs.environment_airlight && !needs.sky_volume;
-    environment_pass(*scene_, model_, by_psf ? environment_.get() : nullptr, view, hits.distance, depth, execution,
-                     airlight, surface);
+    environment_pass(*scene_, model_, by_psf ? lighting_.environment.get() : nullptr, view, hits.distance, depth,
+                     execution, airlight, surface);
     result.times.push_back({"environment", watch.lap()});
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];

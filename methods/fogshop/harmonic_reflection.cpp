@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/fogshop/triple_product.h"
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
@@ -15,13 +14,6 @@ namespace airlight::fogshop {
 namespace {
 
 constexpr int greatest_order = 12;
-
-int order_of(std::size_t coefficients) {
-  for (int order = 1; order <= greatest_order; ++order)
-    if (coefficients == std::size_t(order) * order) return order;
-  throw Error(fmt::format("{} coefficients of harmonics, expected a square number from 1 to {}", coefficients,
-                          greatest_order * greatest_order));
-}
 
 std::vector<Rgb> lambert_harmonics(const Rgb& albedo, const Vec3& normal, int order) {
   static const std::vector<double> cosine = clamped_cosine(greatest_order);
@@ -88,17 +80,19 @@ std::vector<Rgb> reflectance_harmonics(const scene::Material& material, const Ve
   return result;
 }
 
-Rgb reflect_harmonics(const scene::Material& material, const Vec3& normal, const Vec3& to_view,
-                      const std::vector<Rgb>& incident, const std::vector<double>* visibility) {
-  const int order = order_of(incident.size());
-  if (visibility && visibility->size() != incident.size())
-    throw Error(fmt::format("a visibility of {} coefficients for light of {}, expected as many", visibility->size(),
+Rgb reflect_harmonics(const std::vector<Rgb>& reflectance, const std::vector<Rgb>& incident) {
+  if (reflectance.size() != incident.size())
+    throw Error(fmt::format("a reflectance of {} coefficients for light of {}, expected as many", reflectance.size(),
                             incident.size()));
-  if (!(normal.dot(to_view) > 0)) return Rgb::Zero();
-  const std::vector<Rgb> reflectance = reflectance_harmonics(material, normal, to_view, order);
-  if (visibility) return triple_product(order)(incident, reflectance, *visibility);
   Rgb sum = Rgb::Zero();
   for (std::size_t i = 0; i < incident.size(); ++i) sum += incident[i] * reflectance[i];
+  return sum;
+}
+
+Rgb reflect_zonal(const std::vector<Rgb>& reflectance, const std::vector<double>& bands, const Vec3& to_light) {
+  const std::vector<double> light = turned_zonal(bands, to_light);
+  Rgb sum = Rgb::Zero();
+  for (std::size_t i = 0; i < light.size(); ++i) sum += light[i] * reflectance[i];
   return sum;
 }
 

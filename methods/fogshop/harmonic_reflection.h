@@ -10,15 +10,16 @@
 
 namespace airlight::fogshop {
 
-// Radiance towards the viewer [W/m^2/sr] from `incident` radiance: the inner product with the reflectance times cosine
-// (B_pv), or with a `visibility` of as many coefficients the triple product <incident | visibility | B_pv>. `normal` is
-// on the viewer's side; zero if to_view is below the horizon. Not clamped: cut-off harmonics may swing below 0.
-Rgb reflect_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view, const std::vector<Rgb>& incident,
-                      const std::vector<double>* visibility);
-
-// B_pv: coefficients of brdf(in, to_view) max(0, normal . in) as a function of `in`. Lambert in closed form; others by
+// B_pv: coefficients of brdf(in, to_view) max(0, normal . in) as a function of `in`. `normal` is on the viewer's side;
+// zero if to_view is below the horizon. Lambert in closed form; others by
 // quadrature over the hemisphere, 512 directions and for Phong exponents above 50 in proportion to the exponent.
 std::vector<Rgb> reflectance_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view, int order);
+
+// Radiance towards the viewer [W/m^2/sr]: the inner product of `reflectance` (B_pv, or its product with a visibility,
+// TripleProduct) and `incident` radiance. Not clamped: cut-off harmonics may swing below 0.
+Rgb reflect_harmonics(const std::vector<Rgb>& reflectance, const std::vector<Rgb>& incident);
+// The same for incident light 1 in these bands around `to_light`: Eq. 25.
+Rgb reflect_zonal(const std::vector<Rgb>& reflectance, const std::vector<double>& bands, const Vec3& to_light);
 
 // A function that is circularly symmetric about z, given by its coefficients of m = 0, turned to another axis: Eq. 23.
 std::vector<double> turned_zonal(const std::vector<double>& bands, const Vec3& axis);

@@ -26,12 +26,14 @@ class RadianceTransfer {
   // on the inner side of a mesh.
   std::vector<double> visibility(const scene::Scene&, const SurfacePoint&) const;
 
+  // By surface, order^2 for every vertex; none for other shapes than meshes.
+  const std::vector<std::vector<float>>& coefficients() const { return coefficients_; }
   double rays_cast() const { return rays_cast_; }
 
  private:
   int order_;
   double rays_cast_ = 0;
-  std::vector<std::vector<float>> coefficients_;  // by surface: order^2 for every vertex; empty for other shapes
+  std::vector<std::vector<float>> coefficients_;
 };
 
 }  // namespace airlight::fogshop

@@ -7,6 +7,7 @@
 #include "methods/fogshop/harmonic_reflection.h"
 #include "scene/geometry/brdf_table.h"
 #include "scene/math/gauss_legendre.h"
+#include "scene/math/sh_rotation.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::fogshop {
@@ -56,19 +57,28 @@ std::vector<Rgb> ReflectanceTable::harmonics(double theta_out) const {
   return result;
 }
 
-Rgb ReflectanceTable::reflect(const Vec3& normal, const Vec3& to_view, const Vec3& to_light,
-                              const std::vector<double>& bands) const {
+std::vector<Rgb> ReflectanceTable::turned(const Vec3& normal, const Vec3& to_view) const {
   const double cosine = normal.dot(to_view);
-  if (!(cosine > 0)) return Rgb::Zero();
+  if (!(cosine > 0)) return std::vector<Rgb>(std::size_t(order_) * order_, Rgb::Zero());
   const Vec3 aside = to_view - cosine * normal;
   const double sine = aside.norm();
-  const Vec3 x = sine > 1e-12 ? Vec3(aside / sine) : Vec3(normal.unitOrthogonal());
-  const std::vector<Rgb> reflectance = harmonics(std::atan2(sine, cosine));
-  const std::vector<double> light =
-      turned_zonal(bands, Vec3(x.dot(to_light), normal.cross(x).dot(to_light), normal.dot(to_light)));
-  Rgb sum = Rgb::Zero();
-  for (std::size_t k = 0; k < light.size(); ++k) sum += light[k] * reflectance[k];
-  return sum;
+  Mat3 frame;
+  frame.col(0) = sine > 1e-12 ? Vec3(aside / sine) : Vec3(normal.unitOrthogonal());
+  frame.col(1) = normal.cross(frame.col(0));
+  frame.col(2) = normal;
+  return scene::turned_sh(harmonics(std::atan2(sine, cosine)), frame);
+}
+
+SurfaceReflectances::SurfaceReflectances(const std::vector<scene::Surface>& surfaces, int order)
+    : order_(order), tables_(surfaces.size()) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (!std::holds_alternative<scene::Lambert>(surfaces[i].material)) tables_[i].emplace(surfaces[i].material, order);
+}
+
+std::vector<Rgb> SurfaceReflectances::operator()(const scene::Scene& scene, int surface, const Vec3& normal,
+                                                 const Vec3& to_view) const {
+  return tables_[surface] ? tables_[surface]->turned(normal, to_view)
+                          : reflectance_harmonics(scene.surfaces[surface].material, normal, to_view, order_);
 }
 
 }  // namespace airlight::fogshop

@@ -46,6 +46,8 @@ Needs needs_of(const scene::Scene& scene, const Model& model) {
   needs.sky_volume = needs.environment_airlight && model.options.sky_volume && gaussians;
   needs.environment_psf = (needs.environment_airlight && !needs.sky_volume) || (needs.environment && needs.scattered);
   needs.environment_harmonics = needs.environment && (needs.environment_psf || needs.surfaces);
+  needs.reflectances = (needs.point_harmonics && model.options.reflectance != Options::Reflectance::sun) ||
+                       (needs.environment && needs.surfaces);
   needs.transfer =
       model.options.prt && needs.surfaces && (needs.point_harmonics || needs.environment) && mesh_vertices(scene) > 0;
   return needs;

@@ -14,6 +14,7 @@ struct Needs {
   bool low_resolution;         // airlight for some pixels only, and upsampling
   bool scattered;              // light that the medium scatters onto surfaces
   bool point_harmonics;        // that of point lights: harmonics of the NPSF
+  bool reflectances;           // B_pv in harmonics
   bool environment;            // an environment light that reaches the scene: the background
   bool environment_harmonics;  // its projection
   bool environment_airlight;   // light of the environment in the air

@@ -12,8 +12,7 @@
 namespace airlight::fogshop {
 namespace {
 
-constexpr int depths = 64, angles = 257, rings = 192;
-constexpr double least_depth = 1e-3, greatest_depth = 30;
+constexpr int rings = 192;
 
 // gamma = pi x^4: the NPSF's 1/gamma is cancelled by the area, and what thick media crowd near 0 is spread.
 struct Rings {
@@ -32,7 +31,10 @@ const Rings& ring_rule() {
   return rule;
 }
 
-double depth_of(int k) { return least_depth * std::pow(greatest_depth / least_depth, double(k) / (depths - 1)); }
+double depth_of(int k) {
+  using Table = DepthAngleTable;
+  return Table::least_depth * std::pow(Table::greatest_depth / Table::least_depth, double(k) / (Table::depths - 1));
+}
 
 // Mean of max(0, cos) over a ring: cos = a + b cos phi.
 double mean_clamped_cosine(double angle, double gamma) {

@@ -22,6 +22,10 @@ class DepthAngleTable {
   template <class Kernel>
   explicit DepthAngleTable(Kernel&& kernel);
   double operator()(double T, double cosine) const;
+  const std::vector<double>& values() const { return values_; }  // [depth][angle]
+
+  static constexpr int depths = 64, angles = 257;
+  static constexpr double least_depth = 1e-3, greatest_depth = 30;
 
  private:
   void fill(const std::vector<std::vector<double>>& kernel);
@@ -38,11 +42,14 @@ class SunReflection {
   // Lambert 1e-3 of the light from straight above; Phong likewise while the lobe stays above the horizon.
   Rgb reflect(const scene::Material&, const Vec3& normal, const Vec3& to_view, const Vec3& to_light, double T) const;
 
- private:
   struct Lobe {
     double exponent;
     DepthAngleTable along, across;  // components along the mirror direction, and perpendicular to it towards the light
   };
+  const DepthAngleTable& lambert() const { return lambert_; }
+  const std::vector<Lobe>& lobes() const { return lobes_; }
+
+ private:
   static Lobe make_lobe(double exponent);
 
   DepthAngleTable lambert_;

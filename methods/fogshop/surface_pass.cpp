@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "methods/fogshop/environment_lighting.h"
-#include "methods/fogshop/harmonic_reflection.h"
-#include "methods/fogshop/radiance_transfer.h"
-#include "methods/fogshop/scattered_reflection.h"
+#include "methods/fogshop/surface_lighting.h"
 
 namespace airlight::fogshop {
 
@@ -56,25 +53,10 @@ FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const s
   return hits;
 }
 
-void reflect_environment(const scene::Scene& scene, const Model& model, const EnvironmentLighting& environment,
-                         const RadianceTransfer* transfer, const SurfacePoint& point, const Vec3& to_view, Rgb& direct,
-                         Rgb* scattered) {
-  const scene::Material& material = scene.surfaces[point.surface].material;
-  const IncidentHarmonics in =
-      environment.incident(model.fog, average_depth(model, point.position), scattered != nullptr);
-  const std::vector<double> visibility = transfer ? transfer->visibility(scene, point) : std::vector<double>{};
-  const auto reflected = [&](const std::vector<Rgb>& light) -> Rgb {
-    return reflect_harmonics(material, point.normal, to_view, light, visibility.empty() ? nullptr : &visibility)
-        .max(0.0);
-  };
-  direct += reflected(in.attenuated);
-  if (scattered) *scattered += reflected(in.scattered);
-}
-
-double surface_pass(const scene::Scene& scene, const Model& model, const ScatteredReflection* points,
-                    const EnvironmentLighting* environment, const RadianceTransfer* transfer, const scene::View& view,
-                    const std::vector<SurfacePoint>& hits, const std::vector<float>& transmittance,
-                    const scene::Execution& execution, std::vector<float>& surface, std::vector<float>* scattered) {
+double surface_pass(const scene::Scene& scene, const Model& model, const SurfaceLighting& lighting,
+                    const scene::View& view, const std::vector<SurfacePoint>& hits,
+                    const std::vector<float>& transmittance, const scene::Execution& execution,
+                    std::vector<float>& surface, std::vector<float>* scattered) {
   std::vector<double> calls(view.height, 0.0);
   scene::parallel_rows(view.height, execution, [&](int y) {
     Crossings crossings;
@@ -85,10 +67,12 @@ double surface_pass(const scene::Scene& scene, const Model& model, const Scatter
       found.clear();
       const Vec3 to_view = -camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
       Rgb radiance = direct_reflection(scene, model, hits[i], to_view, crossings, calls[y], &found), part = Rgb::Zero();
-      if (points) part = (*points)(scene, model, hits[i], to_view, crossings, calls[y], &found);
-      if (environment)
-        reflect_environment(scene, model, *environment, transfer, hits[i], to_view, radiance,
-                            scattered ? &part : nullptr);
+      const std::vector<Rgb> reflectance =
+          lighting.reflectances ? shadowed_reflectance(scene, lighting, hits[i], to_view) : std::vector<Rgb>{};
+      if (lighting.points)
+        part = (*lighting.points)(scene, model, hits[i], to_view, reflectance, crossings, calls[y], &found);
+      if (lighting.environment)
+        reflect_environment(model, *lighting.environment, hits[i], reflectance, radiance, scattered ? &part : nullptr);
       for (int c = 0; scattered && c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
       radiance += part;
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * radiance[c]);

@@ -36,23 +36,11 @@ double light_depth(const Model&, const Point3& source, const Point3& point, Cros
 Rgb direct_reflection(const scene::Scene&, const Model&, const SurfacePoint&, const Vec3& to_view, Crossings&,
                       double& evaluations, std::vector<LightDepth>* found = nullptr);
 
-class ScatteredReflection;
-class EnvironmentLighting;
-class RadianceTransfer;
-
-// L_p lit by the environment [W/m^2/sr], Eqs. 26, 27 and 20: what reaches the point unscattered is added to `direct`,
-// what the medium scatters onto it, if asked for, to `scattered`. Harmonics cut off at a band may swing below 0: then a
-// part is 0. Shadowed by the `transfer`, if there is one.
-void reflect_environment(const scene::Scene&, const Model&, const EnvironmentLighting&,
-                         const RadianceTransfer* transfer, const SurfacePoint&, const Vec3& to_view, Rgb& direct,
-                         Rgb* scattered);
+struct SurfaceLighting;
 
 // Steps 4 and 7: L = e^-T L_p of every pixel that a surface ends, into `surface`; the part of it that the medium had
-// scattered into `scattered` too, if it is not null: that of point lights by `points`, that of the environment by
-// `environment`, shadowed by `transfer`; null: left out. Other pixels are left alone. Returns calls of the error
-// function.
-double surface_pass(const scene::Scene&, const Model&, const ScatteredReflection* points,
-                    const EnvironmentLighting* environment, const RadianceTransfer* transfer, const scene::View&,
+// scattered into `scattered` too, if it is not null. Other pixels are left alone. Returns calls of the error function.
+double surface_pass(const scene::Scene&, const Model&, const SurfaceLighting&, const scene::View&,
                     const std::vector<SurfacePoint>&, const std::vector<float>& transmittance, const scene::Execution&,
                     std::vector<float>& surface, std::vector<float>* scattered);
 

@@ -42,15 +42,11 @@ double average_depth(double u) {
   return std::abs(u) < 1e-9 ? half_root_pi : half_root_pi * dawson(u) / u;
 }
 
-double tabulated_average_depth(double u) {
-  // Cubic between values and slopes; beyond, the asymptotic series of D(u)/u, whose next term is below 1e-9.
-  constexpr int count = 1280;
-  constexpr double end = 10, step = end / count;
-  struct Node {
-    double value, slope;  // slope per step
-  };
-  static const std::vector<Node> nodes = [] {
-    std::vector<Node> table;
+const std::vector<AverageDepthNode>& average_depth_nodes() {
+  static const std::vector<AverageDepthNode> nodes = [] {
+    constexpr int count = 1280;
+    constexpr double step = AverageDepthNode::end / count;
+    std::vector<AverageDepthNode> table;
     for (int i = 0; i <= count; ++i) {
       const double x = i * step, f = average_depth(x);
       // D' = 1 - 2 u D.
@@ -59,14 +55,22 @@ double tabulated_average_depth(double u) {
     }
     return table;
   }();
+  return nodes;
+}
+
+double tabulated_average_depth(double u) {
+  // The next term of the series is below 1e-9.
+  static const std::vector<AverageDepthNode>& nodes = average_depth_nodes();
+  constexpr double end = AverageDepthNode::end;
   if (u >= end) {
     const double w = 0.5 / (u * u);
     return 0.25 * std::sqrt(pi) / (u * u) * (1 + w * (1 + w * (3 + w * (15 + w * (105 + w * 945)))));
   }
-  const double place = u / step;
+  const int count = int(nodes.size()) - 1;
+  const double place = u / end * count;
   const int k = std::min(int(place), count - 1);
   const double s = place - k, r = 1 - s;
-  const Node &a = nodes[std::size_t(k)], &b = nodes[std::size_t(k) + 1];
+  const AverageDepthNode &a = nodes[std::size_t(k)], &b = nodes[std::size_t(k) + 1];
   return r * r * (a.value * (1 + 2 * s) + a.slope * s) + s * s * (b.value * (1 + 2 * r) - b.slope * r);
 }
 

@@ -1,6 +1,7 @@
 // How the airlight around a point light spreads over the directions in which a surface receives it: the point spread
 // function of Zhou et al. 2007, Eqs. 18 to 24, after Sun et al. 2005.
 #pragma once
+#include <vector>
 
 namespace airlight::fogshop {
 
@@ -20,5 +21,13 @@ double npsf_coefficient(int l, double T);
 double average_depth(double u);
 // The same from a table, to 1e-8 of itself or better: for loops over Gaussians at every pixel.
 double tabulated_average_depth(double u);
+
+// That table: values and slopes per step at u = 0, step, 2 step, ... up to AverageDepthNode::end, cubic between them;
+// beyond it the asymptotic series, sqrt(pi)/(4 u^2) (1 + w + 3 w^2 + 15 w^3 + ...) with w = 1/(2 u^2).
+struct AverageDepthNode {
+  static constexpr double end = 10;
+  double value, slope;
+};
+const std::vector<AverageDepthNode>& average_depth_nodes();
 
 }  // namespace airlight::fogshop

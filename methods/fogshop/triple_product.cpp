@@ -74,23 +74,29 @@ TripleProduct::TripleProduct(int order) : order_(order) {
       }
 }
 
-Rgb TripleProduct::operator()(const std::vector<Rgb>& f, const std::vector<Rgb>& g,
-                              const std::vector<double>& h) const {
-  Rgb sum = Rgb::Zero();
+std::vector<Rgb> TripleProduct::operator()(const std::vector<Rgb>& f, const std::vector<double>& h) const {
+  const std::size_t size = std::size_t(order_) * order_;
+  if (f.size() != size || h.size() != size)
+    throw Error(fmt::format("a product of harmonics of {} and {} coefficients, expected {}", f.size(), h.size(), size));
+  std::vector<Rgb> product(size, Rgb::Zero());
   for (const Term& t : terms_) {
     const auto [i, j, k, value] = t;
     // Every distinct order of the three indices once.
-    if (i == j && j == k)
-      sum += value * h[i] * (f[i] * g[i]);
-    else if (i == j)
-      sum += value * (h[i] * (f[i] * g[k] + f[k] * g[i]) + h[k] * (f[i] * g[i]));
-    else if (j == k)
-      sum += value * (h[j] * (f[i] * g[j] + f[j] * g[i]) + h[i] * (f[j] * g[j]));
-    else
-      sum += value * (h[i] * (f[j] * g[k] + f[k] * g[j]) + h[j] * (f[i] * g[k] + f[k] * g[i]) +
-                      h[k] * (f[i] * g[j] + f[j] * g[i]));
+    if (i == j && j == k) {
+      product[i] += value * h[i] * f[i];
+    } else if (i == j) {
+      product[i] += value * (h[i] * f[k] + h[k] * f[i]);
+      product[k] += value * h[i] * f[i];
+    } else if (j == k) {
+      product[j] += value * (h[j] * f[i] + h[i] * f[j]);
+      product[i] += value * h[j] * f[j];
+    } else {
+      product[i] += value * (h[j] * f[k] + h[k] * f[j]);
+      product[j] += value * (h[i] * f[k] + h[k] * f[i]);
+      product[k] += value * (h[i] * f[j] + h[j] * f[i]);
+    }
   }
-  return sum;
+  return product;
 }
 
 const TripleProduct& triple_product(int order) {

@@ -16,8 +16,9 @@ class TripleProduct {
   };
   explicit TripleProduct(int order);  // 1 to 12; Throws Error
 
-  // Integral of f g h, each given by order^2 coefficients.
-  Rgb operator()(const std::vector<Rgb>& f, const std::vector<Rgb>& g, const std::vector<double>& h) const;
+  // The product f h, each given by order^2 coefficients, projected on as many: its inner product with a third function
+  // is the integral of all three.
+  std::vector<Rgb> operator()(const std::vector<Rgb>& f, const std::vector<double>& h) const;
 
   const std::vector<Term>& terms() const { return terms_; }  // i <= j <= k
   int order() const { return order_; }

@@ -130,9 +130,9 @@ TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
   CHECK(dispatches({}) == 3);  // the depth alone, composition
   CHECK(dispatches({{"variant", "paper"}}) == 3);
   scene->lights.emplace_back(scene::make_constant_environment(Rgb::Ones()));
-  CHECK(dispatches({}) == 4);  // and the environment's airlight
+  CHECK(dispatches({}) == 6);  // and the environment's airlight, the wall, the background
   scene->media.clear();
-  CHECK(dispatches({}) == 0);
+  CHECK(dispatches({}) == 3);  // the wall and the background in vacuum, composition
   scene->lights = lights;
   CHECK(dispatches({}) == 2);  // the wall in vacuum
   scene->surfaces.push_back({"ball", scene::Sphere{{0, 1, 10}, 1}, scene::Lambert{}});

@@ -1,0 +1,126 @@
+#include "gpu/fogshop/surface_tables.h"
+
+#include "methods/fogshop/harmonic_reflection.h"
+#include "methods/fogshop/surface_psf.h"
+#include "methods/fogshop/triple_product.h"
+#include "scene/geometry/brdf_table.h"
+#include "scene/math/sh_rotation.h"
+
+namespace airlight::gpu {
+namespace {
+
+std::array<float, 4> float4(const Rgb& color, double w) {
+  return {float(color[0]), float(color[1]), float(color[2]), float(w)};
+}
+
+}  // namespace
+
+SurfaceTables::SurfaceTables(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
+  add_materials(scene, lighting);
+  if (lighting.points && lighting.points->sun()) add_sun(*lighting.points->sun());
+  if (lighting.reflectances) add_harmonics(lighting);
+  if (lighting.transfer) add_transfer(*lighting.transfer, lighting.reflectances->order());
+}
+
+int SurfaceTables::add(const std::vector<double>& table) {
+  const int place = int(values.size());
+  for (const double v : table) values.push_back(float(v));
+  return place;
+}
+
+int SurfaceTables::add(const std::vector<Rgb>& table) {
+  const int place = int(values.size());
+  for (const Rgb& v : table)
+    for (int c = 0; c < 3; ++c) values.push_back(float(v[c]));
+  return place;
+}
+
+void SurfaceTables::add_materials(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    MaterialData data{};
+    data.places[2] = -1;
+    const scene::Material& material = scene.surfaces[i].material;
+    if (const auto* lambert = std::get_if<scene::Lambert>(&material)) {
+      data.diffuse = float4(lambert->albedo, 0);
+    } else if (const auto* phong = std::get_if<scene::Phong>(&material)) {
+      data.diffuse = float4(phong->diffuse, 1);
+      data.specular = float4(phong->specular, phong->exponent);
+    } else {
+      const scene::BrdfTable& table = *std::get<scene::Tabulated>(material).table;
+      data.diffuse = float4(Rgb::Ones(), 2);
+      data.table = {add(table.values()), table.thetas(), table.phis(), 0};
+    }
+    if (lighting.reflectances && lighting.reflectances->tables()[i]) {
+      const fogshop::ReflectanceTable& table = *lighting.reflectances->tables()[i];
+      data.places[0] = add(table.values());
+      data.places[1] = table.entries();
+    }
+    materials.push_back(data);
+  }
+}
+
+void SurfaceTables::add_sun(const fogshop::SunReflection& sun) {
+  uniforms["sun_at"] = add(sun.lambert().values());
+  for (const auto& lobe : sun.lobes()) {
+    const int place = add(lobe.along.values());
+    add(lobe.across.values());
+    for (MaterialData& data : materials)
+      if (data.diffuse[3] == 1 && data.specular[3] == float(lobe.exponent) &&
+          (data.specular[0] > 0 || data.specular[1] > 0 || data.specular[2] > 0))
+        data.places[2] = place;
+  }
+}
+
+void SurfaceTables::add_harmonics(const fogshop::SurfaceLighting& lighting) {
+  const int order = lighting.reflectances->order(), size = order * order;
+  uniforms["cosine_at"] = add(fogshop::clamped_cosine(order));
+  const scene::ShQuarterTurn& turn = scene::sh_quarter_turn(order);
+  uniforms["turn_at"] = add(std::vector<double>(turn.first.begin(), turn.first.end()));
+  for (std::size_t k = 0; k < turn.column.size(); ++k) add(std::vector<double>{double(turn.column[k]), turn.value[k]});
+  iterations += 6.0 * size + 2.0 * double(turn.column.size());
+  if (lighting.points) {
+    uniforms["point_bands_at"] = add(lighting.points->bands().values());
+    uniforms["point_depths"] = lighting.points->bands().depths();
+    light_iterations += 2.0 * size + 4.0 * order;
+  }
+  if (lighting.environment) {
+    uniforms["environment_at"] = add(lighting.environment->light());
+    uniforms["environment_depths"] = 1;
+    if (lighting.environment->spreads()) {
+      uniforms["environment_bands_at"] = add(lighting.environment->bands().values());
+      uniforms["environment_depths"] = lighting.environment->bands().depths();
+    }
+    const auto& nodes = fogshop::average_depth_nodes();
+    uniforms["average_at"] = int(values.size());
+    uniforms["average_nodes"] = int(nodes.size());
+    for (const fogshop::AverageDepthNode& node : nodes) add(std::vector<double>{node.value, node.slope});
+    iterations += size + 4.0 * order;
+  }
+}
+
+void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, int order) {
+  for (const std::vector<float>& of_surface : visibility.coefficients())
+    transfer.insert(transfer.end(), of_surface.begin(), of_surface.end());
+  // By the coefficient of the product: pairs i <= j of those of the factors.
+  struct Term {
+    int i, j;
+    double value;
+  };
+  std::vector<std::vector<Term>> terms(std::size_t(order) * order);
+  for (const auto& [i, j, k, value] : fogshop::triple_product(order).terms()) {  // i <= j <= k
+    terms[k].push_back({i, j, value});
+    if (j != k) terms[j].push_back({i, k, value});
+    if (i != j) terms[i].push_back({j, k, value});
+  }
+  std::vector<double> first{0};
+  std::vector<double> all;
+  for (const std::vector<Term>& of_one : terms) {
+    for (const Term& t : of_one) all.insert(all.end(), {double(t.i), double(t.j), t.value});
+    first.push_back(double(all.size() / 3));
+  }
+  uniforms["product_at"] = add(first);
+  add(all);
+  iterations += 2.0 * order * order + double(all.size() / 3);
+}
+
+}  // namespace airlight::gpu

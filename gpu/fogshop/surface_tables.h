@@ -1,0 +1,37 @@
+// What the shader of surfaces reads that is precomputed: materials, and one buffer of tables, each at its place.
+#pragma once
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "methods/fogshop/surface_lighting.h"
+
+namespace airlight::gpu {
+
+// The layout of fogshop/reflection.glsl.
+struct MaterialData {
+  std::array<float, 4> diffuse, specular;
+  std::array<int, 4> table, places;
+};
+
+struct SurfaceTables {
+  SurfaceTables(const scene::Scene&, const fogshop::SurfaceLighting&);
+
+  std::vector<MaterialData> materials;  // by surface
+  std::vector<float> values;
+  std::map<std::string, int> uniforms;  // places in `values` and sizes, by the shader's names
+  std::vector<float> transfer;          // visibility of every vertex of all meshes, order^2 each; empty: none
+  double iterations = 0;                // of the shader's loops over them: apart from lights, for each light
+  double light_iterations = 0;
+
+ private:
+  int add(const std::vector<double>&);
+  int add(const std::vector<Rgb>&);
+  void add_materials(const scene::Scene&, const fogshop::SurfaceLighting&);
+  void add_sun(const fogshop::SunReflection&);
+  void add_harmonics(const fogshop::SurfaceLighting&);
+  void add_transfer(const fogshop::RadianceTransfer&, int order);
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,39 @@
+// What lights surfaces beside the unscattered light of points: section 4 of Zhou et al. 2007, put together as a scene
+// needs it.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "methods/fogshop/environment_lighting.h"
+#include "methods/fogshop/radiance_transfer.h"
+#include "methods/fogshop/reflectance_table.h"
+#include "methods/fogshop/scattered_reflection.h"
+#include "methods/fogshop/stages.h"
+
+namespace airlight::fogshop {
+
+// Null: left out.
+struct SurfaceLighting {
+  std::unique_ptr<const ScatteredReflection> points;        // what the medium scatters of theirs
+  std::unique_ptr<const EnvironmentLighting> environment;   // light of the environment, for the air too
+  std::unique_ptr<const SurfaceReflectances> reflectances;  // for all that is in harmonics
+  std::unique_ptr<const RadianceTransfer> transfer;         // shadows of that
+};
+
+// `stage` is called after each part, with its name.
+SurfaceLighting make_lighting(const scene::Scene&, const Options&, const Needs&, const scene::Execution&,
+                              const std::function<void(const std::string&)>& stage);
+
+// B_pv of Eq. 20 in the world's axes, times V_p where there is a visibility. Requires `reflectances`.
+std::vector<Rgb> shadowed_reflectance(const scene::Scene&, const SurfaceLighting&, const SurfacePoint&,
+                                      const Vec3& to_view);
+
+// L_p lit by the environment [W/m^2/sr], Eqs. 26, 27 and 20: what reaches the point unscattered is added to `direct`,
+// what the medium scatters onto it, if asked for, to `scattered`. Harmonics cut off at a band may swing below 0: then a
+// part is 0.
+void reflect_environment(const Model&, const EnvironmentLighting&, const SurfacePoint&,
+                         const std::vector<Rgb>& reflectance, Rgb& direct, Rgb* scattered);
+
+}  // namespace airlight::fogshop
