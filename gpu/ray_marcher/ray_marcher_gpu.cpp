@@ -9,6 +9,7 @@
 #include "reference/ray_marcher/ray_marcher.h"
 #include "reference/ray_marcher/scalar.h"
 #include "reference/ray_marcher/stages.h"
+#include "scene/background.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
@@ -19,9 +20,6 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-bool has_environment(const Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
-}
 
 class PreparedMarchGpu final : public scene::Prepared {
  public:
@@ -83,7 +81,7 @@ void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution
       if ((through == 0).all() || end.on_ball) continue;
       const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
       const Rgb behind = through * (end.hit ? lit_surface(plan_, *end.hit, ray.direction, counters)
-                                            : ray_marcher::background(*plan_.scene, ray.direction));
+                                            : scene::background(*plan_.scene, ray.direction));
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(behind[c]);
     }
     const std::lock_guard lock(mutex);

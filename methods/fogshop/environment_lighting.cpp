@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "methods/fogshop/surface_psf.h"
+#include "scene/background.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::fogshop {
@@ -46,14 +47,6 @@ IncidentHarmonics EnvironmentLighting::incident(const Fog& fog, double depth, bo
   for (int l = 0; l < order_; ++l)
     for (int i = l * l; i < (l + 1) * (l + 1); ++i) result.scattered.push_back(factors[l] * light_[i]);
   return result;
-}
-
-Rgb background(const scene::Scene& scene, const Vec3& direction) {
-  Rgb sum = Rgb::Zero();
-  for (const scene::Light& light : scene.lights)
-    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
-      sum += scene::radiance(*environment, direction);
-  return sum;
 }
 
 double average_depth(const Model& model, const Point3& point) {

@@ -43,9 +43,6 @@ class EnvironmentLighting {
   std::unique_ptr<PsfBands> bands_;
 };
 
-// The scene's environments from one direction [W/m^2/sr].
-Rgb background(const scene::Scene&, const Vec3& direction);
-
 // Eq. 26: optical depth from a point to the environment, averaged over all directions [-], hue 1; the constant reaches
 // Options::environment_distance far. All Gaussians are summed: the average falls as 1/distance^2 only.
 double average_depth(const Model&, const Point3&);

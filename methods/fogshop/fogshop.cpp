@@ -10,6 +10,7 @@
 #include "methods/fogshop/low_resolution.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "methods/fogshop/surface_pass.h"
+#include "scene/background.h"
 #include "scene/error.h"
 
 namespace airlight::fogshop {
@@ -189,10 +190,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     const Fog fog = make_fog(scene.media);
     if (!fog.one_albedo() && options.reflectance != Options::Reflectance::direct)
       reasons.push_back("the media differ in albedo, and Eq. 25 has one: reflectance = direct leaves it out");
-    const bool environment = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
-      return std::holds_alternative<scene::EnvironmentLight>(light);
-    });
-    if (!fog.one_albedo() && environment)
+    if (!fog.one_albedo() && has_environment(scene))
       reasons.push_back("the media differ in albedo, and Eq. 28 has one: expected point lights only");
     const std::string objection = objection_to_view(scene, fog, options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);

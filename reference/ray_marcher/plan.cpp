@@ -19,14 +19,6 @@ std::vector<scene::DirectionalLight> environment_as_lights(const scene::Environm
   return lights;
 }
 
-Rgb background(const scene::Scene& scene, const Vec3& direction) {
-  Rgb sum = Rgb::Zero();
-  for (const scene::Light& light : scene.lights)
-    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
-      sum += radiance(*environment, direction);
-  return sum;
-}
-
 double length_unit(const scene::Scene& scene) {
   double unit = infinity;
   for (const scene::Medium& medium : scene.media)

@@ -29,9 +29,6 @@ Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
 // left out.
 std::vector<scene::DirectionalLight> environment_as_lights(const scene::EnvironmentLight&, int count);
 
-// What the environments send along a camera ray that meets nothing [W/m^2/sr].
-Rgb background(const scene::Scene&, const Vec3& direction);
-
 // One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
 // march of its own. A light that grades the ray around itself has one.
 struct Pass {

@@ -1,4 +1,5 @@
 #include "reference/ray_marcher/scalar.h"
+#include "scene/background.h"
 
 #include <algorithm>
 #include <cmath>

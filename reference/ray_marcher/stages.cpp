@@ -2,17 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "scene/background.h"
 
 namespace airlight::ray_marcher {
-namespace {
-
-bool has_environment(const scene::Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_delta(l); });
-}
-
-}  // namespace
-
 std::vector<scene::Stage> describe_stages(const Plan& plan) {
   std::vector<scene::Stage> stages;
   const auto add = [&](const char* name, bool kept, const std::string& reason) {

@@ -5,6 +5,7 @@
 
 #include "reference/ray_marcher/samples.h"
 #include "reference/ray_marcher/shapes.h"
+#include "scene/background.h"
 
 namespace airlight::ray_marcher {
 
