@@ -20,7 +20,6 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-
 class PreparedMarchGpu final : public scene::Prepared {
  public:
   PreparedMarchGpu(Plan plan, std::string settings)

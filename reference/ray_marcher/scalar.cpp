@@ -1,8 +1,9 @@
 #include "reference/ray_marcher/scalar.h"
-#include "scene/background.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "scene/background.h"
 
 namespace airlight::ray_marcher {
 namespace {
