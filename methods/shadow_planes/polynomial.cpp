@@ -1,0 +1,143 @@
+#include "methods/shadow_planes/polynomial.h"
+
+#include "scene/error.h"
+#include "scene/math/types.h"
+
+namespace airlight::shadow_planes {
+namespace {
+
+using Series = std::vector<double>;
+
+Series product(const Series& a, const Series& b) {
+  Series c(a.size(), 0.0);
+  for (std::size_t n = 0; n < a.size(); ++n)
+    for (std::size_t i = 0; i <= n; ++i) c[n] += a[i] * b[n - i];
+  return c;
+}
+
+// v^alpha for v_0 > 0.
+Series power(const Series& v, double alpha) {
+  Series b(v.size());
+  b[0] = std::pow(v[0], alpha);
+  for (std::size_t n = 1; n < v.size(); ++n) {
+    double sum = 0;
+    for (std::size_t k = 1; k <= n; ++k) sum += (k * alpha - double(n - k)) * v[k] * b[n - k];
+    b[n] = sum / (n * v[0]);
+  }
+  return b;
+}
+
+Series sine(int degree, double centre) {
+  Series s(degree + 1);
+  double factorial = 1;
+  for (int n = 0; n <= degree; ++n) {
+    if (n > 0) factorial *= n;
+    const double derivative[] = {std::sin(centre), std::cos(centre), -std::sin(centre), -std::cos(centre)};
+    s[n] = derivative[n % 4] / factorial;
+  }
+  return s;
+}
+
+// tan(pi/4 + theta/2), by q' = (1 + q^2)/2.
+Series tangent(int degree, double centre) {
+  Series q(degree + 1);
+  q[0] = std::tan(0.25 * pi + 0.5 * centre);
+  for (int n = 0; n < degree; ++n) {
+    double sum = n == 0 ? 1 : 0;
+    for (int i = 0; i <= n; ++i) sum += q[i] * q[n - i];
+    q[n + 1] = 0.5 * sum / (n + 1);
+  }
+  return q;
+}
+
+Series phase_series(const PhaseForm& phase, int degree, double centre) {
+  const Series s = sine(degree, centre);
+  Series p(degree + 1, 0.0);
+  const auto lobe = [&](double alpha, double factor) {
+    Series v = s;  // 1 - sin: twice (1 + c)/2
+    for (double& x : v) x = -x;
+    v[0] += 1;
+    p = power(v, alpha);
+    for (double& x : p) x *= phase.scale * factor / std::pow(2, alpha);
+    p[0] += phase.scale;
+  };
+  switch (phase.kind) {
+    case PhaseForm::Kind::isotropic:
+      p[0] = 1;
+      break;
+    case PhaseForm::Kind::rayleigh:
+      p = product(s, s);
+      p[0] += 1;
+      for (double& x : p) x *= 0.75;
+      break;
+    case PhaseForm::Kind::hazy:
+      lobe(8, 9);
+      break;
+    case PhaseForm::Kind::murky:
+      lobe(32, 50);
+      break;
+    case PhaseForm::Kind::henyey_greenstein: {
+      Series v = s;
+      for (double& x : v) x *= 2 * phase.g;
+      v[0] += 1 + phase.g * phase.g;
+      p = power(v, -1.5);
+      for (double& x : p) x *= (1 - phase.g) * (1 + phase.g);
+      break;
+    }
+  }
+  return p;
+}
+
+}  // namespace
+
+std::vector<double> taylor_coefficients(const PhaseForm& phase, double a, int degree, double centre) {
+  const Series q = tangent(degree, centre);
+  Series e(degree + 1, 0.0);  // exp(-a (q - q_0))
+  e[0] = 1;
+  for (int n = 1; n <= degree; ++n) {
+    double sum = 0;
+    for (int j = 1; j <= n; ++j) sum += j * q[j] * e[n - j];
+    e[n] = -a * sum / n;
+  }
+  return product(e, phase_series(phase, degree, centre));
+}
+
+std::vector<double> printed_coefficients(const PhaseForm& phase, double a) {
+  switch (phase.kind) {
+    case PhaseForm::Kind::isotropic:
+      return {1, -a, a * a - a, -a * a / 6 + a * a / 2 - a,
+              a * a * a * a / 24 - a * a * a / 4 + 11 * a * a / 24 - 5 * a / 24};
+    case PhaseForm::Kind::rayleigh:
+      return {0.75, -0.75 * a, 0.375 * a * a + 0.75};
+    case PhaseForm::Kind::hazy:
+      return {265.0 / 256, -265 * a / 256 + 9.0 / 36, 265 * a * a / 256 - 121 * a / 512 + 63.0 / 64};
+    case PhaseForm::Kind::murky: {
+      const double p = 2147483673.0 / 2147483648;
+      return {p, p * a - 25.0 / 367108864, p * a * a / 2 - 2147482073 * a / 4294967296 + 775.0 / 134217728};
+    }
+    case PhaseForm::Kind::henyey_greenstein:
+      break;
+  }
+  throw Error("the annex of Biri et al. 2006 prints no coefficients for Henyey-Greenstein");
+}
+
+double integrate_polynomial(const std::vector<double>& c, double centre, double theta0, double theta1) {
+  const double begin = theta0 - centre, end = theta1 - centre;
+  double sum = 0, low = begin, high = end;
+  for (std::size_t n = 0; n < c.size(); ++n) {
+    sum += c[n] * (high - low) / double(n + 1);
+    low *= begin;
+    high *= end;
+  }
+  return sum;
+}
+
+double polynomial_airlight(const std::vector<double>& c, double centre, double extinction, double albedo,
+                           double intensity, double T, double h, double theta0, double theta1) {
+  // e^(-extinction T) apart from e^(-a q) would overflow behind the light.
+  const double depth = extinction * (T + h * std::tan(0.25 * pi + 0.5 * centre));
+  return albedo * extinction * intensity / (4 * pi * h) * std::exp(-depth) *
+         integrate_polynomial(c, centre, theta0, theta1);
+}
+
+}  // namespace airlight::shadow_planes

@@ -1,0 +1,29 @@
+// The same integral as the paper evaluates it: the integrand's Taylor polynomial in theta (Biri et al. 2006,
+// section 4.1 and annex), of any degree about any centre, integrated term by term.
+//
+// It converges within pi/2 of theta = 0 and needs exp(a |theta|) times the digits of the result: useful for
+// a = extinction * h up to about 3 and away from +-pi/2.
+#pragma once
+#include <vector>
+
+#include "methods/shadow_planes/phase_form.h"
+
+namespace airlight::shadow_planes {
+
+// c_n e^(a q(centre)), n <= degree, of e^(-a q(theta)) p(-sin theta) = sum c_n (theta - centre)^n, |centre| < pi/2. By
+// recurrences, exact.
+std::vector<double> taylor_coefficients(const PhaseForm&, double a, int degree, double centre = 0);
+
+// The annex's, centre 0, with its errors: isotropic to degree 4, Rayleigh, hazy and murky to degree 2. `phase` is
+// printed. Throws Error for Henyey-Greenstein, which it has not.
+std::vector<double> printed_coefficients(const PhaseForm&, double a);
+
+// Integral of the polynomial over theta in [theta0, theta1].
+double integrate_polynomial(const std::vector<double>& coefficients, double centre, double theta0, double theta1);
+
+// L [W/m^2/sr] of an isotropic intensity [W/sr] over the angles [theta0, theta1] at the light, Eq. 2. T, h as
+// LightFromRay; h > 0.
+double polynomial_airlight(const std::vector<double>& coefficients, double centre, double extinction, double albedo,
+                           double intensity, double T, double h, double theta0, double theta1);
+
+}  // namespace airlight::shadow_planes

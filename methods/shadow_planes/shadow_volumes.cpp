@@ -1,0 +1,144 @@
+#include "methods/shadow_planes/shadow_volumes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace airlight::shadow_planes {
+namespace {
+
+// Does the open segment from the origin to y meet the sphere around c?
+bool hides(const Vec3& c, double radius, const Vec3& y) {
+  const double length = y.norm();
+  if (!(length > 0)) return false;
+  const Vec3 u = y / length;
+  const double along = c.dot(u), beside = (c - along * u).norm();
+  if (beside >= radius) return false;
+  const double half = std::sqrt((radius - beside) * (radius + beside));
+  const double near = along - half, far = along + half;
+  return (near > 0 && near < length) || (far > 0 && far < length);
+}
+
+// Real roots of a t^2 + 2 b t + c.
+void add_roots(double a, double b, double c, std::vector<double>& roots) {
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return;
+  const double root = -(b + std::copysign(std::sqrt(discriminant), b));
+  if (a != 0) roots.push_back(root / a);
+  if (root != 0) roots.push_back(c / root);
+}
+
+}  // namespace
+
+Occluders::Occluders(std::shared_ptr<const scene::Scene> scene) : scene_(std::move(scene)) {
+  for (const scene::Surface& surface : scene_->surfaces)
+    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&surface.shape)) meshes_.emplace_back(*mesh);
+}
+
+ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const Point3& light)
+    : occluders_(std::move(occluders)), light_(light) {
+  for (const MeshEdges& mesh : occluders_->meshes()) {
+    const std::vector<SilhouetteEdge> of_mesh = silhouette(mesh, light);
+    edges_.insert(edges_.end(), of_mesh.begin(), of_mesh.end());
+  }
+  all_.resize(edges_.size());
+  std::iota(all_.begin(), all_.end(), 0);
+  for (const scene::Surface& surface : occluders_->scene().surfaces) {
+    if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) spheres_.push_back(*sphere);
+    if (const auto* plane = std::get_if<scene::Plane>(&surface.shape)) planes_.push_back(*plane);
+  }
+}
+
+int ShadowVolumes::count(const Point3& point) const {
+  const Vec3 offset = point - light_;
+  const double distance = offset.norm();
+  if (!occluders_->scene().geometry || !(distance > 0)) return 0;
+  int sum = 0;
+  for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
+    sum += hit.triangle >= 0;
+  for (const scene::Sphere& sphere : spheres_) sum += hides(sphere.center - light_, sphere.radius, offset) ? 2 : 0;
+  for (const scene::Plane& plane : planes_) {
+    const double here = plane.normal.dot(light_ - plane.point), there = plane.normal.dot(point - plane.point);
+    sum += (here > 0 && there < 0) || (here < 0 && there > 0);
+  }
+  return sum;
+}
+
+void ShadowVolumes::cross_edges(const Ray& ray, double end, const std::vector<int>& edges,
+                                std::vector<Crossing>& crossings) const {
+  const LightFromRay light = light_from_ray(ray, light_);
+  if (!(light.h > 1e-12 * (light_ - ray.origin).norm())) return;
+  // Which side of the plane through ray and light a vertex is on: the same number for both edges that share it, so that
+  // no ray slips between them or meets both.
+  const Vec3 side = ray.direction.cross(light_ - ray.origin);
+  for (const int i : edges) {
+    const SilhouetteEdge& edge = edges_[i];
+    const double sa = side.dot(edge.a), sb = side.dot(edge.b);
+    if ((sa >= 0) == (sb >= 0)) continue;
+    const Vec3 p = edge.a + (edge.b - edge.a) * (sa / (sa - sb));
+    const double towards = p.dot(light.n), along = p.dot(ray.direction);
+    if (!(towards > 0) || towards > light.h) continue;  // not between light and ray
+    const double x = light.T + light.h * along / towards;
+    if (!(x > 0) || !(x < end)) continue;
+    const bool leaves = edge.a.cross(edge.b).dot(ray.direction) > 0;
+    crossings.push_back({x, leaves ? -edge.multiplicity : edge.multiplicity});
+  }
+}
+
+void ShadowVolumes::cross_spheres(const Ray& ray, double end, std::vector<Crossing>& crossings) const {
+  // What a ball hides from the light is convex: one stretch of the ray. It ends on the tangent cone or on the ball.
+  std::vector<double> places;
+  for (const scene::Sphere& sphere : spheres_) {
+    const Vec3 c = sphere.center - light_, y = ray.origin - light_, w = ray.direction;
+    places = {0};
+    const double outside = c.squaredNorm() - sphere.radius * sphere.radius;
+    add_roots(w.dot(c) * w.dot(c) - outside, y.dot(c) * w.dot(c) - outside * y.dot(w),
+              y.dot(c) * y.dot(c) - outside * y.squaredNorm(), places);
+    const Vec3 from_center = ray.origin - sphere.center;
+    add_roots(1, from_center.dot(w), from_center.squaredNorm() - sphere.radius * sphere.radius, places);
+    places.erase(std::remove_if(places.begin(), places.end(), [&](double t) { return !(t >= 0) || !(t < end); }),
+                 places.end());
+    std::sort(places.begin(), places.end());
+    bool before = false;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double next =
+          k + 1 < places.size() ? places[k + 1] : std::min(end, 2 * places[k] + 1 + c.norm() + y.norm());
+      const bool hidden = hides(c, sphere.radius, y + 0.5 * (places[k] + next) * w);
+      if (hidden != before && places[k] > 0) crossings.push_back({places[k], hidden ? 2 : -2});
+      before = hidden;
+    }
+  }
+}
+
+void ShadowVolumes::lit_parts(const Ray& ray, double end, int count, const std::vector<int>* edges,
+                              std::vector<Crossing>& crossings, std::vector<Interval>& lit) const {
+  crossings.clear();
+  lit.clear();
+  const Vec3 offset = light_ - ray.origin;
+  const LightFromRay light = light_from_ray(ray, light_);
+  const scene::Geometry* geometry = occluders_->scene().geometry.get();
+  if (!(light.h > 1e-12 * offset.norm())) {
+    // Through the light: lit from it up to the first surface to both sides.
+    double begin = 0, stop = end;
+    if (geometry) {
+      if (const auto hit = geometry->first_hit({light_, -ray.direction})) begin = std::max(begin, light.T - hit->t);
+      if (const auto hit = geometry->first_hit({light_, ray.direction})) stop = std::min(stop, light.T + hit->t);
+    }
+    if (begin < stop) lit.push_back({begin, stop});
+    return;
+  }
+  cross_edges(ray, end, edges ? *edges : all_, crossings);
+  cross_spheres(ray, end, crossings);
+  std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+  double from = 0;
+  int m = count;
+  for (const Crossing& crossing : crossings) {
+    if (m == 0 && crossing.x > from) lit.push_back({from, crossing.x});
+    m += crossing.change;
+    from = crossing.x;
+  }
+  if (m == 0 && end > from) lit.push_back({from, end});
+}
+
+}  // namespace airlight::shadow_planes

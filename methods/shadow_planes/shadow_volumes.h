@@ -1,0 +1,69 @@
+// Which parts of a ray a point light reaches: Biri et al. 2006, section 5.1, by counting.
+//
+// m(X) is the number of surfaces, of either facing, that the open segment from the light to X crosses; X is lit if it
+// is 0. The paper's stencil counts pairs of them and needs closed meshes with the light and the camera outside; this
+// needs neither. A ray up to its first hit crosses no surface, so there are no caps: along it m changes where it
+// crosses the plane of a silhouette edge and the light, behind the edge.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "methods/shadow_planes/light_from_ray.h"
+#include "methods/shadow_planes/silhouette.h"
+#include "scene/scene.h"
+
+namespace airlight::shadow_planes {
+
+// The meshes of a scene by their edges: the same for every light.
+class Occluders {
+ public:
+  explicit Occluders(std::shared_ptr<const scene::Scene>);
+
+  const scene::Scene& scene() const { return *scene_; }
+  const std::vector<MeshEdges>& meshes() const { return meshes_; }
+
+ private:
+  std::shared_ptr<const scene::Scene> scene_;
+  std::vector<MeshEdges> meshes_;
+};
+
+// Where the number of surfaces between a ray and the light changes.
+struct Crossing {
+  double x;    // [m] along the ray
+  int change;  // > 0 into the shadow
+};
+
+class ShadowVolumes {
+ public:
+  ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light);
+
+  const Point3& light() const { return light_; }
+  const std::vector<SilhouetteEdge>& edges() const { return edges_; }
+
+  // m(X). Spheres count twice for all points that they hide.
+  int count(const Point3&) const;
+
+  // Appends the crossings of these edges within (0, end). `edges`: indices; a ray that passes the light closer than
+  // 1e-12 of its distance crosses none.
+  void cross_edges(const Ray&, double end, const std::vector<int>& edges, std::vector<Crossing>&) const;
+  // The same for all spheres, each as two.
+  void cross_spheres(const Ray&, double end, std::vector<Crossing>&) const;
+
+  // Lit parts of the ray within [0, end], end [m] at or before its first hit, possibly infinite. `count` is m of its
+  // origin, `edges` those that it may cross; null: all. The crossings are sorted on return.
+  struct Interval {
+    double begin, end;
+  };
+  void lit_parts(const Ray&, double end, int count, const std::vector<int>* edges, std::vector<Crossing>& crossings,
+                 std::vector<Interval>& lit) const;
+
+ private:
+  std::shared_ptr<const Occluders> occluders_;
+  Point3 light_;
+  std::vector<SilhouetteEdge> edges_;
+  std::vector<int> all_;
+  std::vector<scene::Sphere> spheres_;
+  std::vector<scene::Plane> planes_;
+};
+
+}  // namespace airlight::shadow_planes

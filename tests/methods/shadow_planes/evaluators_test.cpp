@@ -1,0 +1,168 @@
+// The evaluators of the airlight integral against the oracle vectors, and each other.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "methods/shadow_planes/light_from_ray.h"
+#include "methods/shadow_planes/mapped_rule.h"
+#include "methods/shadow_planes/polynomial.h"
+#include "scene/error.h"
+#include "scene/math/exponential_integral.h"
+#include "tests/methods/shadow_planes/vectors.h"
+
+using namespace airlight;
+using namespace airlight::shadow_planes;
+using namespace shadow_planes_test;
+
+namespace {
+
+// What the numbers of the input leave undetermined, in units of the machine's precision.
+double conditioning(double k, double T, double h, double x0, double x1) {
+  const double near = std::isinf(x1) ? 0 : std::max({std::abs(x0), std::abs(x1), std::abs(T)}) / (x1 - x0);
+  return 1 + k * (x0 + std::hypot(x0 - T, h)) + near;
+}
+
+}  // namespace
+
+TEST_CASE("shadow planes: airlight vectors", "[shadow_planes]") {
+  const MappedRule<double> rule(64, 6), fast(32, 6);
+  const MappedRule<float> single(16, 3);
+  int count = 0;
+  for (const json& v : vectors_of("airlight")) {
+    const json& in = v.at("input");
+    const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
+                 x1 = number(in.at("x1")), albedo = number(in.at("albedo")), intensity = number(in.at("intensity"));
+    const PhaseForm phase = phase_of(in);
+    const double condition = conditioning(k, T, h, x0, x1);
+    CAPTURE(v.at("id").get<std::string>(), condition);
+    const LitPart<double> part{x0, x1 - x0};
+    const double expected = number(v.at("expect").at("L"));
+    const double got = lit_airlight(rule, phase, k, albedo, intensity, T, h, part);
+    // Its logarithm, where it is no double.
+    const double log_expected = number(v.at("expect").at("log10_L"));
+    const auto log_of = [&](double shape) {
+      return std::log10(albedo * k * intensity / (4 * pi)) + std::log10(shape) -
+             k * (x0 + std::hypot(x0 - T, h)) / std::log(10.0);
+    };
+    const auto one = [](auto, auto, auto) { return 1; };
+    const double shape = airlight_integral(rule, phase, k, T, h, part, one);
+    CHECK(std::abs(log_of(shape) - log_expected) <
+          1e-13 * (condition + std::abs(log_expected)) + 2e-15 * std::abs(log_expected));
+    if (expected > 1e-300) CHECK(std::abs(got - expected) < (5e-14 + 4e-16 * condition) * expected);
+    // The lesser rules, on the same segment: their entries of the table, and what single precision leaves of the input.
+    const double quick = airlight_integral(fast, phase, k, T, h, part, one);
+    CHECK(std::abs(quick - shape) < (1e-6 + 4e-16 * condition) * shape);
+    const float s =
+        airlight_integral(single, phase, float(k), float(T), float(h), LitPart<float>{float(x0), float(x1 - x0)}, one);
+    CAPTURE(s, shape);
+    if (h > 0 || x0 > T || x1 < T)
+      CHECK(std::abs(s - shape) <
+            (2e-4 + 2e-7 * (condition + std::abs(T) / std::max({h, 1e-3 * std::abs(T), 1e-30}))) * shape);
+    ++count;
+  }
+  CHECK(count == 38);
+}
+
+TEST_CASE("shadow planes: vectors of a spot", "[shadow_planes]") {
+  const MappedRule<double> rule(64, 6);
+  for (const json& v : vectors_of("spot")) {
+    const json& in = v.at("input");
+    const Ray ray{vec(in.at("O")), vec(in.at("dir")).normalized()};
+    const LightFromRay light = light_from_ray(ray, vec(in.at("S")));
+    const double k = number(in.at("k_t")), x0 = number(in.at("x0")), x1 = number(in.at("x1")), n = number(in.at("n"));
+    const Vec3 axis = vec(in.at("axis")).normalized();
+    CHECK(light.T == Approx(number(v.at("expect").at("T"))).epsilon(1e-14));
+    CHECK(light.h == Approx(number(v.at("expect").at("h"))).epsilon(1e-14));
+    const double shape = airlight_integral(rule, phase_of(in), k, light.T, light.h, LitPart<double>{x0, x1 - x0},
+                                           [&](double q, double v_, double w) {
+                                             const Vec3 d = 2 * q * v_ * light.n + (w - v_) * ray.direction;
+                                             return std::pow(std::max(0.0, d.dot(axis)), n);
+                                           });
+    const double L = k / (4 * pi) * std::exp(-k * (x0 + std::hypot(x0 - light.T, light.h))) * shape;
+    CAPTURE(v.at("id").get<std::string>(), L, v.at("expect").dump());
+    // Where the source's edge crosses the segment the rule sees a kink of order n.
+    CHECK(std::abs(L - number(v.at("expect").at("L"))) < (n == 1 ? 1e-4 : 1e-10) * number(v.at("expect").at("L")));
+  }
+}
+
+TEST_CASE("shadow planes: Taylor vectors", "[shadow_planes]") {
+  for (const json& v : vectors_of("taylor_coefficients")) {
+    const json& in = v.at("input");
+    const std::vector<double> c = taylor_coefficients(phase_of(in), number(in.at("a")), in.at("degree").get<int>());
+    REQUIRE(c.size() == v.at("expect").at("c").size());
+    double most = 0;
+    for (const double x : c) most = std::max(most, std::abs(x));
+    for (std::size_t n = 0; n < c.size(); ++n) {
+      CAPTURE(v.at("id").get<std::string>(), n);
+      CHECK(std::abs(c[n] - number(v.at("expect").at("c")[n])) < 1e-13 * most);
+    }
+  }
+  for (const json& v : vectors_of("taylor_integral")) {
+    const json& in = v.at("input");
+    const double a = number(in.at("a"));
+    const std::vector<double> c = taylor_coefficients(phase_of(in), a, in.at("degree").get<int>());
+    const double got = std::exp(-a) * integrate_polynomial(c, 0, number(in.at("theta0")), number(in.at("theta1")));
+    CAPTURE(v.at("id").get<std::string>());
+    CHECK(got == Approx(number(v.at("expect").at("J_poly"))).epsilon(1e-11));
+    // The exact one by the rule: I h e^(-a q0) over T = 0, h = 1.
+    const MappedRule<double> rule(64, 6);
+    const double x0 = std::tan(number(in.at("theta0"))), x1 = std::tan(number(in.at("theta1")));
+    const double exact = airlight_integral(rule, phase_of(in), a, 0.0, 1.0, LitPart<double>{x0, x1 - x0},
+                                           [](double, double, double) { return 1.0; }) *
+                         std::exp(-a * q_at(x0, 1.0));
+    CHECK(exact == Approx(number(v.at("expect").at("J_exact"))).epsilon(1e-13));
+  }
+}
+
+// The annex as printed (section 2 of the corrections): which coefficients are wrong, and by how much.
+TEST_CASE("shadow planes: the printed coefficients and their errors", "[shadow_planes]") {
+  const double a = 0.7;
+  const auto differences = [&](const scene::PhaseFunction& p) {
+    const PhaseForm phase = phase_form(p, true);
+    std::vector<double> printed = printed_coefficients(phase, a);
+    const std::vector<double> right = taylor_coefficients(phase, a, int(printed.size()) - 1);
+    for (std::size_t n = 0; n < printed.size(); ++n) printed[n] -= right[n];
+    return printed;
+  };
+  const auto is = [](const std::vector<double>& got, const std::vector<double>& expected) {
+    REQUIRE(got.size() == expected.size());
+    for (std::size_t n = 0; n < got.size(); ++n) CHECK(got[n] == Approx(expected[n]).margin(1e-14));
+  };
+  is(differences(scene::Isotropic{}), {0, 0, a * a / 2 - a / 2, -a * a / 6 + a * a * a / 6 - a + a / 3, 0});
+  is(differences(scene::Rayleigh{}), {0, 0, 3 * a / 8});
+  is(differences(scene::Hazy{}), {0, 9.0 / 36 + 9.0 / 32, 265 * a * a / 512});
+  const double p = 2147483673.0 / 2147483648;
+  is(differences(scene::Murky{}), {0, 2 * p * a - 25.0 / 367108864 + 25.0 / 67108864, 0});
+  CHECK_THROWS_AS(printed_coefficients(phase_form(scene::HenyeyGreenstein{0.5}), a), Error);
+}
+
+// Isotropic: the integral has a closed form, -Im e^z E1(z) at z = a (q0 + i), over an infinite ray.
+TEST_CASE("shadow planes: the rule against the closed form", "[shadow_planes]") {
+  const MappedRule<double> rule(64, 6);
+  for (const double a : {1e-6, 1e-3, 0.1, 1.0, 7.0, 300.0})
+    for (const double x0 : {-100.0, -3.0, -0.2, 0.0, 0.4, 5.0, 1000.0}) {
+      const double q0 = q_at(x0, 1.0);
+      const double exact = -2 * scene::scaled_exponential_integral({a * q0, a}).imag();
+      const double got = airlight_integral(rule, PhaseForm{}, a, 0.0, 1.0, LitPart<double>{x0, infinity},
+                                           [](double, double, double) { return 1.0; });
+      CAPTURE(a, x0);
+      // The closed form is a difference where q0 is large.
+      CHECK(std::abs(got - exact) < 1e-13 * exact * (1 + q0));
+    }
+}
+
+// p(c) of both houses: 4 pi apart, and printed forms by their means.
+TEST_CASE("shadow planes: phase functions have mean one", "[shadow_planes]") {
+  for (const scene::PhaseFunction& p :
+       {scene::PhaseFunction(scene::Isotropic{}), scene::PhaseFunction(scene::Rayleigh{}),
+        scene::PhaseFunction(scene::Hazy{}), scene::PhaseFunction(scene::Murky{}),
+        scene::PhaseFunction(scene::HenyeyGreenstein{0.9}), scene::PhaseFunction(scene::HenyeyGreenstein{-0.7})})
+    for (double c = -1; c <= 1; c += 0.125) {
+      CHECK(phase_of_halves(phase_form(p), 0.5 * (1 + c), 0.5 * (1 - c)) ==
+            Approx(4 * pi * scene::phase_value(p, c)).epsilon(1e-13));
+      const double mean = std::holds_alternative<scene::Hazy>(p)    ? 2
+                          : std::holds_alternative<scene::Murky>(p) ? 83.0 / 33
+                                                                    : 1;
+      CHECK(phase_of_halves(phase_form(p, true), 0.5 * (1 + c), 0.5 * (1 - c)) ==
+            Approx(mean * 4 * pi * scene::phase_value(p, c)).epsilon(1e-13));
+    }
+}
