@@ -6,6 +6,7 @@
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "methods/fogshop/fogshop.h"
+#include "methods/shadow_planes/shadow_planes.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
@@ -22,6 +23,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<gpu::RayMarcherGpu>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::FogshopGpu>());
+    list.push_back(std::make_unique<shadow_planes::ShadowPlanes>());
     return list;
   }();
   return renderers;
