@@ -49,8 +49,12 @@ class PreparedFogshopGpu final : public scene::Prepared {
     }
     if (needs_.environment_harmonics) {
       environment_ = std::make_unique<fogshop::EnvironmentLighting>(*scene_, options, needs_.environment_psf);
-      if (needs_.environment_airlight) fog_.upload_environment(*environment_);
+      if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*environment_);
       timer.stage("harmonics of the environment");
+    }
+    if (needs_.sky_volume) {
+      fog_.fill_sky_volume(*scene_);
+      timer.stage("sky volume");
     }
     // Light of an environment on surfaces is for the CPU, and theirs of points with it.
     if (needs_.surfaces && !needs_.environment) {
@@ -247,7 +251,6 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
                       surface.name, phong->exponent));
   if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
   if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
-  if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
   if (scene.lights.size() > most_lights)

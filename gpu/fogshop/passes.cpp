@@ -212,6 +212,10 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
   band_depths_ = lighting.bands().depths();
 }
 
+void FogOnDevice::fill_sky_volume(const scene::Scene& scene) {
+  sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_);
+}
+
 void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
   light_->bind(9);
   band_table_->bind(10);
@@ -271,13 +275,15 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   }
   definitions["NOISE"] = model_.noise ? "1" : "0";
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
-  if (model_.noise) {
+  const auto set_noise = [&](Program& p) {
+    if (!model_.noise) return;
     p.set("noise_scale", model_.noise->scale());
     p.set("noise_frequency", model_.noise->frequency());
     // Whole periods are nothing, and would cost digits.
     p.set("noise_phase", std::remainder(model_.noise->phase(), double(fogshop::Noise::period)));
     p.set("noise_reach", fogshop::noise_reach(model_.noise->scale()));
-  }
+  };
+  set_noise(p);
   prepare(tiles);
   prepare(p);
   p.set("has_distances", has_distances);
@@ -288,6 +294,15 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     p.set("clearest", float((model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff()));
     p.set("map_directions", o.map_directions);
     p.set("map_edges", o.map_edges);
+  }
+  Program* sky = nullptr;
+  if (sky_) {
+    definitions["K"] = std::to_string(o.slices);
+    sky = &program("fogshop/sky_light.comp", definitions);
+    prepare(*sky);
+    set_noise(*sky);
+    sky->set("has_distances", has_distances);
+    sky_->use(*sky);
   }
   // Loop iterations of one invocation, for each Gaussian of its tile and apart from them.
   const double light_steps = lights > 0 ? std::max(8, o.slices / lights) : 0;
@@ -301,16 +316,23 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     tiles.set("tile_rows", count);
     tiles.set("tile_columns", columns);
     tiles.dispatch(columns * count);
-    if (context_.software() && each * n + apart > most_iterations) {
+    const auto watch = [&](double each, double apart, const char* what) {
+      if (!context_.software() || each * n + apart <= most_iterations) return;
       const std::vector<int> near = counts.download<int>();
       const int most = *std::max_element(near.begin(), near.begin() + columns * count);
-      check_iterations(context_, each * most + apart,
-                       model_.paper() ? "the paper's airlight" : "the airlight by slices");
-    }
+      check_iterations(context_, each * most + apart, what);
+    };
+    watch(each, apart, model_.paper() ? "the paper's airlight" : "the airlight by slices");
+    if (sky) watch(2 + std::ceil(o.slices / 8.0), 10.0 * o.slices, "the environment's airlight by slices");
     timer.stage("tiles");
     p.set("tile_row", first);
     p.dispatch(columns * tile, count * tile);
     timer.stage(stage);
+    if (sky) {
+      sky->set("tile_row", first);
+      sky->dispatch(columns * tile, count * tile);
+      timer.stage("environment");
+    }
   }
 }
 
