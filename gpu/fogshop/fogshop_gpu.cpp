@@ -42,6 +42,10 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
+    if (needs_.f_table) {
+      fog_.upload_f_table(fogshop::FTable());
+      timer.stage("table of F");
+    }
     if (needs_.point_harmonics) {
       // Tables of reflectances serve the CPU alone.
       reflection_ = fogshop::make_reflection(*scene_, options, needs_.environment);
@@ -250,7 +254,6 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
           fmt::format("surface {} has a Phong exponent of {:g}: scattered light in shaders is for 50 at most",
                       surface.name, phong->exponent));
   if (options.prt) reasons.push_back("prt = true is for the CPU: expected false");
-  if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
   if (scene.lights.size() > most_lights)

@@ -124,6 +124,7 @@ Program& FogOnDevice::program(const char* file, std::map<std::string, std::strin
     definitions["ERF_COUNT"] = std::to_string(coefficients.size());
     definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
   }
+  definitions["F_TABLE"] = std::to_string(f_table_size_);
   definitions["COLOURED"] = model_.fog.one_albedo() ? "0" : "1";
   Program& p = context_.program(file, definitions);
   if (!model_.fog.one_albedo()) p.set("constant_colour", model_.fog.constant_colour);
@@ -141,6 +142,7 @@ void FogOnDevice::bind() const {
   depths_.bind(8);
   if (!model_.fog.one_albedo()) colours_.bind(15);
   if (model_.noise) permutation_.bind(13);
+  if (f_table_) f_table_->bind(14);
 }
 
 void check_iterations(const Context& context, double iterations, const char* what) {
@@ -214,6 +216,16 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
 
 void FogOnDevice::fill_sky_volume(const scene::Scene& scene) {
   sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_);
+}
+
+void FogOnDevice::upload_f_table(const fogshop::FTable& table) {
+  const Use use(context_);
+  const std::vector<double>& values = table.values();
+  const std::size_t size = table.size();
+  std::vector<float> rest;  // see f_table.glsl
+  for (std::size_t i = 0; i < values.size(); ++i) rest.push_back(float(values[i / size * size + size - 1] - values[i]));
+  f_table_ = std::make_unique<Buffer>(context_, "table of F", rest);
+  f_table_size_ = table.size();
 }
 
 void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {

@@ -34,6 +34,8 @@ class FogOnDevice {
   void upload_environment(const fogshop::EnvironmentLighting&);
   void fill_sky_volume(const scene::Scene&);
 
+  void upload_f_table(const fogshop::FTable&);  // from now on Eq. 17 takes F from it
+
   // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
   // null: every ray is infinite (or reaches to the environment's distance). Tiles first list the Gaussians that their
   // rays may meet; images are done in strips whose lists fit into one storage block.
@@ -66,6 +68,8 @@ class FogOnDevice {
   int bands_ = 0, band_depths_ = 0;             // of the environment; 0: none
   std::unique_ptr<Buffer> light_, band_table_;  // its harmonics, those of the PSF
   std::unique_ptr<SkyVolumeOnDevice> sky_;      // null: none
+  std::unique_ptr<Buffer> f_table_;             // the same
+  int f_table_size_ = 0;
 };
 
 }  // namespace airlight::gpu
