@@ -218,7 +218,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 }  // namespace
 
 std::string FogshopGpu::about() const {
-  return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
+  return "fogshop in compute shaders, single precision: variants paper, S and VS2 (Zhou et al. 2007)";
 }
 
 std::vector<scene::SettingSpec> FogshopGpu::settings() const {
@@ -236,8 +236,6 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
   const fogshop::Options options = fogshop::read_options(settings);
-  if (options.variant == fogshop::Options::Variant::voigt)
-    reasons.push_back("variant = VS2 is for the CPU: shaders have no Faddeeva function");
   if (options.reflectance == fogshop::Options::Reflectance::sun)
     reasons.push_back("reflectance = sun is for the CPU: expected direct, npsf or npsfT");
   for (const scene::Surface& surface : scene.surfaces)
