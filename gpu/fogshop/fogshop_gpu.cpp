@@ -43,9 +43,17 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
+    if (needs_.f_table) {
+      fog_.upload_f_table(fogshop::FTable());
+      timer.stage("table of F");
+    }
     lighting_ = fogshop::make_lighting(*scene_, options, needs_, execution,
                                        [&](const std::string& stage) { timer.stage(stage); });
-    if (needs_.environment_airlight) fog_.upload_environment(*lighting_.environment);
+    if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*lighting_.environment);
+    if (needs_.sky_volume) {
+      fog_.fill_sky_volume(*scene_);
+      timer.stage("sky volume");
+    }
     if (needs_.environment) {
       background_ = std::make_unique<Background>(context_, *scene_);
       timer.stage("background");
@@ -187,7 +195,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 }  // namespace
 
 std::string FogshopGpu::about() const {
-  return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
+  return "fogshop in compute shaders, single precision: variants paper, S and VS2 (Zhou et al. 2007)";
 }
 
 std::vector<scene::SettingSpec> FogshopGpu::settings() const {
@@ -205,10 +213,6 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
   const fogshop::Options options = fogshop::read_options(settings);
-  if (options.variant == fogshop::Options::Variant::voigt)
-    reasons.push_back("variant = VS2 is for the CPU: shaders have no Faddeeva function");
-  if (options.table) reasons.push_back("homogeneous = table is for the CPU: shaders evaluate Eq. 17 by quadrature");
-  if (options.sky_volume) reasons.push_back("environment_airlight = volume is for the CPU");
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
   if (scene.lights.size() > most_lights)

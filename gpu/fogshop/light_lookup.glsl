@@ -43,6 +43,9 @@ LightFromRay light_from_ray(Light light, vec3 origin, vec3 direction) {
   return LightFromRay(along, length(offset - along * direction));
 }
 
+#if F_TABLE
+#include "fogshop/f_table.glsl"
+#else
 // Gauss-Legendre, 8 points on [0, 1].
 const float gauss_node[4] = float[4](0.0917173212478249, 0.262766204958165, 0.398333238706813, 0.480144928248768);
 const float gauss_weight[4] = float[4](0.181341891689181, 0.156853322938944, 0.111190517226687, 0.0506142681451882);
@@ -84,6 +87,7 @@ float homogeneous_airlight(LightFromRay light, float length_, float beta) {
   }
   return beta / (4 * pi) * sum;
 }
+#endif
 vec3 homogeneous_airlight(LightFromRay light, float length_) {
   vec3 result;
   result.x = homogeneous_airlight(light, length_, constant * hue.x);

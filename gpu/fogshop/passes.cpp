@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/math/gauss_legendre.h"
 
 namespace airlight::gpu {
 namespace {
@@ -124,6 +125,7 @@ Program& FogOnDevice::program(const char* file, std::map<std::string, std::strin
     definitions["ERF_COUNT"] = std::to_string(coefficients.size());
     definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
   }
+  definitions["F_TABLE"] = std::to_string(f_table_size_);
   definitions["COLOURED"] = model_.fog.one_albedo() ? "0" : "1";
   Program& p = context_.program(file, definitions);
   if (!model_.fog.one_albedo()) p.set("constant_colour", model_.fog.constant_colour);
@@ -141,6 +143,7 @@ void FogOnDevice::bind() const {
   depths_.bind(8);
   if (!model_.fog.one_albedo()) colours_.bind(15);
   if (model_.noise) permutation_.bind(13);
+  if (f_table_) f_table_->bind(14);
 }
 
 void check_iterations(const Context& context, double iterations, const char* what) {
@@ -212,6 +215,20 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
   band_depths_ = lighting.bands().depths();
 }
 
+void FogOnDevice::fill_sky_volume(const scene::Scene& scene) {
+  sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_);
+}
+
+void FogOnDevice::upload_f_table(const fogshop::FTable& table) {
+  const Use use(context_);
+  const std::vector<double>& values = table.values();
+  const std::size_t size = table.size();
+  std::vector<float> rest;  // see f_table.glsl
+  for (std::size_t i = 0; i < values.size(); ++i) rest.push_back(float(values[i / size * size + size - 1] - values[i]));
+  f_table_ = std::make_unique<Buffer>(context_, "table of F", rest);
+  f_table_size_ = table.size();
+}
+
 void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
   light_->bind(9);
   band_table_->bind(10);
@@ -234,6 +251,7 @@ void FogOnDevice::add_environment(const scene::View& view, bool has_distances, S
 void FogOnDevice::compute(const scene::View& view, int step, bool has_distances, bool only_edges, StageTimer& timer) {
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
+  const bool voigt = o.variant == fogshop::Options::Variant::voigt;
   const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
   const std::string stage = only_edges ? "edges at full resolution" : "airlight";
   const auto prepare = [&](Program& p) {
@@ -269,16 +287,24 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   if (!model_.paper()) {
     definitions["K"] = std::to_string(o.slices);
     definitions["EXACT_LIGHT_DEPTH"] = o.map ? "0" : "1";
+    definitions["VOIGT"] = voigt ? "1" : "0";
+    if (voigt) {
+      const scene::GaussLegendre rule = scene::gauss_legendre(16);
+      definitions["RULE_NODES"] = fmt::format("{:.9e}", fmt::join(rule.node, ", "));
+      definitions["RULE_WEIGHTS"] = fmt::format("{:.9e}", fmt::join(rule.weight, ", "));
+    }
   }
   definitions["NOISE"] = model_.noise ? "1" : "0";
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
-  if (model_.noise) {
+  const auto set_noise = [&](Program& p) {
+    if (!model_.noise) return;
     p.set("noise_scale", model_.noise->scale());
     p.set("noise_frequency", model_.noise->frequency());
     // Whole periods are nothing, and would cost digits.
     p.set("noise_phase", std::remainder(model_.noise->phase(), double(fogshop::Noise::period)));
     p.set("noise_reach", fogshop::noise_reach(model_.noise->scale()));
-  }
+  };
+  set_noise(p);
   prepare(tiles);
   prepare(p);
   p.set("has_distances", has_distances);
@@ -290,11 +316,23 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     p.set("map_directions", o.map_directions);
     p.set("map_edges", o.map_edges);
   }
+  Program* sky = nullptr;
+  if (sky_) {
+    auto of_sky = square;
+    of_sky["K"] = std::to_string(o.slices);
+    of_sky["NOISE"] = definitions["NOISE"];
+    sky = &program("fogshop/sky_light.comp", of_sky);
+    prepare(*sky);
+    set_noise(*sky);
+    sky->set("has_distances", has_distances);
+    sky_->use(*sky);
+  }
   // Loop iterations of one invocation, for each Gaussian of its tile and apart from them.
   const double light_steps = lights > 0 ? std::max(8, o.slices / lights) : 0;
   const double each = model_.paper()
                           ? 1 + lights
                           : 3 + std::ceil((1.5 * o.slices + 1 + lights * light_steps) / 8) + std::ceil(o.slices / 8.0);
+  const double in_voigt = voigt ? 1 + lights * (41 + 2 * (std::log2(o.slices) + (o.map ? 2 : n + 2))) : 0;
   const double apart = model_.paper() ? 0 : lights * (10.0 * o.slices + (o.map ? 0.0 : (o.slices + 1.0) * n));
   for (int first = 0; first < rows; first += strip) {
     const int count = std::min(strip, rows - first);
@@ -302,16 +340,23 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
     tiles.set("tile_rows", count);
     tiles.set("tile_columns", columns);
     tiles.dispatch(columns * count);
-    if (context_.software() && each * n + apart > most_iterations) {
+    const auto watch = [&](double each, double apart, const char* what) {
+      if (!context_.software() || each * n + apart <= most_iterations) return;
       const std::vector<int> near = counts.download<int>();
       const int most = *std::max_element(near.begin(), near.begin() + columns * count);
-      check_iterations(context_, each * most + apart,
-                       model_.paper() ? "the paper's airlight" : "the airlight by slices");
-    }
+      check_iterations(context_, each * most + apart, what);
+    };
+    watch(each + in_voigt, apart, model_.paper() ? "the paper's airlight" : "the airlight by slices");
+    if (sky) watch(2 + std::ceil(o.slices / 8.0), 10.0 * o.slices, "the environment's airlight by slices");
     timer.stage("tiles");
     p.set("tile_row", first);
     p.dispatch(columns * tile, count * tile);
     timer.stage(stage);
+    if (sky) {
+      sky->set("tile_row", first);
+      sky->dispatch(columns * tile, count * tile);
+      timer.stage("environment");
+    }
   }
 }
 

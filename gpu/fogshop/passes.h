@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gpu/buffer.h"
+#include "gpu/fogshop/sky_volume.h"
 #include "gpu/program.h"
 #include "gpu/raster/hit_image.h"
 #include "gpu/timer.h"
@@ -29,7 +30,11 @@ class FogOnDevice {
   void fill_light_depths();                   // variant paper: T(s,b_i)
   void fill_view_depths(const Point3& view);  // variant paper: T(v,b_i), T(s,v)
 
-  void upload_environment(const fogshop::EnvironmentLighting&);  // from now on airlight() adds Eq. 28
+  // From now on airlight() adds light of the environment, by Eq. 28 or by a grid and slices.
+  void upload_environment(const fogshop::EnvironmentLighting&);
+  void fill_sky_volume(const scene::Scene&);
+
+  void upload_f_table(const fogshop::FTable&);  // from now on Eq. 17 takes F from it
 
   // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
   // null: every ray is infinite (or reaches to the environment's distance). Tiles first list the Gaussians that their
@@ -62,6 +67,9 @@ class FogOnDevice {
   Buffer gaussians_, lights_, maps_, depths_, colours_, permutation_;
   int bands_ = 0, band_depths_ = 0;             // of the environment; 0: none
   std::unique_ptr<Buffer> light_, band_table_;  // its harmonics, those of the PSF
+  std::unique_ptr<SkyVolumeOnDevice> sky_;      // null: none
+  std::unique_ptr<Buffer> f_table_;             // the same
+  int f_table_size_ = 0;
 };
 
 }  // namespace airlight::gpu

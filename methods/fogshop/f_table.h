@@ -15,6 +15,9 @@ class FTable {
 
   double F(double u, double v) const;
 
+  int size() const { return size_; }
+  const std::vector<double>& values() const { return values_; }  // u slowest
+
   // L_a^h of Zhou et al. 2007, as printed before Eq. 17, for an intensity of 1 W/sr.
   double homogeneous_airlight(const LightFromRay&, double d_vp, double beta) const;
 

@@ -14,10 +14,27 @@
 
 namespace airlight::fogshop {
 
+// Light that arrives from one direction.
+struct SkyBeam {
+  Vec3 direction;  // towards the light, unit
+  Rgb weight;      // radiance times solid angle over 4 pi [W/m^2/sr]
+};
+// `directions` of each environment light, chosen by its radiance, evenly spread.
+std::vector<SkyBeam> sky_beams(const scene::Scene&, int directions);
+
+// Cubes around the Gaussians' spheres, `cells` of them along the longest side. Requires a Gaussian.
+struct SkyGrid {
+  SkyGrid(const GaussianArrays&, int cells);
+
+  Point3 corner;
+  double cell;          // [m]
+  Eigen::Array3i last;  // greatest node index per axis, >= 1
+};
+
 class SkyVolume {
  public:
-  // `cells` along the longest side of the box around the Gaussians' spheres, cubes; `directions` per environment light,
-  // chosen by its radiance, the same at every node. Requires a Gaussian. The fog's constant is not in the depths.
+  // A SkyGrid of `cells`; `directions` per environment light, the same at every node. Requires a Gaussian. The fog's
+  // constant is not in the depths.
   SkyVolume(const scene::Scene&, const Fog&, const GaussianArrays&, Erf, int cells, int directions,
             const scene::Execution&);
 
@@ -28,9 +45,7 @@ class SkyVolume {
   std::size_t nodes() const { return values_.size(); }
 
  private:
-  Point3 corner_;
-  double cell_ = 1;          // [m]
-  Eigen::Array3i last_;      // greatest node index per axis, >= 1
+  SkyGrid grid_;
   std::vector<Rgb> values_;  // x fastest
   double evaluations_ = 0;
 };

@@ -9,8 +9,8 @@
 
 namespace airlight::gpu::test {
 
-// 99th percentile of |b - a| / (a + 1 % of the greatest a); infinite if anything is not finite.
-inline double p99(const scene::Film& a, const scene::Film& b, const std::string& layer) {
+// The value that `share` of |b - a| / (a + 1 % of the greatest a) lie below; infinite if anything is not finite.
+inline double quantile(const scene::Film& a, const scene::Film& b, const std::string& layer, double share) {
   const std::vector<float>&x = a.layer(layer), &y = b.layer(layer);
   const double most = *std::max_element(x.begin(), x.end());
   std::vector<double> errors;
@@ -19,7 +19,11 @@ inline double p99(const scene::Film& a, const scene::Film& b, const std::string&
     errors.push_back(std::abs(double(y[i]) - x[i]) / (x[i] + 0.01 * most + 1e-300));
   }
   std::sort(errors.begin(), errors.end());
-  return errors[std::size_t(0.99 * double(errors.size() - 1))];
+  return errors[std::size_t(share * double(errors.size() - 1))];
+}
+
+inline double p99(const scene::Film& a, const scene::Film& b, const std::string& layer) {
+  return quantile(a, b, layer, 0.99);
 }
 
 }  // namespace airlight::gpu::test
