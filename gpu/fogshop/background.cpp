@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "gpu/raster/view_uniforms.h"
+#include "gpu/view_uniforms.h"
 
 namespace airlight::gpu {
 namespace {

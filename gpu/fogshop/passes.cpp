@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu/view_uniforms.h"
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 
@@ -77,19 +78,6 @@ std::vector<LightData> light_data(const fogshop::Model& model) {
                     int(l * map_values(model.options)), float3(frame.axes.row(2)), 0});
   }
   return data;
-}
-
-void look(Program& p, const scene::View& view) {
-  const scene::Camera& camera = view.camera;
-  const bool perspective = camera.kind == scene::Camera::Kind::perspective;
-  const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
-  p.set("perspective", perspective);
-  p.set("camera_position", camera.position);
-  p.set("camera_forward", camera.forward);
-  p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
-  p.set("camera_up", Vec3(camera.up * half));
-  p.set("width", view.width);
-  p.set("height", view.height);
 }
 
 }  // namespace
@@ -236,7 +224,7 @@ void FogOnDevice::add_environment(const scene::View& view, bool has_distances, S
   definitions["SH_ORDER"] = std::to_string(bands_);
   Program& p = context_.program("fogshop/environment.comp", definitions);
   using Table = fogshop::PsfBands;
-  look(p, view);
+  set_camera(p, view);
   p.set("hue", model_.fog.hue);
   p.set("has_distances", has_distances);
   p.set("everywhere", model_.options.environment_everywhere);
@@ -255,7 +243,7 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
   const std::string stage = only_edges ? "edges at full resolution" : "airlight";
   const auto prepare = [&](Program& p) {
-    look(p, view);
+    set_camera(p, view);
     p.set("grid_width", width);
     p.set("grid_height", height);
     p.set("film_step", step);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "gpu/raster/view_uniforms.h"
+#include "gpu/view_uniforms.h"
 
 namespace airlight::gpu {
 namespace {

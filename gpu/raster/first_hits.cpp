@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/raster/view_uniforms.h"
 #include "gpu/raster_program.h"
+#include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {

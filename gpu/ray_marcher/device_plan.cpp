@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "gpu/ray_marcher/scene_data.h"
+#include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
@@ -92,16 +93,7 @@ Program& PlanOnDevice::program(const scene::View& view) {
   p.set("shadow_step", o.shadow_step);
   p.set("horizon", o.horizon);
   p.set("darkest", o.early_exit > 0 ? float(-std::log(o.early_exit)) : far_away);
-  const scene::Camera& camera = view.camera;
-  const bool perspective = camera.kind == scene::Camera::Kind::perspective;
-  const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
-  p.set("perspective", perspective);
-  p.set("camera_position", Vec3(camera.position - middle_));
-  p.set("camera_forward", camera.forward);
-  p.set("camera_right", Vec3(camera.right * (half * view.width / view.height)));
-  p.set("camera_up", Vec3(camera.up * half));
-  p.set("width", view.width);
-  p.set("height", view.height);
+  set_camera(p, view, middle_);
   return p;
 }
 

@@ -1,4 +1,5 @@
-// A camera as shaders read it (raster/view.glsl).
+// A camera as shaders read it: in single precision (common/camera.glsl), or where places must be exact in double
+// (raster/view.glsl).
 #pragma once
 #include <cmath>
 
@@ -16,6 +17,19 @@ inline HalfFilm half_film(const scene::View& view) {
   const bool perspective = camera.kind == scene::Camera::Kind::perspective;
   const double y = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
   return {y * view.width / view.height, y};
+}
+
+// The uniforms that camera_ray reads, places relative to `origin` [m].
+inline void set_camera(LinkedProgram& program, const scene::View& view, const Point3& origin = Point3::Zero()) {
+  const scene::Camera& camera = view.camera;
+  const HalfFilm half = half_film(view);
+  program.set("perspective", camera.kind == scene::Camera::Kind::perspective);
+  program.set("camera_position", Vec3(camera.position - origin));
+  program.set("camera_forward", camera.forward);
+  program.set("camera_right", Vec3(half.x * camera.right));
+  program.set("camera_up", Vec3(half.y * camera.up));
+  program.set("width", view.width);
+  program.set("height", view.height);
 }
 
 // The uniforms that view_ray reads.
