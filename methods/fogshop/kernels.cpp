@@ -20,6 +20,7 @@ namespace airlight::fogshop::HWY_NAMESPACE {
 using D = hn::CappedTag<double, GaussianArrays::padding>;
 using V = hn::Vec<D>;
 constexpr D d;
+constexpr hn::Rebind<int, D> integers;
 
 HWY_INLINE V load(const std::vector<double>& v, std::size_t i) { return hn::LoadU(d, v.data() + i); }
 HWY_INLINE V set(double x) { return hn::Set(d, x); }
@@ -50,17 +51,24 @@ void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
     const auto met = hn::And(hn::Ge(chord_squared, zero),
                              hn::And(hn::Ge(hn::Add(m, chord), zero), hn::Le(hn::Sub(m, chord), length)));
     if (hn::AllFalse(d, met)) continue;
+    // Whole vectors are stored, the next ones over their rest: a compressing store is many times slower on some
+    // processors.
+    const auto keep = [&](V v, std::vector<double>& to) { hn::StoreU(hn::Compress(v, met), d, to.data() + n); };
     const V a = load(g.a, i);
-    const V depth = hn::Mul(load(g.half_depth, i), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp))));
-    hn::CompressStore(m, met, d, out.middle.data() + n);
-    hn::CompressStore(a, met, d, out.a.data() + n);
-    hn::CompressStore(depth, met, d, out.depth.data() + n);
-    hn::CompressStore(Erf_<kind>(d, hn::Mul(a, m)), met, d, out.base.data() + n);
-    hn::CompressStore(chord, met, d, out.chord.data() + n);
-    alignas(64) double place[GaussianArrays::padding] = {};
-    const std::size_t found = hn::CompressStore(hn::Add(iota, set(double(i))), met, d, place);
-    for (std::size_t k = 0; k < found; ++k) out.place[n + k] = int(place[k]);
-    n += found;
+    keep(m, out.middle);
+    keep(a, out.a);
+    keep(chord, out.chord);
+    keep(load(g.half_depth, i), out.depth);
+    keep(hn::Neg(hn::Mul(hn::Mul(a, a), pp)), out.base);
+    const auto place = hn::Compress(hn::Add(iota, set(double(i))), met);
+    hn::StoreU(hn::DemoteTo(integers, place), integers, out.place.data() + n);
+    n += hn::CountTrue(d, met);
+  }
+  hn::StoreU(hn::Zero(integers), integers, out.place.data() + n);
+  // Only now, with all lanes in use, what is costly.
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Mul(load(out.depth, i), exp_of(load(out.base, i))), d, out.depth.data() + i);
+    hn::StoreU(Erf_<kind>(d, hn::Mul(load(out.a, i), load(out.middle, i))), d, out.base.data() + i);
   }
   out.count = int(n);
 }
@@ -74,6 +82,23 @@ double TotalDepth(const Crossings& c, double length) {
     // The paper's polynomial is not monotone: depths below 0 are clamped.
     const V depth = hn::Mul(load(c.depth, i), hn::Max(hn::Add(far, load(c.base, i)), hn::Zero(d)));
     sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), depth));
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+template <Erf kind>
+double WholeDepths(Crossings& c, double length) {
+  V sum = hn::Zero(d);
+  const V end = set(length), zero = hn::Zero(d);
+  for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
+    const V m = load(c.middle, i), scale = load(c.depth, i), base = load(c.base, i);
+    const V far = Erf_<kind>(d, hn::Mul(load(c.a, i), hn::Sub(end, m)));
+    const V whole = hn::Mul(scale, hn::Max(hn::Add(far, base), zero));
+    // At the middle itself the first error function is that of 0.
+    const V within = hn::IfThenElse(hn::Le(m, end), hn::Mul(scale, base), whole);
+    hn::StoreU(whole, d, c.whole.data() + i);
+    hn::StoreU(hn::Max(within, zero), d, c.to_nearest.data() + i);
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), whole));
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -171,6 +196,12 @@ double TotalDepthAny(const Crossings& c, double length, Erf erf) {
   return TotalDepth<Erf::paper>(c, length);
 }
 
+double WholeDepthsAny(Crossings& c, double length, Erf erf) {
+  if (erf == Erf::precise) return WholeDepths<Erf::precise>(c, length);
+  if (erf == Erf::erf10) return WholeDepths<Erf::erf10>(c, length);
+  return WholeDepths<Erf::paper>(c, length);
+}
+
 void DepthsAtAny(const Crossings& c, const double* t, int count, double* depth, Erf erf) {
   if (erf == Erf::precise) return DepthsAt<Erf::precise>(c, t, count, depth);
   if (erf == Erf::erf10) return DepthsAt<Erf::erf10>(c, t, count, depth);
@@ -217,6 +248,7 @@ namespace airlight::fogshop {
 
 HWY_EXPORT(CrossAny);
 HWY_EXPORT(TotalDepthAny);
+HWY_EXPORT(WholeDepthsAny);
 HWY_EXPORT(DepthsAtAny);
 HWY_EXPORT(ScatteringDepthsAtAny);
 HWY_EXPORT(DepthsFromPointAny);
@@ -241,7 +273,7 @@ Line line_between(const Point3& from, const Point3& to) {
 void Crossings::reserve(int gaussians) {
   const std::size_t room = std::size_t(gaussians) + GaussianArrays::padding;
   if (middle.size() >= room) return;
-  for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord}) v->assign(room, 0.0);
+  for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord, &whole, &to_nearest}) v->assign(room, 0.0);
   place.assign(room, 0);
 }
 
@@ -252,6 +284,10 @@ void cross(const GaussianArrays& gaussians, const Line& line, Erf erf, Crossings
 
 double total_depth(const Crossings& crossings, double length, Erf erf) {
   return HWY_DYNAMIC_DISPATCH(TotalDepthAny)(crossings, length, erf);
+}
+
+double whole_depths(Crossings& crossings, double length, Erf erf) {
+  return HWY_DYNAMIC_DISPATCH(WholeDepthsAny)(crossings, length, erf);
 }
 
 void depths_at(const Crossings& crossings, const double* t, int count, double* depth, Erf erf) {

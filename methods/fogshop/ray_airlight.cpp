@@ -37,10 +37,13 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   cross(near, line, model_.options.erf, crossings_);
   crossed += crossings_.count;
   evaluations += 2.0 * crossings_.count;
-  if (model_.noise && model_.paper()) {
-    bent_depths(near, line, *model_.noise, model_.options.erf, crossings_, bent_);
-    evaluations += 2.0 * crossings_.count;
-    depth = std::accumulate(bent_.begin(), bent_.end(), 0.0);
+  if (model_.paper()) {
+    depth = whole_depths(crossings_, line.length, model_.options.erf);
+    if (model_.noise) {
+      bent_depths(near, line, *model_.noise, model_.options.erf, crossings_);
+      evaluations += 2.0 * crossings_.count;
+      depth = std::accumulate(crossings_.whole.begin(), crossings_.whole.begin() + crossings_.count, 0.0);
+    }
   } else {
     if (model_.noise) bend(near, line, *model_.noise, crossings_);
     depth = total_depth(crossings_, line.length, model_.options.erf);
@@ -107,9 +110,8 @@ Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
   Rgb airlight = Rgb::Zero();
   for (std::size_t k = 0; k < model_.lights.size(); ++k) {
     Rgb sum = Rgb::Zero();
-    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(),
-                       model_.noise ? bent_.data() : nullptr, sum);
-    evaluations += 4.0 * crossings_.count;
+    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(), sum);
+    evaluations += 2.0 * crossings_.count;
     if (!coloured()) sum = Rgb::Constant(sum[0]);
     if (model_.fog.sum.constant > 0)
       sum += (-model_.fog.hue * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);

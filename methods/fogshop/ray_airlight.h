@@ -52,7 +52,6 @@ class RayAirlight {
   // What the medium up to an edge scatters, per channel [-], hue 1; unused where that is what is extinguished.
   std::array<std::vector<double>, 3> scattering_, half_scattering_;
   std::vector<VoigtNode> nodes_;
-  std::vector<double> bent_;  // paper with noise: y' of each crossing
   std::vector<double> node_t_, node_depth_;
 };
 
