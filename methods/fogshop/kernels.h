@@ -44,6 +44,7 @@ struct Crossings {
   std::vector<double> base;    // erf(a middle)
   std::vector<double> chord;   // [m] half the length of the line inside the sphere
   std::vector<int> place;      // in the arrays that were crossed; a whole vector of 0 after the last
+  std::vector<double> x, y, z, half_depth;  // of those arrays
   // Set by whole_depths.
   std::vector<double> whole;       // optical depth over the whole line [-]
   std::vector<double> to_nearest;  // the same up to the place nearest to the centre, b_i^r of Eq. 10 clamped [-]
