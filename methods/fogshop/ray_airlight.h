@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "methods/fogshop/edges.h"
 #include "methods/fogshop/model.h"
 #include "methods/fogshop/paper_ray.h"
 #include "methods/fogshop/slices.h"

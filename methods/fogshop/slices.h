@@ -6,21 +6,9 @@
 #include <vector>
 
 #include "methods/fogshop/homogeneous_airlight.h"
-#include "methods/fogshop/kernels.h"
+#include "scene/math/types.h"
 
 namespace airlight::fogshop {
-
-// Working memory of one thread.
-struct EdgeScratch {
-  std::vector<double> node, share, merged, box;
-};
-
-// Places slices + 1 edges t[0] = lo < ... < t[slices] = hi (edges may coincide) at equal steps of a mixture of
-// distributions over the ray: even in t; even in the angle as seen from each light; and, if `boxes` are given
-// (placement "S3"), even over a box of 1.6 widths to both sides of each crossed Gaussian, weighted with the light that
-// it takes away. Lights nearer than 1e-9 m to the ray count as 1e-9 m away.
-void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, const Crossings* boxes, int slices,
-                 EdgeScratch&, double* t);
 
 // Every other edge of an even number of slices, with the padding that add_slices wants: what is left is the same
 // placement with half the slices.
