@@ -146,19 +146,12 @@ Interval RayAirlight::stretch(const Line& line) const {
 Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
   const Options& o = model_.options;
   const double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
-  Rgb sum = Rgb::Zero();
-  add_slices(t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr, o.slices, light,
-             o.source_radius, model_.fog.hue, coloured(), sum);
-  if (o.extrapolate) {
-    // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
-    const double* const half_scattering[] = {half_scattering_[0].data(), half_scattering_[1].data(),
-                                             half_scattering_[2].data()};
-    every_other(light_depth_, o.slices, half_light_depth_);
-    Rgb half = Rgb::Zero();
-    add_slices(half_t_.data(), half_view_depth_.data(), half_light_depth_.data(), separate ? half_scattering : nullptr,
-               o.slices / 2, light, o.source_radius, model_.fog.hue, coloured(), half);
-    sum = (sum + (sum - half) / 3).max(0.0);
-  }
+  const SliceEdges edges{t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr};
+  Rgb sum = Rgb::Zero(), half = Rgb::Zero();
+  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.hue, coloured(), slice_scratch_, sum,
+             o.extrapolate ? &half : nullptr);
+  // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
+  if (o.extrapolate) sum = (sum + (sum - half) / 3).max(0.0);
   return coloured() ? sum : Rgb::Constant(sum[0]);
 }
 
@@ -185,7 +178,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
 
   // The first edge is on its own, so that a multiple of 8 slices fills whole vectors.
   const auto padded = [](int n) { return (n + GaussianArrays::padding - 1) & -GaussianArrays::padding; };
-  t_.assign(padded(slices + 1) + GaussianArrays::padding, range.hi);
+  t_.assign(slice_room(slices), range.hi);
   view_depth_.resize(t_.size());
   light_depth_.resize(t_.size());
   place_edges(range.lo, range.hi, seen_, o.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
@@ -202,11 +195,6 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
   for (int k = 0; k <= slices; ++k) view_depth_[k] += constant * t_[k];
   for (int c = 0; separate && c < 3; ++c)
     for (int k = 0; k <= slices; ++k) scattering_[c][k] += model_.fog.constant_colour[c] * constant * t_[k];
-  if (o.extrapolate) {
-    every_other(t_, slices, half_t_);
-    every_other(view_depth_, slices, half_view_depth_);
-    for (int c = 0; separate && c < 3; ++c) every_other(scattering_[c], slices, half_scattering_[c]);
-  }
 
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];
