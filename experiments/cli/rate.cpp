@@ -1,9 +1,9 @@
 // What is counted. One kernel evaluation is
 //   paper  the airlight of one Gaussian from one light on one ray, Eqs. 10 to 13
-//   S      the optical depth of one Gaussian up to one of the K + 1 edges of one ray, Eq. 31
+//   S      the optical depth of one Gaussian up to one edge, or the end, of one ray, Eq. 31: at most K + 2 per pair
 // and its arithmetic, besides that of the evaluation itself, is a share of what is done once per ray and Gaussian: the
-// Gaussian's place on the ray, one exponential, and the error functions at both ends of the ray. The bare loop does
-// these operations, and nothing else, as often as the picture needs them, from registers.
+// Gaussian's place on the ray, one exponential, the error function at the eye, and for `paper` the depth up to the end.
+// The bare loop does these operations, and nothing else, as often as the picture does them, from registers.
 //
 // Not in the bare loop, so that it counts against the renderer: lists of Gaussians for tiles, the test which of them a
 // ray meets, lanes that stay empty, all memory, the placement of the edges of S, its lookups in light maps and its sums
@@ -116,13 +116,14 @@ void measure(const scene::Scene& scene, const Pairs& given, const RateOptions& o
                                      execution.threads, options.processor_time));
   }
   if (!(image.crossed > 0)) throw Error(scene.name + ": no ray meets a Gaussian");
-  const double evaluations = image.crossed * (model.paper() ? double(model.lights.size()) : o.slices + 1.0);
-  const double bare = image.crossed * (crossing.seconds() + depth.seconds()) +
-                      evaluations * (model.paper() ? term.seconds() : depth.seconds());
+  const double pairs = image.crossed, depths = model.paper() ? pairs : image.evaluations - pairs;
+  const double evaluations = model.paper() ? pairs * double(model.lights.size()) : depths;
+  const double bare =
+      pairs * crossing.seconds() + depths * depth.seconds() + (model.paper() ? evaluations * term.seconds() : 0);
   fmt::print("{:8} {:>4} {:8} {:7} {:11.1f} {:12.1f} {:11.1f} {:6.0f} % {:11.1f} {:11.1f} {:6.0f} %\n",
              settings.text("variant"), model.paper() ? "" : std::to_string(o.slices), settings.text("erf"),
-             execution.threads, image.crossed / double(distance.size()), evaluations / best / 1e6,
-             evaluations / bare / 1e6, 100 * bare / best, image.evaluations / best / 1e6, 1e-6 / erf.seconds(),
+             execution.threads, pairs / double(distance.size()), evaluations / best / 1e6, evaluations / bare / 1e6,
+             100 * bare / best, image.evaluations / best / 1e6, 1e-6 / erf.seconds(),
              100 * image.evaluations * erf.seconds() / best);
 }
 

@@ -50,11 +50,14 @@ void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
     keep(load(g.z, i), out.z);
     keep(load(g.half_depth, i), out.half_depth);
     keep(peak_exponent(a, pp), out.base);
-    const auto place = compress(hn::Add(iota, set(double(i))), met);
-    hn::StoreU(hn::DemoteTo(integers, place), integers, out.place.data() + n);
+    const auto keep_number = [&](V v, std::vector<int>& to) {
+      hn::StoreU(hn::DemoteTo(integers, compress(v, met)), integers, to.data() + n);
+    };
+    keep_number(hn::Add(iota, set(double(i))), out.place);
+    keep_number(hn::PromoteTo(d, hn::LoadU(integers, g.index.data() + i)), out.index);
     n += hn::CountTrue(d, met);
   }
-  hn::StoreU(hn::Zero(integers), integers, out.place.data() + n);
+  for (std::vector<int>* v : {&out.place, &out.index}) hn::StoreU(hn::Zero(integers), integers, v->data() + n);
   // Only now, with all lanes in use, what is costly.
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     hn::StoreU(hn::Mul(load(out.half_depth, i), exp_of(load(out.base, i))), d, out.depth.data() + i);
@@ -261,6 +264,7 @@ void Crossings::reserve(int gaussians) {
   for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord, &whole, &to_nearest, &x, &y, &z, &half_depth})
     v->assign(room, 0.0);
   place.assign(room, 0);
+  index.assign(room, 0);
 }
 
 void cross(const GaussianArrays& gaussians, const Line& line, Erf erf, Crossings& out) {

@@ -43,7 +43,8 @@ struct Crossings {
   std::vector<double> depth;   // c sqrt(pi)/(2a) exp(-a^2 p^2) [-], p the distance of the line from the centre
   std::vector<double> base;    // erf(a middle)
   std::vector<double> chord;   // [m] half the length of the line inside the sphere
-  std::vector<int> place;      // in the arrays that were crossed; a whole vector of 0 after the last
+  // In the arrays that were crossed, and in the whole of which these are a part; a vector of 0 after the last.
+  std::vector<int> place, index;
   std::vector<double> x, y, z, half_depth;  // of those arrays
   // Set by whole_depths.
   std::vector<double> whole;       // optical depth over the whole line [-]

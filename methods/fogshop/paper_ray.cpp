@@ -22,11 +22,10 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
   const Vec3 from_light = view.origin - light.position;
   V sum[3] = {zero, zero, zero};
   for (std::size_t first = 0; first < std::size_t(c.count); first += hn::Lanes(d)) {
-    const auto place = hn::LoadU(integers, &c.place[first]);
-    const auto gather = [&](const std::vector<double>& v, auto where) {
-      return hn::GatherIndex(d, v.data(), hn::PromoteTo(long_integers, where));
+    const auto gather = [&](const std::vector<double>& from, const std::vector<int>& places) {
+      return hn::GatherIndex(d, from.data(), hn::PromoteTo(long_integers, hn::LoadU(integers, &places[first])));
     };
-    const V own = gather(light.exponent, hn::GatherIndex(integers, g.index.data(), place));
+    const V own = gather(light.exponent, c.index);
     const Vectors center{hn::Sub(load(c.x, first), set(light.position.x())),
                          hn::Sub(load(c.y, first), set(light.position.y())),
                          hn::Sub(load(c.z, first), set(light.position.z()))};
@@ -40,7 +39,7 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
     const auto valid = hn::FirstN(d, c.count - first);
     for (int k = 0; k < channels; ++k) {
       V term = hn::Mul(hn::Mul(set(hue[k]), p.weight), exp_of(hn::Mul(set(hue[k]), p.exponent)));
-      if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], place));
+      if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], c.place));
       sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
     }
   }

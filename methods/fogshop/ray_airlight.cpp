@@ -189,6 +189,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
     scattering_depths_at(crossings_, near, t_.data(), padded(slices + 1), view_depth_.data(), scattering, o.erf);
   } else {
     view_depth_[0] = range.lo > 0 ? total_depth(crossings_, range.lo, o.erf) : 0;
+    if (!(range.lo > 0)) evaluations -= crossings_.count;
     depths_at(crossings_, &t_[1], padded(slices), &view_depth_[1], o.erf);
   }
   evaluations += double(crossings_.count) * (slices + 1);
