@@ -57,7 +57,7 @@ struct RateOptions {
   std::string scene;
   Pairs settings, overrides;
   int threads = 0, runs = 7;
-  bool processor_time = false;  // instead of the wall clock, on a machine that others use
+  bool processor_time = false;  // of one thread, not the wall clock: on a machine that others use
 };
 // How close fogshop comes to the machine: kernel evaluations per second in whole pictures against a bare loop of the
 // same arithmetic, for its variants `paper` and `S`, or the one that is set.

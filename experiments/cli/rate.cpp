@@ -32,10 +32,9 @@ namespace {
 
 using fogshop::BareLoop;
 
-// Of the wall clock, or of all processors together over `threads`.
-double seconds_of(const std::function<void()>& job, int threads, bool processor_time) {
+double seconds_of(const std::function<void()>& job, bool processor_time) {
   const auto now = [&] {
-    return processor_time ? double(std::clock()) / CLOCKS_PER_SEC / threads
+    return processor_time ? double(std::clock()) / CLOCKS_PER_SEC
                           : std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
   const double start = now();
@@ -55,7 +54,7 @@ class BareTime {
           scene::parallel_rows(execution.threads, execution,
                                [&](int i) { sums[i] = fogshop::bare_loop(what_, erf_, count, i); });
         },
-        execution.threads, processor_time);
+        processor_time);
     for (const double sum : sums)
       if (sum == 0 || !std::isfinite(sum)) throw Error("the bare loop was left out");  // by the compiler
     best_ = std::min(best_, time / (double(count) * execution.threads));
@@ -113,7 +112,7 @@ void measure(const scene::Scene& scene, const Pairs& given, const RateOptions& o
   for (int run = 0; run < options.runs; ++run) {
     for (BareTime* loop : {&erf, &crossing, &depth, &term}) loop->measure(execution, options.processor_time);
     best = std::min(best, seconds_of([&] { image = airlight_pass(model, view_model, view, distance, execution); },
-                                     execution.threads, options.processor_time));
+                                     options.processor_time));
   }
   if (!(image.crossed > 0)) throw Error(scene.name + ": no ray meets a Gaussian");
   const double pairs = image.crossed, depths = model.paper() ? pairs : image.evaluations - pairs;
@@ -133,7 +132,12 @@ int rate(const RateOptions& options) {
   if (options.runs < 1) throw Error(fmt::format("--runs {}: expected 1 or more", options.runs));
   if (options.threads < 0) throw Error(fmt::format("--threads {}: expected 0 or more", options.threads));
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
-  const int threads = options.threads > 0 ? options.threads : int(std::max(1u, std::thread::hardware_concurrency()));
+  // The time of other threads that are running is only known to a tick of the system.
+  if (options.processor_time && options.threads > 1)
+    throw Error(fmt::format("--threads {}: --processor-time is that of one thread", options.threads));
+  const int threads = options.processor_time ? 1
+                      : options.threads > 0  ? options.threads
+                                             : int(std::max(1u, std::thread::hardware_concurrency()));
   Progress progress("rate " + scene->name);
   const scene::Execution execution = progress.execution(threads);
   fmt::print("{}, {}x{} pixels, fastest of {} runs, {}; millions per second\n", scene->name, scene->width,

@@ -203,6 +203,7 @@ TEST_CASE("rate of kernels", "[cli]") {
   CHECK_THAT(coloured.err, Contains("expected grey fog of Gaussians"));
   CHECK(run("rate " + scenes + "fogshop/a30.toml --set variant=VS2" + small, folder).code == 2);
   CHECK(run("rate " + scenes + "fogshop/a30.toml --runs 0", folder).code == 2);
+  CHECK(run("rate " + scenes + "fogshop/a30.toml --processor-time --threads 2", folder).code == 2);
 }
 
 TEST_CASE("explain and doctor", "[cli]") {
