@@ -53,6 +53,16 @@ struct ExplainOptions {
 };
 int explain(const ExplainOptions&);
 
+struct RateOptions {
+  std::string scene;
+  Pairs settings, overrides;
+  int threads = 0, runs = 7;
+  bool processor_time = false;  // of one thread, not the wall clock: on a machine that others use
+};
+// How close fogshop comes to the machine: kernel evaluations per second in whole pictures against a bare loop of the
+// same arithmetic, for its variants `paper` and `S`, or the one that is set.
+int rate(const RateOptions&);
+
 struct AuthorOptions {
   std::string script, out;
 };

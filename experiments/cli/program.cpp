@@ -204,6 +204,23 @@ int dispatch(int argc, char** argv) {
     };
   });
 
+  RateOptions rate_options;
+  c = command(app, "rate", "kernel evaluations per second of fogshop against a bare loop of the same arithmetic");
+  c->add_option("SCENE", rate_options.scene, "scene file: point lights, grey fog of Gaussians");
+  c->add_option("--threads", rate_options.threads, "0: all");
+  c->add_option("--runs", rate_options.runs, "pictures of each variant, of which the fastest counts (7)");
+  c->add_flag("--processor-time", rate_options.processor_time,
+              "of one thread, not the wall clock: on a machine that others use");
+  add_pairs(c, "--set", rate_options.settings, "a setting of fogshop");
+  add_pairs(c, "--override", rate_options.overrides, "a value of the scene file, e.g. film.width=320");
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(rate_options.scene, "SCENE");
+      return rate(rate_options);
+    };
+  });
+
   AuthorOptions author_options;
   c = command(app, "author", "make fog of Gaussians by a script: paint, erase, copy, emit, airbrush");
   c->add_option("SCRIPT", author_options.script, "operations, one JSON object a line (methods/fogshop/README.md)");

@@ -8,59 +8,60 @@
 #define HWY_TARGET_INCLUDE "methods/fogshop/kernels.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "methods/fogshop/erf-inl.h"
+#include "methods/fogshop/arithmetic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace airlight::fogshop::HWY_NAMESPACE {
 
-// Lanes never exceed the padding of the arrays.
-using D = hn::CappedTag<double, GaussianArrays::padding>;
-using V = hn::Vec<D>;
-constexpr D d;
-
-HWY_INLINE V load(const std::vector<double>& v, std::size_t i) { return hn::LoadU(d, v.data() + i); }
-HWY_INLINE V set(double x) { return hn::Set(d, x); }
+constexpr hn::Rebind<int, D> integers;
 
 template <Erf kind>
 double ErrorFunction(double x) {
   return hn::GetLane(Erf_<kind>(d, set(x)));
 }
 
-// exp for arguments that may be as low as -infinity.
-HWY_INLINE V exp_of(V x) { return hn::Exp(d, hn::Max(x, set(-700))); }
-
 template <Erf kind>
 void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
-  const V rx = set(line.direction.x()), ry = set(line.direction.y()), rz = set(line.direction.z());
+  const Vectors direction{set(line.direction.x()), set(line.direction.y()), set(line.direction.z())};
   const V ox = set(line.origin.x()), oy = set(line.origin.y()), oz = set(line.origin.z());
   const V length = set(line.length), zero = hn::Zero(d);
   const auto iota = hn::Iota(d, 0.0);
   std::size_t n = 0;
   for (std::size_t i = 0; i < g.x.size(); i += hn::Lanes(d)) {
-    const V qx = hn::Sub(load(g.x, i), ox), qy = hn::Sub(load(g.y, i), oy), qz = hn::Sub(load(g.z, i), oz);
-    const V m = hn::MulAdd(qx, rx, hn::MulAdd(qy, ry, hn::Mul(qz, rz)));
-    const V px = hn::NegMulAdd(m, rx, qx), py = hn::NegMulAdd(m, ry, qy), pz = hn::NegMulAdd(m, rz, qz);
-    const V pp = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+    const Vectors q{hn::Sub(load(g.x, i), ox), hn::Sub(load(g.y, i), oy), hn::Sub(load(g.z, i), oz)};
+    const auto [m, pp] = project(q, direction);
     const V chord_squared = hn::Sub(load(g.radius_squared, i), pp);
     if (hn::AllFalse(d, hn::Ge(chord_squared, zero))) continue;
     const V chord = hn::Sqrt(hn::Max(chord_squared, zero));
     const auto met = hn::And(hn::Ge(chord_squared, zero),
                              hn::And(hn::Ge(hn::Add(m, chord), zero), hn::Le(hn::Sub(m, chord), length)));
     if (hn::AllFalse(d, met)) continue;
+    // Whole vectors are stored, the next ones over their rest: a compressing store is many times slower on some
+    // processors.
+    const auto keep = [&](V v, std::vector<double>& to) { hn::StoreU(compress(v, met), d, to.data() + n); };
     const V a = load(g.a, i);
-    const V depth = hn::Mul(load(g.half_depth, i), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp))));
-    hn::CompressStore(m, met, d, out.middle.data() + n);
-    hn::CompressStore(a, met, d, out.a.data() + n);
-    hn::CompressStore(depth, met, d, out.depth.data() + n);
-    hn::CompressStore(Erf_<kind>(d, hn::Mul(a, m)), met, d, out.base.data() + n);
-    hn::CompressStore(chord, met, d, out.chord.data() + n);
-    alignas(64) double place[GaussianArrays::padding] = {};
-    const std::size_t found = hn::CompressStore(hn::Add(iota, set(double(i))), met, d, place);
-    for (std::size_t k = 0; k < found; ++k) out.place[n + k] = int(place[k]);
-    n += found;
+    keep(m, out.middle);
+    keep(a, out.a);
+    keep(chord, out.chord);
+    keep(load(g.x, i), out.x);
+    keep(load(g.y, i), out.y);
+    keep(load(g.z, i), out.z);
+    keep(load(g.half_depth, i), out.half_depth);
+    keep(peak_exponent(a, pp), out.base);
+    const auto keep_number = [&](V v, std::vector<int>& to) {
+      hn::StoreU(hn::DemoteTo(integers, compress(v, met)), integers, to.data() + n);
+    };
+    keep_number(hn::Add(iota, set(double(i))), out.place);
+    keep_number(hn::PromoteTo(d, hn::LoadU(integers, g.index.data() + i)), out.index);
+    n += hn::CountTrue(d, met);
+  }
+  for (std::vector<int>* v : {&out.place, &out.index}) hn::StoreU(hn::Zero(integers), integers, v->data() + n);
+  // Only now, with all lanes in use, what is costly.
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Mul(load(out.half_depth, i), exp_of(load(out.base, i))), d, out.depth.data() + i);
+    hn::StoreU(Erf_<kind>(d, hn::Mul(load(out.a, i), load(out.middle, i))), d, out.base.data() + i);
   }
   out.count = int(n);
 }
@@ -70,10 +71,25 @@ double TotalDepth(const Crossings& c, double length) {
   V sum = hn::Zero(d);
   const V end = set(length);
   for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
-    const V far = Erf_<kind>(d, hn::Mul(load(c.a, i), hn::Sub(end, load(c.middle, i))));
-    // The paper's polynomial is not monotone: depths below 0 are clamped.
-    const V depth = hn::Mul(load(c.depth, i), hn::Max(hn::Add(far, load(c.base, i)), hn::Zero(d)));
+    const V share = share_up_to<kind>(end, load(c.a, i), load(c.middle, i), load(c.base, i));
+    const V depth = hn::Mul(load(c.depth, i), share);
     sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), depth));
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+template <Erf kind>
+double WholeDepths(Crossings& c, double length) {
+  V sum = hn::Zero(d);
+  const V end = set(length), zero = hn::Zero(d);
+  for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
+    const V m = load(c.middle, i), scale = load(c.depth, i), base = load(c.base, i);
+    const V whole = hn::Mul(scale, share_up_to<kind>(end, load(c.a, i), m, base));
+    // At the middle itself the first error function is that of 0.
+    const V within = hn::IfThenElse(hn::Le(m, end), hn::Mul(scale, base), whole);
+    hn::StoreU(whole, d, c.whole.data() + i);
+    hn::StoreU(hn::Max(within, zero), d, c.to_nearest.data() + i);
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), whole));
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -84,8 +100,8 @@ void DepthsAt(const Crossings& c, const double* t, int count, double* depth) {
     const V end = hn::LoadU(d, t + k);
     V sum = hn::Zero(d);
     for (int i = 0; i < c.count; ++i) {
-      const V far = Erf_<kind>(d, hn::Mul(set(c.a[i]), hn::Sub(end, set(c.middle[i]))));
-      sum = hn::MulAdd(set(c.depth[i]), hn::Max(hn::Add(far, set(c.base[i])), hn::Zero(d)), sum);
+      const V share = share_up_to<kind>(end, set(c.a[i]), set(c.middle[i]), set(c.base[i]));
+      sum = hn::MulAdd(set(c.depth[i]), share, sum);
     }
     hn::StoreU(sum, d, depth + k);
   }
@@ -98,8 +114,8 @@ void ScatteringDepthsAt(const Crossings& c, const GaussianArrays& g, const doubl
     const V end = hn::LoadU(d, t + k);
     V sum = hn::Zero(d), red = sum, green = sum, blue = sum;
     for (int i = 0; i < c.count; ++i) {
-      const V far = Erf_<kind>(d, hn::Mul(set(c.a[i]), hn::Sub(end, set(c.middle[i]))));
-      const V part = hn::Mul(set(c.depth[i]), hn::Max(hn::Add(far, set(c.base[i])), hn::Zero(d)));
+      const V share = share_up_to<kind>(end, set(c.a[i]), set(c.middle[i]), set(c.base[i]));
+      const V part = hn::Mul(set(c.depth[i]), share);
       const int place = c.place[i];
       sum = hn::Add(sum, part);
       red = hn::MulAdd(set(g.colour[0][place]), part, red);
@@ -119,21 +135,17 @@ void DepthsFromPoint(const GaussianArrays& g, const Point3& from, const Line& ra
   const Vec3 offset = ray.origin - from;
   for (int k = 0; k < count; k += int(hn::Lanes(d))) {
     const V tk = hn::LoadU(d, t + k);
-    const V sx = hn::MulAdd(tk, set(ray.direction.x()), set(offset.x()));
-    const V sy = hn::MulAdd(tk, set(ray.direction.y()), set(offset.y()));
-    const V sz = hn::MulAdd(tk, set(ray.direction.z()), set(offset.z()));
-    const V length = hn::Sqrt(hn::MulAdd(sx, sx, hn::MulAdd(sy, sy, hn::Mul(sz, sz))));
-    const V inverse = hn::Div(set(1), hn::Max(length, set(1e-300)));
-    const V rx = hn::Mul(sx, inverse), ry = hn::Mul(sy, inverse), rz = hn::Mul(sz, inverse);
+    const Vectors to{hn::MulAdd(tk, set(ray.direction.x()), set(offset.x())),
+                     hn::MulAdd(tk, set(ray.direction.y()), set(offset.y())),
+                     hn::MulAdd(tk, set(ray.direction.z()), set(offset.z()))};
+    const V length = hn::Sqrt(dot(to, to)), inverse = hn::Div(set(1), hn::Max(length, set(1e-300)));
+    const Vectors direction{hn::Mul(to.x, inverse), hn::Mul(to.y, inverse), hn::Mul(to.z, inverse)};
     V sum = hn::Zero(d);
     for (int i = 0; i < g.count; ++i) {
-      const V qx = set(g.x[i] - from.x()), qy = set(g.y[i] - from.y()), qz = set(g.z[i] - from.z()), a = set(g.a[i]);
-      const V m = hn::MulAdd(qx, rx, hn::MulAdd(qy, ry, hn::Mul(qz, rz)));
-      const V px = hn::NegMulAdd(m, rx, qx), py = hn::NegMulAdd(m, ry, qy), pz = hn::NegMulAdd(m, rz, qz);
-      const V pp = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
-      const V scale = hn::Mul(set(g.half_depth[i]), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp))));
-      const V ends = hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(length, m))), Erf_<kind>(d, hn::Mul(a, m)));
-      sum = hn::MulAdd(scale, hn::Max(ends, hn::Zero(d)), sum);
+      const V a = set(g.a[i]);
+      const auto [m, pp] = project({set(g.x[i] - from.x()), set(g.y[i] - from.y()), set(g.z[i] - from.z())}, direction);
+      const V scale = hn::Mul(set(g.half_depth[i]), exp_of(peak_exponent(a, pp)));
+      sum = hn::MulAdd(scale, share_up_to<kind>(length, a, m, Erf_<kind>(d, hn::Mul(a, m))), sum);
     }
     hn::StoreU(sum, d, depth + k);
   }
@@ -152,8 +164,9 @@ void NearPrism(const GaussianArrays& g, const double planes[4][4], std::vector<i
     const auto near =
         hn::Le(hn::Mul(hn::Max(farthest, hn::Zero(d)), hn::Max(farthest, hn::Zero(d))), load(g.radius_squared, i));
     if (hn::AllFalse(d, near)) continue;
-    alignas(64) double place[GaussianArrays::padding] = {};
-    const std::size_t found = hn::CompressStore(hn::Iota(d, double(i)), near, d, place);
+    alignas(64) double place[GaussianArrays::padding];
+    hn::Store(compress(hn::Iota(d, double(i)), near), d, place);
+    const std::size_t found = hn::CountTrue(d, near);
     for (std::size_t k = 0; k < found; ++k) places.push_back(int(place[k]));
   }
 }
@@ -169,6 +182,12 @@ double TotalDepthAny(const Crossings& c, double length, Erf erf) {
   if (erf == Erf::precise) return TotalDepth<Erf::precise>(c, length);
   if (erf == Erf::erf10) return TotalDepth<Erf::erf10>(c, length);
   return TotalDepth<Erf::paper>(c, length);
+}
+
+double WholeDepthsAny(Crossings& c, double length, Erf erf) {
+  if (erf == Erf::precise) return WholeDepths<Erf::precise>(c, length);
+  if (erf == Erf::erf10) return WholeDepths<Erf::erf10>(c, length);
+  return WholeDepths<Erf::paper>(c, length);
 }
 
 void DepthsAtAny(const Crossings& c, const double* t, int count, double* depth, Erf erf) {
@@ -217,6 +236,7 @@ namespace airlight::fogshop {
 
 HWY_EXPORT(CrossAny);
 HWY_EXPORT(TotalDepthAny);
+HWY_EXPORT(WholeDepthsAny);
 HWY_EXPORT(DepthsAtAny);
 HWY_EXPORT(ScatteringDepthsAtAny);
 HWY_EXPORT(DepthsFromPointAny);
@@ -241,8 +261,10 @@ Line line_between(const Point3& from, const Point3& to) {
 void Crossings::reserve(int gaussians) {
   const std::size_t room = std::size_t(gaussians) + GaussianArrays::padding;
   if (middle.size() >= room) return;
-  for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord}) v->assign(room, 0.0);
+  for (std::vector<double>* v : {&middle, &a, &depth, &base, &chord, &whole, &to_nearest, &x, &y, &z, &half_depth})
+    v->assign(room, 0.0);
   place.assign(room, 0);
+  index.assign(room, 0);
 }
 
 void cross(const GaussianArrays& gaussians, const Line& line, Erf erf, Crossings& out) {
@@ -252,6 +274,10 @@ void cross(const GaussianArrays& gaussians, const Line& line, Erf erf, Crossings
 
 double total_depth(const Crossings& crossings, double length, Erf erf) {
   return HWY_DYNAMIC_DISPATCH(TotalDepthAny)(crossings, length, erf);
+}
+
+double whole_depths(Crossings& crossings, double length, Erf erf) {
+  return HWY_DYNAMIC_DISPATCH(WholeDepthsAny)(crossings, length, erf);
 }
 
 void depths_at(const Crossings& crossings, const double* t, int count, double* depth, Erf erf) {

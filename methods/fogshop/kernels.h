@@ -43,7 +43,12 @@ struct Crossings {
   std::vector<double> depth;   // c sqrt(pi)/(2a) exp(-a^2 p^2) [-], p the distance of the line from the centre
   std::vector<double> base;    // erf(a middle)
   std::vector<double> chord;   // [m] half the length of the line inside the sphere
-  std::vector<int> place;      // in the arrays that were crossed
+  // In the arrays that were crossed, and in the whole of which these are a part; a vector of 0 after the last.
+  std::vector<int> place, index;
+  std::vector<double> x, y, z, half_depth;  // of those arrays
+  // Set by whole_depths.
+  std::vector<double> whole;       // optical depth over the whole line [-]
+  std::vector<double> to_nearest;  // the same up to the place nearest to the centre, b_i^r of Eq. 10 clamped [-]
 
   void reserve(int gaussians);
 };
@@ -54,7 +59,10 @@ void cross(const GaussianArrays&, const Line&, Erf, Crossings&);
 // Optical depth over [0, length] of the crossed line [-].
 double total_depth(const Crossings&, double length, Erf);
 
-// The same at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
+// The same, and its parts: what the line's own length makes of each crossing, for any number of lights.
+double whole_depths(Crossings&, double length, Erf);
+
+// total_depth at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
 void depths_at(const Crossings&, const double* t, int count, double* depth, Erf);
 
 // The same, and for each channel the sum of the depths times the colours of their Gaussians: what the medium up to

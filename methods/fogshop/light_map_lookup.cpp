@@ -35,11 +35,11 @@ HWY_INLINE Pair load_pair(const float* depths, VI place) {
 
 HWY_INLINE V lerp(V a, V b, V s) { return hn::MulAdd(hn::Sub(b, a), s, a); }
 
-// x = whole + rest with whole in [0, last].
-HWY_INLINE VI split(V x, int last, V& rest) {
+// x = whole + rest with whole in [0, last]; the whole number is returned.
+HWY_INLINE V split(V x, int last, V& rest) {
   const V whole = hn::Min(hn::Max(hn::Floor(x), hn::Zero(d)), set(last));
   rest = hn::Sub(x, whole);
-  return hn::ConvertTo(di, whole);
+  return whole;
 }
 
 void LookUp(const MapLookup& map, const double* start, const double* step, const double* t, int count, double* depth) {
@@ -75,16 +75,12 @@ void LookUp(const MapLookup& map, const double* start, const double* step, const
     const V share = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(map.near)), to_edge), zero), one);
     const V half = set(0.5 * map.directions);
     V fu, fv, fe;
-    const VI i = split(hn::MulAdd(hn::Add(px, one), half, set(0.5)), side - 2, fu);
-    const VI j = split(hn::MulAdd(hn::Add(py, one), half, set(0.5)), side - 2, fv);
-    const VI k = split(hn::Mul(set(map.edges), even ? share : hn::Sqrt(share)), map.edges - 1, fe);
-    alignas(64) int64_t ii[8], jj[8], kk[8];
-    hn::Store(i, di, ii);
-    hn::Store(j, di, jj);
-    hn::Store(k, di, kk);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) ii[lane] = jj[lane] * row + ii[lane] * stride + kk[lane];
-    const auto mask = hn::RebindMask(di, seen);
-    const VI place = hn::IfThenElseZero(mask, hn::Load(di, ii));
+    const V i = split(hn::MulAdd(hn::Add(px, one), half, set(0.5)), side - 2, fu);
+    const V j = split(hn::MulAdd(hn::Add(py, one), half, set(0.5)), side - 2, fv);
+    const V k = split(hn::Mul(set(map.edges), even ? share : hn::Sqrt(share)), map.edges - 1, fe);
+    // Places are exact in floating point, and multiplied there.
+    const V number = hn::MulAdd(j, set(double(row)), hn::MulAdd(i, set(double(stride)), k));
+    const VI place = hn::ConvertTo(di, hn::IfThenElseZero(seen, number));
     const auto along = [&](int64_t offset) {
       const Pair pair = load_pair(map.depths, hn::Add(place, hn::Set(di, offset)));
       return lerp(pair.first, pair.second, fe);

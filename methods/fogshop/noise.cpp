@@ -77,9 +77,7 @@ void bend(const GaussianArrays& g, const Line& line, const Noise& noise, Crossin
   }
 }
 
-void bent_depths(const GaussianArrays& g, const Line& line, const Noise& noise, Erf erf, const Crossings& c,
-                 std::vector<double>& whole) {
-  whole.resize(c.count);
+void bent_depths(const GaussianArrays& g, const Line& line, const Noise& noise, Erf erf, Crossings& c) {
   for (int k = 0; k < c.count; ++k) {
     const int i = c.place[k];
     const double radius = std::sqrt(g.radius_squared[i]) / noise_reach(noise.scale());
@@ -88,7 +86,7 @@ void bent_depths(const GaussianArrays& g, const Line& line, const Noise& noise, 
     const double m = q.dot(r), a = g.a[i];
     const Vec3 p = q - m * r;
     const double ends = error_function(erf, a * (line.length - m)) + error_function(erf, a * m);
-    whole[k] = g.half_depth[i] * std::exp(-a * a * p.squaredNorm()) * std::max(ends, 0.0);
+    c.whole[k] = g.half_depth[i] * std::exp(-a * a * p.squaredNorm()) * std::max(ends, 0.0);
   }
 }
 

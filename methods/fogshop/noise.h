@@ -43,7 +43,8 @@ inline double noise_reach(double scale) { return 1 + scale; }
 // along the ray, so that depths still grow along it.
 void bend(const GaussianArrays&, const Line&, const Noise&, Crossings&);
 
-// Variant paper: y' = T_i(v, p) along the bent rays over the unchanged d_r [-], one for each crossing. Never negative.
-void bent_depths(const GaussianArrays&, const Line&, const Noise&, Erf, const Crossings&, std::vector<double>& whole);
+// Variant paper: y' = T_i(v, p) along the bent rays over the unchanged d_r [-], put in place of Crossings::whole. Never
+// negative.
+void bent_depths(const GaussianArrays&, const Line&, const Noise&, Erf, Crossings&);
 
 }  // namespace airlight::fogshop

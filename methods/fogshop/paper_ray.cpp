@@ -4,68 +4,42 @@
 #define HWY_TARGET_INCLUDE "methods/fogshop/paper_ray.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "methods/fogshop/erf-inl.h"
+#include "methods/fogshop/arithmetic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace airlight::fogshop::HWY_NAMESPACE {
 
-// Lanes are Gaussians; they never exceed the padding of the arrays.
-using D = hn::CappedTag<double, GaussianArrays::padding>;
-using V = hn::Vec<D>;
-constexpr D d;
+constexpr hn::Rebind<int, D> integers;
+constexpr hn::RebindToSigned<D> long_integers;
 
-HWY_INLINE V set(double x) { return hn::Set(d, x); }
-HWY_INLINE V exp_of(V x) { return hn::Exp(d, hn::Max(x, set(-700))); }
-
+// Lanes are Gaussians.
 template <Erf kind>
 void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light,
-                   const double* hue, int channels, const double* whole, double* sums) {
-  const V zero = hn::Zero(d), length = set(view.length);
-  const V rx = set(view.direction.x()), ry = set(view.direction.y()), rz = set(view.direction.z());
+                   const double* hue, int channels, double* sums) {
+  const V zero = hn::Zero(d), length = set(view.length), softness = set(light.softness);
   const Vec3 from_light = view.origin - light.position;
   V sum[3] = {zero, zero, zero};
-  for (int first = 0; first < c.count; first += int(hn::Lanes(d))) {
-    alignas(64) double bx[8] = {}, by[8] = {}, bz[8] = {}, half[8] = {}, e[8] = {}, colour[3][8] = {};
-    const int lanes = std::min(int(hn::Lanes(d)), c.count - first);
-    for (int k = 0; k < lanes; ++k) {
-      const int i = c.place[first + k];
-      bx[k] = g.x[i] - light.position.x(), by[k] = g.y[i] - light.position.y(), bz[k] = g.z[i] - light.position.z();
-      half[k] = g.half_depth[i];
-      e[k] = light.exponent[g.index[i]];
-      for (int j = 0; j < 3 && g.has_colours(); ++j) colour[j][k] = g.colour[j][i];
-    }
-    const V a = hn::LoadU(d, &c.a[first]), m = hn::LoadU(d, &c.middle[first]);
-    const V scale = hn::LoadU(d, &c.depth[first]), base = hn::LoadU(d, &c.base[first]);
-    const auto view_depth = [&](V t) {
-      return hn::Mul(scale, hn::Max(hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(t, m))), base), zero));
+  for (std::size_t first = 0; first < std::size_t(c.count); first += hn::Lanes(d)) {
+    const auto gather = [&](const std::vector<double>& from, const std::vector<int>& places) {
+      return hn::GatherIndex(d, from.data(), hn::PromoteTo(long_integers, hn::LoadU(integers, &places[first])));
     };
-    // Eq. 10: x = b_i^r restricted to the segment, seen from the light.
-    const V t = hn::Min(hn::Max(m, zero), length);
-    const V sx = hn::MulAdd(t, rx, set(from_light.x())), sy = hn::MulAdd(t, ry, set(from_light.y())),
-            sz = hn::MulAdd(t, rz, set(from_light.z()));
-    const V dd = hn::MulAdd(sx, sx, hn::MulAdd(sy, sy, hn::Mul(sz, sz)));
-    const V distance = hn::Sqrt(dd), inverse = hn::Div(set(1), hn::Max(distance, set(1e-300)));
-    const V ux = hn::Mul(sx, inverse), uy = hn::Mul(sy, inverse), uz = hn::Mul(sz, inverse);
-    const V qx = hn::Load(d, bx), qy = hn::Load(d, by), qz = hn::Load(d, bz);
-    const V n = hn::MulAdd(qx, ux, hn::MulAdd(qy, uy, hn::Mul(qz, uz)));
-    const V px = hn::NegMulAdd(n, ux, qx), py = hn::NegMulAdd(n, uy, qy), pz = hn::NegMulAdd(n, uz, qz);
-    const V pp = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
-    const V ends = hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(distance, n))), Erf_<kind>(d, hn::Mul(a, n)));
-    const V light_depth =
-        hn::Mul(hn::Mul(hn::Load(d, half), exp_of(hn::Neg(hn::Mul(hn::Mul(a, a), pp)))), hn::Max(ends, zero));
-    // Eqs. 11 to 13, exponents added before the exponential.
-    const V exponent = hn::Sub(hn::Sub(hn::Load(d, e), light_depth), view_depth(t));
-    alignas(64) double given[8] = {};
-    if (whole) std::copy_n(whole + first, lanes, given);
-    const V weight = hn::Div(whole ? hn::Load(d, given) : view_depth(length),
-                             hn::Mul(set(4 * pi), hn::Add(dd, set(light.softness))));
-    const auto valid = hn::FirstN(d, std::size_t(lanes));
+    const V own = gather(light.exponent, c.index);
+    const Vectors center{hn::Sub(load(c.x, first), set(light.position.x())),
+                         hn::Sub(load(c.y, first), set(light.position.y())),
+                         hn::Sub(load(c.z, first), set(light.position.z()))};
+    // Eq. 10: b_i^r restricted to the segment.
+    const V t = hn::Min(hn::Max(load(c.middle, first), zero), length);
+    const Vectors nearest{hn::MulAdd(t, set(view.direction.x()), set(from_light.x())),
+                          hn::MulAdd(t, set(view.direction.y()), set(from_light.y())),
+                          hn::MulAdd(t, set(view.direction.z()), set(from_light.z()))};
+    const PaperTerm p = paper_term<kind>(center, nearest, load(c.a, first), load(c.half_depth, first), own,
+                                         load(c.to_nearest, first), load(c.whole, first), softness);
+    const auto valid = hn::FirstN(d, c.count - first);
     for (int k = 0; k < channels; ++k) {
-      V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), exponent)));
-      if (g.has_colours()) term = hn::Mul(term, hn::Load(d, colour[k]));
+      V term = hn::Mul(hn::Mul(set(hue[k]), p.weight), exp_of(hn::Mul(set(hue[k]), p.exponent)));
+      if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], c.place));
       sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
     }
   }
@@ -73,10 +47,10 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
 }
 
 void GaussianTermsAny(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light, Erf erf,
-                      const double* hue, int channels, const double* whole, double* sums) {
-  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, hue, channels, whole, sums);
-  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, hue, channels, whole, sums);
-  return GaussianTerms<Erf::paper>(g, c, view, light, hue, channels, whole, sums);
+                      const double* hue, int channels, double* sums) {
+  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, hue, channels, sums);
+  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, hue, channels, sums);
+  return GaussianTerms<Erf::paper>(g, c, view, light, hue, channels, sums);
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE
@@ -88,10 +62,9 @@ namespace airlight::fogshop {
 HWY_EXPORT(GaussianTermsAny);
 
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings& crossings, const Line& view,
-                        const PaperLight& light, Erf erf, const Rgb& hue, bool coloured, const double* whole,
-                        Rgb& airlight) {
+                        const PaperLight& light, Erf erf, const Rgb& hue, bool coloured, Rgb& airlight) {
   HWY_DYNAMIC_DISPATCH(GaussianTermsAny)
-  (gaussians, crossings, view, light, erf, hue.data(), coloured ? 3 : 1, whole, airlight.data());
+  (gaussians, crossings, view, light, erf, hue.data(), coloured ? 3 : 1, airlight.data());
 }
 
 }  // namespace airlight::fogshop

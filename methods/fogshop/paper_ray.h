@@ -15,9 +15,8 @@ struct PaperLight {
 
 // Adds, per channel, sum over the crossed Gaussians of f^0 f^1 T_i(v,p) for an intensity of 1 W/sr. `gaussians` are
 // those that were crossed; `exponent` is by their `index`. Three channels if `coloured`, else the first only. Where the
-// Gaussians have colours, each term is scaled by its Gaussian's. `whole` gives T_i(v,p) of each crossing where it is
-// not that of the straight ray (noise); else it is null.
+// Gaussians have colours, each term is scaled by its Gaussian's. T_i(v,p) is Crossings::whole, T_i(v,b_i^r) to_nearest.
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings&, const Line& view, const PaperLight&, Erf,
-                        const Rgb& hue, bool coloured, const double* whole, Rgb& airlight);
+                        const Rgb& hue, bool coloured, Rgb& airlight);
 
 }  // namespace airlight::fogshop

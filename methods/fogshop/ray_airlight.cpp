@@ -37,10 +37,13 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   cross(near, line, model_.options.erf, crossings_);
   crossed += crossings_.count;
   evaluations += 2.0 * crossings_.count;
-  if (model_.noise && model_.paper()) {
-    bent_depths(near, line, *model_.noise, model_.options.erf, crossings_, bent_);
-    evaluations += 2.0 * crossings_.count;
-    depth = std::accumulate(bent_.begin(), bent_.end(), 0.0);
+  if (model_.paper()) {
+    depth = whole_depths(crossings_, line.length, model_.options.erf);
+    if (model_.noise) {
+      bent_depths(near, line, *model_.noise, model_.options.erf, crossings_);
+      evaluations += 2.0 * crossings_.count;
+      depth = std::accumulate(crossings_.whole.begin(), crossings_.whole.begin() + crossings_.count, 0.0);
+    }
   } else {
     if (model_.noise) bend(near, line, *model_.noise, crossings_);
     depth = total_depth(crossings_, line.length, model_.options.erf);
@@ -107,9 +110,8 @@ Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
   Rgb airlight = Rgb::Zero();
   for (std::size_t k = 0; k < model_.lights.size(); ++k) {
     Rgb sum = Rgb::Zero();
-    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(),
-                       model_.noise ? bent_.data() : nullptr, sum);
-    evaluations += 4.0 * crossings_.count;
+    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(), sum);
+    evaluations += 2.0 * crossings_.count;
     if (!coloured()) sum = Rgb::Constant(sum[0]);
     if (model_.fog.sum.constant > 0)
       sum += (-model_.fog.hue * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);
@@ -144,19 +146,12 @@ Interval RayAirlight::stretch(const Line& line) const {
 Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
   const Options& o = model_.options;
   const double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
-  Rgb sum = Rgb::Zero();
-  add_slices(t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr, o.slices, light,
-             o.source_radius, model_.fog.hue, coloured(), sum);
-  if (o.extrapolate) {
-    // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
-    const double* const half_scattering[] = {half_scattering_[0].data(), half_scattering_[1].data(),
-                                             half_scattering_[2].data()};
-    every_other(light_depth_, o.slices, half_light_depth_);
-    Rgb half = Rgb::Zero();
-    add_slices(half_t_.data(), half_view_depth_.data(), half_light_depth_.data(), separate ? half_scattering : nullptr,
-               o.slices / 2, light, o.source_radius, model_.fog.hue, coloured(), half);
-    sum = (sum + (sum - half) / 3).max(0.0);
-  }
+  const SliceEdges edges{t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr};
+  Rgb sum = Rgb::Zero(), half = Rgb::Zero();
+  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.hue, coloured(), slice_scratch_, sum,
+             o.extrapolate ? &half : nullptr);
+  // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
+  if (o.extrapolate) sum = (sum + (sum - half) / 3).max(0.0);
   return coloured() ? sum : Rgb::Constant(sum[0]);
 }
 
@@ -183,7 +178,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
 
   // The first edge is on its own, so that a multiple of 8 slices fills whole vectors.
   const auto padded = [](int n) { return (n + GaussianArrays::padding - 1) & -GaussianArrays::padding; };
-  t_.assign(padded(slices + 1) + GaussianArrays::padding, range.hi);
+  t_.assign(slice_room(slices), range.hi);
   view_depth_.resize(t_.size());
   light_depth_.resize(t_.size());
   place_edges(range.lo, range.hi, seen_, o.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
@@ -194,17 +189,13 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
     scattering_depths_at(crossings_, near, t_.data(), padded(slices + 1), view_depth_.data(), scattering, o.erf);
   } else {
     view_depth_[0] = range.lo > 0 ? total_depth(crossings_, range.lo, o.erf) : 0;
+    if (!(range.lo > 0)) evaluations -= crossings_.count;
     depths_at(crossings_, &t_[1], padded(slices), &view_depth_[1], o.erf);
   }
   evaluations += double(crossings_.count) * (slices + 1);
   for (int k = 0; k <= slices; ++k) view_depth_[k] += constant * t_[k];
   for (int c = 0; separate && c < 3; ++c)
     for (int k = 0; k <= slices; ++k) scattering_[c][k] += model_.fog.constant_colour[c] * constant * t_[k];
-  if (o.extrapolate) {
-    every_other(t_, slices, half_t_);
-    every_other(view_depth_, slices, half_view_depth_);
-    for (int c = 0; separate && c < 3; ++c) every_other(scattering_[c], slices, half_scattering_[c]);
-  }
 
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];

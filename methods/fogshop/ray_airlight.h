@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "methods/fogshop/edges.h"
 #include "methods/fogshop/model.h"
 #include "methods/fogshop/paper_ray.h"
 #include "methods/fogshop/slices.h"
@@ -45,14 +46,13 @@ class RayAirlight {
   const ViewModel& view_;
   Crossings crossings_;
   EdgeScratch scratch_;
+  SliceScratch slice_scratch_;
   std::vector<LightFromRay> seen_;
   std::vector<int> places_;
   std::vector<double> t_, view_depth_, light_depth_;
-  std::vector<double> half_t_, half_view_depth_, half_light_depth_;  // at every other edge
   // What the medium up to an edge scatters, per channel [-], hue 1; unused where that is what is extinguished.
-  std::array<std::vector<double>, 3> scattering_, half_scattering_;
+  std::array<std::vector<double>, 3> scattering_;
   std::vector<VoigtNode> nodes_;
-  std::vector<double> bent_;  // paper with noise: y' of each crossing
   std::vector<double> node_t_, node_depth_;
 };
 

@@ -3,6 +3,7 @@
 // error falls as K^-2 for any number of Gaussians and any optical depth; extrapolated from K/2 and K slices, which
 // share their edges and so all depths, as K^-4.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "methods/fogshop/homogeneous_airlight.h"
@@ -10,28 +11,31 @@
 
 namespace airlight::fogshop {
 
+// What is known at the edges of K slices: arrays of K + 1 values with room as slice_room says.
+struct SliceEdges {
+  const double* t;  // [m]
+  // Depths [-], hue 1, from the camera and from the light, the medium's constant included.
+  const double* view_depth;
+  const double* light_depth;
+  // What the medium up to the edge scatters, per channel [-], hue 1; null: what it extinguishes, view_depth.
+  const double* const* scattering;
+};
+// Values that arrays over the edges hold: whole vectors are read beyond the last.
+constexpr std::size_t slice_room(int slices) {
+  constexpr int padding = GaussianArrays::padding;
+  return std::size_t((slices + padding) / padding * padding + 2 * padding);
+}
+
 // Working memory of one thread.
-struct EdgeScratch {
-  std::vector<double> node, share, merged, box;
+struct SliceScratch {
+  std::vector<double> angle, depth;
+  std::array<std::vector<double>, 3> transmittance;
 };
 
-// Places slices + 1 edges t[0] = lo < ... < t[slices] = hi (edges may coincide) at equal steps of a mixture of
-// distributions over the ray: even in t; even in the angle as seen from each light; and, if `boxes` are given
-// (placement "S3"), even over a box of 1.6 widths to both sides of each crossed Gaussian, weighted with the light that
-// it takes away. Lights nearer than 1e-9 m to the ray count as 1e-9 m away.
-void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, const Crossings* boxes, int slices,
-                 EdgeScratch&, double* t);
-
-// Every other edge of an even number of slices, with the padding that add_slices wants: what is left is the same
-// placement with half the slices.
-void every_other(const std::vector<double>& all, int slices, std::vector<double>& half);
-
-// Adds, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1. view_depth and light_depth are
-// the depths [-], hue 1, from the camera and from the light to the edges, the medium's constant included; all three
-// arrays hold slices + 1 values and room for 8 more. source_radius softens 1/d^2 [m]. What the slices scatter is what
-// they extinguish, or, if `scattering` is not null, the differences of its array for each channel (as long as the
-// others).
-void add_slices(const double* t, const double* view_depth, const double* light_depth, const double* const* scattering,
-                int slices, const LightFromRay&, double source_radius, const Rgb& hue, bool coloured, Rgb& airlight);
+// Adds to `all`, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1; to `pairs`, unless it
+// is null, that of half as many slices between every other edge: the same placement with K/2 slices, K even. Three
+// channels if `coloured`, else the first only. source_radius softens 1/d^2 [m].
+void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, const Rgb& hue, bool coloured,
+                SliceScratch&, Rgb& all, Rgb* pairs);
 
 }  // namespace airlight::fogshop
