@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "experiments/authoring/printable.h"
 #include "scene/error.h"
 #include "scene/settings.h"
 
@@ -19,12 +20,6 @@ using nlohmann::json;
 std::string written(const json& value) {
   std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
-}
-
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return text.size() > 200 ? text.substr(0, 197) + "..." : text;
 }
 
 constexpr std::size_t most_points = 100'000;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "experiments/authoring/printable.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 #include "scene/read_file.h"
@@ -33,12 +34,6 @@ std::string toml_text(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return '"' + out + '"';
-}
-
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = '?';
-  return text;
 }
 
 // The text with the names of files in `from` made to hold for a scene in `to`. A file that is not beside the scene is

@@ -222,7 +222,9 @@ class Run {
     const scene::View view = scene::view_of(*scene);
     std::vector<double> preparations;
     std::unique_ptr<scene::Prepared> prepared;
-    for (double spent = 0; preparations.empty() || (preparations.size() < 5 && spent + preparations.back() < 0.25);) {
+    const double allowed = std::min(0.25, rule.budget / 2);
+    for (double spent = 0;
+         preparations.empty() || (preparations.size() < 5 && spent + preparations.back() < allowed);) {
       const auto start = Clock::now();
       prepared = renderer.prepare(scene, settings, execution);
       preparations.push_back(since(start));

@@ -7,6 +7,7 @@
 
 #include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/surface_sampling.h"
+#include "reference/path_tracer/walk.h"
 #include "scene/error.h"
 
 namespace airlight::path_tracer {
@@ -14,73 +15,7 @@ namespace {
 
 constexpr std::uint32_t longest_path = 1u << 28;
 
-// A vertex from which light is gathered: in a medium, or on a surface.
-struct Vertex {
-  Point3 x;
-  Vec3 w;  // direction of the walk that arrived here, away from the eye
-  int medium = -1;
-  const scene::Hit* hit = nullptr;
-};
-
-// One walk; see path.h. `throughput` is what radiance arriving at the current vertex is worth; `density[c]` is how
-// likely channel c would have made the path so far, relative to the mean over the channels.
-class Walk {
- public:
-  Walk(const World& world, const SampleRandom& random, PathSample& sample, Counters& counters)
-      : world_(world),
-        media_(world.media()),
-        lights_(world.lights()),
-        random_(random),
-        sample_(sample),
-        counters_(counters) {}
-
-  void run(const CameraRay&);
-  // Paths::lit_surface and scattered_to_surface.
-  void run_to_surface(const CameraRay&);
-
- private:
-  // Transmittance of a whole segment, and the one that weights may use (1 where it would be noise).
-  Rgb transmittance(const Ray& ray, double t, std::uint32_t branch) {
-    if (world_.options().column_transmittance) return media_.transmittance(ray, t, counters_);
-    return media_.ratio_transmittance(ray, t, random_, vertex_, branch, counters_);
-  }
-  bool exact() const { return world_.options().column_transmittance; }
-
-  // Phase function or reflectance times cosine, towards a direction, and the density with which the walk would draw it.
-  Rgb scatter_value(const Vertex&, const Vec3& out) const;
-  double scatter_pdf(const Vertex&, const Vec3& out) const;
-  Point3 origin(const Vertex& v, const Vec3& out) const {
-    return v.hit ? world_.scene().geometry->offset_origin(v.x, v.hit->normal, out) : v.x;
-  }
-
-  double connection_pdf(int light, const Ray&, Interval hull, double t) const;
-  void gather(const Vertex&, const Rgb& analog_pdf);
-  void gather_delta(const Vertex&, const Pick&, const Rgb& analog_pdf);
-  void gather_environment(const Vertex&, const Pick&, double u1, double u2);
-  void connect(const Ray&, Interval hull, const Rgb& throughput, const Pick&, double direction_pdf, bool from_camera,
-               int reflections, double u);
-  void connect_from(const Vertex&);
-  void escape(const Ray&);
-  void escape_unscattered(const scene::RayEnd&);
-  bool survive(double u);
-
-  const World& world_;
-  const Media& media_;
-  const Lights& lights_;
-  const SampleRandom& random_;
-  PathSample& sample_;
-  Counters& counters_;
-
-  Rgb throughput_ = Rgb::Ones();
-  Rgb density_ = Rgb::Ones();
-  int hero_ = 0;
-  int m_ = 0, s_ = 0;         // scatterings, reflections so far
-  std::uint32_t vertex_ = 0;  // 0: the eye
-  Ray ray_;                   // current segment
-  Interval hull_;             // where media are on it
-  Rgb gain_ = Rgb::Ones();    // of the densities of a collision on it, where it is forced
-  double direction_pdf_ = 1;  // density with which its direction was drawn [1/sr]; 1 from the eye
-};
+}  // namespace
 
 Rgb Walk::scatter_value(const Vertex& v, const Vec3& out) const {
   if (v.hit) {
@@ -373,72 +308,6 @@ void Walk::run(const CameraRay& camera) {
     tries = 1;
   }
 }
-
-// Environments along ray_, which ends there, with its exact transmittance.
-void Walk::escape_unscattered(const scene::RayEnd& end) {
-  if (lights_.environments().empty() || end.hit || end.on_ball) return;
-  const Rgb before = throughput_;
-  throughput_ *= media_.transmittance(ray_, end.t, counters_);
-  escape(ray_);
-  throughput_ = before;
-}
-
-// From the eye to a surface without a collision, with the exact transmittance; from there at most one scattering, made
-// by the connection and by the walk's own flight, weighted as everywhere.
-void Walk::run_to_surface(const CameraRay& camera) {
-  const Options& options = world_.options();
-  if (!camera.end.hit) return;
-  if (!media_.grey()) hero_ = std::min(2, int(3 * random_.block(0, Purpose::camera, 1).coarse(0)));
-  ++counters_.rays;
-  if (!camera.hull.empty()) throughput_ *= media_.transmittance(camera.ray, camera.end.t, counters_);
-  vertex_ = 1;
-  Vertex v;
-  v.w = camera.ray.direction;
-  v.x = camera.end.hit->position;
-  v.hit = &*camera.end.hit;
-  if (options.paths == Options::Paths::lit_surface) gather(v, Rgb::Zero());
-  if (lights_.any_connected() && options.max_order != 0) connect_from(v);
-
-  const RandomBlock scatter = random_.block(vertex_, Purpose::scatter);
-  const scene::Material& material = world_.scene().surfaces[v.hit->surface].material;
-  const Vec3 out =
-      sample_reflection(material, v.hit->normal, -v.w, random_.block(vertex_, Purpose::scatter, 1).coarse(0),
-                        scatter.fine(0), scatter.coarse(2));
-  const Rgb value = scatter_value(v, out);
-  direction_pdf_ = scatter_pdf(v, out);
-  if (!(direction_pdf_ > 0) || !(value.maxCoeff() > 0)) return;
-  throughput_ *= value / direction_pdf_;
-  ++s_;
-  ray_ = {origin(v, out), out};
-  const scene::RayEnd end = scene::ray_end(world_.scene(), ray_);
-  hull_ = media_.hull(ray_, end.t);
-  if (options.paths == Options::Paths::lit_surface) escape_unscattered(end);
-  if (hull_.empty() || options.max_order == 0) return;
-  ++counters_.rays;
-  const std::optional<Collision> collision = media_.fly(ray_, end.t, hero_, random_, vertex_, 0, counters_);
-  if (!collision) return;
-  const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
-  const Rgb T = exact() ? media_.transmittance(ray_, collision->t, counters_) : Rgb(Rgb::Ones());
-  const Rgb arriving = T * medium.sigma_t * collision->density;
-  if (!(arriving.mean() > 0)) return;
-  throughput_ *= arriving / arriving.mean() * medium.albedo;
-  ++vertex_;
-  Vertex there;
-  there.w = ray_.direction;
-  there.x = ray_.at(collision->t);
-  there.medium = collision->medium;
-  ++m_;
-  gather(there, direction_pdf_ * arriving);
-  if (lights_.environments().empty()) return;
-  const RandomBlock again = random_.block(vertex_, Purpose::scatter);
-  const double c = scene::sample_phase_cosine(medium.phase, again.fine(0));
-  const Vec3 turned_out = turned(there.w, c, again.coarse(2));
-  direction_pdf_ = scene::phase_value(medium.phase, c);
-  ray_ = {there.x, turned_out};
-  escape_unscattered(scene::ray_end(world_.scene(), ray_));
-}
-
-}  // namespace
 
 void trace(const World& world, const CameraRay& camera, const SampleRandom& random, PathSample& sample,
            Counters& counters) {

@@ -23,7 +23,6 @@ using path_tracer::World;
 using path_tracer::test::medium;
 using path_tracer::test::ray_of;
 using path_tracer::test::scene_of;
-using path_tracer::test::vector_of;
 using path_tracer::test::white;
 
 inline constexpr int comparisons = 200;

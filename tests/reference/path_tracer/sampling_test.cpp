@@ -4,6 +4,7 @@
 
 #include "reference/path_tracer/surface_sampling.h"
 #include "tests/reference/path_tracer/scenes.h"
+#include "tests/reference/path_tracer/vectors.h"
 
 using namespace airlight;
 using namespace airlight::path_tracer;

@@ -1,27 +1,13 @@
-// Small scenes and oracle vectors for the tests of the path tracer.
+// Small scenes for the tests of the path tracer.
 #pragma once
 #include <cmath>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "reference/path_tracer/single_rays.h"
 #include "scene/environment.h"
 
 namespace airlight::path_tracer::test {
-
-// By reference, so that a loop over a part of it is a loop over something that lives.
-inline const nlohmann::json& vector_of(const std::string& id) {
-  std::ifstream in(std::string(AIRLIGHT_SOURCE_DIR) + "/tests/vectors/references.json");
-  static const nlohmann::json file = nlohmann::json::parse(in);
-  for (const auto& v : file.at("vectors"))
-    if (v.at("id") == id) return v;
-  throw std::runtime_error("no vector " + id);
-}
-
-inline Vec3 vec(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 
 inline scene::PhaseFunction phase_of(const std::string& name, double g = 0) {
   if (name == "rayleigh" || name == "ray") return scene::Rayleigh{};
