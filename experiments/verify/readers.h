@@ -24,6 +24,14 @@ Check read_npsf_coefficient(const Value&);
 Check read_airlight_homogeneous(const Value&);
 Check read_airlight_paper(const Value&);
 
+// shadow_plane_kinds.cpp
+Check read_planes_airlight(const Value&);
+Check read_taylor_coefficients(const Value&);
+Check read_taylor_integral(const Value&);
+Check read_spot(const Value&);
+Check read_shadow(const Value&);
+Check read_bounded(const Value&);
+
 // sampling_kinds.cpp
 Check read_sampling(const Value&);
 Check read_random_numbers(const Value&);

@@ -56,10 +56,14 @@ Kinds fogshop() {
 }
 
 Kinds shadow_planes() {
-  Kinds kinds;
-  for (const char* kind : {"airlight", "taylor_coefficients", "taylor_integral", "spot", "shadow", "bounded"})
-    kinds[kind] = waiting("shadow planes", {"input", "expect"});
-  return kinds;
+  return {
+      {"airlight", read_planes_airlight},
+      {"taylor_coefficients", read_taylor_coefficients},
+      {"taylor_integral", read_taylor_integral},
+      {"spot", read_spot},
+      {"shadow", read_shadow},
+      {"bounded", read_bounded},
+  };
 }
 
 Kinds compensated_ray_marching() {

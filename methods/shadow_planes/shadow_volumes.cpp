@@ -42,6 +42,13 @@ ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const P
     const std::vector<SilhouetteEdge> of_mesh = silhouette(mesh, light);
     edges_.insert(edges_.end(), of_mesh.begin(), of_mesh.end());
   }
+  for (const MeshEdges& mesh : occluders_->meshes())
+    for (const auto& t : mesh.triangles()) {
+      const Vec3 a = mesh.vertices()[t[0]] - light, b = mesh.vertices()[t[1]] - light,
+                 c = mesh.vertices()[t[2]] - light;
+      const Vec3 normal = (b - a).cross(c - a);
+      in_wall_ = in_wall_ || std::abs(normal.dot(a)) <= 1e-9 * normal.norm() * (a.norm() + b.norm() + c.norm());
+    }
   all_.resize(edges_.size());
   std::iota(all_.begin(), all_.end(), 0);
   for (const scene::Surface& surface : occluders_->scene().surfaces) {
@@ -50,13 +57,30 @@ ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const P
   }
 }
 
+// The same sides as the silhouette's: of a triangle in whose plane the light lies, too.
+int ShadowVolumes::count_one_by_one(const Vec3& y) const {
+  int sum = 0;
+  for (const MeshEdges& mesh : occluders_->meshes())
+    for (const auto& t : mesh.triangles()) {
+      Vec3 a = mesh.vertices()[t[0]] - light_, b = mesh.vertices()[t[1]] - light_, c = mesh.vertices()[t[2]] - light_;
+      if (!(a.dot(b.cross(c)) < 0))
+        std::swap(b, c);  // faces the light: the shadow is on the negative side of each edge
+      if (!(y.dot(a.cross(b)) < 0 && y.dot(b.cross(c)) < 0 && y.dot(c.cross(a)) < 0)) continue;
+      sum += (y - a).dot((b - a).cross(c - a)) < 0;  // beyond its plane
+    }
+  return sum;
+}
+
 int ShadowVolumes::count(const Point3& point) const {
   const Vec3 offset = point - light_;
   const double distance = offset.norm();
   if (!occluders_->scene().geometry || !(distance > 0)) return 0;
   int sum = 0;
-  for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
-    sum += hit.triangle >= 0;
+  if (in_wall_)
+    sum += count_one_by_one(offset);
+  else
+    for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
+      sum += hit.triangle >= 0;
   for (const scene::Sphere& sphere : spheres_) sum += hides(sphere.center - light_, sphere.radius, offset) ? 2 : 0;
   for (const scene::Plane& plane : planes_) {
     const double here = plane.normal.dot(light_ - plane.point), there = plane.normal.dot(point - plane.point);

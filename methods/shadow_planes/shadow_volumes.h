@@ -40,7 +40,8 @@ class ShadowVolumes {
   const Point3& light() const { return light_; }
   const std::vector<SilhouetteEdge>& edges() const { return edges_; }
 
-  // m(X). Spheres count twice for all points that they hide.
+  // m(X). Spheres count twice for all points that they hide. A light that lies on a triangle shines to one side of it,
+  // the one that rounding puts it on.
   int count(const Point3&) const;
 
   // Appends the crossings of these edges within (0, end). `edges`: indices; a ray that passes the light closer than
@@ -58,8 +59,11 @@ class ShadowVolumes {
                  std::vector<Interval>& lit) const;
 
  private:
+  int count_one_by_one(const Vec3& from_light) const;
+
   std::shared_ptr<const Occluders> occluders_;
   Point3 light_;
+  bool in_wall_ = false;  // in the plane of a triangle: rays from it may or may not meet that
   std::vector<SilhouetteEdge> edges_;
   std::vector<int> all_;
   std::vector<scene::Sphere> spheres_;

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00541769:0.803494]
+set xrange [0.00294004:0.545077]
 set logscale y
 set format y "%g"
 set yrange [3.15571e-05:0.408237]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00502896:2.48033]
+set xrange [0.00270368:2.41356]
 set logscale y
 set format y "%g"
 set yrange [0.0020571:18.1496]
