@@ -32,10 +32,20 @@ std::vector<scene::SettingSpec> setting_specs() {
       {"shadows",
        Type::choice,
        "counted",
-       "none; by counting surfaces along the ray; or as a signed sum over shadow planes, wrong where shadows overlap",
+       "none; by counting surfaces along the ray; as a signed sum over shadow planes, wrong where shadows overlap; by "
+       "the "
+       "paper's order of planes and stencil",
        0,
        0,
-       {"none", "counted", "signed_sum"}},
+       {"none", "counted", "signed_sum", "stencil"}},
+      {"edge_split", Type::integer, "1", "pieces of every silhouette edge, for the stencil's order", 1, 4096, {}},
+      {"frame_buffer",
+       Type::flag,
+       "false",
+       "the stencil's sums in a frame buffer of 8 bits that ends at radiance 1",
+       0,
+       0,
+       {}},
       {"printed_phases", Type::flag, "false", "hazy and murky as printed, with means of 2 and 83/33", 0, 0, {}},
       {"ambient", Type::flag, "false", "adds the scene's ambient_in_scatter", 0, 0, {}},
   };
@@ -52,7 +62,10 @@ Options read_options(const scene::Settings& settings) {
   const std::string& shadows = settings.text("shadows");
   o.shadows = shadows == "none"      ? Options::Shadows::none
               : shadows == "counted" ? Options::Shadows::counted
+              : shadows == "stencil" ? Options::Shadows::stencil
                                      : Options::Shadows::signed_sum;
+  o.edge_split = int(settings.integer("edge_split"));
+  o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
   return o;

@@ -15,9 +15,12 @@ struct Options {
   int degree = 4;        // of the polynomial
   bool centred = false;  // expanded about the middle of the lit part, not about theta = 0
   bool annex = false;    // the printed coefficients
-  // How lit parts come about: by counting surfaces, or each plane adding or subtracting (wrong where shadows overlap).
-  enum class Shadows { none, counted, signed_sum };
+  // How lit parts come about: by counting surfaces; each plane adding or subtracting (wrong where shadows overlap); the
+  // paper's planes, back to front by the middles of their edges, with a stencil (wrong where that is not their order).
+  enum class Shadows { none, counted, signed_sum, stencil };
   Shadows shadows = Shadows::counted;
+  int edge_split = 1;           // pieces of every edge, for the order
+  bool frame_buffer = false;    // sums are rounded to 8 bits and clamped to 1 after each plane
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
 };

@@ -66,6 +66,8 @@ class PreparedShadowPlanes final : public scene::Prepared {
   void render_tile(const View&, int tile_x, int tile_y, scene::Film&, Counts&) const;
   Rgb airlight(const View&, std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
                std::vector<Crossing>&, std::vector<ShadowVolumes::Interval>&, Counts&) const;
+  Rgb by_stencil(std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
+                 std::vector<Crossing>&, Counts&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -88,7 +90,8 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   return {
       {"silhouettes", needs_.shadows,
        unless(clear, scene_->surfaces.empty() ? "there are no surfaces"
-                     : needs_.shadows         ? fmt::format("{} edges for {} lights", edges, scene_->lights.size())
+                     : needs_.shadows         ? fmt::format("{} edges for {} light{}", edges, scene_->lights.size(),
+                                                    scene_->lights.size() == 1 ? "" : "s")
                                               : "shadows = none")},
       {"airlight", needs_.medium && lit,
        unless(clear, options_.evaluator == Options::Evaluator::rule
@@ -118,6 +121,8 @@ Rgb PreparedShadowPlanes::airlight(const View&, std::size_t index, const Ray& ra
     counts.parts += double(lit.size());
     return sum;
   }
+  if (options_.shadows == Options::Shadows::stencil)
+    return by_stencil(index, ray, end, count, edges, crossings, counts);
   // As if every plane alone were a shadow's: the integral of 1 - m/2.
   double m = count, from = 0;
   const auto add = [&](double to) {
@@ -130,6 +135,33 @@ Rgb PreparedShadowPlanes::airlight(const View&, std::size_t index, const Ray& ra
     m += crossing.change;
   }
   add(end);
+  return sum;
+}
+
+// Section 5.1.5 with the stencil's rules put right: from the point that ends the ray to the eye, in the order of the
+// middles of edges. Each plane adds or takes away all light in front of it.
+Rgb PreparedShadowPlanes::by_stencil(std::size_t index, const Ray& ray, double end, int count,
+                                     const std::vector<int>& edges, std::vector<Crossing>& crossings,
+                                     Counts& counts) const {
+  crossings.clear();
+  shadows_[index].cross_edges(ray, end, edges, crossings, options_.edge_split);
+  shadows_[index].cross_spheres(ray, end, crossings);
+  int stencil = count;
+  for (const Crossing& crossing : crossings) stencil += crossing.change;
+  std::stable_sort(crossings.begin(), crossings.end(),
+                   [](const Crossing& a, const Crossing& b) { return a.order < b.order; });
+  Rgb sum = Rgb::Zero();
+  const auto draw = [&](double x, double sign) {
+    counts.parts += 1;
+    sum += sign * (*airlight_)(scene_->lights[index], ray, {0, x});
+    if (options_.frame_buffer) sum = ((sum * 255).round() / 255).max(0.0).min(1.0);
+  };
+  if (stencil == 0) draw(end, 1);
+  for (const Crossing& crossing : crossings) {
+    if (crossing.change > 0 && stencil == crossing.change) draw(crossing.x, 1);
+    if (crossing.change < 0 && stencil == 0) draw(crossing.x, -1);
+    stencil = std::max(0, stencil - crossing.change);
+  }
   return sum;
 }
 
