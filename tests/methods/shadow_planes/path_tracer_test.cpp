@@ -1,0 +1,44 @@
+// Pictures against the path tracer capped at one scattering: statistical tests of equality, seeds fixed.
+#include <catch2/catch.hpp>
+
+#include "experiments/equality.h"
+#include "methods/shadow_planes/shadow_planes.h"
+#include "reference/path_tracer/renderer.h"
+
+using namespace airlight;
+
+namespace {
+
+scene::Film render(const scene::Renderer& method, std::shared_ptr<const scene::Scene> scene,
+                   const std::map<std::string, std::string>& given) {
+  const scene::View view = view_of(*scene);
+  return method.prepare(scene, {method.settings(), given}, {})->render(view, {}).film;
+}
+
+}  // namespace
+
+// False alarms: 1e-3 for all six scenes together.
+TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
+  const std::pair<const char*, const char*> samples_of[] = {
+      {"shadow_planes/lamp", "512"},    {"shadow_planes/boxes_1", "512"},
+      {"shadow_planes/boxes_8", "512"}, {"shadow_planes/spot", "32768"},  // most light is in a few pixels by the lamp
+      {"shadow_planes/media", "2048"},  {"elephant_fog", "512"}};
+  for (const auto& [file, samples] : samples_of) {
+    const auto scene = std::make_shared<scene::Scene>(
+        scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/") + file + ".toml",
+                          {{"film.width", "32"}, {"film.height", "24"}}));
+    for (scene::Surface& surface : scene->surfaces) surface.material = scene::Lambert{Rgb::Zero()};  // airlight alone
+    finish(*scene);
+    const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, {{"nodes", "32"}});
+    const scene::Film b = render(path_tracer::PathTracer(), scene, {{"max_order", "1"}, {"samples", samples}});
+    const experiments::Equality e =
+        experiments::compare_equal(a, b, "mean", ball_mask(*scene, view_of(*scene)), 1e-3 / 6);
+    CAPTURE(file, experiments::text(e));
+    CHECK(e.equal);
+    CHECK(e.detectable_bias < 0.03);
+    // Twice what it can detect, taken away: it knows.
+    scene::Film darker = a;
+    for (float& v : darker.layers["mean"]) v *= 0.94f;
+    CHECK_FALSE(experiments::compare_equal(darker, b, "mean", ball_mask(*scene, view_of(*scene)), 1e-3 / 6).equal);
+  }
+}
