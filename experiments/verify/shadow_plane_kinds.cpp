@@ -1,4 +1,5 @@
 // The evaluators and shadows of methods/shadow_planes.
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/verify/readers.h"

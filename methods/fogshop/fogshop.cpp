@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "methods/fogshop/airlight_pass.h"
@@ -12,6 +11,7 @@
 #include "methods/fogshop/surface_pass.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::fogshop {
 namespace {
@@ -19,20 +19,6 @@ namespace {
 using scene::Execution;
 using scene::Scene;
 using scene::View;
-
-class Stopwatch {
- public:
-  // Seconds since the last call.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 class PreparedFogshop final : public scene::Prepared {
  public:
@@ -50,7 +36,7 @@ class PreparedFogshop final : public scene::Prepared {
 
 PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
     : scene_(std::move(scene)) {
-  Stopwatch watch;
+  scene::Stopwatch watch;
   model_ = make_model(*scene_, options);
   times_.push_back({"gaussians", watch.lap()});
   const Needs needs = needs_of(*scene_, model_);
@@ -89,7 +75,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   scene::Film& film = result.film;
   std::vector<float>&airlight = film.add("airlight"), &surface = film.add("surface"),
   &transmittance = film.add("transmittance"), &mean = film.add("mean");
-  Stopwatch watch;
+  scene::Stopwatch watch;
   double evaluations = 0;
 
   // Section 5.4, step 1: distances.

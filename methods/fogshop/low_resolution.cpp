@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 #include "methods/fogshop/environment_lighting.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::fogshop {
 namespace {
@@ -118,12 +118,8 @@ AirlightImage low_resolution_airlight(const scene::Scene& scene, const Model& mo
                                       std::vector<scene::StageTime>& times, std::map<std::string, double>& counters) {
   const Options& o = model.options;
   const LowResolution r{view.width, view.height, o.downsample};
-  auto last = std::chrono::steady_clock::now();
-  const auto lap = [&](const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    times.push_back({stage, std::chrono::duration<double>(now - last).count()});
-    last = now;
-  };
+  scene::Stopwatch watch;
+  const auto lap = [&](const char* stage) { times.push_back({stage, watch.lap()}); };
 
   std::vector<double> low_distance(std::size_t(r.low_width()) * r.low_height(), infinity);
   if (surfaces_end_rays) {

@@ -4,6 +4,7 @@
 // media tint one another. The paper drops those terms and replaces the light's way by a constant
 // (paper_bounded_airlight).
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "methods/shadow_planes/light_from_ray.h"

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "methods/shadow_planes/lit_airlight.h"
 #include "methods/shadow_planes/tile_edges.h"
 #include "scene/error.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::shadow_planes {
 namespace {
@@ -16,19 +17,6 @@ namespace {
 using scene::Execution;
 using scene::Scene;
 using scene::View;
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 struct Needs {
   bool medium, shadows, surfaces;
@@ -49,7 +37,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
     });
     needs_ = {medium, medium && lit && !scene_->surfaces.empty() && options.shadows != Options::Shadows::none,
               lit && !scene_->surfaces.empty()};
-    Stopwatch watch;
+    scene::Stopwatch watch;
     if (medium) airlight_ = std::make_unique<LitAirlight>(scene_->media, options);
     if (!needs_.shadows) return;
     const auto occluders = std::make_shared<const Occluders>(scene_);
@@ -219,7 +207,7 @@ void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y,
 scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution& execution) const {
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   for (const char* layer : {"airlight", "surface", "transmittance", "mean"}) result.film.add(layer);
-  Stopwatch watch;
+  scene::Stopwatch watch;
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
   std::vector<Counts> counts(std::size_t(columns) * rows);
   scene::parallel_rows(columns * rows, execution,
