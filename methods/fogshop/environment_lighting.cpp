@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "methods/fogshop/surface_psf.h"
+#include "methods/fogshop/average_depths.h"
 #include "scene/background.h"
 #include "scene/math/spherical_harmonics.h"
 
@@ -50,13 +50,7 @@ IncidentHarmonics EnvironmentLighting::incident(const Fog& fog, double depth, bo
 }
 
 double average_depth(const Model& model, const Point3& point) {
-  const GaussianArrays& g = model.gaussians;
-  const double constant = model.fog.sum.constant;
-  double sum = 0;
-  for (int i = 0; i < g.count; ++i)
-    sum += g.half_depth[i] *
-           tabulated_average_depth(g.a[i] * (g.center(i) - point).norm());  // half_depth: c sqrt(pi) / (2 a)
-  sum *= 2 / std::sqrt(pi);
+  const double constant = model.fog.sum.constant, sum = average_depth_of(model.gaussians, point);
   return constant > 0 ? sum + constant * model.options.environment_distance : sum;
 }
 

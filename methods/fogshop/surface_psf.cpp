@@ -58,20 +58,4 @@ const std::vector<AverageDepthNode>& average_depth_nodes() {
   return nodes;
 }
 
-double tabulated_average_depth(double u) {
-  // The next term of the series is below 1e-9.
-  static const std::vector<AverageDepthNode>& nodes = average_depth_nodes();
-  constexpr double end = AverageDepthNode::end;
-  if (u >= end) {
-    const double w = 0.5 / (u * u);
-    return 0.25 * std::sqrt(pi) / (u * u) * (1 + w * (1 + w * (3 + w * (15 + w * (105 + w * 945)))));
-  }
-  const int count = int(nodes.size()) - 1;
-  const double place = u / end * count;
-  const int k = std::min(int(place), count - 1);
-  const double s = place - k, r = 1 - s;
-  const AverageDepthNode &a = nodes[std::size_t(k)], &b = nodes[std::size_t(k) + 1];
-  return r * r * (a.value * (1 + 2 * s) + a.slope * s) + s * s * (b.value * (1 + 2 * r) - b.slope * r);
-}
-
 }  // namespace airlight::fogshop

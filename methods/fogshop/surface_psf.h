@@ -19,11 +19,10 @@ double npsf_coefficient(int l, double T);
 // Mean optical depth of a Gaussian around a point, over the directions from that point, where its centre is u widths
 // away: c / a times this [-]. sqrt(pi)/2 D(u)/u with Dawson's integral D, the paper's table in closed form.
 double average_depth(double u);
-// The same from a table, to 1e-8 of itself or better: for loops over Gaussians at every pixel.
-double tabulated_average_depth(double u);
 
-// That table: values and slopes per step at u = 0, step, 2 step, ... up to AverageDepthNode::end, cubic between them;
-// beyond it the asymptotic series, sqrt(pi)/(4 u^2) (1 + w + 3 w^2 + 15 w^3 + ...) with w = 1/(2 u^2).
+// As a table, for loops over Gaussians at every pixel: values and slopes per step at u = 0, step, 2 step, ... up to
+// AverageDepthNode::end, cubic between them to 1e-8 of the value; beyond it the asymptotic series, sqrt(pi)/(4 u^2) (1
+// + w + 3 w^2 + 15 w^3 + ...) with w = 1/(2 u^2).
 struct AverageDepthNode {
   static constexpr double end = 10;
   double value, slope;
