@@ -188,21 +188,6 @@ float FogOnDevice::open_distance() const {
   return d < far_away ? float(d) : far_away;
 }
 
-void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
-  const Use use(context_);
-  std::vector<std::array<float, 4>> light;
-  for (int l = 0; l < lighting.order(); ++l)
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
-      const Rgb value = std::sqrt(4 * pi / (2 * l + 1)) * model_.fog.albedo * lighting.light()[i];
-      light.push_back({float(value[0]), float(value[1]), float(value[2]), 0});
-    }
-  const std::vector<double>& table = lighting.bands().values();
-  light_ = std::make_unique<Buffer>(context_, "harmonics of the environment", light);
-  band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
-  bands_ = lighting.order();
-  band_depths_ = lighting.bands().depths();
-}
-
 void FogOnDevice::fill_sky_volume(const scene::Scene& scene) {
   sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_);
 }
@@ -215,25 +200,6 @@ void FogOnDevice::upload_f_table(const fogshop::FTable& table) {
   for (std::size_t i = 0; i < values.size(); ++i) rest.push_back(float(values[i / size * size + size - 1] - values[i]));
   f_table_ = std::make_unique<Buffer>(context_, "table of F", rest);
   f_table_size_ = table.size();
-}
-
-void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
-  light_->bind(9);
-  band_table_->bind(10);
-  auto definitions = square;
-  definitions["SH_ORDER"] = std::to_string(bands_);
-  Program& p = context_.program("fogshop/environment.comp", definitions);
-  using Table = fogshop::PsfBands;
-  set_camera(p, view);
-  p.set("hue", model_.fog.hue);
-  p.set("has_distances", has_distances);
-  p.set("everywhere", model_.options.environment_everywhere);
-  p.set("sh_order", bands_);
-  p.set("band_depths", band_depths_);
-  p.set("log_least_depth", std::log(Table::least_depth));
-  p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
-  p.dispatch(view.width, view.height);
-  timer.stage("environment");
 }
 
 void FogOnDevice::compute(const scene::View& view, int step, bool has_distances, bool only_edges, StageTimer& timer) {

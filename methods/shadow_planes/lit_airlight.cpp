@@ -54,12 +54,9 @@ Rgb LitAirlight::operator()(const scene::Light& light, const Ray& ray, Interval 
 Rgb LitAirlight::part(const scene::Light& light, const Point3& at, const Ray& ray, Interval lit) const {
   const auto* spot = std::get_if<scene::SpotLight>(&light);
   const Rgb hue = spot ? spot->intensity : std::get<scene::PointLight>(light).intensity;
-  const auto towards = [&](const Vec3& d) -> double {
-    if (!spot) return 1;
-    scene::SpotLight white = *spot;
-    white.intensity = Rgb::Ones();
-    return intensity_towards(white, d)[0];
-  };
+  scene::Light white = scene::PointLight{at, Rgb::Ones(), 0};
+  if (spot) white = scene::SpotLight{at, spot->axis, spot->inner_angle, spot->outer_angle, Rgb::Ones(), 0};
+  const auto towards = [&](const Vec3& d) { return intensity_towards(white, d)[0]; };
   const LightFromRay from = light_from_ray(ray, at);
   if (spot) {
     // Nothing of it where it is dark.

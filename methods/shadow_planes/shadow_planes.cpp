@@ -51,8 +51,9 @@ class PreparedShadowPlanes final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  void render_tile(const View&, int tile_x, int tile_y, scene::Film&, Counts&) const;
-  Rgb airlight(const View&, std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
+  // `at_camera`: m there, by light; empty where every ray starts elsewhere.
+  void render_tile(const View&, int tile_x, int tile_y, const std::vector<int>& at_camera, scene::Film&, Counts&) const;
+  Rgb airlight(std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
                std::vector<Crossing>&, std::vector<ShadowVolumes::Interval>&, Counts&) const;
   Rgb by_stencil(std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
                  std::vector<Crossing>&, Counts&) const;
@@ -93,7 +94,7 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   };
 }
 
-Rgb PreparedShadowPlanes::airlight(const View&, std::size_t index, const Ray& ray, double end, int count,
+Rgb PreparedShadowPlanes::airlight(std::size_t index, const Ray& ray, double end, int count,
                                    const std::vector<int>& edges, std::vector<Crossing>& crossings,
                                    std::vector<ShadowVolumes::Interval>& lit, Counts& counts) const {
   const scene::Light& light = scene_->lights[index];
@@ -167,15 +168,10 @@ Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) 
   return sum;
 }
 
-void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, scene::Film& film,
-                                       Counts& counts) const {
-  const bool perspective = view.camera.kind == scene::Camera::Kind::perspective;
+void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, const std::vector<int>& at_camera,
+                                       scene::Film& film, Counts& counts) const {
   std::vector<std::vector<int>> edges(scene_->lights.size());
-  std::vector<int> at_camera(scene_->lights.size(), 0);
-  for (std::size_t l = 0; l < shadows_.size(); ++l) {
-    edges_of_tile(shadows_[l], view, tile_x, tile_y, edges[l]);
-    if (perspective) at_camera[l] = shadows_[l].count(view.camera.position);
-  }
+  for (std::size_t l = 0; l < shadows_.size(); ++l) edges_of_tile(shadows_[l], view, tile_x, tile_y, edges[l]);
   std::vector<Crossing> crossings;
   std::vector<ShadowVolumes::Interval> lit;
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -188,8 +184,8 @@ void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y,
       if (needs_.medium) {
         visible = transmittance(scene_->media, ray, {0, end.t});
         for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
-          const int count = !needs_.shadows ? 0 : perspective ? at_camera[l] : shadows_[l].count(ray.origin);
-          in_air += airlight(view, l, ray, end.t, count, edges[l], crossings, lit, counts);
+          const int count = !needs_.shadows ? 0 : !at_camera.empty() ? at_camera[l] : shadows_[l].count(ray.origin);
+          in_air += airlight(l, ray, end.t, count, edges[l], crossings, lit, counts);
         }
         if (options_.ambient) in_air += scene_->ambient_in_scatter * (1 - visible);
       }
@@ -209,9 +205,13 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   for (const char* layer : {"airlight", "surface", "transmittance", "mean"}) result.film.add(layer);
   scene::Stopwatch watch;
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
+  std::vector<int> at_camera;
+  if (view.camera.kind == scene::Camera::Kind::perspective)
+    for (const ShadowVolumes& shadows : shadows_) at_camera.push_back(shadows.count(view.camera.position));
   std::vector<Counts> counts(std::size_t(columns) * rows);
-  scene::parallel_rows(columns * rows, execution,
-                       [&](int tile) { render_tile(view, tile % columns, tile / columns, result.film, counts[tile]); });
+  scene::parallel_rows(columns * rows, execution, [&](int tile) {
+    render_tile(view, tile % columns, tile / columns, at_camera, result.film, counts[tile]);
+  });
   result.times.push_back({"airlight and surfaces", watch.lap()});
   Counts all;
   for (const Counts& c : counts) all = {all.parts + c.parts, all.crossings + c.crossings};

@@ -36,7 +36,7 @@ TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
     CAPTURE(file, experiments::text(e));
     CHECK(e.equal);
     CHECK(e.detectable_bias < 0.03);
-    // Twice what it can detect, taken away: it knows.
+    // Twice the bias that it must be able to detect: it does.
     scene::Film darker = a;
     for (float& v : darker.layers["mean"]) v *= 0.94f;
     CHECK_FALSE(experiments::compare_equal(darker, b, "mean", ball_mask(*scene, view_of(*scene)), 1e-3 / 6).equal);

@@ -1,0 +1,43 @@
+// Eq. 28 of Zhou et al. 2007 on the device: the airlight of an environment.
+#include <array>
+#include <cmath>
+
+#include "gpu/fogshop/passes.h"
+#include "gpu/view_uniforms.h"
+
+namespace airlight::gpu {
+
+void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
+  const Use use(context_);
+  std::vector<std::array<float, 4>> light;
+  for (int l = 0; l < lighting.order(); ++l)
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
+      const Rgb value = std::sqrt(4 * pi / (2 * l + 1)) * model_.fog.albedo * lighting.light()[i];
+      light.push_back({float(value[0]), float(value[1]), float(value[2]), 0});
+    }
+  const std::vector<double>& table = lighting.bands().values();
+  light_ = std::make_unique<Buffer>(context_, "harmonics of the environment", light);
+  band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
+  bands_ = lighting.order();
+  band_depths_ = lighting.bands().depths();
+}
+
+void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
+  light_->bind(9);
+  band_table_->bind(10);
+  Program& p = context_.program("fogshop/environment.comp",
+                                {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}, {"SH_ORDER", std::to_string(bands_)}});
+  using Table = fogshop::PsfBands;
+  set_camera(p, view);
+  p.set("hue", model_.fog.hue);
+  p.set("has_distances", has_distances);
+  p.set("everywhere", model_.options.environment_everywhere);
+  p.set("sh_order", bands_);
+  p.set("band_depths", band_depths_);
+  p.set("log_least_depth", std::log(Table::least_depth));
+  p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
+  p.dispatch(view.width, view.height);
+  timer.stage("environment");
+}
+
+}  // namespace airlight::gpu
