@@ -5,6 +5,7 @@
 
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
+#include "gpu/shadow_planes/shadow_planes_gpu.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "reference/deterministic/renderer.h"
@@ -24,6 +25,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::FogshopGpu>());
     list.push_back(std::make_unique<shadow_planes::ShadowPlanes>());
+    list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
     return list;
   }();
   return renderers;

@@ -1,5 +1,5 @@
 // The medium: a constant plus Gaussians (Zhou et al. 2007, Eqs. 6, 7), and Eq. 31 for one of them along a ray.
-const float pi = 3.14159265358979;
+#include "common/pi.glsl"
 const float far_away = 1e37;  // [m] and beyond: an infinite ray
 
 struct Gaussian {

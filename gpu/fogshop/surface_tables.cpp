@@ -3,18 +3,9 @@
 #include "methods/fogshop/harmonic_reflection.h"
 #include "methods/fogshop/surface_psf.h"
 #include "methods/fogshop/triple_product.h"
-#include "scene/geometry/brdf_table.h"
 #include "scene/math/sh_rotation.h"
 
 namespace airlight::gpu {
-namespace {
-
-std::array<float, 4> float4(const Rgb& color, double w) {
-  return {float(color[0]), float(color[1]), float(color[2]), float(w)};
-}
-
-}  // namespace
-
 SurfaceTables::SurfaceTables(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
   add_materials(scene, lighting);
   if (lighting.points && lighting.points->sun()) add_sun(*lighting.points->sun());
@@ -36,27 +27,14 @@ int SurfaceTables::add(const std::vector<Rgb>& table) {
 }
 
 void SurfaceTables::add_materials(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    MaterialData data{};
-    data.places[2] = -1;
-    const scene::Material& material = scene.surfaces[i].material;
-    if (const auto* lambert = std::get_if<scene::Lambert>(&material)) {
-      data.diffuse = float4(lambert->albedo, 0);
-    } else if (const auto* phong = std::get_if<scene::Phong>(&material)) {
-      data.diffuse = float4(phong->diffuse, 1);
-      data.specular = float4(phong->specular, phong->exponent);
-    } else {
-      const scene::BrdfTable& table = *std::get<scene::Tabulated>(material).table;
-      data.diffuse = float4(Rgb::Ones(), 2);
-      data.table = {add(table.values()), table.thetas(), table.phis(), 0};
+  MaterialTables direct(scene);
+  materials = std::move(direct.materials);
+  values = std::move(direct.values);
+  for (std::size_t i = 0; i < materials.size() && lighting.reflectances; ++i)
+    if (const auto& table = lighting.reflectances->tables()[i]) {
+      materials[i].places[0] = add(table->values());
+      materials[i].places[1] = table->entries();
     }
-    if (lighting.reflectances && lighting.reflectances->tables()[i]) {
-      const fogshop::ReflectanceTable& table = *lighting.reflectances->tables()[i];
-      data.places[0] = add(table.values());
-      data.places[1] = table.entries();
-    }
-    materials.push_back(data);
-  }
 }
 
 void SurfaceTables::add_sun(const fogshop::SunReflection& sun) {

@@ -1,24 +1,18 @@
 // What the shader of surfaces reads that is precomputed: materials, and one buffer of tables, each at its place.
 #pragma once
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "gpu/material_tables.h"
 #include "methods/fogshop/surface_lighting.h"
 
 namespace airlight::gpu {
 
-// The layout of fogshop/reflection.glsl.
-struct MaterialData {
-  std::array<float, 4> diffuse, specular;
-  std::array<int, 4> table, places;
-};
-
 struct SurfaceTables {
   SurfaceTables(const scene::Scene&, const fogshop::SurfaceLighting&);
 
-  std::vector<MaterialData> materials;  // by surface
+  std::vector<MaterialData> materials;  // by surface, their places in harmonics too
   std::vector<float> values;
   std::map<std::string, int> uniforms;  // places in `values` and sizes, by the shader's names
   std::vector<float> transfer;          // visibility of every vertex of all meshes, order^2 each; empty: none

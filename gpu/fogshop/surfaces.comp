@@ -16,7 +16,7 @@ layout(std430, binding = 7) writeonly buffer Surface { float surface_layer[]; };
 layout(std430, binding = 8) writeonly buffer Scattered { float scattered_layer[]; };
 uniform int has_airlight, has_scattered;
 uniform float environment_depth;  // of the constant up to the environment [-]
-#include "fogshop/reflection.glsl"
+#include "common/reflection.glsl"
 #if HARMONICS
 #include "fogshop/harmonics.glsl"
 #endif
@@ -34,15 +34,7 @@ void main() {
     dvec3 origin, direction, normal;
     view_ray(dvec2(pixel) + 0.5LF, origin, direction);
     int surface;
-    double t;
-    if (primitive < triangle_count) {
-      surface = triangles[primitive].w;
-      t = meet_triangle_plane(triangles[primitive], origin, direction, view_forward, normal);
-    } else {
-      Solid s = solids[primitive - triangle_count];
-      surface = s.surface;
-      t = meet_solid(s, origin, direction, normal);
-    }
+    double t = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
     // Not on the ball of a light, and not on what reflects nothing.
     if (surface >= 0 && any(greaterThan(materials[surface].diffuse.rgb + materials[surface].specular.rgb, vec3(0)))) {
       if (dot(normal, direction) > 0) normal = -normal;

@@ -1,11 +1,9 @@
 // Shadows by what a light sees (gpu/raster/light_distances.h).
-#include "raster/triangles.glsl"
-#include "raster/solids.glsl"
+#include "raster/primitive.glsl"
 
 layout(std430, binding = 5) readonly buffer LightPrimitives { int light_primitive[]; };
 layout(std430, binding = 14) readonly buffer LightDistances { float light_distance[]; };  // [m]
 uniform int map_side;        // texels; 0: there are no maps
-uniform int triangle_count;
 
 // Texel in which a direction from the light lies: the faces and their axes are those of LightDistances::face_view.
 int map_texel_of(vec3 u) {

@@ -48,6 +48,13 @@ std::vector<scene::SettingSpec> setting_specs() {
        {}},
       {"printed_phases", Type::flag, "false", "hazy and murky as printed, with means of 2 and 83/33", 0, 0, {}},
       {"ambient", Type::flag, "false", "adds the scene's ambient_in_scatter", 0, 0, {}},
+      {"lights",
+       Type::choice,
+       "static",
+       "static: silhouettes are found once, in preparation; moving: for every picture",
+       0,
+       0,
+       {"static", "moving"}},
   };
 }
 
@@ -68,6 +75,7 @@ Options read_options(const scene::Settings& settings) {
   o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
+  o.moving_lights = settings.text("lights") == "moving";
   return o;
 }
 

@@ -23,6 +23,7 @@ struct Options {
   bool frame_buffer = false;    // sums are rounded to 8 bits and clamped to 1 after each plane
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
+  bool moving_lights = false;   // silhouettes are found for every picture, not once
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -102,23 +102,50 @@ std::vector<double> taylor_coefficients(const PhaseForm& phase, double a, int de
   return product(e, phase_series(phase, degree, centre));
 }
 
-std::vector<double> printed_coefficients(const PhaseForm& phase, double a) {
+std::vector<std::vector<double>> coefficients_in_a(const PhaseForm& phase, int degree) {
+  const Series q = tangent(degree, 0), p = phase_series(phase, degree, 0);
+  // Rows are polynomials in a: exp(-a (q - q_0)), by the recurrence above.
+  std::vector<Series> e(degree + 1, Series(degree + 1, 0.0)), c = e;
+  e[0][0] = 1;
+  for (int n = 1; n <= degree; ++n)
+    for (int j = 1; j <= n; ++j)
+      for (int k = 0; k < degree; ++k) e[n][k + 1] -= j * q[j] * e[n - j][k] / n;
+  for (int n = 0; n <= degree; ++n)
+    for (int i = 0; i <= n; ++i)
+      for (int k = 0; k <= degree; ++k) c[n][k] += e[i][k] * p[n - i];
+  return c;
+}
+
+std::vector<std::vector<double>> printed_in_a(const PhaseForm& phase) {
   switch (phase.kind) {
     case PhaseForm::Kind::isotropic:
-      return {1, -a, a * a - a, -a * a / 6 + a * a / 2 - a,
-              a * a * a * a / 24 - a * a * a / 4 + 11 * a * a / 24 - 5 * a / 24};
+      return {{1, 0, 0, 0, 0},
+              {0, -1, 0, 0, 0},
+              {0, -1, 1, 0, 0},
+              {0, -1, 1.0 / 2 - 1.0 / 6, 0, 0},
+              {0, -5.0 / 24, 11.0 / 24, -1.0 / 4, 1.0 / 24}};
     case PhaseForm::Kind::rayleigh:
-      return {0.75, -0.75 * a, 0.375 * a * a + 0.75};
+      return {{0.75, 0, 0}, {0, -0.75, 0}, {0.75, 0, 0.375}};
     case PhaseForm::Kind::hazy:
-      return {265.0 / 256, -265 * a / 256 + 9.0 / 36, 265 * a * a / 256 - 121 * a / 512 + 63.0 / 64};
+      return {{265.0 / 256, 0, 0}, {9.0 / 36, -265.0 / 256, 0}, {63.0 / 64, -121.0 / 512, 265.0 / 256}};
     case PhaseForm::Kind::murky: {
       const double p = 2147483673.0 / 2147483648;
-      return {p, p * a - 25.0 / 367108864, p * a * a / 2 - 2147482073 * a / 4294967296 + 775.0 / 134217728};
+      return {{p, 0, 0}, {-25.0 / 367108864, p, 0}, {775.0 / 134217728, -2147482073.0 / 4294967296, p / 2}};
     }
     case PhaseForm::Kind::henyey_greenstein:
       break;
   }
   throw Error("the annex of Biri et al. 2006 prints no coefficients for Henyey-Greenstein");
+}
+
+std::vector<double> printed_coefficients(const PhaseForm& phase, double a) {
+  std::vector<double> result;
+  for (const Series& row : printed_in_a(phase)) {
+    double sum = 0;
+    for (auto c = row.rbegin(); c != row.rend(); ++c) sum = sum * a + *c;
+    result.push_back(sum);
+  }
+  return result;
 }
 
 double integrate_polynomial(const std::vector<double>& c, double centre, double theta0, double theta1) {

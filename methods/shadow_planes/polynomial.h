@@ -18,6 +18,11 @@ std::vector<double> taylor_coefficients(const PhaseForm&, double a, int degree, 
 // printed. Throws Error for Henyey-Greenstein, which it has not.
 std::vector<double> printed_coefficients(const PhaseForm&, double a);
 
+// The same two, about theta = 0: each coefficient is a polynomial in a of its own, [n][power of a], for many values of
+// a.
+std::vector<std::vector<double>> coefficients_in_a(const PhaseForm&, int degree);
+std::vector<std::vector<double>> printed_in_a(const PhaseForm&);
+
 // Integral of the polynomial over theta in [theta0, theta1].
 double integrate_polynomial(const std::vector<double>& coefficients, double centre, double theta0, double theta1);
 

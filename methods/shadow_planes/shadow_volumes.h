@@ -9,23 +9,9 @@
 #include <vector>
 
 #include "methods/shadow_planes/light_from_ray.h"
-#include "methods/shadow_planes/silhouette.h"
-#include "scene/scene.h"
+#include "methods/shadow_planes/surface_count.h"
 
 namespace airlight::shadow_planes {
-
-// The meshes of a scene by their edges: the same for every light.
-class Occluders {
- public:
-  explicit Occluders(std::shared_ptr<const scene::Scene>);
-
-  const scene::Scene& scene() const { return *scene_; }
-  const std::vector<MeshEdges>& meshes() const { return meshes_; }
-
- private:
-  std::shared_ptr<const scene::Scene> scene_;
-  std::vector<MeshEdges> meshes_;
-};
 
 // Where the number of surfaces between a ray and the light changes.
 struct Crossing {
@@ -41,9 +27,7 @@ class ShadowVolumes {
   const Point3& light() const { return light_; }
   const std::vector<SilhouetteEdge>& edges() const { return edges_; }
 
-  // m(X). Spheres count twice for all points that they hide. A light that lies on a triangle shines to one side of it,
-  // the one that rounding puts it on.
-  int count(const Point3&) const;
+  int count(const Point3& point) const { return count_.at(point); }  // m(X)
 
   // Appends the crossings of these edges within (0, end). `edges`: indices; a ray that passes the light closer than
   // 1e-12 of its distance crosses none. Their `order` is that of edges split into `pieces`.
@@ -60,15 +44,11 @@ class ShadowVolumes {
                  std::vector<Interval>& lit) const;
 
  private:
-  int count_one_by_one(const Vec3& from_light) const;
-
   std::shared_ptr<const Occluders> occluders_;
+  SurfaceCount count_;
   Point3 light_;
-  bool in_wall_ = false;  // in the plane of a triangle: rays from it may or may not meet that
   std::vector<SilhouetteEdge> edges_;
   std::vector<int> all_;
-  std::vector<scene::Sphere> spheres_;
-  std::vector<scene::Plane> planes_;
 };
 
 }  // namespace airlight::shadow_planes

@@ -1,5 +1,6 @@
 // Reflectances (scene/geometry/surface.h). Needs `tables`.
 #include "common/angle.glsl"
+#include "common/pi.glsl"
 
 struct Material {
   vec4 diffuse;   // albedo of Lambert; w: 0 Lambert, 1 Phong, 2 a table

@@ -1,0 +1,218 @@
+// Airlight of one light on a lit part of a ray: methods/shadow_planes/lit_airlight.cpp, bounded_media.h. BOUNDED: media have
+// regions, or there are several; SPOT: the light is one; POLYNOMIAL: the paper's evaluator, of one medium without a region;
+// GREY: media have one extinction in all channels.
+#include "common/angle.glsl"
+#include "common/pi.glsl"
+#include "shadow_planes/media.glsl"
+#if POLYNOMIAL
+#include "shadow_planes/polynomial.glsl"
+#else
+#include "shadow_planes/rule.glsl"
+#endif
+
+const int channels = GREY != 0 ? 1 : 3;
+
+#if SPOT
+uniform dvec3 spot_axis;
+uniform double cos_inner, cos_outer;
+
+// The light's intensity over that on the axis, towards the cosine of the angle from there. Called where it is not 0.
+float spot_factor(float cosine) {
+  float width_ = float(cos_inner - cos_outer), u = width_ > 0 ? clamp((cosine - float(cos_outer)) / width_, 0, 1) : 1;
+  return u * u * (3 - 2 * u);
+}
+#endif
+
+#if BOUNDED || SPOT
+double nearest_place;  // found so far beyond the place that is looked from [m]
+
+void meet_place(double place, double from) {
+  if (place > from && place < nearest_place) nearest_place = place;
+}
+#endif
+
+#if SPOT
+// Where the cones around the axis are crossed: (y . A)^2 = cos^2 |y|^2 on the right side.
+void meet_cone(Ray ray, double cosine, double from) {
+  dvec3 y = -ray.to_light;
+  double ya = dot(y, spot_axis), wa = dot(ray.direction, spot_axis), c2 = cosine * cosine;
+  dvec2 places = roots_of(wa * wa - c2, ya * wa - c2 * dot(y, ray.direction), ya * ya - c2 * dot(y, y));
+  for (int k = 0; k < 2; ++k)
+    if ((ya + places[k] * wa) * cosine >= 0) meet_place(places[k], from);
+}
+#endif
+
+#if BOUNDED
+layout(std430, binding = 15) readonly buffer FromLight { float from_light[]; };  // lo, hi of regions, seen from the light
+uniform int first_region;  // of this light, in sixes
+
+// Ways from the light through a region have kinks where they pass an edge of it, or graze it.
+void meet_kinks(Ray ray, int m, double from) {
+  int kind = media[m].region;
+  dvec3 lo = region_lo(m), hi = region_hi(m);
+  if (kind == region_sphere) {
+    dvec2 places = cross_tangent_cone(lo - light, hi.x, -ray.to_light, ray.direction);
+    if (dot(lo - light, lo - light) > hi.x * hi.x) {
+      meet_place(places.x, from);
+      meet_place(places.y, from);
+    }
+  }
+  if (kind != region_box) return;
+  dvec3 side = cross(ray.direction, ray.to_light);
+  lo -= light;
+  hi -= light;
+  for (int edge = 0; edge < 12; ++edge) {
+    int axis = edge >> 2, next = (axis + 1) % 3, last = (axis + 2) % 3;
+    dvec3 a = lo, b;
+    if ((edge & 1) != 0) a[next] = hi[next];
+    if ((edge & 2) != 0) a[last] = hi[last];
+    b = a;
+    b[axis] = hi[axis];
+    double sa = dot(side, a), sb = dot(side, b);
+    if ((sa >= 0) == (sb >= 0)) continue;
+    dvec3 p = a + (b - a) * (sa / (sa - sb));
+    double towards = dot(p, ray.n);
+    if (towards > 0 && towards <= ray.h) meet_place(ray.T + ray.h * dot(p, ray.direction) / towards, from);
+  }
+}
+
+// Length of the way from the light in direction d, `r` [m] long, within a region.
+float way_from_light(int m, vec3 d, float r) {
+  int kind = media[m].region, at = 6 * (first_region + m);
+  if (kind == region_unbounded) return r;
+  vec3 lo = vec3(from_light[at], from_light[at + 1], from_light[at + 2]);
+  vec3 hi = vec3(from_light[at + 3], from_light[at + 4], from_light[at + 5]);
+  float begin = 0, end = r;
+  if (kind == region_sphere) {
+    vec3 across = cross(d, lo);
+    float middle = dot(lo, d), reach2 = hi.x * hi.x - dot(across, across);
+    if (!(reach2 > 0)) return 0;
+    begin = max(begin, middle - sqrt(reach2));
+    end = min(end, middle + sqrt(reach2));
+  } else {
+    int axes = kind == region_slab ? 1 : 3;
+    for (int axis = 0; axis < axes; ++axis) {
+      float speed = kind == region_slab ? dot(d, lo) : d[axis];
+      float low = kind == region_slab ? hi.x : lo[axis], high = kind == region_slab ? hi.y : hi[axis];
+      if (speed == 0) {
+        if (low > 0 || high < 0) return 0;
+        continue;
+      }
+      begin = max(begin, min(low / speed, high / speed));
+      end = min(end, max(low / speed, high / speed));
+    }
+  }
+  return max(end - begin, 0);
+}
+#endif
+
+// Over [from, to] [m], within which all is smooth; per W/sr of the light.
+vec3 smooth_airlight(Ray ray, double from, double to) {
+  float length_ = to < 1e30LF ? float(to - from) : 1e37, d0 = float(from - ray.T);
+#if SPOT
+  double x = to < 1e30LF ? 0.5LF * (from + to) : max(from, ray.T) + 1 + ray.h;
+  if (dot(normalize(x * ray.direction - ray.to_light), spot_axis) <= cos_outer) return vec3(0);  // dark here
+#endif
+#if POLYNOMIAL
+  float end = to < 1e30LF ? float(to - ray.T) : 1e37;
+  if (!(ray.h > 0)) return vec3(0);
+#else
+  float h = floor_of_h(d0, length_, float(ray.h));
+  if (!(h > 0)) return vec3(1e37);  // through the light itself
+#endif
+  vec3 result = vec3(0);
+#if !BOUNDED
+  vec3 extinction = extinction_of(0);
+  for (int c = 0; c < channels; ++c) {
+    float k = extinction[c];
+    if (!(k > 0)) continue;
+#if POLYNOMIAL
+    result[c] = polynomial_airlight(k, ray.T, ray.h, d0, end);
+#else
+    Mapped map = map_part(media[0].phase.width, k, d0, length_, h);
+    float sum = 0;
+    for (int i = 0; i < rule_nodes; ++i) {
+      Node node = node_of(map, i);
+      float factor = exp(-k * h * node.further) * phase_of_halves(media[0].phase, node.v, node.w);
+#if SPOT
+      factor *= spot_factor(2 * node.q * node.v * float(dot(ray.n, spot_axis)) +
+                            (node.w - node.v) * float(dot(ray.direction, spot_axis)));
+#endif
+      sum += node.weight * factor;
+    }
+    double way = from + sqrt((from - ray.T) * (from - ray.T) + ray.h * ray.h);
+    result[c] = k / (4 * pi) * float(exp(-float(k * way))) * sum;
+#endif
+  }
+  if (GREY != 0) result = vec3(result.x);
+  return albedo_of(0) * result;
+#else
+  dvec3 middle = ray.origin + (to < 1e30LF ? 0.5LF * (from + to) : from + 1) * ray.direction;
+  int here = 0;
+  vec3 extinction = vec3(0), before = depth_along(ray.origin, ray.direction, from);
+  float width_ = 1;
+  for (int m = 0; m < media_count; ++m)
+    if (region_contains(m, middle)) {
+      here |= 1 << m;
+      extinction += extinction_of(m);
+      width_ = min(width_, media[m].phase.width);
+    }
+  vec3 n = vec3(ray.n), direction = vec3(ray.direction);
+  for (int c = 0; c < channels; ++c) {
+    float k = extinction[c];
+    if (!(k > 0)) continue;
+    Mapped map = map_part(width_, k, d0, length_, h);
+    vec3 sum = vec3(0);
+    for (int i = 0; i < rule_nodes; ++i) {
+      Node node = node_of(map, i);
+      vec3 d = 2 * node.q * node.v * n + (node.w - node.v) * direction;
+      float r = 0.5 * h * (node.q + 1 / node.q);
+      // x - from, which the difference of both places would lose digits of.
+      float further = 0.5 * h * node.further * (1 + 1 / node.q / map.q0);
+      float lost = before[c] + k * further;
+      for (int m = 0; m < media_count; ++m) lost += media[m].extinction[c] * way_from_light(m, d, r);
+      vec3 scattered = vec3(0);
+      for (int m = 0; m < media_count; ++m)
+        if ((here & 1 << m) != 0)
+          scattered += albedo_of(m) * media[m].extinction[c] * phase_of_halves(media[m].phase, node.v, node.w);
+      float weight = node.weight * exp(-lost);
+#if SPOT
+      weight *= spot_factor(dot(d, vec3(spot_axis)));
+#endif
+      sum += weight * scattered;
+    }
+    if (GREY != 0) return sum / (4 * pi);
+    result[c] = sum[c] / (4 * pi);
+  }
+  return result;
+#endif
+}
+
+// Over [from, to] [m], to 1e37 where the ray does not end; per W/sr of the light.
+vec3 lit_airlight(Ray ray, double from, double to) {
+#if !BOUNDED && !SPOT
+  return smooth_airlight(ray, from, to);
+#else
+  vec3 sum = vec3(0);
+  while (from < to) {
+    nearest_place = to;
+#if SPOT
+    meet_cone(ray, cos_inner, from);
+    meet_cone(ray, cos_outer, from);
+#endif
+#if BOUNDED
+    for (int m = 0; m < media_count; ++m) {
+      dvec2 inside = clip_to_region(m, ray.origin, ray.direction, dvec2(0, 1e37LF));
+      if (inside.y > inside.x) {
+        meet_place(inside.x, from);
+        meet_place(inside.y, from);
+      }
+      meet_kinks(ray, m, from);
+    }
+#endif
+    sum += smooth_airlight(ray, from, nearest_place);
+    from = nearest_place;
+  }
+  return sum;
+#endif
+}

@@ -1,0 +1,172 @@
+// Where the number of surfaces between a ray and the light changes: methods/shadow_planes/shadow_volumes.cpp, in double
+// precision. Crossings are met in the order of their keys, 32 at a time: when there are more, the next 32 are gathered
+// again, so none is lost. Needs raster/primitive.glsl.
+layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = 3) readonly buffer Ranges { ivec2 ranges[]; };  // of tiles of 16 x 16 pixels: first, count
+layout(std430, binding = 4) readonly buffer Lists { int lists[]; };
+uniform dvec3 light;          // [m]
+uniform int solid_count, edge_split;
+
+const int most_hits = 32;
+double hit_key[most_hits];
+int hit_origin[most_hits];  // decides between equal keys
+int hit_change[most_hits];
+#if STENCIL
+double hit_place[most_hits];
+#endif
+int hit_count;
+int crossing_sum;  // changes of all crossings, those of other gatherings included
+int crossing_count;
+double last_key;   // what was gathered before ends here
+int last_origin;
+
+struct Ray {
+  dvec3 origin, direction;
+  dvec3 to_light;  // from the origin [m]
+  double T, h;     // methods/shadow_planes/light_from_ray.h
+  dvec3 n;
+};
+Ray ray_to(dvec3 origin, dvec3 direction) {
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = direction;
+  ray.to_light = light - origin;
+  ray.T = dot(ray.to_light, direction);
+  dvec3 foot = ray.T * direction - ray.to_light;
+  ray.h = length(foot);
+  dvec3 other = abs(direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(direction, other));
+  return ray;
+}
+
+// Keeps the first most_hits of those after the last gathering.
+void keep_crossing(double key, int origin, int change, double place) {
+  crossing_sum += change;
+  ++crossing_count;
+  if (key < last_key || (key == last_key && origin <= last_origin)) return;
+  int to = min(hit_count, most_hits);
+  ++hit_count;
+  if (to == most_hits) {
+    --to;
+    if (key > hit_key[to] || (key == hit_key[to] && origin > hit_origin[to])) return;
+  }
+  while (to > 0 && (hit_key[to - 1] > key || (hit_key[to - 1] == key && hit_origin[to - 1] > origin))) {
+    hit_key[to] = hit_key[to - 1];
+    hit_origin[to] = hit_origin[to - 1];
+    hit_change[to] = hit_change[to - 1];
+#if STENCIL
+    hit_place[to] = hit_place[to - 1];
+#endif
+    --to;
+  }
+  hit_key[to] = key;
+  hit_origin[to] = origin;
+  hit_change[to] = change;
+#if STENCIL
+  hit_place[to] = place;
+#endif
+}
+
+void cross_edges(Ray ray, double end, int tile) {
+  if (!(ray.h > 1e-12LF * length(ray.to_light))) return;
+  dvec3 side = cross(ray.direction, ray.to_light);
+#if STENCIL
+  dvec3 to_origin = -normalize(ray.to_light);
+#endif
+  ivec2 range = ranges[tile];
+  for (int i = range.x; i < range.x + range.y; ++i) {
+    int e = lists[i];
+    dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
+    double sa = dot(side, a), sb = dot(side, b);
+    if ((sa >= 0) == (sb >= 0)) continue;
+    double share = sa / (sa - sb);
+    dvec3 p = a + (b - a) * share;
+    double towards = dot(p, ray.n);
+    if (!(towards > 0) || towards > ray.h) continue;  // not between light and ray
+    double x = ray.T + ray.h * dot(p, ray.direction) / towards;
+    if (!(x > 0) || !(x < end)) continue;
+    int change = dot(cross(a, b), ray.direction) > 0 ? -edges[e].multiplicity : edges[e].multiplicity;
+#if STENCIL
+    double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
+    keep_crossing(dot(normalize(a + (b - a) * middle), to_origin), edges[e].origin, change, x);
+#else
+    keep_crossing(x, edges[e].origin, change, x);
+#endif
+  }
+}
+
+// Does the open segment from the light to y, relative to it, meet the sphere around c?
+bool hides(dvec3 c, double radius, dvec3 y) {
+  double length_ = length(y);
+  if (!(length_ > 0)) return false;
+  dvec3 u = y / length_;
+  double along = dot(c, u), beside = length(c - along * u);
+  if (beside >= radius) return false;
+  double half_chord = sqrt((radius - beside) * (radius + beside)), near = along - half_chord, far = along + half_chord;
+  return (near > 0 && near < length_) || (far > 0 && far < length_);
+}
+
+// Roots of a t^2 + 2 b t + c; -1 for those that are not real.
+dvec2 roots_of(double a, double b, double c) {
+  double discriminant = b * b - a * c;
+  if (discriminant < 0) return dvec2(-1);
+  double root = b < 0 ? -b + sqrt(discriminant) : -b - sqrt(discriminant);
+  return dvec2(a != 0 ? root / a : -1.0LF, root != 0 ? c / root : -1.0LF);
+}
+
+// Places where the tangent cone from the light to a sphere, c from the light, is crossed by a ray y + t w, negative if not.
+dvec2 cross_tangent_cone(dvec3 c, double radius, dvec3 y, dvec3 w) {
+  double outside = dot(c, c) - radius * radius;
+  return roots_of(dot(w, c) * dot(w, c) - outside, dot(y, c) * dot(w, c) - outside * dot(y, w),
+                  dot(y, c) * dot(y, c) - outside * dot(y, y));
+}
+
+// What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
+void cross_spheres(Ray ray, double end) {
+  end *= 1 - 1e-10LF;  // where the ray ends on a ball it does not enter it, whatever rounding says
+  for (int i = 0; i < solid_count; ++i) {
+    Solid s = solids[i];
+    if (s.kind != 1) continue;
+    dvec3 center = dvec3(s.point[0], s.point[1], s.point[2]), c = center - light, y = -ray.to_light, w = ray.direction;
+    dvec3 from_center = ray.origin - center;
+    dvec2 cone = cross_tangent_cone(c, s.radius, y, w);
+    dvec2 ball = roots_of(1, dot(from_center, w), dot(from_center, from_center) - s.radius * s.radius);
+    // In turn the least place beyond the last one, with 0 the first.
+    double place = 0;
+    bool before = false;
+    for (int k = 0; k < 5; ++k) {
+      double next = 1e37LF;
+      for (int j = 0; j < 4; ++j) {
+        double other = j < 2 ? cone[j] : ball[j - 2];
+        if (other > place && other < end) next = min(next, other);
+      }
+      bool last = next >= 1e37LF;
+      double beyond = last ? min(end, 2 * place + 1 + length(c) + length(y)) : next;
+      bool hidden = hides(c, s.radius, y + 0.5LF * (place + beyond) * w);
+      if (hidden != before && place > 0) {
+        double key = place;
+#if STENCIL
+        key = dot(normalize(y + place * w), normalize(y));
+#endif
+        keep_crossing(key, 0x40000000 + 5 * i + k, hidden ? 2 : -2, place);
+      }
+      before = hidden;
+      if (last) break;
+      place = next;
+    }
+  }
+}
+
+// Gathers the next crossings within (0, end) in order; true if more are left.
+bool gather(Ray ray, double end, int tile) {
+  hit_count = 0;
+  crossing_sum = 0;
+  crossing_count = 0;
+  cross_edges(ray, end, tile);
+  cross_spheres(ray, end);
+  if (hit_count <= most_hits) return false;
+  hit_count = most_hits;
+  last_key = hit_key[most_hits - 1];
+  last_origin = hit_origin[most_hits - 1];
+  return true;
+}

@@ -1,0 +1,194 @@
+#include "gpu/shadow_planes/shadow_planes_gpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gpu/program.h"
+#include "gpu/raster/first_hits.h"
+#include "gpu/raster_program.h"
+#include "gpu/shadow_planes/shading.h"
+#include "gpu/timer.h"
+#include "methods/shadow_planes/shadow_planes.h"
+#include "scene/error.h"
+
+namespace airlight::gpu {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+using shadow_planes::Options;
+using shadow_planes::SurfaceCount;
+
+constexpr int most_degree = 16, most_media = 32;  // single precision; bits of a word
+
+class PreparedShadowPlanesGpu final : public scene::Prepared {
+ public:
+  PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options)
+      : scene_(std::move(scene)), options_(options), context_(Context::get()), bins_(context_) {
+    const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
+    const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
+                                   [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
+    StageTimer timer(context_);
+    if (surfaces || balls) {
+      first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+      timer.stage("upload");
+    }
+    shading_ =
+        std::make_unique<PlaneShading>(context_, *scene_, options_, first_hits_ ? &first_hits_->surfaces() : nullptr);
+    if (lit && surfaces) {
+      occluders_ = std::make_shared<const shadow_planes::Occluders>(scene_);
+      silhouettes_ = std::make_unique<Silhouettes>(context_, *occluders_);
+      timer.stage("edges");
+      edges_.resize(scene_->lights.size());
+      find_silhouettes();
+      timer.stage("silhouettes");
+    }
+    times_ = timer.times();
+  }
+
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+
+ private:
+  // Of every light, and m where it is asked for.
+  void find_silhouettes() const {
+    counts_.clear();
+    for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
+      silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
+      counts_.emplace_back(occluders_, scene::ball(scene_->lights[l])->center);
+    }
+  }
+  std::vector<int> counts_at_origins(std::size_t light, const View&, const Execution&) const;
+
+  std::shared_ptr<const Scene> scene_;
+  Options options_;
+  Context& context_;
+  std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
+  std::unique_ptr<PlaneShading> shading_;
+  std::shared_ptr<const shadow_planes::Occluders> occluders_;
+  std::unique_ptr<Silhouettes> silhouettes_;  // null: nothing casts a shadow
+  mutable std::vector<LightEdges> edges_;     // by light
+  mutable std::vector<SurfaceCount> counts_;
+  mutable TileBins bins_;
+  std::vector<scene::StageTime> times_;
+};
+
+std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
+  int edges = 0;
+  for (const LightEdges& of_light : edges_) edges += of_light.count;
+  const bool lit = !scene_->lights.empty();
+  std::vector<scene::Stage> stages = {
+      {"device", true, context_.description()},
+      {"silhouettes", silhouettes_ != nullptr,
+       !lit            ? "no light shines"
+       : !silhouettes_ ? "there are no surfaces"
+                       : fmt::format("{} edges for {} light{}, {}", edges, scene_->lights.size(),
+                                     scene_->lights.size() == 1 ? "" : "s",
+                                     options_.moving_lights ? "found again for every picture" : "found once")},
+      {"airlight and surfaces", lit, lit ? "one dispatch per light" : "no light shines"},
+      {"composition", true, "layers of the film"}};
+  return stages;
+}
+
+std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, const View& view,
+                                                            const Execution& execution) const {
+  if (counts_.empty()) return {0};
+  if (view.camera.kind == scene::Camera::Kind::perspective) return {counts_[light].at(view.camera.position)};
+  std::vector<int> counts(std::size_t(view.width) * view.height);
+  scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
+    for (int x = 0; x < view.width; ++x)
+      counts[std::size_t(y) * view.width + x] =
+          counts_[light].at(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).origin);
+  });
+  return counts;
+}
+
+scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Execution& execution) const {
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  const std::size_t pixels = result.film.pixels();
+  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
+  const int overflows = bins_.overflows();
+  const Use use(context_);
+  StageTimer timer(context_);
+  if (silhouettes_ && options_.moving_lights) {
+    find_silhouettes();
+    timer.stage("silhouettes");
+  }
+  PlaneShading::Picture picture(context_, view);
+  if (first_hits_) {
+    picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
+    first_hits_->draw(view).read_primitives(*picture.primitives, 0);
+    timer.stage("distances");
+  }
+  double entries = 0;
+  for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
+    const std::vector<int> counts = counts_at_origins(l, view, execution);
+    if (silhouettes_) {
+      bins_.fill(view, scene::ball(scene_->lights[l])->center, edges_[l]);
+      entries += bins_.entries();
+      timer.stage("tiles");
+    }
+    shading_->add(picture, int(l), counts, silhouettes_ ? &bins_ : nullptr, silhouettes_ ? &edges_[l] : nullptr);
+    timer.stage("airlight and surfaces");
+  }
+  const auto layer = [&](const char* name) { return Buffer(context_, name, pixels * 12); };
+  const PlaneShading::Layers layers{layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")};
+  shading_->compose(picture, layers);
+  timer.stage("composition");
+  result.film.layers["airlight"] = layers.airlight.download<float>();
+  result.film.layers["transmittance"] = layers.transmittance.download<float>();
+  result.film.layers["surface"] = layers.surface.download<float>();
+  result.film.layers["mean"] = layers.mean.download<float>();
+  const std::vector<unsigned> counted = picture.counters.download<unsigned>();
+  timer.stage("read back");
+  result.times = timer.times();
+  result.counters["rays"] = double(pixels);
+  result.counters["lit_parts"] = counted[0];
+  result.counters["crossings"] = counted[1];
+  result.counters["gatherings_beyond_32"] = counted[2];
+  result.counters["tile_entries"] = entries;
+  result.counters["tile_overflows"] = bins_.overflows() - overflows;
+  result.counters["dispatches"] = double(Program::dispatches() - dispatches);
+  result.counters["draws"] = double(RasterProgram::draws() - draws);
+  return result;
+}
+
+}  // namespace
+
+std::string ShadowPlanesGpu::about() const {
+  return "shadow_planes in compute shaders: shadows in double precision, airlight in single (Biri et al. 2006)";
+}
+
+std::vector<scene::SettingSpec> ShadowPlanesGpu::settings() const {
+  std::vector<scene::SettingSpec> settings = shadow_planes::ShadowPlanes().settings();
+  for (scene::SettingSpec& setting : settings) {
+    if (setting.name == "nodes") setting.fallback = "16";
+    if (setting.name == "stretch") setting.fallback = "3";
+  }
+  return settings;
+}
+
+std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const scene::Settings& settings) const {
+  std::vector<std::string> reasons = shadow_planes::ShadowPlanes().supports(scene, settings);
+  const Options options = shadow_planes::read_options(settings);
+  if (options.evaluator == Options::Evaluator::polynomial && options.degree > most_degree)
+    reasons.push_back(fmt::format("degree = {}: single precision takes {} at most", options.degree, most_degree));
+  if (options.evaluator == Options::Evaluator::polynomial && options.centred)
+    reasons.push_back("centred = true is for the CPU");
+  if (scene.media.size() > most_media)
+    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_media));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare(std::shared_ptr<const Scene> scene,
+                                                          const scene::Settings& settings, const Execution&) const {
+  const std::vector<std::string> reasons = supports(*scene, settings);
+  if (!reasons.empty())
+    throw Error(fmt::format("{}: shadow_planes_gpu cannot render this: {}", scene->name, reasons.front()));
+  return std::make_unique<PreparedShadowPlanesGpu>(std::move(scene), shadow_planes::read_options(settings));
+}
+
+}  // namespace airlight::gpu

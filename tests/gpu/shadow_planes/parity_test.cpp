@@ -1,0 +1,207 @@
+// Shadow planes on the GPU against shadow planes on the CPU: same settings, same picture to single precision.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/program.h"
+#include "gpu/raster_program.h"
+#include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "methods/shadow_planes/shadow_planes.h"
+#include "scene/geometry/shapes.h"
+#include "scene/scene.h"
+#include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
+
+using namespace airlight;
+using Pairs = std::map<std::string, std::string>;
+
+namespace {
+
+scene::Rendering render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
+                        const Pairs& given) {
+  return renderer.prepare(scene, {renderer.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}});
+}
+
+std::shared_ptr<scene::Scene> scene_of(const std::string& file, int width = 48, int height = 36) {
+  return std::make_shared<scene::Scene>(
+      scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/" + file + ".toml",
+                        {{"film.width", std::to_string(width)}, {"film.height", std::to_string(height)}}));
+}
+
+// Pixels of which any channel differs by more than `limit` of itself and 1 % of the greatest; all if one is not finite.
+int beyond(const scene::Film& a, const scene::Film& b, const std::string& layer, double limit) {
+  const std::vector<float>&x = a.layer(layer), &y = b.layer(layer);
+  const double most = *std::max_element(x.begin(), x.end());
+  int count = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    bool far = false;
+    for (std::size_t c = i; c < i + 3; ++c) {
+      if (!std::isfinite(x[c]) || !std::isfinite(y[c])) return int(x.size());
+      far = far || std::abs(double(y[c]) - x[c]) > limit * (x[c] + 0.01 * most);
+    }
+    count += far;
+  }
+  return count;
+}
+
+// `own`: the error of the rule itself. It cuts the tail at e^-20 in single, at e^-38 in double precision, so few nodes
+// lie elsewhere.
+void compare(const std::shared_ptr<const scene::Scene>& scene, const Pairs& given, double limit = 1e-4,
+             double own = 1e-5) {
+  const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, given).film;
+  // The device's rule: 16 nodes are good to single precision.
+  const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, given).film;
+  CAPTURE(scene->name, given);
+  for (const char* layer : {"airlight", "transmittance", "surface", "mean"}) {
+    CAPTURE(layer, gpu::test::p99(a, b, layer));
+    CHECK(gpu::test::p99(a, b, layer) < own);
+    // Coverage is good to 1/256 pixel: a pixel on a silhouette may show what is beside it.
+    CHECK(beyond(a, b, layer, limit) <= int(a.pixels()) / 500);
+  }
+  CHECK(*std::max_element(b.layer("airlight").begin(), b.layer("airlight").end()) > 0);
+}
+
+// Shadows of more plates than a pixel's list holds, one after the other along every ray.
+std::shared_ptr<scene::Scene> plates(int count) {
+  auto scene = std::make_shared<scene::Scene>();
+  scene->name = "plates";
+  scene->width = 24;
+  scene->height = 18;
+  scene->camera = scene::look_at({-9, 0, 0.3}, {0, -0.4, 0}, {0, 1, 0});
+  scene->lights.emplace_back(scene::PointLight{{0.1, 6, 0.2}, Rgb(50, 40, 30), 0.01});
+  scene->media.resize(1);
+  scene->media[0].sigma_t = Rgb(0.05, 0.1, 0.2);
+  for (int i = 0; i < count; ++i) {
+    const double x = -4 + 8.0 * i / count;
+    scene->surfaces.push_back({"plate", scene::make_box({{x, 2, -2}, {x + 3.0 / count, 2.1, 2}}), scene::Lambert{}});
+  }
+  scene->surfaces.push_back({"wall", scene::Plane{{8, 0, 0}, {1, 0, 0}}, scene::Lambert{}});
+  finish(*scene);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("shadow planes: GPU agrees with CPU", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_1", "shadow_planes/boxes_3",
+                           "shadow_planes/boxes_8", "shadow_planes/spot", "shadow_planes/media", "elephant_fog"})
+    compare(scene_of(file), {});
+}
+
+TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const auto scene = scene_of("shadow_planes/boxes_8");
+  for (const Pairs& given :
+       {Pairs{{"shadows", "none"}}, Pairs{{"shadows", "signed_sum"}}, Pairs{{"shadows", "stencil"}},
+        Pairs{{"shadows", "stencil"}, {"edge_split", "4"}}, Pairs{{"evaluator", "polynomial"}, {"degree", "6"}},
+        Pairs{{"evaluator", "polynomial"}, {"annex", "true"}}, Pairs{{"ambient", "true"}}, Pairs{{"lights", "moving"}}})
+    compare(scene, given);
+  compare(scene, {{"nodes", "8"}, {"stretch", "2"}}, 1e-3, 2e-4);
+  // Sums in steps of 1/255: where one rounds up the other may round down.
+  compare(scene, {{"shadows", "stencil"}, {"frame_buffer", "true"}}, 1);
+}
+
+TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  for (const scene::PhaseFunction& phase :
+       {scene::PhaseFunction(scene::Rayleigh{}), scene::PhaseFunction(scene::Hazy{}),
+        scene::PhaseFunction(scene::Murky{}), scene::PhaseFunction(scene::HenyeyGreenstein{0.8}),
+        scene::PhaseFunction(scene::HenyeyGreenstein{-0.6})}) {
+    const auto scene = scene_of("shadow_planes/boxes_3", 24, 18);
+    scene->media[0].phase = phase;
+    const Pairs same{{"nodes", "16"}, {"stretch", "3"}};
+    Pairs printed = same;
+    printed["printed_phases"] = "true";
+    compare(scene, same, 1e-4, 3e-5);
+    compare(scene, printed, 1e-4, 3e-5);
+    const auto media = scene_of("shadow_planes/media", 24, 18);
+    media->media[1].phase = phase;
+    compare(media, same, 1e-4, 3e-5);
+  }
+}
+
+// Two lights, one of them a spot; an orthographic camera; cameras and lights inside occluders; spheres; grey and
+// coloured media, boxes and slabs that overlap.
+TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const auto scene = scene_of("shadow_planes/boxes_3", 32, 24);
+  scene->name = "two lights and a ball";
+  const Point3 light = scene::ball(scene->lights[0])->center;
+  scene->lights.emplace_back(
+      scene::SpotLight{light + Vec3(0.5, 0.2, -0.3), Vec3(-0.2, -1, 0.1).normalized(), 0.4, 0.7, Rgb(9, 5, 7), 0.01});
+  scene->surfaces.push_back({"ball", scene::Sphere{light + Vec3(0.2, -0.8, 0.1), 0.2},
+                             scene::Phong{Rgb(0.3, 0.2, 0.1), Rgb::Constant(0.2), 12}});
+  finish(*scene);
+  compare(scene, {});
+  compare(scene, {{"shadows", "stencil"}});
+  scene->name = "orthographic";
+  const scene::Camera perspective = scene->camera;
+  scene->camera.kind = scene::Camera::Kind::orthographic;
+  scene->camera.height = 5;
+  compare(scene, {});
+  scene->name = "camera in the ball's shadow";
+  scene->camera = scene::look_at(light + Vec3(0.3, -1.5, 0.12), light + Vec3(3, -2, 0), {0, 1, 0});
+  compare(scene, {});
+  scene->name = "light in the ball";
+  scene->camera = perspective;
+  scene->surfaces.back().shape = scene::Sphere{light, 0.3};
+  finish(*scene);
+  compare(scene, {});
+
+  const auto bounded = scene_of("shadow_planes/media", 32, 24);
+  bounded->name = "box and slab overlap around the light";
+  bounded->media[0].region = Box{{-1, -1, 1}, {2, 2, 4}};
+  bounded->media[1].region = scene::Slab{Vec3(0.1, 1, 0).normalized(), -0.5, 0.3};
+  for (scene::Medium& medium : bounded->media) medium.sigma_t = Rgb::Constant(0.3);
+  finish(*bounded);
+  compare(bounded, {});
+  compare(bounded, {{"shadows", "stencil"}});
+  bounded->name = "grey media under a spot";
+  bounded->lights = {
+      scene::SpotLight{{0.5, 1.6, 3}, Vec3(-0.2, -0.6, -1).normalized(), 0.2, 0.5, Rgb(20, 10, 5), 0.01}};
+  finish(*bounded);
+  compare(bounded, {});
+}
+
+TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const auto scene = plates(60);
+  compare(scene, {});
+  compare(scene, {{"shadows", "signed_sum"}});
+  compare(scene, {{"shadows", "stencil"}});
+  const scene::Rendering many = render(gpu::ShadowPlanesGpu(), scene, {});
+  CHECK(many.counters.at("gatherings_beyond_32") > 100);
+  CHECK(many.counters.at("crossings") == render(shadow_planes::ShadowPlanes(), scene, {}).counters.at("crossings"));
+}
+
+// Lists that have no room are made greater: the picture is whole, and the row says so.
+TEST_CASE("shadow planes: lists of tiles overflow with a word", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const auto scene = scene_of("elephant_fog", 320, 240);
+  const scene::Rendering first = render(gpu::ShadowPlanesGpu(), scene, {});
+  CHECK(first.counters.at("tile_overflows") > 0);
+  const scene::Film cpu = render(shadow_planes::ShadowPlanes(), scene, {}).film;
+  CHECK(beyond(cpu, first.film, "airlight", 1e-4) <= 150);
+}
+
+TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const gpu::ShadowPlanesGpu method;
+  const auto dispatches = [&](const scene::Scene& s, const Pairs& given) {
+    auto scene = std::make_shared<scene::Scene>(s);
+    finish(*scene);
+    const auto prepared = method.prepare(scene, {method.settings(), given}, {1, {}});
+    return prepared->render(view_of(*scene), {1, {}}).counters;
+  };
+  const scene::Scene boxes = *scene_of("shadow_planes/boxes_3", 32, 24);
+  // Two levels of tiles, the light, the layers; silhouettes only where the light moves.
+  CHECK(dispatches(boxes, {}).at("dispatches") == 4);
+  CHECK(dispatches(boxes, {{"lights", "moving"}}).at("dispatches") == 5);
+  scene::Scene empty = boxes;
+  empty.surfaces.clear();
+  CHECK(dispatches(empty, {}).at("dispatches") == 2);
+  empty.lights.clear();
+  CHECK(dispatches(empty, {}).at("dispatches") == 1);
+  CHECK(dispatches(empty, {}).at("draws") == 0);
+}

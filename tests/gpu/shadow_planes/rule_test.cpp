@@ -1,0 +1,83 @@
+// The mapped rule in single precision on the device: the table of its errors, and the oracle vectors.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "gpu/raster/hit_image.h"
+#include "gpu/shadow_planes/rule_on_device.h"
+#include "methods/shadow_planes/mapped_rule.h"
+#include "tests/gpu/device.h"
+#include "tests/methods/shadow_planes/rule_cases.h"
+#include "tests/methods/shadow_planes/vectors.h"
+
+using namespace airlight;
+using namespace shadow_planes_test;
+using shadow_planes::LitPart;
+using shadow_planes::MappedRule;
+
+namespace {
+
+float device_length(double length) { return length < gpu::far_away ? float(length) : gpu::far_away; }
+constexpr auto one = [](auto, auto, auto) { return 1; };
+
+}  // namespace
+
+TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_planes]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const MappedRule<double> truth(128, 6);
+  std::vector<gpu::RuleCase> cases;
+  for (const auto& [a, d0, length] : rule_cases()) cases.push_back({a, 1, d0, device_length(length)});
+  for (const RuleErrors& row : rule_errors()) {
+    const std::vector<float> quick = rule_integrals(*context, row.phase, 8, 2, cases);
+    const std::vector<float> fine = rule_integrals(*context, row.phase, 16, 3, cases);
+    double worst_quick = 0;
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const gpu::RuleCase& c = cases[i];
+      const LitPart<double> part{0, c.length < gpu::far_away ? c.length : infinity};
+      const double exact = airlight_integral(truth, row.phase, double(c.extinction), double(-c.d0), 1.0, part, one);
+      REQUIRE((std::isfinite(quick[i]) && std::isfinite(fine[i])));
+      worst_quick = std::max(worst_quick, std::abs(quick[i] - exact) / exact);
+      errors.push_back(std::abs(fine[i] - exact) / exact);
+    }
+    std::sort(errors.begin(), errors.end());
+    CAPTURE(int(row.phase.kind), row.phase.g, worst_quick, errors.back(), errors[errors.size() / 2]);
+    // The device's exponentials and logarithms are good to some units in the last place: beside the rule's own error.
+    CHECK(worst_quick < row.float_8 + 3e-6);
+    CHECK(errors.back() < row.float_16 + 3e-6);
+    CHECK(errors[errors.size() / 2] < 5e-7);
+    CHECK(worst_quick > 0.3 * row.float_8);
+    if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+      fmt::print("kind {} g {}: 8 nodes {:.1e}, 16 nodes {:.1e}, median {:.1e}\n", int(row.phase.kind), row.phase.g,
+                 worst_quick, errors.back(), errors[errors.size() / 2]);
+  }
+}
+
+// The stress list and all other cases of eq. (1): Ihat, without the factor e^(-k (x0 + r0)) that no float can hold.
+TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const MappedRule<double> truth(128, 6);
+  int count = 0;
+  for (const auto& v : vectors_of("airlight")) {
+    const auto& in = v.at("input");
+    const std::string id = v.at("id");
+    const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
+                 length = number(in.at("x1")) - x0;
+    const shadow_planes::PhaseForm phase = phase_of(in);
+    const gpu::RuleCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
+    const float got = rule_integrals(*context, phase, 16, 3, {rounded}).front();
+    // Of the rounded input, which is all that a float can know.
+    const LitPart<double> part{0, rounded.length < gpu::far_away ? rounded.length : infinity};
+    const double exact =
+        airlight_integral(truth, phase, double(rounded.extinction), double(-rounded.d0), double(rounded.h), part, one);
+    CAPTURE(id, got, exact);
+    CHECK(std::abs(got - exact) < 1e-4 * exact);  // the greatest error of the table: murky
+    if (phase.kind == shadow_planes::PhaseForm::Kind::isotropic) CHECK(std::abs(got - exact) < 5e-6 * exact);
+    ++count;
+  }
+  CHECK(count == 38);
+}
