@@ -1,5 +1,7 @@
 #include "methods/shadow_planes/options.h"
 
+#include <fmt/format.h>
+
 namespace airlight::shadow_planes {
 
 std::vector<scene::SettingSpec> setting_specs() {
@@ -39,6 +41,40 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        {"none", "counted", "signed_sum", "stencil"}},
       {"edge_split", Type::integer, "1", "pieces of every silhouette edge, for the stencil's order", 1, 4096, {}},
+      {"evaluation",
+       Type::choice,
+       "pixels",
+       "of a lit ray's airlight: for every pixel; or at the vertices of meshes, shadow planes and media, linear "
+       "between "
+       "them, as the paper has it (other surfaces have no vertices: by pixel)",
+       0,
+       0,
+       {"pixels", "vertices"}},
+      {"plane_levels",
+       Type::integer,
+       "16",
+       "evaluation = vertices: strips of a shadow plane away from the light, in geometric progression",
+       1,
+       4096,
+       {}},
+      {"boundary_cells",
+       Type::integer,
+       "16",
+       "evaluation = vertices, bounded = paper: cells along a side of the six faces of a medium's boundary; entries "
+       "are "
+       "sorted by its triangles",
+       1,
+       1024,
+       {}},
+      {"bounded",
+       Type::choice,
+       "exact",
+       "media in regions: exact; or as the paper has it, light through a mean length R of the medium, media that do "
+       "not "
+       "tint one another",
+       0,
+       0,
+       {"exact", "paper"}},
       {"frame_buffer",
        Type::flag,
        "false",
@@ -72,11 +108,54 @@ Options read_options(const scene::Settings& settings) {
               : shadows == "stencil" ? Options::Shadows::stencil
                                      : Options::Shadows::signed_sum;
   o.edge_split = int(settings.integer("edge_split"));
+  o.evaluation = settings.text("evaluation") == "pixels" ? Options::Evaluation::pixels : Options::Evaluation::vertices;
+  o.plane_levels = int(settings.integer("plane_levels"));
+  o.boundary_cells = int(settings.integer("boundary_cells"));
+  o.bounded = settings.text("bounded") == "exact" ? Options::Bounded::exact : Options::Bounded::paper;
   o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
   o.moving_lights = settings.text("lights") == "moving";
   return o;
+}
+
+std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < scene.media.size(); ++i)
+    if (!std::holds_alternative<scene::Homogeneous>(scene.media[i].field))
+      reasons.push_back(
+          fmt::format("medium {} is {}, expected homogeneous media", i, field_name(scene.media[i].field)));
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (!scene::ball(scene.lights[i]))
+      reasons.push_back(
+          fmt::format("light {} is a {} light, expected point and spot lights", i, light_name(scene.lights[i])));
+  const bool paper = options.bounded == Options::Bounded::paper;
+  if (options.evaluator == Options::Evaluator::polynomial) {
+    const bool whole = scene.media.size() == 1 && std::holds_alternative<scene::Unbounded>(scene.media.front().region);
+    if (!scene.media.empty() && !whole && !paper)
+      reasons.push_back("evaluator = polynomial is for one medium without a region, or bounded = paper");
+    if (!scene.media.empty() && !whole && options.annex)
+      reasons.push_back("annex = true: the annex has no coefficients for media in regions");
+    for (const scene::Light& light : scene.lights)
+      if (std::holds_alternative<scene::SpotLight>(light))
+        reasons.push_back("evaluator = polynomial is for point lights: a spot's edge has no Taylor series");
+    if (options.annex && scene.media.size() == 1 &&
+        std::holds_alternative<scene::HenyeyGreenstein>(scene.media.front().phase))
+      reasons.push_back("annex = true: the annex has no coefficients for Henyey-Greenstein");
+    if (options.annex && options.centred)
+      reasons.push_back("annex = true: its coefficients are about theta = 0, expected centred = false");
+  }
+  if (paper)
+    for (std::size_t i = 0; i < scene.media.size(); ++i)
+      if (std::holds_alternative<scene::Slab>(scene.media[i].region))
+        reasons.push_back(fmt::format("bounded = paper: medium {} is a slab, which has no mean distance R", i));
+  if (options.evaluation == Options::Evaluation::vertices) {
+    if (options.shadows != Options::Shadows::stencil && options.shadows != Options::Shadows::none)
+      reasons.push_back("evaluation = vertices goes with shadows = stencil or none");
+    if (scene.camera.kind != scene::Camera::Kind::perspective)
+      reasons.push_back("evaluation = vertices is for perspective cameras: vertices are seen from one point");
+  }
+  return reasons;
 }
 
 }  // namespace airlight::shadow_planes

@@ -1,7 +1,9 @@
 // Settings of the method.
 #pragma once
+#include <string>
 #include <vector>
 
+#include "scene/scene.h"
 #include "scene/settings.h"
 
 namespace airlight::shadow_planes {
@@ -19,7 +21,16 @@ struct Options {
   // paper's planes, back to front by the middles of their edges, with a stencil (wrong where that is not their order).
   enum class Shadows { none, counted, signed_sum, stencil };
   Shadows shadows = Shadows::counted;
-  int edge_split = 1;           // pieces of every edge, for the order
+  int edge_split = 1;  // pieces of every edge, for the order and the mesh
+  // Where the airlight of a lit ray is computed: for every pixel, or at vertices of surfaces, planes and media, with
+  // linear interpolation over triangles.
+  enum class Evaluation { pixels, vertices };
+  Evaluation evaluation = Evaluation::pixels;
+  int plane_levels = 16;    // strips of a plane away from the light, before the one that is endless
+  int boundary_cells = 16;  // along each side of the six faces that a medium's boundary is cut into
+  // Media with regions: with their own ways of light, or as the paper has it.
+  enum class Bounded { exact, paper };
+  Bounded bounded = Bounded::exact;
   bool frame_buffer = false;    // sums are rounded to 8 bits and clamped to 1 after each plane
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
@@ -27,5 +38,7 @@ struct Options {
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
+// Why the method cannot render the scene with these settings, a line each; empty: it can.
+std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
 
 }  // namespace airlight::shadow_planes

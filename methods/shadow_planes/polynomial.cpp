@@ -50,6 +50,30 @@ Series tangent(int degree, double centre) {
   return q;
 }
 
+// tan(theta), by t' = 1 + t^2.
+Series plain_tangent(int degree, double centre) {
+  Series t(degree + 1);
+  t[0] = std::tan(centre);
+  for (int n = 0; n < degree; ++n) {
+    double sum = n == 0 ? 1 : 0;
+    for (int i = 0; i <= n; ++i) sum += t[i] * t[n - i];
+    t[n + 1] = sum / (n + 1);
+  }
+  return t;
+}
+
+// e^(-a (q - q_0)).
+Series decay(const Series& q, double a) {
+  Series e(q.size(), 0.0);
+  e[0] = 1;
+  for (std::size_t n = 1; n < q.size(); ++n) {
+    double sum = 0;
+    for (std::size_t j = 1; j <= n; ++j) sum += double(j) * q[j] * e[n - j];
+    e[n] = -a * sum / double(n);
+  }
+  return e;
+}
+
 Series phase_series(const PhaseForm& phase, int degree, double centre) {
   const Series s = sine(degree, centre);
   Series p(degree + 1, 0.0);
@@ -91,15 +115,11 @@ Series phase_series(const PhaseForm& phase, int degree, double centre) {
 }  // namespace
 
 std::vector<double> taylor_coefficients(const PhaseForm& phase, double a, int degree, double centre) {
-  const Series q = tangent(degree, centre);
-  Series e(degree + 1, 0.0);  // exp(-a (q - q_0))
-  e[0] = 1;
-  for (int n = 1; n <= degree; ++n) {
-    double sum = 0;
-    for (int j = 1; j <= n; ++j) sum += j * q[j] * e[n - j];
-    e[n] = -a * sum / n;
-  }
-  return product(e, phase_series(phase, degree, centre));
+  return product(decay(tangent(degree, centre), a), phase_series(phase, degree, centre));
+}
+
+std::vector<double> bounded_coefficients(const PhaseForm& phase, double a, int degree, double centre) {
+  return product(decay(plain_tangent(degree, centre), a), phase_series(phase, degree, centre));
 }
 
 std::vector<std::vector<double>> coefficients_in_a(const PhaseForm& phase, int degree) {

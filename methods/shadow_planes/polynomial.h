@@ -14,6 +14,9 @@ namespace airlight::shadow_planes {
 // recurrences, exact.
 std::vector<double> taylor_coefficients(const PhaseForm&, double a, int degree, double centre = 0);
 
+// The same of e^(-a tan(theta)) p: the paper's form in a bounded medium (section 4.2). Times e^(a tan(centre)).
+std::vector<double> bounded_coefficients(const PhaseForm&, double a, int degree, double centre = 0);
+
 // The annex's, centre 0, with its errors: isotropic to degree 4, Rayleigh, hazy and murky to degree 2. `phase` is
 // printed. Throws Error for Henyey-Greenstein, which it has not.
 std::vector<double> printed_coefficients(const PhaseForm&, double a);

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "methods/shadow_planes/lit_airlight.h"
+#include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/tile_edges.h"
 #include "scene/error.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::shadow_planes {
 namespace {
@@ -22,9 +21,10 @@ struct Needs {
   bool medium, shadows, surfaces;
 };
 
-// What rows count.
-struct Counts {
-  double parts = 0, crossings = 0;
+// Of a tile.
+struct Tally {
+  Counts counts;
+  StageSeconds seconds;
 };
 
 class PreparedShadowPlanes final : public scene::Prepared {
@@ -38,7 +38,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
     needs_ = {medium, medium && lit && !scene_->surfaces.empty() && options.shadows != Options::Shadows::none,
               lit && !scene_->surfaces.empty()};
     scene::Stopwatch watch;
-    if (medium) airlight_ = std::make_unique<LitAirlight>(scene_->media, options);
+    if (medium) airs_ = airs(scene_->media, options);
     if (!needs_.shadows) return;
     const auto occluders = std::make_shared<const Occluders>(scene_);
     times_.push_back({"edges", watch.lap()});
@@ -51,19 +51,22 @@ class PreparedShadowPlanes final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  // `at_camera`: m there, by light; empty where every ray starts elsewhere.
-  void render_tile(const View&, int tile_x, int tile_y, const std::vector<int>& at_camera, scene::Film&, Counts&) const;
-  Rgb airlight(std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
-               std::vector<Crossing>&, std::vector<ShadowVolumes::Interval>&, Counts&) const;
-  Rgb by_stencil(std::size_t light, const Ray&, double end, int count, const std::vector<int>& edges,
-                 std::vector<Crossing>&, Counts&) const;
+  // `stages`: null: lit parts of rays, not the paper's stages. `at_camera`: m there, by light; empty where every ray
+  // starts elsewhere.
+  void render_tile(const View&, int tile_x, int tile_y, const PaperStages* stages, const std::vector<int>& at_camera,
+                   scene::Film&, Tally&) const;
+  void add_lit_parts(std::size_t light, const std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&,
+                     Tally&) const;
+  Rgb airlight(std::size_t light, const Ray&, Interval, Counts&) const;
+  Rgb signed_sum(std::size_t light, const Ray&, double end, int count, const std::vector<Crossing>&, Counts&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
+  bool in_stages() const;  // of the paper
 
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Needs needs_;
-  std::unique_ptr<LitAirlight> airlight_;  // null: no medium
-  std::vector<ShadowVolumes> shadows_;     // by light; empty: left out
+  std::vector<Air> airs_;               // empty: no medium
+  std::vector<ShadowVolumes> shadows_;  // by light; empty: left out
   std::vector<scene::StageTime> times_;
 };
 
@@ -94,30 +97,28 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   };
 }
 
-Rgb PreparedShadowPlanes::airlight(std::size_t index, const Ray& ray, double end, int count,
-                                   const std::vector<int>& edges, std::vector<Crossing>& crossings,
-                                   std::vector<ShadowVolumes::Interval>& lit, Counts& counts) const {
-  const scene::Light& light = scene_->lights[index];
-  if (!needs_.shadows) {
-    counts.parts += 1;
-    return (*airlight_)(light, ray, {0, end});
-  }
-  shadows_[index].lit_parts(ray, end, count, &edges, crossings, lit);
-  counts.crossings += double(crossings.size());
+bool PreparedShadowPlanes::in_stages() const {
+  if (!needs_.medium || scene_->lights.empty()) return false;
+  return options_.evaluation == Options::Evaluation::vertices ||
+         (needs_.shadows && options_.shadows == Options::Shadows::stencil);
+}
+
+Rgb PreparedShadowPlanes::airlight(std::size_t light, const Ray& ray, Interval lit, Counts& counts) const {
+  counts.parts += 1;
+  counts.by_pixel += double(airs_.size());
   Rgb sum = Rgb::Zero();
-  if (options_.shadows == Options::Shadows::counted) {
-    for (const auto& part : lit) sum += (*airlight_)(light, ray, {part.begin, part.end});
-    counts.parts += double(lit.size());
-    return sum;
-  }
-  if (options_.shadows == Options::Shadows::stencil)
-    return by_stencil(index, ray, end, count, edges, crossings, counts);
-  // As if every plane alone were a shadow's: the integral of 1 - m/2.
+  for (const Air& air : airs_) sum += shadow_planes::airlight(air, scene_->lights[light], ray, lit);
+  return sum;
+}
+
+// As if every plane alone were a shadow's: the integral of 1 - m/2.
+Rgb PreparedShadowPlanes::signed_sum(std::size_t light, const Ray& ray, double end, int count,
+                                     const std::vector<Crossing>& crossings, Counts& counts) const {
+  Rgb sum = Rgb::Zero();
   double m = count, from = 0;
   const auto add = [&](double to) {
-    if (to > from && m != 2) sum += (1 - 0.5 * m) * (*airlight_)(light, ray, {from, to});
+    if (to > from && m != 2) sum += (1 - 0.5 * m) * airlight(light, ray, {from, to}, counts);
     from = to;
-    counts.parts += 1;
   };
   for (const Crossing& crossing : crossings) {
     add(crossing.x);
@@ -127,31 +128,39 @@ Rgb PreparedShadowPlanes::airlight(std::size_t index, const Ray& ray, double end
   return sum;
 }
 
-// Section 5.1.5 with the stencil's rules put right: from the point that ends the ray to the eye, in the order of the
-// middles of edges. Each plane adds or takes away all light in front of it.
-Rgb PreparedShadowPlanes::by_stencil(std::size_t index, const Ray& ray, double end, int count,
-                                     const std::vector<int>& edges, std::vector<Crossing>& crossings,
-                                     Counts& counts) const {
-  crossings.clear();
-  shadows_[index].cross_edges(ray, end, edges, crossings, options_.edge_split);
-  shadows_[index].cross_spheres(ray, end, crossings);
-  int stencil = count;
-  for (const Crossing& crossing : crossings) stencil += crossing.change;
-  std::stable_sort(crossings.begin(), crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.order < b.order; });
-  Rgb sum = Rgb::Zero();
-  const auto draw = [&](double x, double sign) {
-    counts.parts += 1;
-    sum += sign * (*airlight_)(scene_->lights[index], ray, {0, x});
-    if (options_.frame_buffer) sum = ((sum * 255).round() / 255).max(0.0).min(1.0);
-  };
-  if (stencil == 0) draw(end, 1);
-  for (const Crossing& crossing : crossings) {
-    if (crossing.change > 0 && stencil == crossing.change) draw(crossing.x, 1);
-    if (crossing.change < 0 && stencil == 0) draw(crossing.x, -1);
-    stencil = std::max(0, stencil - crossing.change);
+void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& edges, std::optional<int> count,
+                                         std::vector<Pixel>& pixels, Tally& tally) const {
+  // In two passes, so that the clock is read for a tile, not for every pixel.
+  scene::Stopwatch watch;
+  std::vector<Crossing> crossings;
+  std::vector<ShadowVolumes::Interval> lit;
+  std::vector<ShadowVolumes::Interval> parts;
+  std::vector<std::size_t> first{0};
+  if (needs_.shadows && options_.shadows == Options::Shadows::counted) {
+    for (const Pixel& pixel : pixels) {
+      shadows_[l].lit_parts(pixel.ray, pixel.end.t, count ? *count : shadows_[l].count(pixel.ray.origin), &edges,
+                            crossings, lit);
+      tally.counts.crossings += double(crossings.size());
+      parts.insert(parts.end(), lit.begin(), lit.end());
+      first.push_back(parts.size());
+    }
   }
-  return sum;
+  tally.seconds.scene += watch.lap();
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Pixel& pixel = pixels[i];
+    if (!needs_.shadows) {
+      pixel.in_air += airlight(l, pixel.ray, {0, pixel.end.t}, tally.counts);
+    } else if (options_.shadows == Options::Shadows::counted) {
+      for (std::size_t k = first[i]; k < first[i + 1]; ++k)
+        pixel.in_air += airlight(l, pixel.ray, {parts[k].begin, parts[k].end}, tally.counts);
+    } else {
+      const int m = count ? *count : shadows_[l].count(pixel.ray.origin);
+      shadows_[l].lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
+      tally.counts.crossings += double(crossings.size());
+      pixel.in_air += signed_sum(l, pixel.ray, pixel.end.t, m, crossings, tally.counts);
+    }
+  }
+  tally.seconds.planes += watch.lap();
 }
 
 Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) const {
@@ -168,56 +177,96 @@ Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) 
   return sum;
 }
 
-void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, const std::vector<int>& at_camera,
-                                       scene::Film& film, Counts& counts) const {
-  std::vector<std::vector<int>> edges(scene_->lights.size());
-  for (std::size_t l = 0; l < shadows_.size(); ++l) edges_of_tile(shadows_[l], view, tile_x, tile_y, edges[l]);
-  std::vector<Crossing> crossings;
-  std::vector<ShadowVolumes::Interval> lit;
+void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, const PaperStages* stages,
+                                       const std::vector<int>& at_camera, scene::Film& film, Tally& tally) const {
+  scene::Stopwatch watch;
+  const int right = std::min(view.width, (tile_x + 1) * tile_side), width = right - tile_x * tile_side;
+  const int bottom = std::min(view.height, (tile_y + 1) * tile_side);
+  std::vector<Pixel> pixels;
+  pixels.reserve(tile_side * tile_side);
+  for (int y = tile_y * tile_side; y < bottom; ++y)
+    for (int x = tile_x * tile_side; x < right; ++x) {
+      Pixel& pixel = pixels.emplace_back();
+      pixel.ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+      pixel.end = scene::ray_end(*scene_, pixel.ray);
+      if (needs_.medium) pixel.visible = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
+      if (pixel.end.hit) pixel.on_surface = pixel.visible * reflected(*pixel.end.hit, -pixel.ray.direction);
+    }
+  std::vector<int> edges;
+  for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
+    const auto count = at_camera.empty() ? std::nullopt : std::optional(at_camera[l]);
+    if (needs_.shadows) edges_of_tile(shadows_[l], view, tile_x, tile_y, edges);
+    tally.seconds.scene += watch.lap();
+    if (stages)
+      stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
+    else
+      add_lit_parts(l, edges, count, pixels, tally);
+    watch.lap();
+  }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
   &transmittance_layer = film.layers["transmittance"], &mean = film.layers["mean"];
-  for (int y = tile_y * tile_side; y < std::min(view.height, (tile_y + 1) * tile_side); ++y)
-    for (int x = tile_x * tile_side; x < std::min(view.width, (tile_x + 1) * tile_side); ++x) {
-      const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-      const scene::RayEnd end = scene::ray_end(*scene_, ray);
-      Rgb in_air = Rgb::Zero(), on_surface = Rgb::Zero(), visible = Rgb::Ones();
-      if (needs_.medium) {
-        visible = transmittance(scene_->media, ray, {0, end.t});
-        for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
-          const int count = !needs_.shadows ? 0 : !at_camera.empty() ? at_camera[l] : shadows_[l].count(ray.origin);
-          in_air += airlight(l, ray, end.t, count, edges[l], crossings, lit, counts);
-        }
-        if (options_.ambient) in_air += scene_->ambient_in_scatter * (1 - visible);
-      }
-      if (end.hit) on_surface = visible * reflected(*end.hit, -ray.direction);
-      const std::size_t i = std::size_t(y) * view.width + x;
-      for (int c = 0; c < 3; ++c) {
-        airlight_layer[3 * i + c] = float(in_air[c]);
-        surface[3 * i + c] = float(on_surface[c]);
-        transmittance_layer[3 * i + c] = float(visible[c]);
-        mean[3 * i + c] = float(in_air[c] + on_surface[c]);
-      }
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    Pixel& pixel = pixels[k];
+    if (options_.ambient && needs_.medium) pixel.in_air += scene_->ambient_in_scatter * (1 - pixel.visible);
+    const std::size_t x = tile_x * tile_side + k % width, y = tile_y * tile_side + k / width;
+    const std::size_t i = y * view.width + x;
+    for (int c = 0; c < 3; ++c) {
+      airlight_layer[3 * i + c] = float(pixel.in_air[c]);
+      surface[3 * i + c] = float(pixel.on_surface[c]);
+      transmittance_layer[3 * i + c] = float(pixel.visible[c]);
+      mean[3 * i + c] = float(pixel.in_air[c] + pixel.on_surface[c]);
     }
+  }
+  tally.seconds.scene += watch.lap();
 }
 
 scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution& execution) const {
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   for (const char* layer : {"airlight", "surface", "transmittance", "mean"}) result.film.add(layer);
-  scene::Stopwatch watch;
+  if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
+    throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
   std::vector<int> at_camera;
   if (view.camera.kind == scene::Camera::Kind::perspective)
     for (const ShadowVolumes& shadows : shadows_) at_camera.push_back(shadows.count(view.camera.position));
-  std::vector<Counts> counts(std::size_t(columns) * rows);
+  std::optional<PaperStages> stages;
+  if (in_stages()) stages.emplace(*scene_, options_, airs_, shadows_, view.camera, execution.threads);
+  const StageSeconds once = stages ? stages->seconds() : StageSeconds();
+  scene::Stopwatch watch;
+  std::vector<Tally> tallies(std::size_t(columns) * rows);
   scene::parallel_rows(columns * rows, execution, [&](int tile) {
-    render_tile(view, tile % columns, tile / columns, at_camera, result.film, counts[tile]);
+    render_tile(view, tile % columns, tile / columns, stages ? &*stages : nullptr, at_camera, result.film,
+                tallies[tile]);
   });
-  result.times.push_back({"airlight and surfaces", watch.lap()});
-  Counts all;
-  for (const Counts& c : counts) all = {all.parts + c.parts, all.crossings + c.crossings};
+  const double wall = watch.lap();
+  Tally all;
+  for (const Tally& t : tallies) {
+    all.counts.parts += t.counts.parts;
+    all.counts.crossings += t.counts.crossings;
+    all.counts.by_pixel += t.counts.by_pixel;
+    all.seconds.scene += t.seconds.scene;
+    all.seconds.ends += t.seconds.ends;
+    all.seconds.sort += t.seconds.sort;
+    all.seconds.planes += t.seconds.planes;
+  }
+  // The tiles' wall clock, shared out as their stages took it.
+  const StageSeconds& of = all.seconds;
+  const double share = wall / std::max(1e-300, of.scene + of.ends + of.sort + of.planes);
+  if (stages) {
+    result.times = {{"surfaces and stencil", of.scene * share},
+                    {"medium on surfaces", once.ends + of.ends * share},
+                    {"sort", once.sort + of.sort * share},
+                    {"shadow planes", once.planes + of.planes * share}};
+  } else {
+    result.times = {{"surfaces and crossings", of.scene * share}, {"lit parts", of.planes * share}};
+  }
+  const double vertices = stages ? double(stages->vertices()) : 0;
   result.counters["rays"] = double(result.film.pixels());
-  result.counters["lit_parts"] = all.parts;
-  result.counters["crossings"] = all.crossings;
+  result.counters["lit_parts"] = all.counts.parts;
+  result.counters["crossings"] = all.counts.crossings;
+  result.counters["gamma_evaluations"] = all.counts.by_pixel + vertices;
+  if (stages) result.counters["planes"] = double(stages->planes());
+  if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;
   return result;
 }
 
@@ -230,30 +279,7 @@ std::string ShadowPlanes::about() const {
 std::vector<scene::SettingSpec> ShadowPlanes::settings() const { return setting_specs(); }
 
 std::vector<std::string> ShadowPlanes::supports(const Scene& scene, const scene::Settings& settings) const {
-  const Options options = read_options(settings);
-  std::vector<std::string> reasons;
-  for (std::size_t i = 0; i < scene.media.size(); ++i)
-    if (!std::holds_alternative<scene::Homogeneous>(scene.media[i].field))
-      reasons.push_back(
-          fmt::format("medium {} is {}, expected homogeneous media", i, field_name(scene.media[i].field)));
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (!scene::ball(scene.lights[i]))
-      reasons.push_back(
-          fmt::format("light {} is a {} light, expected point and spot lights", i, light_name(scene.lights[i])));
-  if (options.evaluator == Options::Evaluator::polynomial) {
-    if (scene.media.size() > 1 ||
-        (scene.media.size() == 1 && !std::holds_alternative<scene::Unbounded>(scene.media.front().region)))
-      reasons.push_back("evaluator = polynomial is for one medium without a region");
-    for (const scene::Light& light : scene.lights)
-      if (std::holds_alternative<scene::SpotLight>(light))
-        reasons.push_back("evaluator = polynomial is for point lights: a spot's edge has no Taylor series");
-    if (options.annex && scene.media.size() == 1 &&
-        std::holds_alternative<scene::HenyeyGreenstein>(scene.media.front().phase))
-      reasons.push_back("annex = true: the annex has no coefficients for Henyey-Greenstein");
-    if (options.annex && options.centred)
-      reasons.push_back("annex = true: its coefficients are about theta = 0, expected centred = false");
-  }
-  return reasons;
+  return reasons_against(scene, read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> ShadowPlanes::prepare(std::shared_ptr<const Scene> scene,

@@ -30,9 +30,8 @@ ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const P
 }
 
 void ShadowVolumes::cross_edges(const Ray& ray, double end, const std::vector<int>& edges,
-                                std::vector<Crossing>& crossings, int pieces) const {
+                                std::vector<Crossing>& crossings) const {
   const LightFromRay light = light_from_ray(ray, light_);
-  const Vec3 to_origin = (ray.origin - light_).normalized();
   if (!(light.h > 1e-12 * (light_ - ray.origin).norm())) return;
   // Which side of the plane through ray and light a vertex is on: the same number for both edges that share it, so that
   // no ray slips between them or meets both.
@@ -48,9 +47,7 @@ void ShadowVolumes::cross_edges(const Ray& ray, double end, const std::vector<in
     const double x = light.T + light.h * along / towards;
     if (!(x > 0) || !(x < end)) continue;
     const bool leaves = edge.a.cross(edge.b).dot(ray.direction) > 0;
-    const double middle = (std::min(std::floor(share * pieces), pieces - 1.0) + 0.5) / pieces;
-    const double order = (edge.a + (edge.b - edge.a) * middle).normalized().dot(to_origin);
-    crossings.push_back({x, leaves ? -edge.multiplicity : edge.multiplicity, order});
+    crossings.push_back({x, leaves ? -edge.multiplicity : edge.multiplicity, i, share, light.h / towards});
   }
 }
 
@@ -74,7 +71,8 @@ void ShadowVolumes::cross_spheres(const Ray& ray, double end, std::vector<Crossi
           k + 1 < places.size() ? places[k + 1] : std::min(end, 2 * places[k] + 1 + c.norm() + y.norm());
       const bool hidden = hides(c, sphere.radius, y + 0.5 * (places[k] + next) * w);
       if (hidden != before && places[k] > 0)
-        crossings.push_back({places[k], hidden ? 2 : -2, (y + places[k] * w).normalized().dot(y.normalized())});
+        crossings.push_back(
+            {places[k], hidden ? 2 : -2, -1, 0, 1, (y + places[k] * w).normalized().dot(y.normalized())});
       before = hidden;
     }
   }

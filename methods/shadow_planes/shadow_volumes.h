@@ -17,7 +17,10 @@ namespace airlight::shadow_planes {
 struct Crossing {
   double x;          // [m] along the ray
   int change;        // > 0 into the shadow
-  double order = 0;  // the paper's: cosine at the light between the ray's origin and the middle of the edge's piece
+  int edge = -1;     // whose plane it is; -1: a sphere's shadow
+  double share = 0;  // where on the plane: behind a + share (b - a) of the edge,
+  double times = 1;  // that many times as far from the light
+  double order = 0;  // plane_order.h; of edges set by whoever needs it
 };
 
 class ShadowVolumes {
@@ -30,8 +33,8 @@ class ShadowVolumes {
   int count(const Point3& point) const { return count_.at(point); }  // m(X)
 
   // Appends the crossings of these edges within (0, end). `edges`: indices; a ray that passes the light closer than
-  // 1e-12 of its distance crosses none. Their `order` is that of edges split into `pieces`.
-  void cross_edges(const Ray&, double end, const std::vector<int>& edges, std::vector<Crossing>&, int pieces = 1) const;
+  // 1e-12 of its distance crosses none.
+  void cross_edges(const Ray&, double end, const std::vector<int>& edges, std::vector<Crossing>&) const;
   // The same for all spheres, each as two.
   void cross_spheres(const Ray&, double end, std::vector<Crossing>&) const;
 

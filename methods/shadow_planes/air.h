@@ -1,0 +1,32 @@
+// What gives airlight of its own: all media together, or in the paper's way each alone.
+#pragma once
+#include <variant>
+#include <vector>
+
+#include "methods/shadow_planes/lit_airlight.h"
+#include "methods/shadow_planes/paper_medium.h"
+
+namespace airlight::shadow_planes {
+
+using Air = std::variant<LitAirlight, PaperMedium>;
+
+// Their sum is the airlight. bounded = exact: one, of all media; paper: one for each.
+inline std::vector<Air> airs(const std::vector<scene::Medium>& media, const Options& options) {
+  std::vector<Air> result;
+  if (options.bounded == Options::Bounded::exact && !media.empty()) result.emplace_back(LitAirlight(media, options));
+  if (options.bounded == Options::Bounded::paper)
+    for (const scene::Medium& medium : media) {
+      if (std::holds_alternative<scene::Unbounded>(medium.region))
+        result.emplace_back(LitAirlight({medium}, options));
+      else
+        result.emplace_back(PaperMedium(medium, options));
+    }
+  return result;
+}
+
+// L [W/m^2/sr] of a point or spot light over a lit part of the ray, which may be infinite.
+inline Rgb airlight(const Air& air, const scene::Light& light, const Ray& ray, Interval lit) {
+  return std::visit([&](const auto& a) { return Rgb(a(light, ray, lit)); }, air);
+}
+
+}  // namespace airlight::shadow_planes

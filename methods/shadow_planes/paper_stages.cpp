@@ -1,0 +1,216 @@
+#include "methods/shadow_planes/paper_stages.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::shadow_planes {
+namespace {
+
+std::array<Vec3, 8> corners(const Box& box) {
+  std::array<Vec3, 8> result;
+  for (int i = 0; i < 8; ++i)
+    result[i] = {i & 1 ? box.hi[0] : box.lo[0], i & 2 ? box.hi[1] : box.lo[1], i & 4 ? box.hi[2] : box.lo[2]};
+  return result;
+}
+
+double farthest_corner(const Box& box, const Point3& from) {
+  double most = 0;
+  for (const Vec3& corner : corners(box)) most = std::max(most, (corner - from).norm());
+  return most;
+}
+
+// Is the box on one side of the plane of an edge and the light, or beside or before the wedge behind the edge? Then the
+// shadow plane cannot cut it.
+bool misses(const SilhouetteEdge& edge, const Point3& light, const Box& box) {
+  const Vec3 normal = edge.a.cross(edge.b), by_a = normal.cross(edge.a), by_b = edge.b.cross(normal);
+  const Vec3 across = normal.cross(edge.b - edge.a);  // away from the edge, towards the light
+  int above = 0, below = 0, outside_a = 0, outside_b = 0, before = 0;
+  for (const Vec3& corner : corners(box)) {
+    const Vec3 c = corner - light;
+    above += normal.dot(c) > 0;
+    below += normal.dot(c) < 0;
+    outside_a += by_a.dot(c) < 0;
+    outside_b += by_b.dot(c) < 0;
+    before += across.dot(c - edge.a) > 0;
+  }
+  return above == 8 || below == 8 || outside_a == 8 || outside_b == 8 || before == 8;
+}
+
+// How far from the light planes are meshed before the strip without end. A medium with an end of its own needs no more;
+// else past everything of finite size, and the farther the more levels there are, so that they all shrink.
+double reach(const scene::Scene& scene, const PaperMedium* medium, const Point3& light, const Point3& camera,
+             int levels) {
+  if (medium) return farthest_corner(bounding_box(medium->region()), light);
+  double most = std::max((camera - light).norm(), farthest_corner(scene.geometry->bounds(), light));
+  for (const scene::Medium& m : scene.media)
+    if (const Box box = bounding_box(m.region); std::isfinite(box.size().sum()))
+      most = std::max(most, farthest_corner(box, light));
+  return most * std::max(1.0, levels / 4.0);
+}
+
+}  // namespace
+
+// Of one light and one tile.
+struct PaperStages::Work {
+  std::vector<Crossing> crossings;
+  std::vector<std::size_t> first;  // of a pixel's crossings, and of the next pixel's
+  std::vector<Interval> domain;    // where the ray is in the air; empty: nowhere
+  std::vector<int> stencil;
+  std::vector<Rgb> sum;
+};
+
+PaperStages::PaperStages(const scene::Scene& scene, const Options& options, const std::vector<Air>& airs,
+                         const std::vector<ShadowVolumes>& shadows, const scene::Camera& camera, int threads)
+    : scene_(scene), options_(options), airs_(airs), shadows_(shadows) {
+  const bool vertices = options.evaluation == Options::Evaluation::vertices;
+  const Box everywhere{Point3::Constant(-infinity), Point3::Constant(infinity)};
+  scene::Stopwatch watch;
+  for (const ShadowVolumes& s : shadows) orders_.emplace_back(s, camera, options.edge_split);
+  for (const scene::Light& light : scene.lights) {
+    const Point3 at = scene::ball(light)->center;
+    std::vector<Part>& of_light = parts_.emplace_back();
+    for (const Air& air : airs) {
+      Part& part = of_light.emplace_back();
+      part.medium = std::get_if<PaperMedium>(&air);
+      if (vertices) part.at_vertices.emplace(air, light, camera.position);
+      if (!part.medium) continue;
+      part.boundary.emplace(part.medium->region(), options.boundary_cells);
+      const Vec3 to_camera = (camera.position - at).normalized();
+      for (const auto& t : part.boundary->triangles()) {
+        Vec3 middle = Vec3::Zero();
+        for (const int v : t) middle += part.boundary->vertices()[v] / 3;
+        part.triangle_key.push_back(order_key(middle - at, to_camera));
+      }
+    }
+  }
+  for (std::size_t l = 0; l < shadows.size(); ++l)
+    for (Part& part : parts_[l]) {
+      part.left_out.assign(shadows[l].edges().size(), false);
+      for (std::size_t i = 0; i < part.left_out.size() && part.medium; ++i)
+        part.left_out[i] = misses(shadows[l].edges()[i], shadows[l].light(), bounding_box(part.medium->region()));
+      planes_ += options.edge_split * std::size_t(std::count(part.left_out.begin(), part.left_out.end(), false));
+    }
+  seconds_.sort = watch.lap();
+  if (!vertices) return;
+  for (std::vector<Part>& of_light : parts_)
+    for (Part& part : of_light) {
+      part.at_vertices->evaluate_surfaces(scene.surfaces,
+                                          part.medium ? bounding_box(part.medium->region()) : everywhere, threads);
+      if (part.boundary) part.at_vertices->evaluate_boundary(*part.boundary, threads);
+    }
+  seconds_.ends = watch.lap();
+  for (std::size_t l = 0; l < shadows.size(); ++l)
+    for (Part& part : parts_[l])
+      part.at_vertices->evaluate_planes(
+          PlaneMesh(shadows[l], part.left_out,
+                    reach(scene, part.medium, shadows[l].light(), camera.position, options.plane_levels),
+                    options.edge_split, options.plane_levels),
+          threads);
+  seconds_.planes = watch.lap();
+}
+
+std::size_t PaperStages::vertices() const {
+  std::size_t sum = 0;
+  for (const std::vector<Part>& of_light : parts_)
+    for (const Part& part : of_light) sum += part.at_vertices ? part.at_vertices->count() : 0;
+  return sum;
+}
+
+void PaperStages::draw(std::size_t l, std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>& pixels,
+                       Counts& counts, StageSeconds& seconds) const {
+  scene::Stopwatch watch;
+  Work work;
+  work.first.push_back(0);
+  work.sum.assign(pixels.size(), Rgb::Zero());
+  if (!shadows_.empty()) orders_[l].sort(edges);
+  seconds.sort += watch.lap();
+  std::vector<int> at_origin(pixels.size(), 0);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!shadows_.empty()) {
+      shadows_[l].cross_edges(pixels[i].ray, pixels[i].end.t, edges, work.crossings);
+      shadows_[l].cross_spheres(pixels[i].ray, pixels[i].end.t, work.crossings);
+      at_origin[i] = count ? *count : shadows_[l].count(pixels[i].ray.origin);
+    }
+    work.first.push_back(work.crossings.size());
+  }
+  counts.crossings += double(work.crossings.size());
+  seconds.scene += watch.lap();
+  for (std::size_t i = 0; i < pixels.size() && !shadows_.empty(); ++i)
+    orders_[l].sort(pixels[i].ray, work.crossings.data() + work.first[i], work.crossings.data() + work.first[i + 1]);
+  seconds.sort += watch.lap();
+  for (std::size_t a = 0; a < airs_.size(); ++a) {
+    work.stencil = at_origin;
+    draw_ends(l, a, pixels, work, counts);
+    seconds.ends += watch.lap();
+    draw_planes(l, a, pixels, work, counts);
+    seconds.planes += watch.lap();
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].in_air += work.sum[i];
+}
+
+// Stage 3: where the ray leaves the air, or ends, if the stencil is 0 there.
+void PaperStages::draw_ends(std::size_t l, std::size_t a, const std::vector<Pixel>& pixels, Work& work,
+                            Counts& counts) const {
+  work.domain.resize(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const PaperMedium* medium = parts_[l][a].medium;
+    work.domain[i] = {0, pixels[i].end.t};
+    if (medium) work.domain[i] = clip(medium->region(), pixels[i].ray, work.domain[i]);
+    if (work.domain[i].empty()) continue;
+    for (std::size_t k = work.first[i]; k < work.first[i + 1]; ++k)
+      if (work.crossings[k].x < work.domain[i].hi) work.stencil[i] += work.crossings[k].change;
+    if (work.stencil[i] == 0) add(work.sum[i], to_end(l, a, pixels[i], work.domain[i], counts));
+  }
+}
+
+Rgb PaperStages::to_end(std::size_t l, std::size_t a, const Pixel& pixel, Interval domain, Counts& counts) const {
+  const Part& part = parts_[l][a];
+  counts.parts += 1;
+  if (part.at_vertices) {
+    if (part.medium && domain.hi < pixel.end.t)
+      return part.at_vertices->on_boundary(*part.boundary, part.boundary->locate(pixel.ray.at(domain.hi)));
+    if (pixel.end.hit)
+      if (const auto value = part.at_vertices->on_surface(scene_.surfaces, *pixel.end.hit)) return *value;
+  }
+  counts.by_pixel += 1;
+  return airlight(airs_[a], scene_.lights[l], pixel.ray, {0, domain.hi});
+}
+
+// Stage 5, with the stencil's rules put right: each plane adds or takes away all light in front of it.
+void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pixel>& pixels, Work& work,
+                              Counts& counts) const {
+  const Part& part = parts_[l][a];
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (work.domain[i].empty() || work.first[i] == work.first[i + 1]) continue;
+    // Where the ray enters a medium the stencil becomes 255: nothing that is sorted in front of it is drawn. Light is
+    // counted from there, so that there is none to take away.
+    double entry = infinity;
+    if (part.medium && work.domain[i].lo > 0)
+      entry = part.triangle_key[part.boundary->locate(pixels[i].ray.at(work.domain[i].lo)).triangle];
+    int& stencil = work.stencil[i];
+    for (std::size_t k = work.first[i]; k < work.first[i + 1] && work.crossings[k].order < entry; ++k) {
+      const Crossing& crossing = work.crossings[k];
+      if (crossing.x >= work.domain[i].hi || (crossing.edge >= 0 && part.left_out[crossing.edge])) continue;
+      const double sign = crossing.change > 0 && stencil == crossing.change ? 1
+                          : crossing.change < 0 && stencil == 0             ? -1
+                                                                            : 0;
+      stencil = std::max(0, stencil - crossing.change);
+      if (sign == 0) continue;
+      counts.parts += 1;
+      if (part.at_vertices && crossing.edge >= 0) {
+        add(work.sum[i], sign * part.at_vertices->on_plane(crossing));
+      } else {
+        counts.by_pixel += 1;
+        add(work.sum[i], sign * airlight(airs_[a], scene_.lights[l], pixels[i].ray, {0, crossing.x}));
+      }
+    }
+  }
+}
+
+void PaperStages::add(Rgb& sum, const Rgb& value) const {
+  sum += value;
+  if (options_.frame_buffer) sum = ((sum * 255).round() / 255).max(0.0).min(1.0);
+}
+
+}  // namespace airlight::shadow_planes

@@ -1,0 +1,71 @@
+// The paper's picture of one light: a stencil, and planes drawn back to front (Biri et al. 2006, section 5.1, stages 2
+// to 5, and 5.2 for media in regions).
+#pragma once
+#include <array>
+#include <optional>
+
+#include "methods/shadow_planes/plane_order.h"
+#include "methods/shadow_planes/vertex_airlight.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::shadow_planes {
+
+// Seconds by stage of section 5.1; the silhouettes, stage 1, are found when a scene is prepared.
+struct StageSeconds {
+  double scene = 0, ends = 0, sort = 0, planes = 0;  // 2 to 5
+};
+
+struct Counts {
+  double parts = 0,
+         crossings = 0;  // evaluations by pixel of lit parts or of Gamma, or looked up at vertices; planes met
+  double by_pixel = 0;   // of the parts, evaluated for their pixel
+};
+
+struct Pixel {
+  Ray ray;
+  scene::RayEnd end;
+  Rgb visible = Rgb::Ones(), in_air = Rgb::Zero(), on_surface = Rgb::Zero();
+};
+
+class PaperStages {
+ public:
+  // What is done once per picture: keys of planes, vertices. `shadows` by light, empty: nothing casts shadows. Keeps
+  // references to all but the camera.
+  PaperStages(const scene::Scene&, const Options&, const std::vector<Air>&, const std::vector<ShadowVolumes>& shadows,
+              const scene::Camera&, int threads);
+
+  // Adds the airlight of a light to pixels. `edges`: whose planes they may cross; `count`: of surfaces between light
+  // and camera; of a ray's own origin where there is none.
+  void draw(std::size_t light, std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
+            StageSeconds&) const;
+
+  const StageSeconds& seconds() const { return seconds_; }  // of the constructor
+  std::size_t vertices() const;
+  std::size_t planes() const { return planes_; }
+
+ private:
+  // One air as one light shows it.
+  struct Part {
+    const PaperMedium* medium;                  // null: it fills all space, or its regions are exact
+    std::optional<MediaBoundary> boundary;      // of the medium
+    std::vector<double> triangle_key;           // order of its triangles
+    std::vector<char> left_out;                 // edges whose planes cannot cut the medium's box
+    std::optional<VertexAirlight> at_vertices;  // else by pixel
+  };
+  struct Work;
+  void draw_ends(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
+  void draw_planes(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
+  Rgb to_end(std::size_t light, std::size_t air, const Pixel&, Interval domain, Counts&) const;
+  void add(Rgb& sum, const Rgb& value) const;
+
+  const scene::Scene& scene_;
+  const Options& options_;
+  const std::vector<Air>& airs_;
+  const std::vector<ShadowVolumes>& shadows_;
+  std::vector<PlaneOrder> orders_;        // by light
+  std::vector<std::vector<Part>> parts_;  // by light, air
+  StageSeconds seconds_;
+  std::size_t planes_ = 0;
+};
+
+}  // namespace airlight::shadow_planes
