@@ -68,6 +68,7 @@ class Values {
 
   std::size_t size() const { return index_.size(); }
   int batch_count() const { return int(std::max(a_batches_.size(), r_batches_.size())); }
+  std::size_t pixel(std::size_t i) const { return index_[i] / 3; }
   double a(std::size_t i) const { return a_[index_[i]]; }
   double r(std::size_t i) const { return r_[index_[i]]; }
   double a(std::size_t i, int b) const { return a_batches_.empty() ? a(i) : a_batches_[std::size_t(b)][index_[i]]; }
@@ -242,6 +243,20 @@ Measure percentile(const Values& v, double p) {
   return m;
 }
 
+double wrong_share(const Values& v) {
+  double mean = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) mean += v.r(i) / double(v.size());
+  std::size_t pixels = 0, wrong = 0;
+  for (std::size_t i = 0; i < v.size();) {
+    bool differs = false;
+    for (const std::size_t pixel = v.pixel(i); i < v.size() && v.pixel(i) == pixel; ++i)
+      differs = differs || std::abs(v.a(i) - v.r(i)) > 1e-4 * mean;
+    ++pixels;
+    wrong += differs;
+  }
+  return double(wrong) / double(pixels);
+}
+
 double root(double x) { return std::sqrt(std::max(0.0, x)); }
 
 Measure squared_family(const Estimate& e, double floor, bool take_root, bool noisy) {
@@ -262,6 +277,10 @@ Measure measure_values(const std::string& base, const Values& v) {
   if (base == "p95") return percentile(v, 0.95);
   if (base == "p99") return percentile(v, 0.99);
   if (base == "p999") return percentile(v, 0.999);
+  if (base == "wrong") {
+    const double share = noisy ? nan : wrong_share(v);
+    return {"", share, share, share, 0, false};
+  }
   if (base == "bias") {
     const Estimate e = with_interval(v, signed_bias);
     // The standard error, back from the interval.
@@ -291,8 +310,8 @@ Measure measure_values(const std::string& base, const Values& v) {
 }  // namespace
 
 const std::vector<std::string>& metric_names() {
-  static const std::vector<std::string> names = {
-      "rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse", "bias", "p95", "p99", "p999"};
+  static const std::vector<std::string> names = {"rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse", "bias",
+                                                 "p95",  "p99",    "p999",           "wrong"};
   return names;
 }
 

@@ -4,8 +4,10 @@
 //   rel_l2          sqrt(MSE / mean R^2), and rel_l2_squared
 //   rmse_range      rmse / (max R - min R), R smoothed over 3x3 pixels
 //   rel_mse         mean of d^2 / (R^2 + 0.01 mean(R)^2); numerator and denominator from different halves of the
-//   samples bias            sum A / sum R - 1, signed p95, p99, p999  95th, 99th and 99.9th percentile of |d| / (R +
-//   0.01 max R)
+//                   samples
+//   bias            sum A / sum R - 1, signed
+//   p95, p99, p999  95th, 99th and 99.9th percentile of |d| / (R + 0.01 max R)
+//   wrong           share of pixels where |d| > 1e-4 mean(R) in some channel; not defined with noise
 //
 // Prefix "foreground." : only pixels where 1 - transmittance > 1e-3 in some channel. Suffix ".r", ".g", ".b": one
 // channel; else all channels together. Pixels that touch a light's ball are left out of all of them.

@@ -180,6 +180,21 @@ TEST_CASE("images that cannot be judged are refused", "[metrics]") {
   CHECK_THROWS_AS(compare_equal(r, r, "mean", {}, 1e-3), Error);
 }
 
+TEST_CASE("wrong pixels are counted", "[metrics]") {
+  const Film r = exact(8, 8, gradient);
+  double mean = 0;
+  for (const float v : r.layers.at("mean")) mean += v / double(r.layers.at("mean").size());
+  Film image = r;
+  image.layers["mean"][0] += float(1.1e-4 * mean);
+  image.layers["mean"][1] += float(1.1e-4 * mean);  // of the same pixel
+  image.layers["mean"][5] -= float(0.8e-4 * mean);  // too little
+  image.layers["mean"][3 * 9 + 2] -= float(mean);
+  CHECK(one("wrong", r, r).value == 0);
+  CHECK(one("wrong", image, r).value == 2.0 / 64);
+  CHECK(one("wrong.r", image, r).value == 1.0 / 64);
+  CHECK(std::isnan(one("wrong", r, noisy(8, 8, gradient, 0.01, 1)).value));
+}
+
 // False alarms of the three tests together at alpha = 0.05: binomial over 200 pairs, mean at most 10, standard
 // deviation 3.1; 25 is 4.8 of them. Batches are skewed, blocks average 64 of them.
 TEST_CASE("equal images pass the z-tests, biased ones do not", "[metrics]") {
