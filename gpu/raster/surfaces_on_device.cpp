@@ -59,6 +59,7 @@ SurfacesOnDevice::SurfacesOnDevice(Context& context, const Arrays& arrays)
     : runs_(arrays.runs),
       solids_(arrays.solids),
       triangle_count_(int(arrays.triangles.size())),
+      vertex_count_(int(arrays.vertices.size() / 3)),
       bounds_(arrays.bounds),
       vertices_(context, "vertices", arrays.vertices),
       triangles_(context, "triangles", arrays.triangles),

@@ -33,6 +33,7 @@ class SurfacesOnDevice {
   const std::vector<Run>& runs() const { return runs_; }
   const std::vector<Solid>& solids() const { return solids_; }
   int triangles() const { return triangle_count_; }
+  int vertices() const { return vertex_count_; }
 
   // A distance from `position` [m] within which everything finite lies, > 0.
   double extent(const Point3& position) const;
@@ -44,7 +45,7 @@ class SurfacesOnDevice {
 
   std::vector<Run> runs_;
   std::vector<Solid> solids_;
-  int triangle_count_;
+  int triangle_count_, vertex_count_;
   Box bounds_;
   Buffer vertices_, triangles_, solid_buffer_;
 };

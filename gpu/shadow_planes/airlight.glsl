@@ -1,8 +1,10 @@
 // Airlight of one light on a lit part of a ray: methods/shadow_planes/lit_airlight.cpp, bounded_media.h. BOUNDED: media have
 // regions, or there are several; SPOT: the light is one; POLYNOMIAL: the paper's evaluator, of one medium without a region;
-// GREY: media have one extinction in all channels.
+// GREY: media have one extinction in all channels; PAPER_MEDIUM: the
+// paper's form of one medium in a region. Needs ray.glsl.
 #include "common/angle.glsl"
 #include "common/pi.glsl"
+#include "shadow_planes/floor_of_h.glsl"
 #include "shadow_planes/media.glsl"
 #if POLYNOMIAL
 #include "shadow_planes/polynomial.glsl"
@@ -106,6 +108,9 @@ float way_from_light(int m, vec3 d, float r) {
 }
 #endif
 
+#if PAPER_MEDIUM
+#include "shadow_planes/paper_medium.glsl"
+#else
 // Over [from, to] [m], within which all is smooth; per W/sr of the light.
 vec3 smooth_airlight(Ray ray, double from, double to) {
   float length_ = to < 1e30LF ? float(to - from) : 1e37, d0 = float(from - ray.T);
@@ -122,18 +127,18 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
 #endif
   vec3 result = vec3(0);
 #if !BOUNDED
-  vec3 extinction = extinction_of(0);
+  vec3 extinction = extinction_of(air_medium);
   for (int c = 0; c < channels; ++c) {
     float k = extinction[c];
     if (!(k > 0)) continue;
 #if POLYNOMIAL
-    result[c] = polynomial_airlight(k, ray.T, ray.h, d0, end);
+    result[c] = polynomial_integral(k, float(ray.h), d0, end, float(k * (ray.T + ray.h)));
 #else
-    Mapped map = map_part(media[0].phase.width, k, d0, length_, h);
+    Mapped map = map_part(media[air_medium].phase.width, k, d0, length_, h);
     float sum = 0;
     for (int i = 0; i < rule_nodes; ++i) {
       Node node = node_of(map, i);
-      float factor = exp(-k * h * node.further) * phase_of_halves(media[0].phase, node.v, node.w);
+      float factor = exp(-k * h * node.further) * phase_of_halves(media[air_medium].phase, node.v, node.w);
 #if SPOT
       factor *= spot_factor(2 * node.q * node.v * float(dot(ray.n, spot_axis)) +
                             (node.w - node.v) * float(dot(ray.direction, spot_axis)));
@@ -145,7 +150,7 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
 #endif
   }
   if (GREY != 0) result = vec3(result.x);
-  return albedo_of(0) * result;
+  return albedo_of(air_medium) * result;
 #else
   dvec3 middle = ray.origin + (to < 1e30LF ? 0.5LF * (from + to) : from + 1) * ray.direction;
   int here = 0;
@@ -216,3 +221,4 @@ vec3 lit_airlight(Ray ray, double from, double to) {
   return sum;
 #endif
 }
+#endif

@@ -1,10 +1,9 @@
 // Where the number of surfaces between a ray and the light changes: methods/shadow_planes/shadow_volumes.cpp, in double
 // precision. Crossings are met in the order of their keys, 32 at a time: when there are more, the next 32 are gathered
-// again, so none is lost. Needs raster/primitive.glsl.
+// again, so none is lost. Needs raster/primitive.glsl and ray.glsl.
 layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
 layout(std430, binding = 3) readonly buffer Ranges { ivec2 ranges[]; };  // of tiles of 16 x 16 pixels: first, count
 layout(std430, binding = 4) readonly buffer Lists { int lists[]; };
-uniform dvec3 light;          // [m]
 uniform int solid_count, edge_split;
 
 const int most_hits = 32;
@@ -13,6 +12,10 @@ int hit_origin[most_hits];  // decides between equal keys
 int hit_change[most_hits];
 #if STENCIL
 double hit_place[most_hits];
+int hit_edge[most_hits];  // -1: a sphere's shadow
+double hit_share[most_hits], hit_times[most_hits];  // where on the edge's plane (methods/shadow_planes/shadow_volumes.h)
+double stencil_end;  // [m]: changes before it sum up to
+int stencil_sum;
 #endif
 int hit_count;
 int crossing_sum;  // changes of all crossings, those of other gatherings included
@@ -20,28 +23,12 @@ int crossing_count;
 double last_key;   // what was gathered before ends here
 int last_origin;
 
-struct Ray {
-  dvec3 origin, direction;
-  dvec3 to_light;  // from the origin [m]
-  double T, h;     // methods/shadow_planes/light_from_ray.h
-  dvec3 n;
-};
-Ray ray_to(dvec3 origin, dvec3 direction) {
-  Ray ray;
-  ray.origin = origin;
-  ray.direction = direction;
-  ray.to_light = light - origin;
-  ray.T = dot(ray.to_light, direction);
-  dvec3 foot = ray.T * direction - ray.to_light;
-  ray.h = length(foot);
-  dvec3 other = abs(direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(direction, other));
-  return ray;
-}
-
 // Keeps the first most_hits of those after the last gathering.
-void keep_crossing(double key, int origin, int change, double place) {
+void keep_crossing(double key, int origin, int change, double place, int edge, double share, double times) {
   crossing_sum += change;
+#if STENCIL
+  if (place < stencil_end) stencil_sum += change;
+#endif
   ++crossing_count;
   if (key < last_key || (key == last_key && origin <= last_origin)) return;
   int to = min(hit_count, most_hits);
@@ -56,6 +43,9 @@ void keep_crossing(double key, int origin, int change, double place) {
     hit_change[to] = hit_change[to - 1];
 #if STENCIL
     hit_place[to] = hit_place[to - 1];
+    hit_edge[to] = hit_edge[to - 1];
+    hit_share[to] = hit_share[to - 1];
+    hit_times[to] = hit_times[to - 1];
 #endif
     --to;
   }
@@ -64,6 +54,9 @@ void keep_crossing(double key, int origin, int change, double place) {
   hit_change[to] = change;
 #if STENCIL
   hit_place[to] = place;
+  hit_edge[to] = edge;
+  hit_share[to] = share;
+  hit_times[to] = times;
 #endif
 }
 
@@ -88,9 +81,9 @@ void cross_edges(Ray ray, double end, int tile) {
     int change = dot(cross(a, b), ray.direction) > 0 ? -edges[e].multiplicity : edges[e].multiplicity;
 #if STENCIL
     double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
-    keep_crossing(dot(normalize(a + (b - a) * middle), to_origin), edges[e].origin, change, x);
+    keep_crossing(dot(normalize(a + (b - a) * middle), to_origin), edges[e].origin, change, x, e, share, ray.h / towards);
 #else
-    keep_crossing(x, edges[e].origin, change, x);
+    keep_crossing(x, edges[e].origin, change, x, e, share, 0);
 #endif
   }
 }
@@ -104,21 +97,6 @@ bool hides(dvec3 c, double radius, dvec3 y) {
   if (beside >= radius) return false;
   double half_chord = sqrt((radius - beside) * (radius + beside)), near = along - half_chord, far = along + half_chord;
   return (near > 0 && near < length_) || (far > 0 && far < length_);
-}
-
-// Roots of a t^2 + 2 b t + c; -1 for those that are not real.
-dvec2 roots_of(double a, double b, double c) {
-  double discriminant = b * b - a * c;
-  if (discriminant < 0) return dvec2(-1);
-  double root = b < 0 ? -b + sqrt(discriminant) : -b - sqrt(discriminant);
-  return dvec2(a != 0 ? root / a : -1.0LF, root != 0 ? c / root : -1.0LF);
-}
-
-// Places where the tangent cone from the light to a sphere, c from the light, is crossed by a ray y + t w, negative if not.
-dvec2 cross_tangent_cone(dvec3 c, double radius, dvec3 y, dvec3 w) {
-  double outside = dot(c, c) - radius * radius;
-  return roots_of(dot(w, c) * dot(w, c) - outside, dot(y, c) * dot(w, c) - outside * dot(y, w),
-                  dot(y, c) * dot(y, c) - outside * dot(y, y));
 }
 
 // What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
@@ -148,7 +126,7 @@ void cross_spheres(Ray ray, double end) {
 #if STENCIL
         key = dot(normalize(y + place * w), normalize(y));
 #endif
-        keep_crossing(key, 0x40000000 + 5 * i + k, hidden ? 2 : -2, place);
+        keep_crossing(key, 0x40000000 + 5 * i + k, hidden ? 2 : -2, place, -1, 0, 0);
       }
       before = hidden;
       if (last) break;
@@ -162,6 +140,9 @@ bool gather(Ray ray, double end, int tile) {
   hit_count = 0;
   crossing_sum = 0;
   crossing_count = 0;
+#if STENCIL
+  stencil_sum = 0;
+#endif
   cross_edges(ray, end, tile);
   cross_spheres(ray, end);
   if (hit_count <= most_hits) return false;

@@ -12,6 +12,7 @@ struct Medium {
 };
 layout(std430, binding = 8) readonly buffer Media { Medium media[]; };
 uniform int media_count;
+uniform int air_medium;  // the one in question, where it is one alone
 
 dvec3 region_lo(int m) { return dvec3(media[m].lo[0], media[m].lo[1], media[m].lo[2]); }
 dvec3 region_hi(int m) { return dvec3(media[m].hi[0], media[m].hi[1], media[m].hi[2]); }

@@ -3,10 +3,9 @@
 layout(std430, binding = 5) readonly buffer Coefficients { float coefficient[]; };  // [n][power of a]
 uniform int degree;
 
-// Per unit of albedo and intensity, over [d0, d1] [m] from the foot point; h > 0.
-float polynomial_airlight(float k, double T, double h, float d0, float d1) {
-  float r = float(h), a = k * r;
-  float begin = angle_of(d0, r), end = d1 < 1e30 ? angle_of(d1, r) : 0.5 * pi;
+// Airlight per unit of albedo and intensity over [d0, d1] [m] from the foot point; `depth` of the whole way there; h > 0 [m].
+float polynomial_integral(float k, float h, float d0, float d1, float depth) {
+  float a = k * h, begin = angle_of(d0, h), end = d1 < 1e30 ? angle_of(d1, h) : 0.5 * pi;
   float sum = 0, low = begin, high = end;
   for (int n = 0; n <= degree; ++n) {
     float c = 0;
@@ -16,5 +15,5 @@ float polynomial_airlight(float k, double T, double h, float d0, float d1) {
     high *= end;
   }
   // Outside its range it is far off; it shall not be infinite.
-  return clamp(k / (4 * pi * r) * exp(min(-float(k * (T + h)), 80)) * sum, -1e30, 1e30);
+  return clamp(k / (4 * pi * h) * exp(min(-depth, 80)) * sum, -1e30, 1e30);
 }

@@ -1,9 +1,11 @@
 // The mapped Gauss-Legendre rule in single precision: methods/shadow_planes/mapped_rule.h, for which a caller adds up its
 // nodes. Needs POWER, m of the map.
+#include "shadow_planes/floor_of_h.glsl"
+
 layout(std430, binding = 5) readonly buffer Rule { vec4 rule[]; };  // node on [0, 1], 1 - node, weight
 uniform int rule_nodes;
 
-const float depth_cut = 20, h_floor = 1e-12, endless = 1e30;
+const float depth_cut = 20, endless = 1e30;
 
 // A lit part as the rule maps it.
 struct Mapped {
@@ -23,8 +25,6 @@ float q_at(float d, float h) {
   float r = hypotenuse(d, h);
   return d > 0 ? (r + d) / h : h / (r - d);
 }
-
-float floor_of_h(float d0, float length_, float h) { return max(h, h_floor * min(abs(d0), abs(d0 + length_))); }
 
 // Lit over `length_` [m] from d0 [m] beyond the foot point; `width` of the phase function.
 Mapped map_part(float width, float extinction, float d0, float length_, float h) {

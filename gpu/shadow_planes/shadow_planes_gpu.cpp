@@ -9,6 +9,7 @@
 #include "gpu/raster_program.h"
 #include "gpu/shadow_planes/shading.h"
 #include "gpu/timer.h"
+#include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
 
@@ -26,7 +27,11 @@ constexpr int most_degree = 16, most_media = 32;  // single precision; bits of a
 class PreparedShadowPlanesGpu final : public scene::Prepared {
  public:
   PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options)
-      : scene_(std::move(scene)), options_(options), context_(Context::get()), bins_(context_) {
+      : scene_(std::move(scene)),
+        options_(options),
+        context_(Context::get()),
+        airs_(context_, *scene_, options),
+        bins_(context_) {
     const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
     const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
                                    [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
@@ -35,8 +40,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
       first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
       timer.stage("upload");
     }
-    shading_ =
-        std::make_unique<PlaneShading>(context_, *scene_, options_, first_hits_ ? &first_hits_->surfaces() : nullptr);
+    shading_ = std::make_unique<PlaneShading>(context_, *scene_, options_, airs_, surfaces_on_device());
     if (lit && surfaces) {
       occluders_ = std::make_shared<const shadow_planes::Occluders>(scene_);
       silhouettes_ = std::make_unique<Silhouettes>(context_, *occluders_);
@@ -62,10 +66,14 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
     }
   }
   std::vector<int> counts_at_origins(std::size_t light, const View&, const Execution&) const;
+  const SurfacesOnDevice* surfaces_on_device() const { return first_hits_ ? &first_hits_->surfaces() : nullptr; }
+  // Adds one light; the number of vertices at which its airlight was computed.
+  double add_light(int light, LitPicture&, const Execution&, StageTimer&) const;
 
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Context& context_;
+  AirsOnDevice airs_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
   std::unique_ptr<PlaneShading> shading_;
   std::shared_ptr<const shadow_planes::Occluders> occluders_;
@@ -73,6 +81,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   mutable std::vector<LightEdges> edges_;     // by light
   mutable std::vector<SurfaceCount> counts_;
   mutable TileBins bins_;
+  mutable VertexValues values_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -106,33 +115,60 @@ std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, c
   return counts;
 }
 
+double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Execution& execution,
+                                          StageTimer& timer) const {
+  const Point3 light = scene::ball(scene_->lights[l])->center, camera = picture.view.camera.position;
+  const std::vector<int> counts = counts_at_origins(l, picture.view, execution);
+  const TileBins* bins = silhouettes_ ? &bins_ : nullptr;
+  const LightEdges* edges = silhouettes_ ? &edges_[l] : nullptr;
+  if (bins) {
+    bins_.fill(picture.view, light, *edges);
+    timer.stage("tiles");
+  }
+  double vertices = 0;
+  for (int air = 0; air < airs_.count(); ++air) {
+    const bool by_vertex = options_.evaluation == Options::Evaluation::vertices;
+    if (by_vertex) {
+      const double far =
+          bins ? shadow_planes::mesh_reach(*scene_, airs_.region(air), light, camera, options_.plane_levels) : 0;
+      const bool planes = bins && options_.shadows != Options::Shadows::none;
+      values_.fill(context_, *scene_, options_, airs_, l, air, camera, surfaces_on_device(), planes ? edges : nullptr,
+                   far, timer);
+      vertices += double(values_.count());
+    }
+    shading_->add(picture, l, air, counts, bins, edges, by_vertex ? &values_ : nullptr);
+    timer.stage("airlight and surfaces");
+  }
+  if (airs_.count() == 0) {
+    shading_->add(picture, l, -1, counts, bins, edges, nullptr);
+    timer.stage("airlight and surfaces");
+  }
+  return vertices;
+}
+
 scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Execution& execution) const {
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   const std::size_t pixels = result.film.pixels();
   const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
   const int overflows = bins_.overflows();
+  if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
+    throw Error("evaluation = vertices is for perspective cameras");
   const Use use(context_);
   StageTimer timer(context_);
   if (silhouettes_ && options_.moving_lights) {
     find_silhouettes();
     timer.stage("silhouettes");
   }
-  PlaneShading::Picture picture(context_, view);
+  LitPicture picture(context_, view);
   if (first_hits_) {
     picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
     first_hits_->draw(view).read_primitives(*picture.primitives, 0);
     timer.stage("distances");
   }
-  double entries = 0;
+  double entries = 0, vertices = 0;
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
-    const std::vector<int> counts = counts_at_origins(l, view, execution);
-    if (silhouettes_) {
-      bins_.fill(view, scene::ball(scene_->lights[l])->center, edges_[l]);
-      entries += bins_.entries();
-      timer.stage("tiles");
-    }
-    shading_->add(picture, int(l), counts, silhouettes_ ? &bins_ : nullptr, silhouettes_ ? &edges_[l] : nullptr);
-    timer.stage("airlight and surfaces");
+    vertices += add_light(int(l), picture, execution, timer);
+    entries += bins_.entries();
   }
   const auto layer = [&](const char* name) { return Buffer(context_, name, pixels * 12); };
   const PlaneShading::Layers layers{layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")};
@@ -149,6 +185,7 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   result.counters["lit_parts"] = counted[0];
   result.counters["crossings"] = counted[1];
   result.counters["gatherings_beyond_32"] = counted[2];
+  if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;
   result.counters["tile_entries"] = entries;
   result.counters["tile_overflows"] = bins_.overflows() - overflows;
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);

@@ -37,19 +37,17 @@ bool misses(const SilhouetteEdge& edge, const Point3& light, const Box& box) {
   return above == 8 || below == 8 || outside_a == 8 || outside_b == 8 || before == 8;
 }
 
-// How far from the light planes are meshed before the strip without end. A medium with an end of its own needs no more;
-// else past everything of finite size, and the farther the more levels there are, so that they all shrink.
-double reach(const scene::Scene& scene, const PaperMedium* medium, const Point3& light, const Point3& camera,
-             int levels) {
-  if (medium) return farthest_corner(bounding_box(medium->region()), light);
+}  // namespace
+
+double mesh_reach(const scene::Scene& scene, const scene::Region* region, const Point3& light, const Point3& camera,
+                  int levels) {
+  if (region) return farthest_corner(bounding_box(*region), light);
   double most = std::max((camera - light).norm(), farthest_corner(scene.geometry->bounds(), light));
   for (const scene::Medium& m : scene.media)
     if (const Box box = bounding_box(m.region); std::isfinite(box.size().sum()))
       most = std::max(most, farthest_corner(box, light));
   return most * std::max(1.0, levels / 4.0);
 }
-
-}  // namespace
 
 // Of one light and one tile.
 struct PaperStages::Work {
@@ -102,11 +100,11 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options, cons
   seconds_.ends = watch.lap();
   for (std::size_t l = 0; l < shadows.size(); ++l)
     for (Part& part : parts_[l])
-      part.at_vertices->evaluate_planes(
-          PlaneMesh(shadows[l], part.left_out,
-                    reach(scene, part.medium, shadows[l].light(), camera.position, options.plane_levels),
-                    options.edge_split, options.plane_levels),
-          threads);
+      part.at_vertices->evaluate_planes(PlaneMesh(shadows[l], part.left_out,
+                                                  mesh_reach(scene, part.medium ? &part.medium->region() : nullptr,
+                                                             shadows[l].light(), camera.position, options.plane_levels),
+                                                  options.edge_split, options.plane_levels),
+                                        threads);
   seconds_.planes = watch.lap();
 }
 

@@ -27,6 +27,10 @@ struct Pixel {
   Rgb visible = Rgb::Ones(), in_air = Rgb::Zero(), on_surface = Rgb::Zero();
 };
 
+// How far from the light [m] planes are meshed before the strip without end. A medium with an end of its own needs no
+// more; else past everything of finite size, and the farther the more levels there are, so that they all shrink.
+double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light, const Point3& camera, int levels);
+
 class PaperStages {
  public:
   // What is done once per picture: keys of planes, vertices. `shadows` by light, empty: nothing casts shadows. Keeps

@@ -122,9 +122,9 @@ std::vector<double> bounded_coefficients(const PhaseForm& phase, double a, int d
   return product(decay(plain_tangent(degree, centre), a), phase_series(phase, degree, centre));
 }
 
-std::vector<std::vector<double>> coefficients_in_a(const PhaseForm& phase, int degree) {
-  const Series q = tangent(degree, 0), p = phase_series(phase, degree, 0);
-  // Rows are polynomials in a: exp(-a (q - q_0)), by the recurrence above.
+std::vector<std::vector<double>> coefficients_in_a(const PhaseForm& phase, int degree, bool bounded) {
+  const Series q = bounded ? plain_tangent(degree, 0) : tangent(degree, 0), p = phase_series(phase, degree, 0);
+  // Rows are polynomials in a: exp(-a (q - q_0)), by the recurrence of decay().
   std::vector<Series> e(degree + 1, Series(degree + 1, 0.0)), c = e;
   e[0][0] = 1;
   for (int n = 1; n <= degree; ++n)

@@ -21,9 +21,9 @@ std::vector<double> bounded_coefficients(const PhaseForm&, double a, int degree,
 // printed. Throws Error for Henyey-Greenstein, which it has not.
 std::vector<double> printed_coefficients(const PhaseForm&, double a);
 
-// The same two, about theta = 0: each coefficient is a polynomial in a of its own, [n][power of a], for many values of
-// a.
-std::vector<std::vector<double>> coefficients_in_a(const PhaseForm&, int degree);
+// The first two (`bounded`: the second) and the annex's, about theta = 0: each coefficient is a polynomial in a of its
+// own, [n][power of a], for many values of a.
+std::vector<std::vector<double>> coefficients_in_a(const PhaseForm&, int degree, bool bounded = false);
 std::vector<std::vector<double>> printed_in_a(const PhaseForm&);
 
 // Integral of the polynomial over theta in [theta0, theta1].

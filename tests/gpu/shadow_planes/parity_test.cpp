@@ -37,7 +37,7 @@ int beyond(const scene::Film& a, const scene::Film& b, const std::string& layer,
     bool far = false;
     for (std::size_t c = i; c < i + 3; ++c) {
       if (!std::isfinite(x[c]) || !std::isfinite(y[c])) return int(x.size());
-      far = far || std::abs(double(y[c]) - x[c]) > limit * (x[c] + 0.01 * most);
+      far = far || std::abs(double(y[c]) - x[c]) > limit * (std::abs(x[c]) + 0.01 * most);
     }
     count += far;
   }
@@ -162,6 +162,33 @@ TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_plan
       scene::SpotLight{{0.5, 1.6, 3}, Vec3(-0.2, -0.6, -1).normalized(), 0.2, 0.5, Rgb(20, 10, 5), 0.01}};
   finish(*bounded);
   compare(bounded, {});
+}
+
+// The paper's own evaluation: Gamma at vertices, a constant R in media, boundaries sorted in among the planes.
+TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const Pairs vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}};
+  const auto with = [](Pairs given, const Pairs& more) {
+    given.insert(more.begin(), more.end());
+    return given;
+  };
+  for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_8", "shadow_planes/spot", "elephant_fog"})
+    compare(scene_of(file), vertices);
+  const auto boxes = scene_of("shadow_planes/boxes_3");
+  compare(boxes, with(vertices, {{"edge_split", "3"}, {"plane_levels", "5"}}));
+  compare(boxes, with(vertices, {{"evaluator", "polynomial"}}));
+  compare(boxes, {{"shadows", "none"}, {"evaluation", "vertices"}});
+  const auto media = scene_of("shadow_planes/media");
+  for (const Pairs& given :
+       {Pairs{}, Pairs{{"shadows", "stencil"}}, vertices,
+        with(vertices, {{"evaluator", "polynomial"}, {"degree", "8"}}), with(vertices, {{"boundary_cells", "3"}})})
+    compare(media, with(given, {{"bounded", "paper"}}));
+  compare(media, vertices);
+  media->lights = {scene::SpotLight{{0.5, 1.6, 3}, Vec3(-0.2, -0.6, -1).normalized(), 0.2, 0.5, Rgb(20, 10, 5), 0.01}};
+  media->media[2].region = scene::Unbounded{};
+  media->media[2].sigma_t = Rgb::Constant(0.1);
+  finish(*media);
+  compare(media, with(vertices, {{"bounded", "paper"}}));
 }
 
 TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {

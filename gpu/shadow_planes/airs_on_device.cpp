@@ -1,0 +1,159 @@
+#include "gpu/shadow_planes/airs_on_device.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/shadow_planes/rule_on_device.h"
+#include "methods/shadow_planes/paper_medium.h"
+#include "methods/shadow_planes/phase_form.h"
+#include "methods/shadow_planes/polynomial.h"
+
+namespace airlight::gpu {
+namespace {
+
+using shadow_planes::Options;
+
+// The layout of media.glsl.
+struct MediumData {
+  double lo[3], hi[3];
+  float extinction[3], albedo[3];
+  int region, phase;
+  float g, scale, width;
+  int unused;
+};
+
+Rgb extinction_of(const scene::Medium& medium) {
+  return medium.sigma_t * std::get<scene::Homogeneous>(medium.field).density;
+}
+
+// What a region is made of, as media.glsl.
+struct RegionNumbers {
+  int kind;
+  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();
+};
+RegionNumbers numbers(const scene::Region& region) {
+  if (const auto* box = std::get_if<Box>(&region)) return {1, box->lo, box->hi};
+  if (const auto* sphere = std::get_if<scene::Sphere>(&region)) return {2, sphere->center, Vec3(sphere->radius, 0, 0)};
+  if (const auto* slab = std::get_if<scene::Slab>(&region)) return {3, slab->normal, Vec3(slab->lo, slab->hi, 0)};
+  return {0};
+}
+
+std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
+  std::vector<MediumData> data;
+  for (const scene::Medium& medium : scene.media) {
+    const shadow_planes::PhaseForm phase = shadow_planes::phase_form(medium.phase, printed);
+    const RegionNumbers region = numbers(medium.region);
+    MediumData d{{}, {}, {}, {}, region.kind, int(phase.kind), float(phase.g), float(phase.scale), float(phase.width()),
+                 0};
+    for (int i = 0; i < 3; ++i) {
+      d.lo[i] = region.lo[i];
+      d.hi[i] = region.hi[i];
+      d.extinction[i] = float(extinction_of(medium)[i]);
+      d.albedo[i] = float(medium.albedo[i]);
+    }
+    data.push_back(d);
+  }
+  return data;
+}
+
+// Regions seen from each light, six numbers each: the shader's nodes are in single precision.
+std::vector<float> from_lights(const scene::Scene& scene) {
+  std::vector<float> values;
+  for (const scene::Light& light : scene.lights)
+    for (const scene::Medium& medium : scene.media) {
+      RegionNumbers region = numbers(medium.region);
+      const Point3 at = scene::ball(light)->center;
+      if (region.kind == 1 || region.kind == 2) region.lo -= at;
+      if (region.kind == 1) region.hi -= at;
+      if (region.kind == 3) region.hi -= Vec3(region.lo.dot(at), region.lo.dot(at), 0);
+      for (const Vec3& v : {region.lo, region.hi})
+        for (int i = 0; i < 3; ++i) values.push_back(float(v[i]));
+    }
+  return values;
+}
+
+}  // namespace
+
+AirsOnDevice::AirsOnDevice(Context& context, const scene::Scene& scene, const Options& options)
+    : context_(context),
+      scene_(scene),
+      options_(options),
+      grey_(std::all_of(scene.media.begin(), scene.media.end(),
+                        [](const scene::Medium& m) { return (extinction_of(m) == extinction_of(m)[0]).all(); })),
+      media_(context, "media", media_data(scene, options.printed_phases)),
+      from_lights_(context, "regions from lights", from_lights(scene)) {
+  const auto whole = [](const scene::Medium& m) { return std::holds_alternative<scene::Unbounded>(m.region); };
+  if (std::none_of(scene.media.begin(), scene.media.end(),
+                   [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); }))
+    return;
+  if (options.bounded == Options::Bounded::exact)
+    airs_.push_back(make(0, scene.media.size() > 1 || !whole(scene.media.front()), false));
+  else
+    for (std::size_t i = 0; i < scene.media.size(); ++i) airs_.push_back(make(int(i), false, !whole(scene.media[i])));
+}
+
+AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const {
+  Air air;
+  air.medium = medium;
+  air.bounded = bounded;
+  air.paper = paper;
+  const scene::Medium& of = scene_.media[medium];
+  if (paper) air.mean_distance = shadow_planes::mean_distance(of.region);
+  std::vector<float> numbers;
+  if (options_.evaluator == Options::Evaluator::rule) {
+    numbers = rule_nodes(options_.nodes, options_.stretch, bounded);
+  } else {
+    const auto phase = shadow_planes::phase_form(of.phase, options_.printed_phases);
+    const auto rows = options_.annex ? shadow_planes::printed_in_a(phase)
+                                     : shadow_planes::coefficients_in_a(phase, options_.degree, paper);
+    air.degree = int(rows.size()) - 1;
+    for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
+  }
+  air.evaluator = std::make_unique<Buffer>(context_, "evaluator", numbers);
+  return air;
+}
+
+const scene::Region* AirsOnDevice::region(int air) const {
+  return airs_[air].paper ? &scene_.media[airs_[air].medium].region : nullptr;
+}
+
+std::map<std::string, std::string> AirsOnDevice::definitions(int light, int air) const {
+  const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+  return {{"BOUNDED", flag(air >= 0 && airs_[air].bounded)},
+          {"GREY", flag(grey_)},
+          {"PAPER_MEDIUM", flag(air >= 0 && airs_[air].paper)},
+          {"POLYNOMIAL", flag(options_.evaluator == Options::Evaluator::polynomial)},
+          {"POWER", std::to_string(options_.stretch)},
+          {"SPOT", flag(std::holds_alternative<scene::SpotLight>(scene_.lights[light]))}};
+}
+
+void AirsOnDevice::bind_media(LinkedProgram& program) const {
+  media_.bind(8);
+  program.set("media_count", int(scene_.media.size()));
+}
+
+void AirsOnDevice::bind(LinkedProgram& program, int index, int air) const {
+  bind_media(program);
+  const scene::Light& light = scene_.lights[index];
+  program.set_double("light", scene::ball(light)->center);
+  if (const auto* spot = std::get_if<scene::SpotLight>(&light)) {
+    program.set_double("spot_axis", spot->axis);
+    program.set_double("cos_inner", std::cos(spot->inner_angle));
+    program.set_double("cos_outer", std::cos(spot->outer_angle));
+  }
+  if (air < 0) return;
+  const Air& of = airs_[air];
+  of.evaluator->bind(5);
+  program.set("air_medium", of.medium);
+  if (of.paper) program.set("mean_distance", of.mean_distance);
+  if (of.bounded) {
+    from_lights_.bind(15);
+    program.set("first_region", int(index * scene_.media.size()));
+  }
+  if (options_.evaluator == Options::Evaluator::polynomial)
+    program.set("degree", of.degree);
+  else
+    program.set("rule_nodes", options_.nodes);
+}
+
+}  // namespace airlight::gpu

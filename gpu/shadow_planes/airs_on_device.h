@@ -1,0 +1,48 @@
+// What airlight.glsl reads: media, the evaluator's numbers, and which air of which light (methods/shadow_planes/air.h).
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/linked_program.h"
+#include "methods/shadow_planes/options.h"
+
+namespace airlight::gpu {
+
+class AirsOnDevice {
+ public:
+  // The scene must live on.
+  AirsOnDevice(Context&, const scene::Scene&, const shadow_planes::Options&);
+
+  // All media together, or each alone where they are the paper's; none without a medium.
+  int count() const { return int(airs_.size()); }
+  // The paper's medium in a region that an air is, null if it is none.
+  const scene::Region* region(int air) const;
+
+  // Of a program that includes airlight.glsl or media.glsl; `air` -1: there is no medium.
+  std::map<std::string, std::string> definitions(int light, int air) const;
+  // Binds 5 and 8, and 15 if media's regions are seen from the light; sets its uniforms and those of ray.glsl.
+  void bind(LinkedProgram&, int light, int air) const;
+  void bind_media(LinkedProgram&) const;
+
+ private:
+  struct Air {
+    int medium = 0;
+    bool bounded = false, paper = false;
+    double mean_distance = 0;
+    int degree = 0;
+    std::unique_ptr<Buffer> evaluator;
+  };
+  Air make(int medium, bool bounded, bool paper) const;
+
+  Context& context_;
+  const scene::Scene& scene_;
+  shadow_planes::Options options_;
+  bool grey_;
+  Buffer media_, from_lights_;
+  std::vector<Air> airs_;
+};
+
+}  // namespace airlight::gpu

@@ -1,0 +1,36 @@
+// A ray as a light is seen from it: methods/shadow_planes/light_from_ray.h, and where it meets cones. In double precision.
+uniform dvec3 light;  // [m]
+
+struct Ray {
+  dvec3 origin, direction;
+  dvec3 to_light;  // from the origin [m]
+  double T, h;     // methods/shadow_planes/light_from_ray.h
+  dvec3 n;
+};
+Ray ray_to(dvec3 origin, dvec3 direction) {
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = direction;
+  ray.to_light = light - origin;
+  ray.T = dot(ray.to_light, direction);
+  dvec3 foot = ray.T * direction - ray.to_light;
+  ray.h = length(foot);
+  dvec3 other = abs(direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(direction, other));
+  return ray;
+}
+
+// Roots of a t^2 + 2 b t + c; -1 for those that are not real.
+dvec2 roots_of(double a, double b, double c) {
+  double discriminant = b * b - a * c;
+  if (discriminant < 0) return dvec2(-1);
+  double root = b < 0 ? -b + sqrt(discriminant) : -b - sqrt(discriminant);
+  return dvec2(a != 0 ? root / a : -1.0LF, root != 0 ? c / root : -1.0LF);
+}
+
+// Places where the tangent cone from the light to a sphere, c from the light, is crossed by a ray y + t w, negative if not.
+dvec2 cross_tangent_cone(dvec3 c, double radius, dvec3 y, dvec3 w) {
+  double outside = dot(c, c) - radius * radius;
+  return roots_of(dot(w, c) * dot(w, c) - outside, dot(y, c) * dot(w, c) - outside * dot(y, w),
+                  dot(y, c) * dot(y, c) - outside * dot(y, y));
+}

@@ -1,0 +1,55 @@
+// The paper's Gamma at vertices: the airlight of a ray from the camera to each if all of it is lit (Biri et al. 2006, sections
+// 5.1.3, 5.1.5, 5.2); methods/shadow_planes/vertex_airlight.cpp. OF: 0 meshes, 1 a medium's boundary, 2 shadow planes.
+layout(local_size_x = LOCAL_SIZE_X) in;
+#include "raster/primitive.glsl"
+#include "shadow_planes/edge.glsl"
+#include "shadow_planes/ray.glsl"
+#include "shadow_planes/airlight.glsl"
+#if OF == 1
+#include "shadow_planes/boundary.glsl"
+#endif
+#if OF == 2
+#include "shadow_planes/plane_mesh.glsl"
+#endif
+
+layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = 13) writeonly buffer Values { vec4 values[]; };
+uniform int vertex_count, first_value, pieces;
+uniform dvec3 camera;       // [m]
+uniform double ball_radius; // [m], of the light
+uniform vec3 intensity;     // [W/sr]
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  bool at_infinity = false;
+  dvec3 way;
+#if OF == 0
+  way = mesh_vertex(i) - camera;
+#elif OF == 1
+  dvec3 centre, half_size;
+  boundary_frame(centre, half_size);
+  int side = boundary_cells + 1, face = i / (side * side), rest = i % (side * side);
+  way = centre + boundary_vertex(half_size, face, rest % side, rest / side) - camera;
+#else
+  int levels = plane_levels + 2, level = i % levels, end_of_piece = i / levels % (pieces + 1);
+  Edge edge = edges[i / levels / (pieces + 1)];
+  dvec3 a = dvec3(edge.a[0], edge.a[1], edge.a[2]), b = dvec3(edge.b[0], edge.b[1], edge.b[2]);
+  dvec3 p = a + (b - a) * (double(end_of_piece) / pieces);
+  at_infinity = level == plane_levels + 1;
+  way = at_infinity ? p : light + exp(float(level) * level_ratio(a, b)) * p - camera;
+#endif
+  double length_ = length(way), end = at_infinity ? 1e37LF : length_;
+  vec3 value = vec3(0);
+  if (length_ > 0) {
+    Ray ray = ray_to(camera, way / length_);
+    // As an image's rays do, it ends on the light's ball, or close to the light.
+    double radius = max(ball_radius, 1e-6LF * length(ray.to_light));
+    if (ray.h < radius) {
+      double half_chord = sqrt((radius - ray.h) * (radius + ray.h));
+      if (ray.T + half_chord > 0) end = min(end, ray.T - half_chord);
+    }
+    if (end > 0) value = intensity * lit_airlight(ray, 0, end);
+  }
+  values[first_value + i] = vec4(value, 0);
+}
