@@ -5,6 +5,7 @@
 #include "gpu/material_tables.h"
 #include "gpu/program.h"
 #include "gpu/view_uniforms.h"
+#include "methods/shadow_planes/paper_stages.h"
 
 namespace airlight::gpu {
 
@@ -72,7 +73,10 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
     p.set("boundary_cells", options_.boundary_cells);
   }
   airs_.bind(p, index, air);
-  if (values) values->bind(p);
+  if (values) {
+    values->bind(p);
+    p.set("media_end", shadow_planes::all_end(scene_.media));
+  }
   if (bins) {
     edges->edges->bind(0);
     bins->bind();

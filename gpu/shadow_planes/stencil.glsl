@@ -8,6 +8,7 @@ layout(std430, binding = 15) readonly buffer LeftOut { int left_out[]; };
 #include "shadow_planes/plane_mesh.glsl"
 layout(std430, binding = 13) readonly buffer Values { vec4 values[]; };
 uniform int first_boundary, first_plane;  // in values, after those of meshes
+uniform int media_end;                    // all of them have an end
 
 vec3 mix_values(ivec3 at, vec3 weight) {
   return weight.x * values[at.x].rgb + weight.y * values[at.y].rgb + weight.z * values[at.z].rgb;
@@ -60,6 +61,16 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m, out int m_
     entry = dot(normalize((corners[0] + corners[1] + corners[2]) / 3 - light), -normalize(ray.to_light));
   }
 #endif
+#if VERTICES && BOUNDED
+  // From where the ray enters the first medium to where it leaves the last: Gamma is constant elsewhere.
+  if (media_end != 0) {
+    domain = dvec2(1e37LF, 0);
+    for (int k = 0; k < media_count; ++k) {
+      dvec2 inside = clip_to_region(k, ray.origin, ray.direction, dvec2(0, end));
+      if (inside.y > inside.x) domain = dvec2(min(domain.x, inside.x), max(domain.y, inside.y));
+    }
+  }
+#endif
   stencil_end = domain.y;
   parts = 0;
   gatherings = 1;
@@ -104,6 +115,9 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m, out int m_
       stencil = max(0, stencil - hit_change[e]);
     }
     if (share == 0) continue;
+#if VERTICES && BOUNDED
+    if (media_end != 0 && e >= 0 && place <= domain.x) continue;
+#endif
     ++parts;
     bool by_pixel = true;
     vec3 gamma;

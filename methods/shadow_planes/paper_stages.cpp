@@ -37,15 +37,32 @@ bool misses(const SilhouetteEdge& edge, const Point3& light, const Box& box) {
   return above == 8 || below == 8 || outside_a == 8 || outside_b == 8 || before == 8;
 }
 
+// From where the ray enters the first medium to where it leaves the last: Gamma is constant elsewhere. Empty if
+// nowhere.
+Interval within(const std::vector<scene::Medium>& media, const Ray& ray, double end) {
+  Interval all;
+  for (const scene::Medium& m : media)
+    if (const Interval one = clip(m.region, ray, {0, end}); !one.empty())
+      all = {std::min(all.lo, one.lo), std::max(all.hi, one.hi)};
+  return all;
+}
+
 }  // namespace
+
+bool all_end(const std::vector<scene::Medium>& media) {
+  return std::all_of(media.begin(), media.end(),
+                     [](const scene::Medium& m) { return std::isfinite(bounding_box(m.region).size().sum()); });
+}
 
 double mesh_reach(const scene::Scene& scene, const scene::Region* region, const Point3& light, const Point3& camera,
                   int levels) {
   if (region) return farthest_corner(bounding_box(*region), light);
-  double most = std::max((camera - light).norm(), farthest_corner(scene.geometry->bounds(), light));
-  for (const scene::Medium& m : scene.media)
-    if (const Box box = bounding_box(m.region); std::isfinite(box.size().sum()))
-      most = std::max(most, farthest_corner(box, light));
+  if (all_end(scene.media)) {
+    double most = 0;
+    for (const scene::Medium& m : scene.media) most = std::max(most, farthest_corner(bounding_box(m.region), light));
+    return most;
+  }
+  const double most = std::max((camera - light).norm(), farthest_corner(scene.geometry->bounds(), light));
   return most * std::max(1.0, levels / 4.0);
 }
 
@@ -72,6 +89,7 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options, cons
       Part& part = of_light.emplace_back();
       part.medium = std::get_if<PaperMedium>(&air);
       if (vertices) part.at_vertices.emplace(air, light, camera.position);
+      part.planes_end = vertices && !part.medium && all_end(scene.media);
       if (!part.medium) continue;
       part.boundary.emplace(part.medium->region(), options.boundary_cells);
       const Vec3 to_camera = (camera.position - at).normalized();
@@ -155,6 +173,7 @@ void PaperStages::draw_ends(std::size_t l, std::size_t a, const std::vector<Pixe
     const PaperMedium* medium = parts_[l][a].medium;
     work.domain[i] = {0, pixels[i].end.t};
     if (medium) work.domain[i] = clip(medium->region(), pixels[i].ray, work.domain[i]);
+    if (parts_[l][a].planes_end) work.domain[i] = within(scene_.media, pixels[i].ray, pixels[i].end.t);
     if (work.domain[i].empty()) continue;
     for (std::size_t k = work.first[i]; k < work.first[i + 1]; ++k)
       if (work.crossings[k].x < work.domain[i].hi) work.stencil[i] += work.crossings[k].change;
@@ -194,7 +213,7 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
                           : crossing.change < 0 && stencil == 0             ? -1
                                                                             : 0;
       stencil = std::max(0, stencil - crossing.change);
-      if (sign == 0) continue;
+      if (sign == 0 || (part.planes_end && crossing.x <= work.domain[i].lo)) continue;
       counts.parts += 1;
       if (part.at_vertices && crossing.edge >= 0) {
         add(work.sum[i], sign * part.at_vertices->on_plane(crossing));

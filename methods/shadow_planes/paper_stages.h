@@ -27,8 +27,10 @@ struct Pixel {
   Rgb visible = Rgb::Ones(), in_air = Rgb::Zero(), on_surface = Rgb::Zero();
 };
 
-// How far from the light [m] planes are meshed before the strip without end. A medium with an end of its own needs no
-// more; else past everything of finite size, and the farther the more levels there are, so that they all shrink.
+bool all_end(const std::vector<scene::Medium>&);  // their regions are finite
+
+// How far from the light [m] planes are meshed before the strip without end. Media that end need no more: `region`
+// alone, or all; else past everything of finite size, and the farther the more levels there are, so that they all shrink.
 double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light, const Point3& camera, int levels);
 
 class PaperStages {
@@ -50,10 +52,11 @@ class PaperStages {
  private:
   // One air as one light shows it.
   struct Part {
-    const PaperMedium* medium;                  // null: it fills all space, or its regions are exact
-    std::optional<MediaBoundary> boundary;      // of the medium
-    std::vector<double> triangle_key;           // order of its triangles
-    std::vector<char> left_out;                 // edges whose planes cannot cut the medium's box
+    const PaperMedium* medium;              // null: it fills all space, or its regions are exact
+    std::optional<MediaBoundary> boundary;  // of the medium
+    std::vector<double> triangle_key;       // order of its triangles
+    bool planes_end = false;     // planes at vertices are drawn within the exact regions of media, all of which end
+    std::vector<char> left_out;  // edges whose planes cannot cut the medium's box
     std::optional<VertexAirlight> at_vertices;  // else by pixel
   };
   struct Work;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/tile_edges.h"
@@ -71,30 +70,48 @@ class PreparedShadowPlanes final : public scene::Prepared {
 };
 
 std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
-  const std::size_t edges =
-      std::accumulate(shadows_.begin(), shadows_.end(), std::size_t(0),
-                      [](std::size_t sum, const ShadowVolumes& s) { return sum + s.edges().size(); });
+  std::size_t edges = 0;
+  for (const ShadowVolumes& s : shadows_) edges += s.edges().size();
   const bool lit = !scene_->lights.empty();
   const std::string dark = !lit ? "no light shines" : "", clear = !needs_.medium ? "there is no medium" : dark;
   const auto unless = [](const std::string& reason, const std::string& otherwise) {
     return reason.empty() ? otherwise : reason;
   };
-  return {
+  const std::string no_shadows = unless(clear, scene_->surfaces.empty() ? "there are no surfaces" : "shadows = none");
+  const std::string evaluator = options_.evaluator == Options::Evaluator::rule ? fmt::format("{} nodes", options_.nodes)
+                                : options_.annex ? std::string("the polynomials of the annex")
+                                                 : fmt::format("polynomials of degree {}", options_.degree);
+  const std::string surfaces =
+      scene_->surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
+  std::vector<scene::Stage> result{
       {"silhouettes", needs_.shadows,
-       unless(clear, scene_->surfaces.empty() ? "there are no surfaces"
-                     : needs_.shadows         ? fmt::format("{} edges for {} light{}", edges, scene_->lights.size(),
-                                                    scene_->lights.size() == 1 ? "" : "s")
-                                              : "shadows = none")},
-      {"airlight", needs_.medium && lit,
-       unless(clear, options_.evaluator == Options::Evaluator::rule
-                         ? fmt::format("{} nodes on each lit part", options_.nodes)
-                     : options_.annex ? std::string("the polynomials of the annex")
-                                      : fmt::format("polynomials of degree {}", options_.degree))},
-      {"surfaces", needs_.surfaces,
-       scene_->surfaces.empty() ? "there are none" : unless(dark, "direct light through the media")},
-      {"ambient in-scatter", options_.ambient,
-       options_.ambient ? "asked for" : "ambient = false: not a part of single scattering"},
-  };
+       needs_.shadows
+           ? fmt::format("{} edges for {} light{}", edges, scene_->lights.size(), scene_->lights.size() == 1 ? "" : "s")
+           : no_shadows}};
+  if (in_stages()) {
+    const bool vertices = options_.evaluation == Options::Evaluation::vertices;
+    const std::string by_pixel = evaluator + " for every pixel";
+    result.push_back({"surfaces and stencil", true, surfaces});
+    result.push_back({"medium on surfaces", true,
+                      vertices ? evaluator + " at the vertices of meshes and of media in the paper's way; for every "
+                                             "pixel on spheres and planes, and where a ray meets nothing"
+                               : by_pixel});
+    result.push_back(
+        {"sort", needs_.shadows,
+         needs_.shadows ? fmt::format("{} planes once per picture", edges * options_.edge_split) : no_shadows});
+    result.push_back({"shadow planes", needs_.shadows,
+                      !needs_.shadows ? no_shadows
+                      : vertices      ? fmt::format("{} on {} levels and at infinity; for every pixel at shadows of "
+                                                         "spheres",
+                                                    evaluator, options_.plane_levels + 1)
+                                      : by_pixel});
+  } else {
+    result.push_back({"airlight", needs_.medium && lit, unless(clear, evaluator + " on each lit part")});
+    result.push_back({"surfaces", needs_.surfaces, surfaces});
+  }
+  result.push_back({"ambient in-scatter", options_.ambient,
+                    options_.ambient ? "asked for" : "ambient = false: not a part of single scattering"});
+  return result;
 }
 
 bool PreparedShadowPlanes::in_stages() const {
@@ -258,7 +275,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
                     {"sort", once.sort + of.sort * share},
                     {"shadow planes", once.planes + of.planes * share}};
   } else {
-    result.times = {{"surfaces and crossings", of.scene * share}, {"lit parts", of.planes * share}};
+    result.times = {{"surfaces", of.scene * share}};
+    if (of.planes > 0) result.times.push_back({"airlight", of.planes * share});
   }
   const double vertices = stages ? double(stages->vertices()) : 0;
   result.counters["rays"] = double(result.film.pixels());
