@@ -63,6 +63,13 @@ struct RateOptions {
 // same arithmetic, for its variants `paper` and `S`, or the one that is set.
 int rate(const RateOptions&);
 
+struct EvaluatorsOptions {
+  std::string root;
+  int cases = 20000, runs = 15;
+};
+// Errors and times of the evaluators of shadow planes, into results/shadow_planes/evaluators/.
+int evaluators(const EvaluatorsOptions&);
+
 struct AuthorOptions {
   std::string script, out;
 };

@@ -221,6 +221,13 @@ int dispatch(int argc, char** argv) {
     };
   });
 
+  EvaluatorsOptions evaluators_options;
+  c = command(app, "evaluators", "errors and times of shadow planes' evaluators: map of stability, tables, plots");
+  c->add_option("--root", evaluators_options.root, "the project's folder (default: found from here upwards)");
+  c->add_option("--cases", evaluators_options.cases, "random lit parts of each table (20000)");
+  c->add_option("--runs", evaluators_options.runs, "of every evaluator, of which the fastest counts (15)");
+  c->final_callback([&] { action = [&] { return evaluators(evaluators_options); }; });
+
   AuthorOptions author_options;
   c = command(app, "author", "make fog of Gaussians by a script: paint, erase, copy, emit, airbrush");
   c->add_option("SCRIPT", author_options.script, "operations, one JSON object a line (methods/fogshop/README.md)");

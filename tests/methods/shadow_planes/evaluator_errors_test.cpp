@@ -1,0 +1,132 @@
+// The map of stability and the tables of `airlight evaluators` against values that are computed another way.
+#include "experiments/shadow_planes/evaluator_errors.h"
+
+#include <catch2/catch.hpp>
+
+#include "experiments/shadow_planes/light_on_ray.h"
+#include "methods/shadow_planes/polynomial.h"
+#include "scene/math/exponential_integral.h"
+#include "scene/math/quadrature.h"
+#include "tests/methods/shadow_planes/vectors.h"
+
+using namespace airlight;
+using namespace airlight::shadow_planes;
+using namespace airlight::experiments::shadow_planes;
+using namespace shadow_planes_test;
+
+namespace {
+
+// Along the ray, in its distance form (Biri et al. 2006, Eq. 1).
+double by_quadrature(const LightOnRay<double>& on) {
+  const auto f = [&](int, double x) {
+    const double r = std::hypot(x - on.T, on.h);
+    return Rgb::Constant(std::exp(-on.extinction * (x + r)) / (r * r));
+  };
+  std::vector<scene::Panel> panels;
+  double from = on.begin;
+  // Every panel twice as far from the light's foot point as the one before: the integrand is smooth on each.
+  std::vector<double> cuts{on.T};
+  for (double d = on.h; d < 2 * map_foot; d *= 2) cuts.insert(cuts.end(), {on.T - d, on.T + d});
+  cuts.push_back(on.begin + on.length);
+  std::sort(cuts.begin(), cuts.end());
+  for (const double cut : cuts)
+    if (cut > from && cut <= on.begin + on.length) {
+      panels.push_back({from, cut});
+      from = cut;
+    }
+  scene::QuadratureOptions options;
+  options.relative_tolerance = 1e-13;
+  return on.extinction / (4 * pi) * scene::integrate(f, panels, options).value[0];
+}
+
+}  // namespace
+
+TEST_CASE("shadow planes: the reference of the map", "[shadow_planes]") {
+  const MappedRule<double> rule(128, 6);
+  int vectors = 0;
+  for (const json& v : vectors_of("airlight")) {
+    const json& in = v.at("input");
+    if (in.at("phase") != "iso" || !(number(in.at("h")) > 0)) continue;
+    const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
+                 x1 = number(in.at("x1")), expected = number(v.at("expect").at("L"));
+    if (!(expected > 1e-300)) continue;
+    const double got = by_rule(LightOnRay<double>{k, T, h, x0, x1 - x0}, rule);
+    const double near = std::isinf(x1) ? 0 : std::max({x0, x1, std::abs(T)}) / (x1 - x0);
+    CAPTURE(v.at("id").get<std::string>());
+    CHECK(got * number(in.at("albedo")) * number(in.at("intensity")) ==
+          Approx(expected).epsilon(2e-14 + 4e-16 * (k * (x0 + std::hypot(x0 - T, h)) + near)));
+    ++vectors;
+  }
+  CHECK(vectors > 10);
+  // Endless: -Im e^z E1(z), z = a (q0 + i).
+  for (const double k : {1e-6, 1e-2, 1.0, 30.0})
+    for (const double h : {1e-2, 1.0, 100.0}) {
+      const double q0 = q_at(-map_foot, h), a = k * h;
+      const double exact = -2 * scene::scaled_exponential_integral({a * q0, a}).imag() * k / (4 * pi * h) *
+                           std::exp(-k * std::hypot(map_foot, h));
+      CHECK(by_rule(LightOnRay<double>{k, map_foot, h, 0, infinity}, rule) == Approx(exact).epsilon(2e-13 * (1 + q0)));
+    }
+}
+
+TEST_CASE("shadow planes: cells of the map of stability", "[shadow_planes]") {
+  const auto& titles = map_evaluators();
+  REQUIRE(titles.size() == 8);
+  REQUIRE(titles[5] == "polynomial, part by part, double");
+  for (const double k : {1e-5, 1e-2, 0.3, 2.0})
+    for (const double h : {1e-3, 0.05, 1.0, 20.0}) {
+      const MapCell cell = map_cell(k, h);
+      CAPTURE(k, h);
+      CHECK(cell.own_error < 1e-14);
+      double polynomial = 0, first = 0;
+      for (const auto& [begin, length] : map_parts) {
+        const LightOnRay<double> on{cell.extinction, map_foot, cell.h, begin, length};
+        const double exact = by_quadrature(on), a = on.extinction * on.h;
+        const auto gamma = [&](double x0, double x1) {
+          return polynomial_airlight(taylor_coefficients(PhaseForm{}, a, 4), 0, on.extinction, 1, 1, on.T, on.h,
+                                     std::atan((x0 - on.T) / on.h), std::atan((x1 - on.T) / on.h));
+        };
+        polynomial = std::max(polynomial, std::abs(gamma(begin, begin + length) / exact - 1));
+        first = std::max(first, std::abs(by_rule(on, MappedRule<double>(32, 6)) / exact - 1));
+        CHECK(by_rule(on, MappedRule<double>(128, 6)) == Approx(exact).epsilon(1e-12));
+      }
+      CHECK(cell.error[5] == Approx(polynomial).epsilon(1e-6).margin(1e-11));
+      CHECK(cell.error[6] == Approx(first).margin(1e-12));
+      // Single precision and differences only add rounding: what they add is small where h is not.
+      if (h >= 1) {
+        CHECK(cell.error[4] == Approx(polynomial).epsilon(1e-6).margin(1e-11));
+        CHECK(cell.error[1] == Approx(polynomial).epsilon(1e-2).margin(3e-5));
+      }
+      CHECK(cell.error[2] < 4e-4);
+      CHECK(cell.error[3] < 1e-5);
+      CHECK(cell.error[7] < 1e-14);
+    }
+  // Too dark for either precision, and for single alone.
+  CHECK(std::isnan(map_cell(1e4, 1).error[7]));
+  CHECK(std::isnan(map_cell(30, 1).error[3]));
+  CHECK(map_cell(30, 1).error[7] < 1e-13);
+}
+
+TEST_CASE("shadow planes: polynomials without memory of their own", "[shadow_planes]") {
+  for (const double a : {1e-3, 0.5, 4.0})
+    for (const int degree : {0, 2, 7, 12}) {
+      const double expected = integrate_polynomial(taylor_coefficients(PhaseForm{}, a, degree), 0, -0.9, 1.1);
+      CHECK(FixedPolynomial<double>(a, degree).integral(-0.9, 1.1) == Approx(expected).epsilon(1e-13));
+      CHECK(FixedPolynomial<float>(float(a), degree).integral(-0.9f, 1.1f) == Approx(expected).epsilon(2e-5));
+    }
+}
+
+// Medians of the specification's table, section 3, to one digit.
+TEST_CASE("shadow planes: errors of the polynomial over angles", "[shadow_planes]") {
+  const std::vector<AngleRow> rows = errors_over_angles(4000);
+  const double medians[9][5] = {
+      {3e-8, 2e-10, 2e-12, 2e-14, 2e-16}, {6e-5, 4e-7, 2e-9, 2e-11, 3e-15}, {8e-2, 3e-3, 3e-5, 2e-7, 5e-12},
+      {6e-4, 5e-5, 5e-6, 4e-7, 4e-9},     {2e-3, 1e-4, 9e-6, 1e-6, 1e-8},   {0.8, 0.3, 5e-2, 4e-3, 2e-5},
+      {7e-6, 2e-6, 8e-7, 3e-7, 5e-8},     {5e-3, 1e-3, 4e-4, 1e-4, 2e-5},   {2e-2, 3e-3, 8e-4, 3e-4, 4e-5}};
+  REQUIRE(rows.size() == 9);
+  for (int i = 0; i < 9; ++i)
+    for (int d = 0; d < 5; ++d) {
+      CAPTURE(rows[i].reach, rows[i].a_low, angle_degrees[d]);
+      CHECK(rows[i].error[d].median > medians[i][d] / 3);
+      CHECK(rows[i].error[d].median < medians[i][d] * 3);
+    }
+}
