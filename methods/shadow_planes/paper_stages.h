@@ -30,7 +30,8 @@ struct Pixel {
 bool all_end(const std::vector<scene::Medium>&);  // their regions are finite
 
 // How far from the light [m] planes are meshed before the strip without end. Media that end need no more: `region`
-// alone, or all; else past everything of finite size, and the farther the more levels there are, so that they all shrink.
+// alone, or all; else past everything of finite size, and the farther the more levels there are, so that they all
+// shrink.
 double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light, const Point3& camera, int levels);
 
 class PaperStages {
