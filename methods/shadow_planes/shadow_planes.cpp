@@ -26,6 +26,19 @@ struct Tally {
   StageSeconds seconds;
 };
 
+// What is computed once per picture.
+struct Frame {
+  View view;
+  const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows
+  std::vector<TileEdges> edges;               // by light
+  std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
+  std::optional<PaperStages> stages;          // none: lit parts of rays
+
+  int count(std::size_t light, const Ray& ray) const {
+    return at_camera.empty() ? shadows[light].count(ray.origin) : at_camera[light];
+  }
+};
+
 class PreparedShadowPlanes final : public scene::Prepared {
  public:
   PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options)
@@ -39,9 +52,9 @@ class PreparedShadowPlanes final : public scene::Prepared {
     scene::Stopwatch watch;
     if (medium) airs_ = airs(scene_->media, options);
     if (!needs_.shadows) return;
-    const auto occluders = std::make_shared<const Occluders>(scene_);
+    occluders_ = std::make_shared<const Occluders>(scene_);
     times_.push_back({"edges", watch.lap()});
-    for (const scene::Light& light : scene_->lights) shadows_.emplace_back(occluders, scene::ball(light)->center);
+    shadows_ = silhouettes();
     times_.push_back({"silhouettes", watch.lap()});
   }
 
@@ -50,12 +63,9 @@ class PreparedShadowPlanes final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  // `stages`: null: lit parts of rays, not the paper's stages. `at_camera`: m there, by light; empty where every ray
-  // starts elsewhere.
-  void render_tile(const View&, int tile_x, int tile_y, const PaperStages* stages, const std::vector<int>& at_camera,
-                   scene::Film&, Tally&) const;
-  void add_lit_parts(std::size_t light, const std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&,
-                     Tally&) const;
+  std::vector<ShadowVolumes> silhouettes() const;
+  void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
+  void add_lit_parts(const Frame&, std::size_t light, const std::vector<int>& edges, std::vector<Pixel>&, Tally&) const;
   Rgb airlight(std::size_t light, const Ray&, Interval, Counts&) const;
   Rgb signed_sum(std::size_t light, const Ray&, double end, int count, const std::vector<Crossing>&, Counts&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
@@ -64,8 +74,9 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Needs needs_;
-  std::vector<Air> airs_;               // empty: no medium
-  std::vector<ShadowVolumes> shadows_;  // by light; empty: left out
+  std::vector<Air> airs_;                       // empty: no medium
+  std::shared_ptr<const Occluders> occluders_;  // null: nothing casts shadows
+  std::vector<ShadowVolumes> shadows_;          // by light; empty: the same
   std::vector<scene::StageTime> times_;
 };
 
@@ -85,9 +96,7 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
       scene_->surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
   std::vector<scene::Stage> result{
       {"silhouettes", needs_.shadows,
-       needs_.shadows
-           ? fmt::format("{} edges for {} light{}", edges, scene_->lights.size(), scene_->lights.size() == 1 ? "" : "s")
-           : no_shadows}};
+       needs_.shadows ? silhouettes_found(edges, scene_->lights.size(), options_) : no_shadows}};
   if (in_stages()) {
     const bool vertices = options_.evaluation == Options::Evaluation::vertices;
     const std::string by_pixel = evaluator + " for every pixel";
@@ -111,6 +120,12 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   }
   result.push_back({"ambient in-scatter", options_.ambient,
                     options_.ambient ? "asked for" : "ambient = false: not a part of single scattering"});
+  return result;
+}
+
+std::vector<ShadowVolumes> PreparedShadowPlanes::silhouettes() const {
+  std::vector<ShadowVolumes> result;
+  for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
   return result;
 }
 
@@ -145,7 +160,7 @@ Rgb PreparedShadowPlanes::signed_sum(std::size_t light, const Ray& ray, double e
   return sum;
 }
 
-void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& edges, std::optional<int> count,
+void PreparedShadowPlanes::add_lit_parts(const Frame& frame, std::size_t l, const std::vector<int>& edges,
                                          std::vector<Pixel>& pixels, Tally& tally) const {
   // In two passes, so that the clock is read for a tile, not for every pixel.
   scene::Stopwatch watch;
@@ -155,8 +170,7 @@ void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& 
   std::vector<std::size_t> first{0};
   if (needs_.shadows && options_.shadows == Options::Shadows::counted) {
     for (const Pixel& pixel : pixels) {
-      shadows_[l].lit_parts(pixel.ray, pixel.end.t, count ? *count : shadows_[l].count(pixel.ray.origin), &edges,
-                            crossings, lit);
+      frame.shadows[l].lit_parts(pixel.ray, pixel.end.t, frame.count(l, pixel.ray), &edges, crossings, lit);
       tally.counts.crossings += double(crossings.size());
       parts.insert(parts.end(), lit.begin(), lit.end());
       first.push_back(parts.size());
@@ -171,8 +185,8 @@ void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& 
       for (std::size_t k = first[i]; k < first[i + 1]; ++k)
         pixel.in_air += airlight(l, pixel.ray, {parts[k].begin, parts[k].end}, tally.counts);
     } else {
-      const int m = count ? *count : shadows_[l].count(pixel.ray.origin);
-      shadows_[l].lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
+      const int m = frame.count(l, pixel.ray);
+      frame.shadows[l].lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
       tally.counts.crossings += double(crossings.size());
       pixel.in_air += signed_sum(l, pixel.ray, pixel.end.t, m, crossings, tally.counts);
     }
@@ -194,9 +208,10 @@ Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) 
   return sum;
 }
 
-void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, const PaperStages* stages,
-                                       const std::vector<int>& at_camera, scene::Film& film, Tally& tally) const {
+void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_y, scene::Film& film,
+                                       Tally& tally) const {
   scene::Stopwatch watch;
+  const View& view = frame.view;
   const int right = std::min(view.width, (tile_x + 1) * tile_side), width = right - tile_x * tile_side;
   const int bottom = std::min(view.height, (tile_y + 1) * tile_side);
   std::vector<Pixel> pixels;
@@ -211,13 +226,13 @@ void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y,
     }
   std::vector<int> edges;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
-    const auto count = at_camera.empty() ? std::nullopt : std::optional(at_camera[l]);
-    if (needs_.shadows) edges_of_tile(shadows_[l], view, tile_x, tile_y, edges);
+    if (needs_.shadows) frame.edges[l].of_tile(tile_x, tile_y, edges);
     tally.seconds.scene += watch.lap();
-    if (stages)
-      stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
+    if (frame.stages)
+      frame.stages->draw(l, edges, frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]), pixels,
+                         tally.counts, tally.seconds);
     else
-      add_lit_parts(l, edges, count, pixels, tally);
+      add_lit_parts(frame, l, edges, pixels, tally);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -243,17 +258,24 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
-  std::vector<int> at_camera;
-  if (view.camera.kind == scene::Camera::Kind::perspective)
-    for (const ShadowVolumes& shadows : shadows_) at_camera.push_back(shadows.count(view.camera.position));
-  std::optional<PaperStages> stages;
-  if (in_stages()) stages.emplace(*scene_, options_, airs_, shadows_, view.camera, execution.threads);
-  const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   scene::Stopwatch watch;
+  std::vector<ShadowVolumes> moving;
+  if (options_.moving_lights && needs_.shadows) {
+    moving = silhouettes();
+    result.times.push_back({"silhouettes", watch.lap()});
+  }
+  Frame frame{view, moving.empty() ? shadows_ : moving, {}, {}, {}};
+  for (const ShadowVolumes& shadows : frame.shadows) frame.edges.emplace_back(shadows, view, execution.threads);
+  if (view.camera.kind == scene::Camera::Kind::perspective)
+    for (const ShadowVolumes& shadows : frame.shadows) frame.at_camera.push_back(shadows.count(view.camera.position));
+  const double tiles = watch.lap();
+  std::optional<PaperStages>& stages = frame.stages;
+  if (in_stages()) stages.emplace(*scene_, options_, airs_, frame.shadows, view.camera, execution.threads);
+  const StageSeconds once = stages ? stages->seconds() : StageSeconds();
+  watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
   scene::parallel_rows(columns * rows, execution, [&](int tile) {
-    render_tile(view, tile % columns, tile / columns, stages ? &*stages : nullptr, at_camera, result.film,
-                tallies[tile]);
+    render_tile(frame, tile % columns, tile / columns, result.film, tallies[tile]);
   });
   const double wall = watch.lap();
   Tally all;
@@ -269,14 +291,15 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   // The tiles' wall clock, shared out as their stages took it.
   const StageSeconds& of = all.seconds;
   const double share = wall / std::max(1e-300, of.scene + of.ends + of.sort + of.planes);
+  const auto add_time = [&](const char* stage, double seconds) { result.times.push_back({stage, seconds}); };
   if (stages) {
-    result.times = {{"surfaces and stencil", of.scene * share},
-                    {"medium on surfaces", once.ends + of.ends * share},
-                    {"sort", once.sort + of.sort * share},
-                    {"shadow planes", once.planes + of.planes * share}};
+    add_time("surfaces and stencil", tiles + of.scene * share);
+    add_time("medium on surfaces", once.ends + of.ends * share);
+    add_time("sort", once.sort + of.sort * share);
+    add_time("shadow planes", once.planes + of.planes * share);
   } else {
-    result.times = {{"surfaces", of.scene * share}};
-    if (of.planes > 0) result.times.push_back({"airlight", of.planes * share});
+    add_time("surfaces", tiles + of.scene * share);
+    if (of.planes > 0) add_time("airlight", of.planes * share);
   }
   const double vertices = stages ? double(stages->vertices()) : 0;
   result.counters["rays"] = double(result.film.pixels());
