@@ -39,9 +39,10 @@ class PreparedShadowPlanes final : public scene::Prepared {
     scene::Stopwatch watch;
     if (medium) airs_ = airs(scene_->media, options);
     if (!needs_.shadows) return;
-    const auto occluders = std::make_shared<const Occluders>(scene_);
+    occluders_ = std::make_shared<const Occluders>(scene_);
     times_.push_back({"edges", watch.lap()});
-    for (const scene::Light& light : scene_->lights) shadows_.emplace_back(occluders, scene::ball(light)->center);
+    if (options.moving_lights) return;
+    shadows_ = find_shadows();
     times_.push_back({"silhouettes", watch.lap()});
   }
 
@@ -50,12 +51,17 @@ class PreparedShadowPlanes final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  // `stages`: null: lit parts of rays, not the paper's stages. `at_camera`: m there, by light; empty where every ray
-  // starts elsewhere.
-  void render_tile(const View&, int tile_x, int tile_y, const PaperStages* stages, const std::vector<int>& at_camera,
-                   scene::Film&, Tally&) const;
-  void add_lit_parts(std::size_t light, const std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&,
-                     Tally&) const;
+  // What all tiles of a picture share.
+  struct Picture {
+    View view;
+    const std::vector<ShadowVolumes>& shadows;  // by light; empty: left out
+    std::optional<PaperStages> stages;          // else: lit parts of rays
+    std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
+  };
+  std::vector<ShadowVolumes> find_shadows() const;
+  void render_tile(const Picture&, int tile_x, int tile_y, scene::Film&, Tally&) const;
+  void add_lit_parts(std::size_t light, const ShadowVolumes*, const std::vector<int>& edges, std::optional<int> count,
+                     std::vector<Pixel>&, Tally&) const;
   Rgb airlight(std::size_t light, const Ray&, Interval, Counts&) const;
   Rgb signed_sum(std::size_t light, const Ray&, double end, int count, const std::vector<Crossing>&, Counts&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
@@ -64,10 +70,17 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Needs needs_;
-  std::vector<Air> airs_;               // empty: no medium
-  std::vector<ShadowVolumes> shadows_;  // by light; empty: left out
+  std::vector<Air> airs_;                       // empty: no medium
+  std::shared_ptr<const Occluders> occluders_;  // null: no shadows
+  std::vector<ShadowVolumes> shadows_;          // by light; empty: left out, or found for every picture
   std::vector<scene::StageTime> times_;
 };
+
+std::vector<ShadowVolumes> PreparedShadowPlanes::find_shadows() const {
+  std::vector<ShadowVolumes> result;
+  for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
+  return result;
+}
 
 std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   std::size_t edges = 0;
@@ -83,11 +96,12 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
                                                  : fmt::format("polynomials of degree {}", options_.degree);
   const std::string surfaces =
       scene_->surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
-  std::vector<scene::Stage> result{
-      {"silhouettes", needs_.shadows,
-       needs_.shadows
-           ? fmt::format("{} edges for {} light{}", edges, scene_->lights.size(), scene_->lights.size() == 1 ? "" : "s")
-           : no_shadows}};
+  std::vector<scene::Stage> result{{"silhouettes", needs_.shadows,
+                                    !needs_.shadows ? no_shadows
+                                    : options_.moving_lights
+                                        ? std::string("found again for every picture")
+                                        : fmt::format("{} edges for {} light{}", edges, scene_->lights.size(),
+                                                      scene_->lights.size() == 1 ? "" : "s")}};
   if (in_stages()) {
     const bool vertices = options_.evaluation == Options::Evaluation::vertices;
     const std::string by_pixel = evaluator + " for every pixel";
@@ -96,9 +110,11 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
                       vertices ? evaluator + " at the vertices of meshes and of media in the paper's way; for every "
                                              "pixel on spheres and planes, and where a ray meets nothing"
                                : by_pixel});
-    result.push_back(
-        {"sort", needs_.shadows,
-         needs_.shadows ? fmt::format("{} planes once per picture", edges * options_.edge_split) : no_shadows});
+    result.push_back({"sort", needs_.shadows,
+                      !needs_.shadows ? no_shadows
+                      : options_.moving_lights
+                          ? std::string("all planes once per picture")
+                          : fmt::format("{} planes once per picture", edges * options_.edge_split)});
     result.push_back({"shadow planes", needs_.shadows,
                       !needs_.shadows ? no_shadows
                       : vertices      ? fmt::format("{} on {} levels and at infinity; for every pixel at shadows of "
@@ -145,18 +161,18 @@ Rgb PreparedShadowPlanes::signed_sum(std::size_t light, const Ray& ray, double e
   return sum;
 }
 
-void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& edges, std::optional<int> count,
-                                         std::vector<Pixel>& pixels, Tally& tally) const {
+void PreparedShadowPlanes::add_lit_parts(std::size_t l, const ShadowVolumes* shadows, const std::vector<int>& edges,
+                                         std::optional<int> count, std::vector<Pixel>& pixels, Tally& tally) const {
   // In two passes, so that the clock is read for a tile, not for every pixel.
   scene::Stopwatch watch;
   std::vector<Crossing> crossings;
   std::vector<ShadowVolumes::Interval> lit;
   std::vector<ShadowVolumes::Interval> parts;
   std::vector<std::size_t> first{0};
-  if (needs_.shadows && options_.shadows == Options::Shadows::counted) {
+  if (shadows && options_.shadows == Options::Shadows::counted) {
     for (const Pixel& pixel : pixels) {
-      shadows_[l].lit_parts(pixel.ray, pixel.end.t, count ? *count : shadows_[l].count(pixel.ray.origin), &edges,
-                            crossings, lit);
+      shadows->lit_parts(pixel.ray, pixel.end.t, count ? *count : shadows->count(pixel.ray.origin), &edges, crossings,
+                         lit);
       tally.counts.crossings += double(crossings.size());
       parts.insert(parts.end(), lit.begin(), lit.end());
       first.push_back(parts.size());
@@ -165,14 +181,14 @@ void PreparedShadowPlanes::add_lit_parts(std::size_t l, const std::vector<int>& 
   tally.seconds.scene += watch.lap();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     Pixel& pixel = pixels[i];
-    if (!needs_.shadows) {
+    if (!shadows) {
       pixel.in_air += airlight(l, pixel.ray, {0, pixel.end.t}, tally.counts);
     } else if (options_.shadows == Options::Shadows::counted) {
       for (std::size_t k = first[i]; k < first[i + 1]; ++k)
         pixel.in_air += airlight(l, pixel.ray, {parts[k].begin, parts[k].end}, tally.counts);
     } else {
-      const int m = count ? *count : shadows_[l].count(pixel.ray.origin);
-      shadows_[l].lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
+      const int m = count ? *count : shadows->count(pixel.ray.origin);
+      shadows->lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
       tally.counts.crossings += double(crossings.size());
       pixel.in_air += signed_sum(l, pixel.ray, pixel.end.t, m, crossings, tally.counts);
     }
@@ -194,8 +210,9 @@ Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) 
   return sum;
 }
 
-void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y, const PaperStages* stages,
-                                       const std::vector<int>& at_camera, scene::Film& film, Tally& tally) const {
+void PreparedShadowPlanes::render_tile(const Picture& picture, int tile_x, int tile_y, scene::Film& film,
+                                       Tally& tally) const {
+  const View& view = picture.view;
   scene::Stopwatch watch;
   const int right = std::min(view.width, (tile_x + 1) * tile_side), width = right - tile_x * tile_side;
   const int bottom = std::min(view.height, (tile_y + 1) * tile_side);
@@ -211,13 +228,14 @@ void PreparedShadowPlanes::render_tile(const View& view, int tile_x, int tile_y,
     }
   std::vector<int> edges;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
-    const auto count = at_camera.empty() ? std::nullopt : std::optional(at_camera[l]);
-    if (needs_.shadows) edges_of_tile(shadows_[l], view, tile_x, tile_y, edges);
+    const auto count = picture.at_camera.empty() ? std::nullopt : std::optional(picture.at_camera[l]);
+    const ShadowVolumes* shadows = needs_.shadows ? &picture.shadows[l] : nullptr;
+    if (shadows) edges_of_tile(*shadows, view, tile_x, tile_y, edges);
     tally.seconds.scene += watch.lap();
-    if (stages)
-      stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
+    if (picture.stages)
+      picture.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts(l, edges, count, pixels, tally);
+      add_lit_parts(l, shadows, edges, count, pixels, tally);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -243,17 +261,21 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
-  std::vector<int> at_camera;
-  if (view.camera.kind == scene::Camera::Kind::perspective)
-    for (const ShadowVolumes& shadows : shadows_) at_camera.push_back(shadows.count(view.camera.position));
-  std::optional<PaperStages> stages;
-  if (in_stages()) stages.emplace(*scene_, options_, airs_, shadows_, view.camera, execution.threads);
-  const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   scene::Stopwatch watch;
+  const bool find = needs_.shadows && options_.moving_lights;
+  const std::vector<ShadowVolumes> found = find ? find_shadows() : std::vector<ShadowVolumes>();
+  const double silhouettes = watch.lap();
+  Picture picture{view, find ? found : shadows_, {}, {}};
+  if (view.camera.kind == scene::Camera::Kind::perspective)
+    for (const ShadowVolumes& shadows : picture.shadows)
+      picture.at_camera.push_back(shadows.count(view.camera.position));
+  if (in_stages()) picture.stages.emplace(*scene_, options_, airs_, picture.shadows, view.camera, execution.threads);
+  const std::optional<PaperStages>& stages = picture.stages;
+  const StageSeconds once = stages ? stages->seconds() : StageSeconds();
+  watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
   scene::parallel_rows(columns * rows, execution, [&](int tile) {
-    render_tile(view, tile % columns, tile / columns, stages ? &*stages : nullptr, at_camera, result.film,
-                tallies[tile]);
+    render_tile(picture, tile % columns, tile / columns, result.film, tallies[tile]);
   });
   const double wall = watch.lap();
   Tally all;
@@ -269,13 +291,14 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   // The tiles' wall clock, shared out as their stages took it.
   const StageSeconds& of = all.seconds;
   const double share = wall / std::max(1e-300, of.scene + of.ends + of.sort + of.planes);
+  if (find) result.times.push_back({"silhouettes", silhouettes});
   if (stages) {
-    result.times = {{"surfaces and stencil", of.scene * share},
-                    {"medium on surfaces", once.ends + of.ends * share},
-                    {"sort", once.sort + of.sort * share},
-                    {"shadow planes", once.planes + of.planes * share}};
+    result.times.push_back({"surfaces and stencil", of.scene * share});
+    result.times.push_back({"medium on surfaces", once.ends + of.ends * share});
+    result.times.push_back({"sort", once.sort + of.sort * share});
+    result.times.push_back({"shadow planes", once.planes + of.planes * share});
   } else {
-    result.times = {{"surfaces", of.scene * share}};
+    result.times.push_back({"surfaces", of.scene * share});
     if (of.planes > 0) result.times.push_back({"airlight", of.planes * share});
   }
   const double vertices = stages ? double(stages->vertices()) : 0;
