@@ -1,13 +1,26 @@
 #include "methods/shadow_planes/plane_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "scene/error.h"
+
 namespace airlight::shadow_planes {
+namespace {
+
+constexpr int most_vertices = 20'000'000;  // 1.1 GB with their airlight
+
+}  // namespace
 
 PlaneMesh::PlaneMesh(const ShadowVolumes& shadows, const std::vector<char>& left_out, double far, int pieces,
                      int levels)
     : pieces_(pieces), levels_(levels) {
+  const double count = double(std::count(left_out.begin(), left_out.end(), false)) * (pieces + 1) * (levels + 2);
+  if (count > most_vertices)
+    throw Error(fmt::format("shadow planes of {:.0f} vertices, expected at most {}: fewer plane_levels or edge_split",
+                            count, most_vertices));
   for (std::size_t i = 0; i < shadows.edges().size(); ++i) {
     const SilhouetteEdge& edge = shadows.edges()[i];
     const double near = std::max(0.5 * (edge.a + edge.b).norm(), 1e-6 * far);

@@ -19,7 +19,7 @@ struct Vertex {
 class PlaneMesh {
  public:
   // `far` [m] from the light; where an edge is farther away than half of it, twice the edge's distance. Edges with
-  // `left_out` have no vertices.
+  // `left_out` have no vertices. Throws Error for more than 20 million.
   PlaneMesh(const ShadowVolumes&, const std::vector<char>& left_out, double far, int pieces, int levels);
 
   const std::vector<Vertex>& vertices() const { return vertices_; }

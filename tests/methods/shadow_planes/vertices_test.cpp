@@ -283,6 +283,11 @@ TEST_CASE("shadow planes: media one by one with a stencil", "[shadow_planes]") {
     before = e;
   }
   CHECK(before < 5e-3);
+  // In 8 bits.
+  const scene::Film coarse = render(scene, with(with(paper, by_vertices), with(fine, {{"frame_buffer", "true"}}))).film;
+  for (const float v : coarse.layer("airlight")) CHECK(std::abs(255 * v - std::round(255 * v)) < 1e-4f);
+  CHECK(difference(coarse, counted.film) < 0.2);
+  CHECK(difference(coarse, counted.film) > 0.005);
   // They do not tint one another: each alone gives its share.
   const auto both = two_media(), first = two_media(), second = two_media();
   first->media.pop_back();
@@ -329,6 +334,11 @@ TEST_CASE("shadow planes: stages of the paper and their times", "[shadow_planes]
     }
     CHECK(kept == timed);
     CHECK(kept.size() == 5);
+    // Where lights move the first is found for every picture: the same.
+    const scene::Rendering moving = render(scene, with(given, {{"lights", "moving"}}));
+    CHECK(moving.times.size() == 5);
+    CHECK(moving.times[0].name == "silhouettes");
+    CHECK(moving.film.layers == render(scene, given).film.layers);
   }
   // Rays that begin at different places have orders of their own.
   scene->surfaces.push_back({"second", scene::make_box({{0.1, -0.6, -0.6}, {0.8, -0.1, 0.1}}), scene::Lambert{}});
