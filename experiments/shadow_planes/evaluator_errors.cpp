@@ -6,6 +6,7 @@
 #include <random>
 
 #include "experiments/shadow_planes/light_on_ray.h"
+#include "gpu/shadow_planes/evaluator_on_device.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::shadow_planes {
@@ -173,9 +174,43 @@ TimedRow timed(const char* name, int setting, const Evaluator<Real>& evaluate,
   return row;
 }
 
+// The same on a device, without the factor e^(-extinction (x0 + r0)), which the host knows.
+void add_device_rows(gpu::Context& context, const std::vector<LightOnRay<double>>& cases,
+                     const std::vector<double>& exact, int runs, std::vector<TimedRow>& rows) {
+  using gpu::DeviceEvaluator;
+  constexpr std::size_t at_once = 1 << 18;  // enough to keep a device busy
+  std::vector<gpu::EvaluatorCase> input;
+  while (input.size() < at_once)
+    for (const LightOnRay<double>& on : cases)
+      input.push_back({float(on.extinction), float(on.h), float(on.begin - on.T), float(on.length)});
+  std::vector<std::pair<DeviceEvaluator, int>> evaluators;
+  for (int degree = 2; degree <= 12; degree += 2) evaluators.push_back({{{}, true, degree}, degree});
+  for (const int nodes : {4, 8, 16, 32, 64}) evaluators.push_back({{{}, false, nodes, stretch_of(nodes)}, nodes});
+  for (const auto& [evaluator, setting] : evaluators) {
+    TimedRow row{evaluator.polynomial ? "polynomial" : "rule", "single, device", setting, 0, 0, 0, infinity};
+    std::vector<float> values;
+    for (int run = 0; run <= runs; ++run) {  // the first one warms up
+      double seconds = 0;
+      values = integrals_on_device(context, evaluator, input, &seconds);
+      if (run > 0) row.nanoseconds = std::min(row.nanoseconds, seconds / double(input.size()) * 1e9);
+    }
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const LightOnRay<double>& on = cases[i];
+      const double scale =
+          on.extinction / (4 * pi) * std::exp(-on.extinction * (on.begin + std::hypot(on.begin - on.T, on.h)));
+      errors.push_back(std::abs(scale * values[i] - exact[i]) / exact[i]);
+    }
+    row.median = quantile(errors, 0.5);
+    row.p99 = quantile(errors, 0.99);
+    row.greatest = quantile(errors, 1);
+    rows.push_back(row);
+  }
+}
+
 }  // namespace
 
-std::vector<TimedRow> errors_and_times(int count, int runs) {
+std::vector<TimedRow> errors_and_times(int count, int runs, gpu::Context* device) {
   Random random(7);
   std::vector<LightOnRay<double>> cases;
   std::vector<double> exact;
@@ -193,6 +228,7 @@ std::vector<TimedRow> errors_and_times(int count, int runs) {
   for (int degree = 2; degree <= 12; degree += 2)
     both("polynomial", degree, polynomial<float>(degree), polynomial<double>(degree));
   for (const int nodes : {4, 8, 16, 32, 64}) both("rule", nodes, rule<float>(nodes), rule<double>(nodes));
+  if (device) add_device_rows(*device, cases, exact, runs, rows);
   return rows;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gpu/context.h"
+
 namespace airlight::experiments::shadow_planes {
 
 // The map: the light's foot point lies 5 m from the eye; lit are 1 to 2, 4 to 6 and 8 to 9 m: before, around and behind
@@ -48,8 +50,9 @@ struct TimedRow {
   std::string evaluator, precision;
   int setting;  // degree or nodes
   double median, p99, greatest;
-  double nanoseconds;  // of the processor, the best of several runs
+  double nanoseconds;  // of one thread of the processor, or of the whole device; the best of several runs
 };
-std::vector<TimedRow> errors_and_times(int cases, int runs);
+// `device` null: on the processor alone.
+std::vector<TimedRow> errors_and_times(int cases, int runs, gpu::Context* device);
 
 }  // namespace airlight::experiments::shadow_planes

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/atomic_file.h"
@@ -12,9 +13,11 @@ namespace airlight::experiments::shadow_planes {
 void write_time_plot(const std::filesystem::path& plots, const std::vector<TimedRow>& rows) {
   std::string data = "curve,setting,nanoseconds,p99\n", script;
   int index = 0;
-  const char* colors[] = {"#D55E00", "#E69F00", "#0072B2", "#56B4E9"};
+  const char* colors[] = {"#D55E00", "#E69F00", "#CC79A7", "#0072B2", "#56B4E9", "#009E73"};
   for (const char* evaluator : {"polynomial", "rule"})
-    for (const char* precision : {"single", "double"}) {
+    for (const char* precision : {"single", "double", "single, device"}) {
+      if (std::none_of(rows.begin(), rows.end(), [&](const TimedRow& row) { return row.precision == precision; }))
+        continue;
       const std::string curve = fmt::format("{}, {}", evaluator, precision);
       for (const TimedRow& row : rows)
         if (row.evaluator == evaluator && row.precision == precision)
@@ -30,7 +33,7 @@ void write_time_plot(const std::filesystem::path& plots, const std::vector<Timed
       "# Draws evaluator_times.svg and .png from evaluator_times.csv: run gnuplot on this file in its folder.\n"
       "data = \"evaluator_times.csv\"\nset datafile separator comma\n"
       "set title \"Error against time of one evaluation; labels: degree or nodes\" noenhanced\n"
-      "set xlabel \"processor time [ns]\"\nset ylabel \"relative error, 99th percentile\"\n"
+      "set xlabel \"time, one thread or the whole device [ns]\"\nset ylabel \"relative error, 99th percentile\"\n"
       "set logscale xy\nset format y \"%g\"\nset key outside right center vertical Left reverse\n"
       "set grid xtics ytics lt 1 lw 0.5 lc rgb \"#cccccc\"\nset border 3 lc rgb \"#444444\"\nset tics nomirror\n";
   for (const auto& [terminal, file] :

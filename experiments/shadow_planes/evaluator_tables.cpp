@@ -13,6 +13,7 @@
 #include "experiments/shadow_planes/evaluator_errors.h"
 #include "experiments/shadow_planes/evaluator_plots.h"
 #include "scene/atomic_file.h"
+#include "scene/error.h"
 
 namespace airlight::experiments::shadow_planes {
 namespace {
@@ -109,7 +110,13 @@ Lines time_lines(const std::vector<TimedRow>& rows) {
 
 void write_evaluator_tables(const std::filesystem::path& folder, const EvaluatorEffort& effort) {
   const std::vector<MapCell> map = stability_map(effort.per_decade);
-  const std::vector<TimedRow> times = errors_and_times(effort.cases, effort.runs);
+  gpu::Context* device = nullptr;
+  try {
+    device = &gpu::Context::get();
+  } catch (const Unavailable& reason) {
+    fmt::print(stderr, "airlight: no device, its rows are left out: {}\n", reason.what());
+  }
+  const std::vector<TimedRow> times = errors_and_times(effort.cases, effort.runs, device);
   const Lines shares = share_lines(map), angles = angle_lines(effort.cases), image = image_lines();
   double own = 0;
   for (const MapCell& cell : map) own = std::max(own, cell.own_error);
@@ -152,10 +159,10 @@ void write_evaluator_tables(const std::filesystem::path& folder, const Evaluator
           "median / 99th percentile over {} random parts, double precision; a = extinction * h.\n\n{}## Error of "
           "the polynomial over a picture\n\nRoot of the mean squared error over the mean, endless rays at 0 to 90 "
           "degrees from the light.\n\n{}## Error against time\n\nLit parts at random, the light 0.1 to 3 optical "
-          "lengths away; polynomial over the part alone; one thread, {}.\n\n![error against "
+          "lengths away; polynomial over the part alone; one thread, {}; device: {}.\n\n![error against "
           "time](plots/evaluator_times.svg)\n\n{}airlight {} ({}). Made by `airlight evaluators`.\n",
           title, about, map_title, markdown(shares), effort.cases, markdown(angles), markdown(image), machine.cpu,
-          markdown(time_lines(times)), version(), commit()));
+          device ? device->description() : "none", markdown(time_lines(times)), version(), commit()));
   nlohmann::json record = {
       {"experiment", "shadow_planes/evaluators"},
       {"title", title},

@@ -4,7 +4,7 @@
 // paper's form of one medium in a region. Needs ray.glsl.
 #include "common/angle.glsl"
 #include "common/pi.glsl"
-#include "shadow_planes/floor_of_h.glsl"
+#include "shadow_planes/length.glsl"
 #include "shadow_planes/media.glsl"
 #if POLYNOMIAL
 #include "shadow_planes/polynomial.glsl"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/shadow_planes/rule_on_device.h"
+#include "gpu/shadow_planes/evaluator_on_device.h"
 #include "methods/shadow_planes/paper_medium.h"
 #include "methods/shadow_planes/phase_form.h"
 #include "methods/shadow_planes/polynomial.h"

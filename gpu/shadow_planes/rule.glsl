@@ -1,6 +1,6 @@
 // The mapped Gauss-Legendre rule in single precision: methods/shadow_planes/mapped_rule.h, for which a caller adds up its
 // nodes. Needs POWER, m of the map.
-#include "shadow_planes/floor_of_h.glsl"
+#include "shadow_planes/length.glsl"
 
 layout(std430, binding = 5) readonly buffer Rule { vec4 rule[]; };  // node on [0, 1], 1 - node, weight
 uniform int rule_nodes;
@@ -13,18 +13,6 @@ struct Mapped {
   float q0, c;     // q - q0 = c ((1-s)^-m - 1)
   float s1, rest;  // s runs from 0 to s1 = 1 - rest
 };
-
-// sqrt(x^2 + y^2) whose squares may overflow.
-float hypotenuse(float x, float y) {
-  float most = max(abs(x), abs(y)), share = min(abs(x), abs(y)) / max(most, 1e-37);
-  return most * sqrt(1 + share * share);
-}
-
-// tan(pi/4 + theta/2) at d [m] beyond the foot point, h > 0.
-float q_at(float d, float h) {
-  float r = hypotenuse(d, h);
-  return d > 0 ? (r + d) / h : h / (r - d);
-}
 
 // Lit over `length_` [m] from d0 [m] beyond the foot point; `width` of the phase function.
 Mapped map_part(float width, float extinction, float d0, float length_, float h) {
