@@ -14,7 +14,7 @@ layout(std430, binding = 6) buffer Needed { int needed; };
 uniform int edge_count, columns, block_side, list_room;
 uniform dvec3 light;  // [m]
 
-shared dvec3 sides[4];
+shared vec3 normals[4];  // of the planes through the light and the rays of the corners
 shared int found, first;
 
 void main() {
@@ -24,7 +24,8 @@ void main() {
     ivec2 corner = min(ivec2(view_width, view_height), block_side * (at + ivec2(thread & 1, thread >> 1)));
     dvec3 origin, direction;
     view_ray(dvec2(corner), origin, direction);
-    sides[thread] = cross(direction, light - origin);
+    dvec3 side = cross(direction, light - origin);
+    normals[thread] = vec3(side / max(length(side), 1e-300LF));
   }
   if (thread == 0) found = 0;
   barrier();
@@ -40,10 +41,15 @@ void main() {
 #else
       int e = i;
 #endif
-      dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
-      int positive = 0;
-      for (int k = 0; k < 4; ++k) positive += int(dot(sides[k], a) >= 0) + int(dot(sides[k], b) >= 0);
-      if (positive == 0 || positive == 8) continue;
+      vec4 a = edges[e].near_a, b = edges[e].near_b;
+      float slack = 1e-6 * max(a.w, b.w);
+      int above = 0, below = 0;
+      for (int k = 0; k < 4; ++k) {
+        float sa = dot(normals[k], a.xyz), sb = dot(normals[k], b.xyz);
+        above += int(sa > slack && sb > slack);
+        below += int(sa < -slack && sb < -slack);
+      }
+      if (above == 4 || below == 4) continue;
       int place = atomicAdd(found, 1);
       if (pass == 1 && first + place < list_room) lists[first + place] = e;
     }

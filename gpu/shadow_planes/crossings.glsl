@@ -66,9 +66,11 @@ void cross_edges(Ray ray, double end, int tile) {
 #if STENCIL
   dvec3 to_origin = -normalize(ray.to_light);
 #endif
+  vec3 normal = vec3(normalize(side));
   ivec2 range = ranges[tile];
   for (int i = range.x; i < range.x + range.y; ++i) {
     int e = lists[i];
+    if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) continue;
     dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
     double sa = dot(side, a), sb = dot(side, b);
     if ((sa >= 0) == (sb >= 0)) continue;

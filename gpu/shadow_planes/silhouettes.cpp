@@ -41,7 +41,7 @@ Silhouettes::Silhouettes(Context& context, const Arrays& arrays)
 
 void Silhouettes::find(const Point3& light, LightEdges& found) {
   const Use use(context_);
-  constexpr std::size_t edge_bytes = 56;
+  constexpr std::size_t edge_bytes = 96;
   if (!found.edges) found.edges = std::make_unique<Buffer>(context_, "silhouette", edge_bytes * mesh_edges_);
   found.count = 0;
   if (mesh_edges_ == 0) return;
