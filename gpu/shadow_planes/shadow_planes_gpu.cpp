@@ -86,20 +86,18 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
 };
 
 std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
-  int edges = 0;
+  std::size_t edges = 0;
   for (const LightEdges& of_light : edges_) edges += of_light.count;
   const bool lit = !scene_->lights.empty();
-  std::vector<scene::Stage> stages = {
-      {"device", true, context_.description()},
-      {"silhouettes", silhouettes_ != nullptr,
-       !lit            ? "no light shines"
-       : !silhouettes_ ? "there are no surfaces"
-                       : fmt::format("{} edges for {} light{}, {}", edges, scene_->lights.size(),
-                                     scene_->lights.size() == 1 ? "" : "s",
-                                     options_.moving_lights ? "found again for every picture" : "found once")},
-      {"airlight and surfaces", lit, lit ? "one dispatch per light" : "no light shines"},
-      {"composition", true, "layers of the film"}};
-  return stages;
+  const std::string dark = lit ? "one dispatch per light and air" : "no light shines";
+  const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, scene_->lights.size(), options_)
+                            : lit        ? "there are no surfaces"
+                                         : dark;
+  return {{"device", true, context_.description()},
+          {"silhouettes", silhouettes_ != nullptr, found},
+          {"tiles", silhouettes_ != nullptr, silhouettes_ ? "edges by tiles of 16 x 16 pixels" : found},
+          {"airlight and surfaces", lit, dark},
+          {"composition", true, "layers of the film"}};
 }
 
 std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, const View& view,

@@ -119,6 +119,11 @@ Options read_options(const scene::Settings& settings) {
   return o;
 }
 
+std::string silhouettes_found(std::size_t edges, std::size_t lights, const Options& options) {
+  return fmt::format("{} edges for {} light{}, {}", edges, lights, lights == 1 ? "" : "s",
+                     options.moving_lights ? "found again for every picture" : "found once: lights = static");
+}
+
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < scene.media.size(); ++i)

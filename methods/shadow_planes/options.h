@@ -38,6 +38,8 @@ struct Options {
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
+// For `explain`: how many edges of how many lights, and when they are found.
+std::string silhouettes_found(std::size_t edges, std::size_t lights, const Options&);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
 std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
 

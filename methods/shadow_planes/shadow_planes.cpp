@@ -28,6 +28,15 @@ struct Tally {
   StageSeconds seconds;
 };
 
+// What is computed once per picture.
+struct Frame {
+  View view;
+  const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows
+  std::vector<TileEdges> edges;               // by light
+  std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
+  std::optional<PaperStages> stages;          // none: lit parts of rays
+};
+
 class PreparedShadowPlanes final : public scene::Prepared {
  public:
   PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options)
@@ -43,8 +52,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
     if (!needs_.shadows) return;
     occluders_ = std::make_shared<const Occluders>(scene_);
     times_.push_back({"edges", watch.lap()});
-    if (options.moving_lights) return;
-    shadows_ = find_shadows();
+    shadows_ = silhouettes();
     times_.push_back({"silhouettes", watch.lap()});
   }
 
@@ -53,15 +61,8 @@ class PreparedShadowPlanes final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  // What all tiles of a picture share.
-  struct Picture {
-    View view;
-    const std::vector<ShadowVolumes>& shadows;  // by light; empty: left out
-    std::optional<PaperStages> stages;          // else: lit parts of rays
-    std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
-  };
-  std::vector<ShadowVolumes> find_shadows() const;
-  void render_tile(const Picture&, int tile_x, int tile_y, scene::Film&, Tally&) const;
+  std::vector<ShadowVolumes> silhouettes() const;
+  void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
   bool in_stages() const;  // of the paper
 
@@ -69,21 +70,21 @@ class PreparedShadowPlanes final : public scene::Prepared {
   Options options_;
   Needs needs_;
   std::vector<Air> airs_;                       // empty: no medium
-  std::shared_ptr<const Occluders> occluders_;  // null: no shadows
-  std::vector<ShadowVolumes> shadows_;          // by light; empty: left out, or found for every picture
+  std::shared_ptr<const Occluders> occluders_;  // null: nothing casts shadows
+  std::vector<ShadowVolumes> shadows_;          // by light; empty: the same
   std::vector<scene::StageTime> times_;
 };
-
-std::vector<ShadowVolumes> PreparedShadowPlanes::find_shadows() const {
-  std::vector<ShadowVolumes> result;
-  for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
-  return result;
-}
 
 std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   std::size_t edges = 0;
   for (const ShadowVolumes& s : shadows_) edges += s.edges().size();
   return stage_list(*scene_, options_, {needs_.medium, needs_.shadows, needs_.surfaces, in_stages(), edges});
+}
+
+std::vector<ShadowVolumes> PreparedShadowPlanes::silhouettes() const {
+  std::vector<ShadowVolumes> result;
+  for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
+  return result;
 }
 
 bool PreparedShadowPlanes::in_stages() const {
@@ -106,10 +107,10 @@ Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) 
   return sum;
 }
 
-void PreparedShadowPlanes::render_tile(const Picture& picture, int tile_x, int tile_y, scene::Film& film,
+void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_y, scene::Film& film,
                                        Tally& tally) const {
-  const View& view = picture.view;
   scene::Stopwatch watch;
+  const View& view = frame.view;
   const int right = std::min(view.width, (tile_x + 1) * tile_side), width = right - tile_x * tile_side;
   const int bottom = std::min(view.height, (tile_y + 1) * tile_side);
   std::vector<Pixel> pixels;
@@ -124,15 +125,14 @@ void PreparedShadowPlanes::render_tile(const Picture& picture, int tile_x, int t
     }
   std::vector<int> edges;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
-    const auto count = picture.at_camera.empty() ? std::nullopt : std::optional(picture.at_camera[l]);
-    const ShadowVolumes* shadows = needs_.shadows ? &picture.shadows[l] : nullptr;
-    if (shadows) edges_of_tile(*shadows, view, tile_x, tile_y, edges);
+    const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
+    if (needs_.shadows) frame.edges[l].of_tile(tile_x, tile_y, edges);
     tally.seconds.scene += watch.lap();
-    if (picture.stages)
-      picture.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
+    if (frame.stages)
+      frame.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts({airs_, scene_->lights[l], shadows, options_.shadows}, edges, count, pixels, tally.counts,
-                    tally.seconds);
+      add_lit_parts({airs_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, options_.shadows}, edges,
+                    count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -159,20 +159,23 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
   scene::Stopwatch watch;
-  const bool find = needs_.shadows && options_.moving_lights;
-  const std::vector<ShadowVolumes> found = find ? find_shadows() : std::vector<ShadowVolumes>();
-  const double silhouettes = watch.lap();
-  Picture picture{view, find ? found : shadows_, {}, {}};
+  std::vector<ShadowVolumes> moving;
+  if (options_.moving_lights && needs_.shadows) {
+    moving = silhouettes();
+    result.times.push_back({"silhouettes", watch.lap()});
+  }
+  Frame frame{view, moving.empty() ? shadows_ : moving, {}, {}, {}};
+  for (const ShadowVolumes& shadows : frame.shadows) frame.edges.emplace_back(shadows, view, execution.threads);
   if (view.camera.kind == scene::Camera::Kind::perspective)
-    for (const ShadowVolumes& shadows : picture.shadows)
-      picture.at_camera.push_back(shadows.count(view.camera.position));
-  if (in_stages()) picture.stages.emplace(*scene_, options_, airs_, picture.shadows, view.camera, execution.threads);
-  const std::optional<PaperStages>& stages = picture.stages;
+    for (const ShadowVolumes& shadows : frame.shadows) frame.at_camera.push_back(shadows.count(view.camera.position));
+  const double tiles = watch.lap();
+  std::optional<PaperStages>& stages = frame.stages;
+  if (in_stages()) stages.emplace(*scene_, options_, airs_, frame.shadows, view.camera, execution.threads);
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
   scene::parallel_rows(columns * rows, execution, [&](int tile) {
-    render_tile(picture, tile % columns, tile / columns, result.film, tallies[tile]);
+    render_tile(frame, tile % columns, tile / columns, result.film, tallies[tile]);
   });
   const double wall = watch.lap();
   Tally all;
@@ -188,15 +191,15 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   // The tiles' wall clock, shared out as their stages took it.
   const StageSeconds& of = all.seconds;
   const double share = wall / std::max(1e-300, of.scene + of.ends + of.sort + of.planes);
-  if (find) result.times.push_back({"silhouettes", silhouettes});
+  const auto add_time = [&](const char* stage, double seconds) { result.times.push_back({stage, seconds}); };
   if (stages) {
-    result.times.push_back({"surfaces and stencil", of.scene * share});
-    result.times.push_back({"medium on surfaces", once.ends + of.ends * share});
-    result.times.push_back({"sort", once.sort + of.sort * share});
-    result.times.push_back({"shadow planes", once.planes + of.planes * share});
+    add_time("surfaces and stencil", tiles + of.scene * share);
+    add_time("medium on surfaces", once.ends + of.ends * share);
+    add_time("sort", once.sort + of.sort * share);
+    add_time("shadow planes", once.planes + of.planes * share);
   } else {
-    result.times.push_back({"surfaces", of.scene * share});
-    if (of.planes > 0) result.times.push_back({"airlight", of.planes * share});
+    add_time("surfaces", tiles + of.scene * share);
+    if (of.planes > 0) add_time("airlight", of.planes * share);
   }
   const double vertices = stages ? double(stages->vertices()) : 0;
   result.counters["rays"] = double(result.film.pixels());

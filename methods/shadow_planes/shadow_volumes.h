@@ -29,6 +29,7 @@ class ShadowVolumes {
 
   const Point3& light() const { return light_; }
   const std::vector<SilhouetteEdge>& edges() const { return edges_; }
+  const std::vector<int>& all_edges() const { return all_; }  // their numbers
 
   int count(const Point3& point) const { return count_.at(point); }  // m(X)
 

@@ -16,12 +16,9 @@ std::vector<scene::Stage> stage_list(const scene::Scene& scene, const Options& o
                                                 : fmt::format("polynomials of degree {}", options.degree);
   const std::string surfaces =
       scene.surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
-  std::vector<scene::Stage> result{{"silhouettes", needs.shadows,
-                                    !needs.shadows ? no_shadows
-                                    : options.moving_lights
-                                        ? std::string("found again for every picture")
-                                        : fmt::format("{} edges for {} light{}", needs.edges, scene.lights.size(),
-                                                      scene.lights.size() == 1 ? "" : "s")}};
+  std::vector<scene::Stage> result{
+      {"silhouettes", needs.shadows,
+       needs.shadows ? silhouettes_found(needs.edges, scene.lights.size(), options) : no_shadows}};
   if (needs.paper_stages) {
     const bool vertices = options.evaluation == Options::Evaluation::vertices;
     const std::string by_pixel = evaluator + " for every pixel";
@@ -30,11 +27,9 @@ std::vector<scene::Stage> stage_list(const scene::Scene& scene, const Options& o
                       vertices ? evaluator + " at the vertices of meshes and of media in the paper's way; for every "
                                              "pixel on spheres and planes, and where a ray meets nothing"
                                : by_pixel});
-    result.push_back({"sort", needs.shadows,
-                      !needs.shadows ? no_shadows
-                      : options.moving_lights
-                          ? std::string("all planes once per picture")
-                          : fmt::format("{} planes once per picture", needs.edges * options.edge_split)});
+    result.push_back(
+        {"sort", needs.shadows,
+         needs.shadows ? fmt::format("{} planes once per picture", needs.edges * options.edge_split) : no_shadows});
     result.push_back({"shadow planes", needs.shadows,
                       !needs.shadows ? no_shadows
                       : vertices     ? fmt::format("{} on {} levels and at infinity; by pixel for spheres", evaluator,

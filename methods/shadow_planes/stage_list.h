@@ -8,7 +8,7 @@ namespace airlight::shadow_planes {
 struct StageNeeds {
   bool medium, shadows, surfaces;
   bool paper_stages;  // the paper's, not lit parts of rays
-  std::size_t edges;  // of all lights; unknown where they move
+  std::size_t edges;  // of all lights
 };
 std::vector<scene::Stage> stage_list(const scene::Scene&, const Options&, const StageNeeds&);
 

@@ -6,20 +6,32 @@
 
 namespace airlight::shadow_planes {
 
-void edges_of_tile(const ShadowVolumes& shadows, const scene::View& view, int tile_x, int tile_y,
-                   std::vector<int>& edges) {
-  std::array<Vec3, 4> side;
+TileEdges::TileEdges(const ShadowVolumes& shadows, const scene::View& view, int threads)
+    : shadows_(shadows), view_(view), columns_((view.width + tiles * tile_side - 1) / (tiles * tile_side)) {
+  const int rows = (view.height + tiles * tile_side - 1) / (tiles * tile_side);
+  blocks_.resize(std::size_t(columns_) * rows);
+  scene::parallel_rows(columns_ * rows, {threads, {}}, [&](int block) {
+    select(tiles * tile_side, block % columns_, block / columns_, shadows.all_edges(), blocks_[block]);
+  });
+}
+
+void TileEdges::of_tile(int tile_x, int tile_y, std::vector<int>& edges) const {
+  select(tile_side, tile_x, tile_y, blocks_[std::size_t(tile_y / tiles) * columns_ + tile_x / tiles], edges);
+}
+
+void TileEdges::select(int side, int x, int y, const std::vector<int>& candidates, std::vector<int>& edges) const {
+  std::array<Vec3, 4> planes;
   for (int corner = 0; corner < 4; ++corner) {
-    const double x = std::min(view.width, tile_side * (tile_x + (corner & 1)));
-    const double y = std::min(view.height, tile_side * (tile_y + (corner >> 1)));
-    const Ray ray = camera_ray(view.camera, x, y, view.width, view.height);
-    side[corner] = ray.direction.cross(shadows.light() - ray.origin);
+    const double film_x = std::min(view_.width, side * (x + (corner & 1)));
+    const double film_y = std::min(view_.height, side * (y + (corner >> 1)));
+    const Ray ray = camera_ray(view_.camera, film_x, film_y, view_.width, view_.height);
+    planes[corner] = ray.direction.cross(shadows_.light() - ray.origin);
   }
   edges.clear();
-  for (int i = 0; i < int(shadows.edges().size()); ++i) {
-    const SilhouetteEdge& edge = shadows.edges()[i];
+  for (const int i : candidates) {
+    const SilhouetteEdge& edge = shadows_.edges()[i];
     int positive = 0;
-    for (const Vec3& s : side) positive += (s.dot(edge.a) >= 0) + (s.dot(edge.b) >= 0);
+    for (const Vec3& s : planes) positive += (s.dot(edge.a) >= 0) + (s.dot(edge.b) >= 0);
     if (positive > 0 && positive < 8) edges.push_back(i);
   }
 }

@@ -230,7 +230,7 @@ def figure_1():
     shapes.append(surface("font", "tube", {"path": "[[0, 0.001, -1.8], [0, 0.9, -1.8]]", "radius": 0.16, "end_radius": 0.3,
                                            "size": "[9, 11]"}, 0.6))
     write_scene("fig1", "After Figure 1 of Biri et al. 2006: a nave with columns and arches, 107,514 triangles; the light flies along it.",
-                (-4.2, 2.1, 0.5), (-1.2, 2, -8), 0.95, point((0.3, 2.4, -13), (60, 54, 45)), fog(0.1), shapes)
+                (-4.2, 2.1, 0.6), (-1.2, 2, -8), 0.95, point((0.3, 2.4, -13), (60, 54, 45)), fog(0.1), shapes)
 
 
 def layers():

@@ -3,11 +3,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/shadow_planes/evaluator_tables.h"
 #include "experiments/shadow_planes/light_on_ray.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "scene/math/exponential_integral.h"
 #include "scene/math/quadrature.h"
 #include "tests/methods/shadow_planes/vectors.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
@@ -129,4 +131,21 @@ TEST_CASE("shadow planes: errors of the polynomial over angles", "[shadow_planes
       CHECK(rows[i].error[d].median > medians[i][d] / 3);
       CHECK(rows[i].error[d].median < medians[i][d] * 3);
     }
+}
+
+TEST_CASE("shadow planes: files of the evaluators", "[shadow_planes]") {
+  const TemporaryFolder folder;
+  write_evaluator_tables(folder.path(), {1, 200, 1});
+  const auto lines = [&](const std::string& name) {
+    const std::string text = read_bytes((folder.path() / name).string());
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  CHECK(lines("map.csv") == 1 + 11 * 10);
+  CHECK(lines("shares.csv") == 1 + 8);
+  CHECK(lines("angles.csv") == 1 + 9);
+  CHECK(lines("image.csv") == 1 + 5);
+  CHECK(lines("times.csv") == 1 + 2 * (6 + 5));
+  const json record = json::parse(read_bytes((folder.path() / "run.json").string()));
+  for (const char* list : {"tables", "plots"})
+    for (const json& file : record.at(list)) CHECK(lines(file.at("file").get<std::string>()) > 1);
 }

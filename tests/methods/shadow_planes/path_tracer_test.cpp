@@ -35,6 +35,7 @@ TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
       {"shadow_planes/fig8a", "512"},
       {"shadow_planes/fig8b", "2048"},
       {"shadow_planes/fig8c", "1024"},
+      {"shadow_planes/edges", "512"},
       {"shadow_planes/layers_elephant", "512"},
       {"shadow_planes/layers_knot1", "512"}};
   const double alpha = 1e-3 / double(std::size(samples_of));
