@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/shadow_planes/lit_parts.h"
 #include "methods/shadow_planes/paper_stages.h"
+#include "methods/shadow_planes/stage_list.h"
 #include "methods/shadow_planes/tile_edges.h"
 #include "scene/error.h"
 
@@ -33,10 +35,6 @@ struct Frame {
   std::vector<TileEdges> edges;               // by light
   std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
   std::optional<PaperStages> stages;          // none: lit parts of rays
-
-  int count(std::size_t light, const Ray& ray) const {
-    return at_camera.empty() ? shadows[light].count(ray.origin) : at_camera[light];
-  }
 };
 
 class PreparedShadowPlanes final : public scene::Prepared {
@@ -65,9 +63,6 @@ class PreparedShadowPlanes final : public scene::Prepared {
  private:
   std::vector<ShadowVolumes> silhouettes() const;
   void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
-  void add_lit_parts(const Frame&, std::size_t light, const std::vector<int>& edges, std::vector<Pixel>&, Tally&) const;
-  Rgb airlight(std::size_t light, const Ray&, Interval, Counts&) const;
-  Rgb signed_sum(std::size_t light, const Ray&, double end, int count, const std::vector<Crossing>&, Counts&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
   bool in_stages() const;  // of the paper
 
@@ -83,44 +78,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
 std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   std::size_t edges = 0;
   for (const ShadowVolumes& s : shadows_) edges += s.edges().size();
-  const bool lit = !scene_->lights.empty();
-  const std::string dark = !lit ? "no light shines" : "", clear = !needs_.medium ? "there is no medium" : dark;
-  const auto unless = [](const std::string& reason, const std::string& otherwise) {
-    return reason.empty() ? otherwise : reason;
-  };
-  const std::string no_shadows = unless(clear, scene_->surfaces.empty() ? "there are no surfaces" : "shadows = none");
-  const std::string evaluator = options_.evaluator == Options::Evaluator::rule ? fmt::format("{} nodes", options_.nodes)
-                                : options_.annex ? std::string("the polynomials of the annex")
-                                                 : fmt::format("polynomials of degree {}", options_.degree);
-  const std::string surfaces =
-      scene_->surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
-  std::vector<scene::Stage> result{
-      {"silhouettes", needs_.shadows,
-       needs_.shadows ? silhouettes_found(edges, scene_->lights.size(), options_) : no_shadows}};
-  if (in_stages()) {
-    const bool vertices = options_.evaluation == Options::Evaluation::vertices;
-    const std::string by_pixel = evaluator + " for every pixel";
-    result.push_back({"surfaces and stencil", true, surfaces});
-    result.push_back({"medium on surfaces", true,
-                      vertices ? evaluator + " at the vertices of meshes and of media in the paper's way; for every "
-                                             "pixel on spheres and planes, and where a ray meets nothing"
-                               : by_pixel});
-    result.push_back(
-        {"sort", needs_.shadows,
-         needs_.shadows ? fmt::format("{} planes once per picture", edges * options_.edge_split) : no_shadows});
-    result.push_back({"shadow planes", needs_.shadows,
-                      !needs_.shadows ? no_shadows
-                      : vertices      ? fmt::format("{} on {} levels and at infinity; for every pixel at shadows of "
-                                                         "spheres",
-                                                    evaluator, options_.plane_levels + 1)
-                                      : by_pixel});
-  } else {
-    result.push_back({"airlight", needs_.medium && lit, unless(clear, evaluator + " on each lit part")});
-    result.push_back({"surfaces", needs_.surfaces, surfaces});
-  }
-  result.push_back({"ambient in-scatter", options_.ambient,
-                    options_.ambient ? "asked for" : "ambient = false: not a part of single scattering"});
-  return result;
+  return stage_list(*scene_, options_, {needs_.medium, needs_.shadows, needs_.surfaces, in_stages(), edges});
 }
 
 std::vector<ShadowVolumes> PreparedShadowPlanes::silhouettes() const {
@@ -133,65 +91,6 @@ bool PreparedShadowPlanes::in_stages() const {
   if (!needs_.medium || scene_->lights.empty()) return false;
   return options_.evaluation == Options::Evaluation::vertices ||
          (needs_.shadows && options_.shadows == Options::Shadows::stencil);
-}
-
-Rgb PreparedShadowPlanes::airlight(std::size_t light, const Ray& ray, Interval lit, Counts& counts) const {
-  counts.parts += 1;
-  counts.by_pixel += double(airs_.size());
-  Rgb sum = Rgb::Zero();
-  for (const Air& air : airs_) sum += shadow_planes::airlight(air, scene_->lights[light], ray, lit);
-  return sum;
-}
-
-// As if every plane alone were a shadow's: the integral of 1 - m/2.
-Rgb PreparedShadowPlanes::signed_sum(std::size_t light, const Ray& ray, double end, int count,
-                                     const std::vector<Crossing>& crossings, Counts& counts) const {
-  Rgb sum = Rgb::Zero();
-  double m = count, from = 0;
-  const auto add = [&](double to) {
-    if (to > from && m != 2) sum += (1 - 0.5 * m) * airlight(light, ray, {from, to}, counts);
-    from = to;
-  };
-  for (const Crossing& crossing : crossings) {
-    add(crossing.x);
-    m += crossing.change;
-  }
-  add(end);
-  return sum;
-}
-
-void PreparedShadowPlanes::add_lit_parts(const Frame& frame, std::size_t l, const std::vector<int>& edges,
-                                         std::vector<Pixel>& pixels, Tally& tally) const {
-  // In two passes, so that the clock is read for a tile, not for every pixel.
-  scene::Stopwatch watch;
-  std::vector<Crossing> crossings;
-  std::vector<ShadowVolumes::Interval> lit;
-  std::vector<ShadowVolumes::Interval> parts;
-  std::vector<std::size_t> first{0};
-  if (needs_.shadows && options_.shadows == Options::Shadows::counted) {
-    for (const Pixel& pixel : pixels) {
-      frame.shadows[l].lit_parts(pixel.ray, pixel.end.t, frame.count(l, pixel.ray), &edges, crossings, lit);
-      tally.counts.crossings += double(crossings.size());
-      parts.insert(parts.end(), lit.begin(), lit.end());
-      first.push_back(parts.size());
-    }
-  }
-  tally.seconds.scene += watch.lap();
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    Pixel& pixel = pixels[i];
-    if (!needs_.shadows) {
-      pixel.in_air += airlight(l, pixel.ray, {0, pixel.end.t}, tally.counts);
-    } else if (options_.shadows == Options::Shadows::counted) {
-      for (std::size_t k = first[i]; k < first[i + 1]; ++k)
-        pixel.in_air += airlight(l, pixel.ray, {parts[k].begin, parts[k].end}, tally.counts);
-    } else {
-      const int m = frame.count(l, pixel.ray);
-      frame.shadows[l].lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, lit);
-      tally.counts.crossings += double(crossings.size());
-      pixel.in_air += signed_sum(l, pixel.ray, pixel.end.t, m, crossings, tally.counts);
-    }
-  }
-  tally.seconds.planes += watch.lap();
 }
 
 Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) const {
@@ -226,13 +125,14 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
     }
   std::vector<int> edges;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
+    const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
     if (needs_.shadows) frame.edges[l].of_tile(tile_x, tile_y, edges);
     tally.seconds.scene += watch.lap();
     if (frame.stages)
-      frame.stages->draw(l, edges, frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]), pixels,
-                         tally.counts, tally.seconds);
+      frame.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts(frame, l, edges, pixels, tally);
+      add_lit_parts({airs_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, options_.shadows}, edges,
+                    count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],

@@ -386,6 +386,8 @@ TEST_CASE("shadow planes: at vertices, what there is not and extremes", "[shadow
     return reasons.empty() ? std::string() : reasons.front();
   };
   const auto scene = two_media();
+  CHECK_THROWS_WITH(render(scene, with(by_vertices, {{"edge_split", "4096"}, {"plane_levels", "4096"}})),
+                    Catch::Contains("fewer plane_levels"));
   CHECK(reason(*scene, by_vertices).empty());
   CHECK(reason(*scene, with(by_vertices, {{"shadows", "none"}})).empty());
   CHECK(reason(*scene, {{"evaluation", "vertices"}}) == "evaluation = vertices goes with shadows = stencil or none");

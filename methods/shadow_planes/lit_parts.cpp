@@ -1,0 +1,69 @@
+#include "methods/shadow_planes/lit_parts.h"
+
+#include "scene/stopwatch.h"
+
+namespace airlight::shadow_planes {
+namespace {
+
+Rgb over(const LitLight& lit, const Ray& ray, Interval part, Counts& counts) {
+  counts.parts += 1;
+  counts.by_pixel += double(lit.airs.size());
+  Rgb sum = Rgb::Zero();
+  for (const Air& air : lit.airs) sum += airlight(air, lit.light, ray, part);
+  return sum;
+}
+
+// As if every plane alone were a shadow's: the integral of 1 - m/2.
+Rgb signed_sum(const LitLight& lit, const Ray& ray, double end, int count, const std::vector<Crossing>& crossings,
+               Counts& counts) {
+  Rgb sum = Rgb::Zero();
+  double m = count, from = 0;
+  const auto add = [&](double to) {
+    if (to > from && m != 2) sum += (1 - 0.5 * m) * over(lit, ray, {from, to}, counts);
+    from = to;
+  };
+  for (const Crossing& crossing : crossings) {
+    add(crossing.x);
+    m += crossing.change;
+  }
+  add(end);
+  return sum;
+}
+
+}  // namespace
+
+void add_lit_parts(const LitLight& lit, const std::vector<int>& edges, std::optional<int> count,
+                   std::vector<Pixel>& pixels, Counts& counts, StageSeconds& seconds) {
+  // In two passes, so that the clock is read for a tile, not for every pixel.
+  scene::Stopwatch watch;
+  std::vector<Crossing> crossings;
+  std::vector<ShadowVolumes::Interval> of_ray, parts;
+  std::vector<std::size_t> first{0};
+  const bool counted = lit.shadows && lit.how == Options::Shadows::counted;
+  const auto at_origin = [&](const Pixel& pixel) { return count ? *count : lit.shadows->count(pixel.ray.origin); };
+  if (counted)
+    for (const Pixel& pixel : pixels) {
+      lit.shadows->lit_parts(pixel.ray, pixel.end.t, at_origin(pixel), &edges, crossings, of_ray);
+      counts.crossings += double(crossings.size());
+      parts.insert(parts.end(), of_ray.begin(), of_ray.end());
+      first.push_back(parts.size());
+    }
+  seconds.scene += watch.lap();
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Pixel& pixel = pixels[i];
+    if (counted) {
+      for (std::size_t k = first[i]; k < first[i + 1]; ++k)
+        pixel.in_air += over(lit, pixel.ray, {parts[k].begin, parts[k].end}, counts);
+    } else if (!lit.shadows) {
+      pixel.in_air += over(lit, pixel.ray, {0, pixel.end.t}, counts);
+    } else {
+      const int m = at_origin(pixel);
+      lit.shadows->lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, of_ray);
+      counts.crossings += double(crossings.size());
+      pixel.in_air += signed_sum(lit, pixel.ray, pixel.end.t, m, crossings, counts);
+    }
+  }
+  seconds.planes += watch.lap();
+}
+
+}  // namespace airlight::shadow_planes

@@ -1,0 +1,23 @@
+// Pictures from the lit parts of rays: the improved variant, and the sum without a stencil.
+#pragma once
+#include <optional>
+
+#include "methods/shadow_planes/air.h"
+#include "methods/shadow_planes/pixel.h"
+#include "methods/shadow_planes/shadow_volumes.h"
+
+namespace airlight::shadow_planes {
+
+struct LitLight {
+  const std::vector<Air>& airs;
+  const scene::Light& light;
+  const ShadowVolumes* shadows;  // null: all is lit
+  Options::Shadows how;          // counted, or signed_sum
+};
+
+// Adds the light's airlight to pixels of a tile. `edges`: whose planes they may cross; `count`: m of the camera, of
+// each ray's own origin where there is none.
+void add_lit_parts(const LitLight&, const std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&,
+                   Counts&, StageSeconds&);
+
+}  // namespace airlight::shadow_planes
