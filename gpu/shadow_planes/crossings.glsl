@@ -1,10 +1,15 @@
 // Where the number of surfaces between a ray and the light changes: methods/shadow_planes/shadow_volumes.cpp, in double
 // precision. Crossings are met in the order of their keys, 32 at a time: when there are more, the next 32 are gathered
-// again, so none is lost. Needs raster/primitive.glsl and ray.glsl.
+// again, so none is lost. Needs raster/primitive.glsl, raster/view.glsl, edge.glsl and ray.glsl.
+#include "shadow_planes/fan.glsl"
 layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
+#if FAN
+layout(std430, binding = 3) readonly buffer Starts { int starts[]; };  // of the lists of sectors
+#else
 layout(std430, binding = 3) readonly buffer Ranges { ivec2 ranges[]; };  // of tiles of 16 x 16 pixels: first, count
+#endif
 layout(std430, binding = 4) readonly buffer Lists { int lists[]; };
-uniform int solid_count, edge_split;
+uniform int solid_count, edge_count, edge_split;
 
 const int most_hits = 32;
 double hit_key[most_hits];
@@ -60,34 +65,49 @@ void keep_crossing(double key, int origin, int change, double place, int edge, d
 #endif
 }
 
+// `side`: normal to the plane through light and ray, `normal` its direction; `to_origin`: from the light, unit.
+void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_origin) {
+  if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) return;
+  dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
+  double sa = dot(side, a), sb = dot(side, b);
+  if ((sa >= 0) == (sb >= 0)) return;
+  double share = sa / (sa - sb);
+  dvec3 p = a + (b - a) * share;
+  double towards = dot(p, ray.n);
+  if (!(towards > 0) || towards > ray.h) return;  // not between light and ray
+  double x = ray.T + ray.h * dot(p, ray.direction) / towards;
+  if (!(x > 0) || !(x < end)) return;
+  int change = dot(cross(a, b), ray.direction) > 0 ? -edges[e].multiplicity : edges[e].multiplicity;
+  double key = x;
+#if STENCIL
+  double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
+  key = dot(normalize(a + (b - a) * middle), to_origin);
+#endif
+  keep_crossing(key, edges[e].origin, change, x, e, share, ray.h / towards);
+}
+
+// Of the edges that the ray may cross: those of its tile, or of its sectors in a fan.
 void cross_edges(Ray ray, double end, int tile) {
   if (!(ray.h > 1e-12LF * length(ray.to_light))) return;
-  dvec3 side = cross(ray.direction, ray.to_light);
-#if STENCIL
-  dvec3 to_origin = -normalize(ray.to_light);
-#endif
+  dvec3 side = cross(ray.direction, ray.to_light), to_origin = -normalize(ray.to_light);
   vec3 normal = vec3(normalize(side));
-  ivec2 range = ranges[tile];
-  for (int i = range.x; i < range.x + range.y; ++i) {
-    int e = lists[i];
-    if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) continue;
-    dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
-    double sa = dot(side, a), sb = dot(side, b);
-    if ((sa >= 0) == (sb >= 0)) continue;
-    double share = sa / (sa - sb);
-    dvec3 p = a + (b - a) * share;
-    double towards = dot(p, ray.n);
-    if (!(towards > 0) || towards > ray.h) continue;  // not between light and ray
-    double x = ray.T + ray.h * dot(p, ray.direction) / towards;
-    if (!(x > 0) || !(x < end)) continue;
-    int change = dot(cross(a, b), ray.direction) > 0 ? -edges[e].multiplicity : edges[e].multiplicity;
-#if STENCIL
-    double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
-    keep_crossing(dot(normalize(a + (b - a) * middle), to_origin), edges[e].origin, change, x, e, share, ray.h / towards);
-#else
-    keep_crossing(x, edges[e].origin, change, x, e, share, 0);
-#endif
+#if FAN
+  dvec3 v = view_perspective != 0 ? ray.direction : -ray.to_light;
+  dvec2 across = dvec2(dot(v, fan_x), dot(v, fan_y));
+  if (is_across(across, v)) {
+    double turn = turn_of(across);
+    for (int level = 0; level < fan_levels; ++level) {
+      int sector = first_sector(level) + min(int(turn * 0.25LF * sectors_of(level)), sectors_of(level) - 1);
+      int last = starts[sector + 1];
+      for (int i = starts[sector]; i < last; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
+    }
+  } else {
+    for (int e = 0; e < edge_count; ++e) cross_edge(ray, end, e, side, normal, to_origin);
   }
+#else
+  ivec2 range = ranges[tile];
+  for (int i = range.x; i < range.x + range.y; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
+#endif
 }
 
 // Does the open segment from the light to y, relative to it, meet the sphere around c?

@@ -42,21 +42,22 @@ std::unique_ptr<Buffer> PlaneShading::left_out(const LightEdges* edges, const Bo
   return flags;
 }
 
-void PlaneShading::add(LitPicture& picture, int index, int air, const std::vector<int>& counts, const TileBins* bins,
-                       const LightEdges* edges, const VertexValues* values) const {
+void PlaneShading::add(LitPicture& picture, int index, int air, const std::vector<int>& counts, const Edges& lists,
+                       const VertexValues* values) const {
   const Use use(context_);
   const scene::Light& light = scene_.lights[index];
   const auto* spot = std::get_if<scene::SpotLight>(&light);
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const scene::Region* region = air >= 0 ? airs_.region(air) : nullptr;
   // Values at vertices are drawn by the paper's stages, with or without shadows.
-  const bool stages = air >= 0 && (values || (options_.shadows == Options::Shadows::stencil && bins));
+  const bool stages = air >= 0 && (values || (options_.shadows == Options::Shadows::stencil && lists.edges));
   auto definitions = airs_.definitions(index, air);
   definitions.insert({{"LOCAL_SIZE_X", "16"},
                       {"LOCAL_SIZE_Y", "8"},
                       {"AIRLIGHT", flag(air >= 0)},
                       {"COUNT_BY_PIXEL", flag(counts.size() > 1)},
-                      {"CROSSINGS", flag(bins)},
+                      {"CROSSINGS", flag(lists.edges)},
+                      {"FAN", flag(lists.fan)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
                       {"STENCIL", flag(stages)},
                       {"SURFACES", flag(!scene_.surfaces.empty())},
@@ -68,7 +69,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
     by_pixel->bind(13);
   }
   if (stages && region) {
-    flags = left_out(edges, bounding_box(*region), scene::ball(light)->center);
+    flags = left_out(lists.edges, bounding_box(*region), scene::ball(light)->center);
     flags->bind(15);
     p.set("boundary_cells", options_.boundary_cells);
   }
@@ -77,10 +78,12 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
     values->bind(p);
     p.set("media_end", shadow_planes::all_end(scene_.media));
   }
-  if (bins) {
-    edges->edges->bind(0);
-    bins->bind();
+  if (lists.edges) {
+    lists.edges->edges->bind(0);
+    p.set("edge_count", lists.edges->count);
   }
+  if (lists.fan) lists.fan->bind(p);
+  if (lists.tiles) lists.tiles->bind();
   if (picture.primitives) picture.primitives->bind(1);
   if (surfaces_) surfaces_->bind();
   materials_.bind(2);

@@ -5,6 +5,7 @@
 
 #include "gpu/raster/surfaces_on_device.h"
 #include "gpu/shadow_planes/airs_on_device.h"
+#include "gpu/shadow_planes/fan_on_device.h"
 #include "gpu/shadow_planes/tile_bins.h"
 #include "gpu/shadow_planes/vertex_values.h"
 #include "scene/renderer.h"
@@ -26,11 +27,16 @@ class PlaneShading {
   PlaneShading(Context&, const scene::Scene&, const shadow_planes::Options&, const AirsOnDevice&,
                const SurfacesOnDevice* surfaces);
 
+  // Of one light, the edges whose planes rays may cross: all null where nothing casts a shadow, else one of the lists.
+  struct Edges {
+    const LightEdges* edges = nullptr;
+    const FanOnDevice* fan = nullptr;
+    const TileBins* tiles = nullptr;
+  };
   // Adds an air (-1: there is none) as a light shows it, and with the first of them what surfaces reflect of the light.
-  // `counts`: m where rays begin, one number or one for every pixel; `bins` and `edges` are null where nothing casts a
-  // shadow, `values` where the airlight is computed for every pixel.
-  void add(LitPicture&, int light, int air, const std::vector<int>& counts, const TileBins* bins,
-           const LightEdges* edges, const VertexValues* values) const;
+  // `counts`: m where rays begin, one number or one for every pixel; `values` is null where the airlight is computed
+  // for every pixel.
+  void add(LitPicture&, int light, int air, const std::vector<int>& counts, const Edges&, const VertexValues*) const;
 
   // Layers of 3 floats per pixel.
   struct Layers {

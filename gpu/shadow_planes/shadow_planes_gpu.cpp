@@ -31,7 +31,8 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
         options_(options),
         context_(Context::get()),
         airs_(context_, *scene_, options),
-        bins_(context_) {
+        fan_(context_),
+        tiles_(context_) {
     const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
     const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
                                    [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
@@ -80,7 +81,8 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::unique_ptr<Silhouettes> silhouettes_;  // null: nothing casts a shadow
   mutable std::vector<LightEdges> edges_;     // by light
   mutable std::vector<SurfaceCount> counts_;
-  mutable TileBins bins_;
+  mutable FanOnDevice fan_;
+  mutable TileBins tiles_;
   mutable VertexValues values_;
   std::vector<scene::StageTime> times_;
 };
@@ -95,7 +97,10 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
                                          : dark;
   return {{"device", true, context_.description()},
           {"silhouettes", silhouettes_ != nullptr, found},
-          {"tiles", silhouettes_ != nullptr, silhouettes_ ? "edges by tiles of 16 x 16 pixels" : found},
+          {"edges of rays", silhouettes_ != nullptr,
+           !silhouettes_                                     ? found
+           : options_.candidates == Options::Candidates::fan ? "by angle around the line from light to camera"
+                                                             : "by tiles of 16 x 16 pixels"},
           {"airlight and surfaces", lit, dark},
           {"composition", true, "layers of the film"}};
 }
@@ -117,28 +122,34 @@ double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Exec
                                           StageTimer& timer) const {
   const Point3 light = scene::ball(scene_->lights[l])->center, camera = picture.view.camera.position;
   const std::vector<int> counts = counts_at_origins(l, picture.view, execution);
-  const TileBins* bins = silhouettes_ ? &bins_ : nullptr;
-  const LightEdges* edges = silhouettes_ ? &edges_[l] : nullptr;
-  if (bins) {
-    bins_.fill(picture.view, light, *edges);
-    timer.stage("tiles");
+  PlaneShading::Edges lists;
+  if (silhouettes_) {
+    lists.edges = &edges_[l];
+    if (options_.candidates == Options::Candidates::fan) {
+      fan_.fill(picture.view.camera, light, edges_[l]);
+      lists.fan = &fan_;
+    } else {
+      tiles_.fill(picture.view, light, edges_[l]);
+      lists.tiles = &tiles_;
+    }
+    timer.stage("edges of rays");
   }
   double vertices = 0;
   for (int air = 0; air < airs_.count(); ++air) {
     const bool by_vertex = options_.evaluation == Options::Evaluation::vertices;
     if (by_vertex) {
       const double far =
-          bins ? shadow_planes::mesh_reach(*scene_, airs_.region(air), light, camera, options_.plane_levels) : 0;
-      const bool planes = bins && options_.shadows != Options::Shadows::none;
-      values_.fill(context_, *scene_, options_, airs_, l, air, camera, surfaces_on_device(), planes ? edges : nullptr,
-                   far, timer);
+          lists.edges ? shadow_planes::mesh_reach(*scene_, airs_.region(air), light, camera, options_.plane_levels) : 0;
+      const bool planes = lists.edges && options_.shadows != Options::Shadows::none;
+      values_.fill(context_, *scene_, options_, airs_, l, air, camera, surfaces_on_device(),
+                   planes ? lists.edges : nullptr, far, timer);
       vertices += double(values_.count());
     }
-    shading_->add(picture, l, air, counts, bins, edges, by_vertex ? &values_ : nullptr);
+    shading_->add(picture, l, air, counts, lists, by_vertex ? &values_ : nullptr);
     timer.stage("airlight and surfaces");
   }
   if (airs_.count() == 0) {
-    shading_->add(picture, l, -1, counts, bins, edges, nullptr);
+    shading_->add(picture, l, -1, counts, lists, nullptr);
     timer.stage("airlight and surfaces");
   }
   return vertices;
@@ -148,7 +159,7 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   const std::size_t pixels = result.film.pixels();
   const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
-  const int overflows = bins_.overflows();
+  const int overflows = tiles_.overflows();
   if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const Use use(context_);
@@ -166,7 +177,7 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   double entries = 0, vertices = 0;
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
     vertices += add_light(int(l), picture, execution, timer);
-    entries += bins_.entries();
+    if (options_.candidates == Options::Candidates::tiles) entries += tiles_.entries();
   }
   const auto layer = [&](const char* name) { return Buffer(context_, name, pixels * 12); };
   const PlaneShading::Layers layers{layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")};
@@ -184,8 +195,10 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   result.counters["crossings"] = counted[1];
   result.counters["gatherings_beyond_32"] = counted[2];
   if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;
-  result.counters["tile_entries"] = entries;
-  result.counters["tile_overflows"] = bins_.overflows() - overflows;
+  if (silhouettes_ && options_.candidates == Options::Candidates::tiles) {
+    result.counters["tile_entries"] = entries;
+    result.counters["tile_overflows"] = tiles_.overflows() - overflows;
+  }
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
   result.counters["draws"] = double(RasterProgram::draws() - draws);
   return result;

@@ -32,8 +32,8 @@ Rgb signed_sum(const LitLight& lit, const Ray& ray, double end, int count, const
 
 }  // namespace
 
-void add_lit_parts(const LitLight& lit, const std::vector<int>& edges, std::optional<int> count,
-                   std::vector<Pixel>& pixels, Counts& counts, StageSeconds& seconds) {
+void add_lit_parts(const LitLight& lit, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>& pixels,
+                   Counts& counts, StageSeconds& seconds) {
   // In two passes, so that the clock is read for a tile, not for every pixel.
   scene::Stopwatch watch;
   std::vector<Crossing> crossings;
@@ -43,7 +43,7 @@ void add_lit_parts(const LitLight& lit, const std::vector<int>& edges, std::opti
   const auto at_origin = [&](const Pixel& pixel) { return count ? *count : lit.shadows->count(pixel.ray.origin); };
   if (counted)
     for (const Pixel& pixel : pixels) {
-      lit.shadows->lit_parts(pixel.ray, pixel.end.t, at_origin(pixel), &edges, crossings, of_ray);
+      lit.shadows->lit_parts(pixel.ray, pixel.end.t, at_origin(pixel), &edges.of(pixel.ray), crossings, of_ray);
       counts.crossings += double(crossings.size());
       parts.insert(parts.end(), of_ray.begin(), of_ray.end());
       first.push_back(parts.size());
@@ -58,7 +58,7 @@ void add_lit_parts(const LitLight& lit, const std::vector<int>& edges, std::opti
       pixel.in_air += over(lit, pixel.ray, {0, pixel.end.t}, counts);
     } else {
       const int m = at_origin(pixel);
-      lit.shadows->lit_parts(pixel.ray, pixel.end.t, m, &edges, crossings, of_ray);
+      lit.shadows->lit_parts(pixel.ray, pixel.end.t, m, &edges.of(pixel.ray), crossings, of_ray);
       counts.crossings += double(crossings.size());
       pixel.in_air += signed_sum(lit, pixel.ray, pixel.end.t, m, crossings, counts);
     }

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "methods/shadow_planes/air.h"
+#include "methods/shadow_planes/edge_fan.h"
 #include "methods/shadow_planes/pixel.h"
 #include "methods/shadow_planes/shadow_volumes.h"
 
@@ -15,9 +16,9 @@ struct LitLight {
   Options::Shadows how;          // counted, or signed_sum
 };
 
-// Adds the light's airlight to pixels of a tile. `edges`: whose planes they may cross; `count`: m of the camera, of
-// each ray's own origin where there is none.
-void add_lit_parts(const LitLight&, const std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&,
-                   Counts&, StageSeconds&);
+// Adds the light's airlight to pixels of a tile. `edges`: whose planes their rays may cross; `count`: m of the camera,
+// of each ray's own origin where there is none.
+void add_lit_parts(const LitLight&, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
+                   StageSeconds&);
 
 }  // namespace airlight::shadow_planes

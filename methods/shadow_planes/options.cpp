@@ -91,6 +91,13 @@ std::vector<scene::SettingSpec> setting_specs() {
        0,
        0,
        {"static", "moving"}},
+      {"candidates",
+       Type::choice,
+       "fan",
+       "edges that a ray may cross: by angle around the line from light to camera, or by tile of 16 x 16 pixels",
+       0,
+       0,
+       {"fan", "tiles"}},
   };
 }
 
@@ -115,6 +122,7 @@ Options read_options(const scene::Settings& settings) {
   o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
+  o.candidates = settings.text("candidates") == "fan" ? Options::Candidates::fan : Options::Candidates::tiles;
   o.moving_lights = settings.text("lights") == "moving";
   return o;
 }

@@ -35,6 +35,10 @@ struct Options {
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
   bool moving_lights = false;   // silhouettes are found for every picture, not once
+  // How the edges are found that a ray may cross: by angle around the line from light to camera, or by tile of the
+  // film.
+  enum class Candidates { fan, tiles };
+  Candidates candidates = Candidates::fan;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -133,18 +133,16 @@ std::size_t PaperStages::vertices() const {
   return sum;
 }
 
-void PaperStages::draw(std::size_t l, std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>& pixels,
+void PaperStages::draw(std::size_t l, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>& pixels,
                        Counts& counts, StageSeconds& seconds) const {
   scene::Stopwatch watch;
   Work work;
   work.first.push_back(0);
   work.sum.assign(pixels.size(), Rgb::Zero());
-  if (!shadows_.empty()) orders_[l].sort(edges);
-  seconds.sort += watch.lap();
   std::vector<int> at_origin(pixels.size(), 0);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty()) {
-      shadows_[l].cross_edges(pixels[i].ray, pixels[i].end.t, edges, work.crossings);
+      shadows_[l].cross_edges(pixels[i].ray, pixels[i].end.t, edges.of(pixels[i].ray), work.crossings);
       shadows_[l].cross_spheres(pixels[i].ray, pixels[i].end.t, work.crossings);
       at_origin[i] = count ? *count : shadows_[l].count(pixels[i].ray.origin);
     }

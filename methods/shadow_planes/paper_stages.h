@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "methods/shadow_planes/edge_fan.h"
 #include "methods/shadow_planes/pixel.h"
 #include "methods/shadow_planes/plane_order.h"
 #include "methods/shadow_planes/vertex_airlight.h"
@@ -25,9 +26,9 @@ class PaperStages {
   PaperStages(const scene::Scene&, const Options&, const std::vector<Air>&, const std::vector<ShadowVolumes>& shadows,
               const scene::Camera&, int threads);
 
-  // Adds the airlight of a light to pixels. `edges`: whose planes they may cross; `count`: of surfaces between light
-  // and camera; of a ray's own origin where there is none.
-  void draw(std::size_t light, std::vector<int>& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
+  // Adds the airlight of a light to pixels. `edges`: whose planes their rays may cross; `count`: of surfaces between
+  // light and camera; of a ray's own origin where there is none.
+  void draw(std::size_t light, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
             StageSeconds&) const;
 
   const StageSeconds& seconds() const { return seconds_; }  // of the constructor

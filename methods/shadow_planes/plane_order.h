@@ -20,10 +20,8 @@ class PlaneOrder {
   PlaneOrder(const ShadowVolumes&, const scene::Camera&, int pieces);  // keeps a reference to the first
 
   // Of a ray's crossings: sets the keys of the pieces that are crossed, and sorts by key, by number of the edge where
-  // keys are equal. Fast if they are nearly sorted, as those of sorted edges are.
+  // keys are equal.
   void sort(const Ray&, Crossing* begin, Crossing* end) const;
-  // So that what is crossed in their order is sorted (pieces: nearly).
-  void sort(std::vector<int>& edges) const;
 
  private:
   double key(int edge, int piece, const Vec3& to_camera) const;
@@ -31,7 +29,6 @@ class PlaneOrder {
   const ShadowVolumes& shadows_;
   int pieces_;
   std::vector<double> keys_;  // by edge, then piece; empty: orthographic
-  std::vector<int> rank_;     // of edges, by the key of their middles
 };
 
 }  // namespace airlight::shadow_planes

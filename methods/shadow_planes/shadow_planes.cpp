@@ -32,7 +32,8 @@ struct Tally {
 struct Frame {
   View view;
   const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows
-  std::vector<TileEdges> edges;               // by light
+  std::vector<TileEdges> tiles;               // by light; empty: fans
+  std::vector<EdgeFan> fans;                  // by light; empty: tiles
   std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
   std::optional<PaperStages> stages;          // none: lit parts of rays
 };
@@ -123,10 +124,11 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
       if (needs_.medium) pixel.visible = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
       if (pixel.end.hit) pixel.on_surface = pixel.visible * reflected(*pixel.end.hit, -pixel.ray.direction);
     }
-  std::vector<int> edges;
+  std::vector<int> of_tile;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
     const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
-    if (needs_.shadows) frame.edges[l].of_tile(tile_x, tile_y, edges);
+    if (!frame.tiles.empty()) frame.tiles[l].of_tile(tile_x, tile_y, of_tile);
+    EdgeCandidates edges = frame.fans.empty() ? EdgeCandidates(of_tile) : EdgeCandidates(frame.fans[l]);
     tally.seconds.scene += watch.lap();
     if (frame.stages)
       frame.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
@@ -164,8 +166,11 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
     moving = silhouettes();
     result.times.push_back({"silhouettes", watch.lap()});
   }
-  Frame frame{view, moving.empty() ? shadows_ : moving, {}, {}, {}};
-  for (const ShadowVolumes& shadows : frame.shadows) frame.edges.emplace_back(shadows, view, execution.threads);
+  Frame frame{view, moving.empty() ? shadows_ : moving, {}, {}, {}, {}};
+  for (const ShadowVolumes& shadows : frame.shadows) {
+    if (options_.candidates == Options::Candidates::tiles) frame.tiles.emplace_back(shadows, view, execution.threads);
+    if (options_.candidates == Options::Candidates::fan) frame.fans.emplace_back(shadows, view.camera);
+  }
   if (view.camera.kind == scene::Camera::Kind::perspective)
     for (const ShadowVolumes& shadows : frame.shadows) frame.at_camera.push_back(shadows.count(view.camera.position));
   const double tiles = watch.lap();
