@@ -5,8 +5,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "shadow_planes/media.glsl"
 
 layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };
-layout(std430, binding = 6) readonly buffer Airlight { vec4 airlight[]; };
-layout(std430, binding = 7) readonly buffer Reflected { vec4 reflected[]; };
+#include "shadow_planes/pixels.glsl"
 layout(std430, binding = 0) writeonly buffer AirlightLayer { float airlight_layer[]; };
 layout(std430, binding = 3) writeonly buffer TransmittanceLayer { float transmittance_layer[]; };
 layout(std430, binding = 4) writeonly buffer SurfaceLayer { float surface_layer[]; };
@@ -23,7 +22,7 @@ void main() {
   double end = 1e37LF;
   if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
   vec3 visible = exp(-min(depth_along(origin, direction, end), 200));
-  vec3 in_air = airlight[place].rgb + ambient * (1 - visible), on_surface = visible * reflected[place].rgb;
+  vec3 in_air = lit_pixels[place].airlight.rgb + ambient * (1 - visible), on_surface = visible * lit_pixels[place].reflected.rgb;
   for (int c = 0; c < 3; ++c) {
     airlight_layer[3 * place + c] = in_air[c];
     transmittance_layer[3 * place + c] = visible[c];

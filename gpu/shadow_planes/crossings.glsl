@@ -157,19 +157,22 @@ void cross_spheres(Ray ray, double end) {
   }
 }
 
-// Gathers the next crossings within (0, end) in order; true if more are left.
-bool gather(Ray ray, double end, int tile) {
+// Gathers the next crossings within (0, end) in order, after `key` and `origin`, which then are those of the last; true if
+// more are left.
+bool gather(Ray ray, double end, int tile, inout double key, inout int origin) {
   hit_count = 0;
   crossing_sum = 0;
   crossing_count = 0;
 #if STENCIL
   stencil_sum = 0;
 #endif
+  last_key = key;
+  last_origin = origin;
   cross_edges(ray, end, tile);
   cross_spheres(ray, end);
   if (hit_count <= most_hits) return false;
   hit_count = most_hits;
-  last_key = hit_key[most_hits - 1];
-  last_origin = hit_origin[most_hits - 1];
+  key = hit_key[most_hits - 1];
+  origin = hit_origin[most_hits - 1];
   return true;
 }

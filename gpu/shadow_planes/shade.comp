@@ -8,14 +8,15 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "shadow_planes/ray.glsl"
 #include "shadow_planes/crossings.glsl"
 #include "shadow_planes/airlight.glsl"
+#include "common/loops_cut.glsl"
+#include "shadow_planes/pixels.glsl"
+#include "shadow_planes/state.glsl"
 
 layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
-layout(std430, binding = 6) buffer Airlight { vec4 airlight[]; };
-layout(std430, binding = 7) buffer Reflected { vec4 reflected[]; };
 #if COUNT_BY_PIXEL
 layout(std430, binding = 13) readonly buffer Counts { int count_at[]; };  // m where a ray begins
 #endif
-layout(std430, binding = 14) buffer Counters { uint counters[]; };        // lit parts, crossings, gatherings after the first
+layout(std430, binding = 14) buffer Counters { uint counters[]; };  // lit parts, crossings, gatherings after the first; unfinished, loops cut
 #if SURFACES
 layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
 #include "common/reflection.glsl"
@@ -36,26 +37,30 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (gl_LocalInvocationIndex == 0) part_sum = crossing_total = more_total = 0;
   barrier();
-  if (pixel.x < view_width && pixel.y < view_height) {
-    int place = pixel.y * view_width + pixel.x, primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;
+  int place = pixel.y * view_width + pixel.x;
+  if (pixel.x < view_width && pixel.y < view_height && (resume == 0 || states[place].unfinished != 0)) {
+    int primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;
     dvec3 origin, direction, normal = dvec3(0);
     view_ray(dvec2(pixel) + 0.5LF, origin, direction);
     double end = 1e37LF;
     if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
     Ray ray = ray_to(origin, direction);
-    int m = count_at_camera, m_end, parts, gatherings;
+    int m = count_at_camera, m_end, parts;
 #if COUNT_BY_PIXEL
     m = count_at[place];
 #endif
-    int tile = (pixel.y >> 4) * tile_columns + (pixel.x >> 4);
-    airlight[place].rgb += airlight_of(ray, end, primitive, tile, m, m_end, parts, gatherings);
-    atomicAdd(part_sum, uint(parts));
+    State state = begin_state(place, m);
+    vec3 in_air = airlight_of(ray, end, primitive, (pixel.y >> 4) * tile_columns + (pixel.x >> 4), m, state, m_end, parts);
 #if CROSSINGS
-    atomicAdd(crossing_total, uint(crossing_count));
-    atomicAdd(more_total, uint(gatherings - 1));
+    states[place] = state;
+    if (resume == 0) atomicAdd(crossing_total, uint(crossing_count));
+    if (state.unfinished != 0) atomicAdd(more_total, 1);
 #endif
+    atomicAdd(part_sum, uint(parts));
+    bool done = state.unfinished == 0;
+    if (done) lit_pixels[place].airlight.rgb += in_air;
 #if SURFACES
-    if (reflects != 0 && surface >= 0 && m_end == 0) {
+    if (done && reflects != 0 && surface >= 0 && m_end == 0) {
       if (dot(normal, direction) > 0) normal = -normal;
       dvec3 offset = ray.to_light - end * direction;
       double distance_ = length(offset);
@@ -68,16 +73,18 @@ void main() {
       float factor = 1;
 #endif
       if (cosine > 0 && factor > 0)
-        reflected[place].rgb += brdf(materials[surface], vec3(normal), to_light, vec3(-direction)) * cosine * factor *
+        lit_pixels[place].reflected.rgb += brdf(materials[surface], vec3(normal), to_light, vec3(-direction)) * cosine * factor *
                                 intensity / (d * d) *
                                 exp(-depth_along(origin + end * direction, offset / distance_, distance_));
     }
 #endif
   }
+  if (loops_cut()) atomicOr(counters[4], 1);
   barrier();
   if (gl_LocalInvocationIndex == 0) {
     atomicAdd(counters[0], part_sum);
     atomicAdd(counters[1], crossing_total);
     atomicAdd(counters[2], more_total);
+    atomicAdd(counters[3], more_total);
   }
 }

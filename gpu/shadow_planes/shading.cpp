@@ -1,11 +1,14 @@
 #include "gpu/shadow_planes/shading.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "gpu/material_tables.h"
 #include "gpu/program.h"
 #include "gpu/view_uniforms.h"
 #include "methods/shadow_planes/paper_stages.h"
+#include "scene/error.h"
 
 namespace airlight::gpu {
 
@@ -13,9 +16,9 @@ using shadow_planes::Options;
 
 LitPicture::LitPicture(Context& context, const scene::View& v)
     : view(v),
-      airlight(context, "airlight of lights", std::size_t(v.width) * v.height * 16),
-      reflected(context, "light on surfaces", std::size_t(v.width) * v.height * 16),
-      counters(context, "counters", 12) {}
+      pixels(context, "light of pixels", std::size_t(v.width) * v.height * 32),
+      states(context, "states of pixels", std::size_t(v.width) * v.height * 48),
+      counters(context, "counters", 20) {}
 
 PlaneShading::PlaneShading(Context& context, const scene::Scene& scene, const Options& options,
                            const AirsOnDevice& airs, const SurfacesOnDevice* surfaces)
@@ -87,8 +90,8 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   if (picture.primitives) picture.primitives->bind(1);
   if (surfaces_) surfaces_->bind();
   materials_.bind(2);
-  picture.airlight.bind(6);
-  picture.reflected.bind(7);
+  picture.pixels.bind(6);
+  picture.states.bind(7);
   tables_.bind(9);
   picture.counters.bind(14);
   set_view(p, picture.view);
@@ -101,7 +104,20 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   p.set("tile_columns", TileBins::columns(picture.view));
   p.set("edge_split", options_.edge_split);
   p.set("frame_buffer", options_.frame_buffer);
-  p.dispatch(picture.view.width, picture.view.height);
+  p.set("three", 3);
+  for (bool resume = false;; resume = true) {
+    p.set("resume", resume);
+    p.dispatch(picture.view.width, picture.view.height);
+    if (!lists.edges) return;
+    std::vector<unsigned> counters = picture.counters.download<unsigned>();
+    if (counters[4] != 0)
+      throw Unavailable(
+          fmt::format("gpu: {} ends the loops of a pixel after 65535 iterations, too few for its share of {} crossings",
+                      context_.renderer(), counters[1]));
+    if (counters[3] == 0) return;
+    counters[3] = 0;
+    picture.counters.upload(counters);
+  }
 }
 
 void PlaneShading::compose(const LitPicture& picture, const Layers& layers) const {
@@ -109,8 +125,7 @@ void PlaneShading::compose(const LitPicture& picture, const Layers& layers) cons
   Program& p = context_.program("shadow_planes/composition.comp", {{"LOCAL_SIZE_X", "16"}, {"LOCAL_SIZE_Y", "8"}});
   if (picture.primitives) picture.primitives->bind(1);
   if (surfaces_) surfaces_->bind();
-  picture.airlight.bind(6);
-  picture.reflected.bind(7);
+  picture.pixels.bind(6);
   airs_.bind_media(p);
   layers.airlight.bind(0);
   layers.transmittance.bind(3);

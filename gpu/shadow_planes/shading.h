@@ -17,8 +17,10 @@ struct LitPicture {
   LitPicture(Context&, const scene::View&);
   scene::View view;
   std::unique_ptr<Buffer> primitives;  // of the first hits; null: there are none
-  Buffer airlight, reflected;          // 4 floats per pixel
-  Buffer counters;                     // lit parts, crossings, gatherings after the first
+  Buffer pixels;                       // the layout of pixels.glsl
+  Buffer states;                       // that of state.glsl
+  // Lit parts, crossings, gatherings after the first; of the last dispatch: unfinished pixels; whether loops were cut.
+  Buffer counters;
 };
 
 class PlaneShading {

@@ -47,8 +47,8 @@ vec3 gamma_on_triangle(ivec4 corners, dvec3 point) {
 }
 #endif
 
-vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m, out int m_end, out int parts, out int gatherings) {
-  vec3 sum = vec3(0);
+// `state.unfinished` on return: there are more crossings. `m_end`: m where the ray ends.
+vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, inout State state, out int m_end, out int parts) {
   dvec2 domain = dvec2(0, end);
   double entry = 1e300LF;  // nothing that is sorted in front of it is drawn: there the stencil becomes 255
 #if PAPER_MEDIUM
@@ -73,37 +73,32 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m, out int m_
 #endif
   stencil_end = domain.y;
   parts = 0;
-  gatherings = 1;
-  m_end = m;
-  int stencil = m;
-  hit_count = 0;
+  m_end = m_origin;
+  int stencil = state.m;
   bool more = false;
+  hit_count = 0;
 #if CROSSINGS
-  last_key = -1e300LF;
-  last_origin = -1;
-  more = gather(ray, end, tile);
-  m_end = m + crossing_sum;
-  stencil = m + stencil_sum;
+  more = gather(ray, end, tile, state.last_key, state.last_origin);
+  m_end = m_origin + crossing_sum;
+  if (resume == 0) stencil = m_origin + stencil_sum;
 #endif
 #if SHADOWS == 0
   stencil = hit_count = 0;
   more = false;
 #endif
-  if (!(domain.y > domain.x)) return sum;
-  for (int e = -1;; ++e) {
-    if (e >= hit_count) {
-      if (!more) break;
-      more = gather(ray, end, tile);
-      ++gatherings;
-      e = 0;
-    }
+  state.unfinished = 0;
+  if (!(domain.y > domain.x)) return vec3(0);
+  for (int e = resume == 0 ? -1 : 0; e < hit_count; ++e) {
     float share = 0;
     double place = domain.y;
     int edge = -1;
     if (e < 0) {  // stage 3: where the ray leaves the air or ends
       if (stencil == 0) share = 1;
     } else {  // stage 5: each plane adds or takes away all light in front of it
-      if (hit_key[e] >= entry) break;
+      if (hit_key[e] >= entry) {
+        more = false;
+        break;
+      }
       place = hit_place[e];
       edge = hit_edge[e];
       if (place >= domain.y) continue;
@@ -144,8 +139,10 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m, out int m_
     }
 #endif
     if (by_pixel) gamma = intensity * lit_airlight(ray, 0, place);
-    sum += share * gamma;
-    if (frame_buffer != 0) sum = clamp(floor(sum * 255 + 0.5) / 255, vec3(0), vec3(1));
+    state.sum.rgb += share * gamma;
+    if (frame_buffer != 0) state.sum.rgb = clamp(floor(state.sum.rgb * 255 + 0.5) / 255, vec3(0), vec3(1));
   }
-  return sum;
+  state.m = stencil;
+  state.unfinished = int(more);
+  return state.sum.rgb;
 }
