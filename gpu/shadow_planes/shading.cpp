@@ -108,12 +108,11 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   for (bool resume = false;; resume = true) {
     p.set("resume", resume);
     p.dispatch(picture.view.width, picture.view.height);
-    if (!lists.edges) return;
     std::vector<unsigned> counters = picture.counters.download<unsigned>();
     if (counters[4] != 0)
       throw Unavailable(
-          fmt::format("gpu: {} ends the loops of a pixel after 65535 iterations, too few for its share of {} crossings",
-                      context_.renderer(), counters[1]));
+          fmt::format("gpu: {} ends the loops of a pixel after 65535 iterations, too few for {} nodes and {} crossings",
+                      context_.renderer(), options_.nodes, counters[1]));
     if (counters[3] == 0) return;
     counters[3] = 0;
     picture.counters.upload(counters);

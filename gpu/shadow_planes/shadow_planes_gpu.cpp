@@ -142,7 +142,7 @@ double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Exec
           lists.edges ? shadow_planes::mesh_reach(*scene_, airs_.region(air), light, camera, options_.plane_levels) : 0;
       const bool planes = lists.edges && options_.shadows != Options::Shadows::none;
       values_.fill(context_, *scene_, options_, airs_, l, air, camera, surfaces_on_device(),
-                   planes ? lists.edges : nullptr, far, timer);
+                   planes ? lists.edges : nullptr, far, picture.counters, timer);
       vertices += double(values_.count());
     }
     shading_->add(picture, l, air, counts, lists, by_vertex ? &values_ : nullptr);

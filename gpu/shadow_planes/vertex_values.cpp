@@ -11,7 +11,8 @@ namespace airlight::gpu {
 
 void VertexValues::fill(Context& context, const scene::Scene& scene, const shadow_planes::Options& options,
                         const AirsOnDevice& airs, int light, int air, const Point3& camera,
-                        const SurfacesOnDevice* surfaces, const LightEdges* edges, double far, StageTimer& timer) {
+                        const SurfacesOnDevice* surfaces, const LightEdges* edges, double far, const Buffer& counters,
+                        StageTimer& timer) {
   const Use use(context);
   const scene::Light& of = scene.lights[light];
   const auto* spot = std::get_if<scene::SpotLight>(&of);
@@ -38,6 +39,8 @@ void VertexValues::fill(Context& context, const scene::Scene& scene, const shado
     if (edges) edges->edges->bind(0);
     airs.bind(p, light, air);
     values_->bind(13);
+    counters.bind(14);
+    p.set("three", 3);
     p.set("vertex_count", count);
     p.set("first_value", first);
     p.set("pieces", options.edge_split);

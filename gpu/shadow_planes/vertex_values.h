@@ -12,9 +12,11 @@ namespace airlight::gpu {
 
 class VertexValues {
  public:
-  // `far`: how far from the light planes are meshed [m]. `surfaces` and `edges` are null where there are none.
+  // `far`: how far from the light planes are meshed [m]. `surfaces` and `edges` are null where there are none. Loops
+  // that the driver ends are told in `counters` (shading.h).
   void fill(Context&, const scene::Scene&, const shadow_planes::Options&, const AirsOnDevice&, int light, int air,
-            const Point3& camera, const SurfacesOnDevice* surfaces, const LightEdges* edges, double far, StageTimer&);
+            const Point3& camera, const SurfacesOnDevice* surfaces, const LightEdges* edges, double far,
+            const Buffer& counters, StageTimer&);
 
   // Binds 13, sets the uniforms of stencil.glsl.
   void bind(LinkedProgram&) const;

@@ -1,6 +1,7 @@
 // The paper's Gamma at vertices: the airlight of a ray from the camera to each if all of it is lit (Biri et al. 2006, sections
 // 5.1.3, 5.1.5, 5.2); methods/shadow_planes/vertex_airlight.cpp. OF: 0 meshes, 1 a medium's boundary, 2 shadow planes.
 layout(local_size_x = LOCAL_SIZE_X) in;
+#include "common/loops_cut.glsl"
 #include "raster/primitive.glsl"
 #include "shadow_planes/edge.glsl"
 #include "shadow_planes/ray.glsl"
@@ -13,6 +14,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #endif
 
 layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = 14) buffer Counters { uint counters[]; };  // as shade.comp
 layout(std430, binding = 13) writeonly buffer Values { vec4 values[]; };
 uniform int vertex_count, first_value, pieces;
 uniform dvec3 camera;       // [m]
@@ -51,5 +53,6 @@ void main() {
     }
     if (end > 0) value = intensity * lit_airlight(ray, 0, end);
   }
+  if (loops_cut()) atomicOr(counters[4], 1);
   values[first_value + i] = vec4(value, 0);
 }

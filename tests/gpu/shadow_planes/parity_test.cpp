@@ -263,6 +263,10 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
       CHECK(std::abs(a[i] - b[i]) < 1e-4f * (a[i] + 0.01f * most));
   }
   CHECK(others < 20);  // measured: 12 of 768
-  if (context->software())
-    CHECK_THROWS_AS(render(gpu::ShadowPlanesGpu(), scene, {{"candidates", "tiles"}}), Unavailable);
+  if (!context->software()) return;
+  CHECK_THROWS_AS(render(gpu::ShadowPlanesGpu(), scene, {{"candidates", "tiles"}}), Unavailable);
+  const auto media = scene_of("shadow_planes/media", 16, 12);
+  for (const Pairs& given :
+       {Pairs{{"nodes", "1024"}}, Pairs{{"nodes", "1024"}, {"shadows", "stencil"}, {"evaluation", "vertices"}}})
+    CHECK_THROWS_AS(render(gpu::ShadowPlanesGpu(), media, given), Unavailable);
 }
