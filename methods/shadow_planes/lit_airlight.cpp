@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "methods/shadow_planes/polynomial.h"
+#include "methods/shadow_planes/rule_sum.h"
 
 namespace airlight::shadow_planes {
 
@@ -34,16 +35,15 @@ LitAirlight::LitAirlight(const std::vector<scene::Medium>& media, const Options&
 
 Rgb LitAirlight::operator()(const scene::Light& light, const Ray& ray, Interval lit) const {
   const Point3 at = scene::ball(light)->center;
+  if (std::holds_alternative<scene::PointLight>(light)) return part(light, at, ray, lit);
+  const auto& spot = std::get<scene::SpotLight>(light);
+  const LightFromRay from = light_from_ray(ray, at);
   std::vector<double> places{lit.lo};
-  if (const auto* spot = std::get_if<scene::SpotLight>(&light)) {
-    const LightFromRay from = light_from_ray(ray, at);
-    for (const double angle : {spot->inner_angle, spot->outer_angle})
-      cross_cone(from, ray.direction, spot->axis, angle, places);
-    places.erase(
-        std::remove_if(places.begin() + 1, places.end(), [&](double x) { return !(x > lit.lo && x < lit.hi); }),
-        places.end());
-    std::sort(places.begin(), places.end());
-  }
+  for (const double angle : {spot.inner_angle, spot.outer_angle})
+    cross_cone(from, ray.direction, spot.axis, angle, places);
+  places.erase(std::remove_if(places.begin() + 1, places.end(), [&](double x) { return !(x > lit.lo && x < lit.hi); }),
+               places.end());
+  std::sort(places.begin(), places.end());
   places.push_back(lit.hi);
   Rgb sum = Rgb::Zero();
   for (std::size_t k = 0; k + 1 < places.size(); ++k)
@@ -76,11 +76,13 @@ Rgb LitAirlight::part(const scene::Light& light, const Point3& at, const Ray& ra
     if (options_.evaluator == Options::Evaluator::polynomial) {
       shape = polynomial(k, from, lit);
     } else {
-      shape = k / (4 * pi) * std::exp(-k * (lit.lo + std::hypot(lit.lo - from.T, from.h))) *
-              airlight_integral(rule_, phase_, k, from.T, from.h, LitPart<double>{lit.lo, lit.hi - lit.lo},
-                                [&](double q, double v, double w) {
-                                  return spot ? towards(2 * q * v * from.n + (w - v) * ray.direction) : 1.0;
-                                });
+      const LitPart<double> part{lit.lo, lit.hi - lit.lo};
+      const double integral = spot ? airlight_integral(rule_, phase_, k, from.T, from.h, part,
+                                                       [&](double q, double v, double w) {
+                                                         return towards(2 * q * v * from.n + (w - v) * ray.direction);
+                                                       })
+                                   : isotropic_integral(rule_, phase_, k, from.T, from.h, part);
+      shape = k / (4 * pi) * std::exp(-k * (lit.lo + std::hypot(lit.lo - from.T, from.h))) * integral;
     }
     result[c] = albedo_[c] * shape;
   }

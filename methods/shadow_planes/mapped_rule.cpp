@@ -1,5 +1,6 @@
 #include "methods/shadow_planes/mapped_rule.h"
 
+#include "methods/shadow_planes/rule_sum.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
@@ -20,8 +21,7 @@ template struct MappedRule<double>;
 double lit_airlight(const MappedRule<double>& rule, const PhaseForm& phase, double extinction, double albedo,
                     double intensity, double T, double h, const LitPart<double>& part) {
   if (!(extinction > 0) || !(part.length > 0)) return 0;
-  const double shape =
-      airlight_integral(rule, phase, extinction, T, h, part, [](double, double, double) { return 1.0; });
+  const double shape = isotropic_integral(rule, phase, extinction, T, h, part);
   return albedo * extinction * intensity / (4 * pi) * std::exp(-extinction * (part.x0 + std::hypot(part.x0 - T, h))) *
          shape;
 }

@@ -47,38 +47,56 @@ Real q_at(Real d, Real h) {
   return d > 0 ? (r + d) / h : h / (r - d);
 }
 
-// (1/h) integral over q of factor(q, v, w, q - q0) 2/(1 + q^2) dq [1/m times the factor's unit], with nodes for a
-// factor that falls as e^(-extinction h (q - q0)) from its first value; v and w as in phase_form.h. `T`, `h` [m] as
-// LightFromRay, `extinction` [1/m] >= 0, `width` of the phase function. Infinite where h = 0 and the light is within.
-template <class Real, class Factor>
-Real mapped_integral(const MappedRule<Real>& rule, Real width, Real extinction, Real T, Real h,
-                     const LitPart<Real>& part, Factor&& factor) {
+// A lit part as the rule maps it: q - q0 = c ((1-s)^-m - 1), s in [0, s1].
+template <class Real>
+struct PartMap {
+  Real h;  // [m], kept from 0; 0: the light is on the part
+  Real q0, c, s1;
+};
+
+template <class Real>
+PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction, Real T, Real h,
+                       const LitPart<Real>& part) {
   const Real d0 = part.x0 - T, d1 = d0 + part.length;
-  h = std::max(h, rule.h_floor * std::min(std::abs(d0), std::abs(d1)));
-  if (!(h > 0)) return std::numeric_limits<Real>::infinity();
-  const Real a = extinction * h, q0 = q_at(d0, h);
+  PartMap<Real> map{std::max(h, rule.h_floor * std::min(std::abs(d0), std::abs(d1))), 0, 0, 0};
+  h = map.h;
+  if (!(h > 0)) return map;
+  const Real a = extinction * h;
+  map.q0 = q_at(d0, h);
   // q1 - q0 without the difference.
   Real span = std::numeric_limits<Real>::infinity();
   if (std::isfinite(part.length)) {
     const Real g = (d0 + d1) / (std::hypot(d0, h) + std::hypot(d1, h));
-    span = g > 0 ? part.length * (1 + g) / h : q0 * q_at(d1, h) * part.length * (1 - g) / h;
+    span = g > 0 ? part.length * (1 + g) / h : map.q0 * q_at(d1, h) * part.length * (1 - g) / h;
   }
   if (a > 0) span = std::min(span, rule.depth_cut / a);
-  const Real c = 1 / (a / 10 + 1 / std::sqrt(width * width + q0 * q0));
-  const Real s1 = -std::expm1(-std::log1p(span / c) / rule.m);
+  map.c = 1 / (a / 10 + 1 / std::sqrt(width * width + map.q0 * map.q0));
+  map.s1 = -std::expm1(-std::log1p(span / map.c) / rule.m);
+  return map;
+}
+
+// (1/h) integral over q of factor(q, v, w, q - q0) 2/(1 + q^2) dq [1/m times the factor's unit], with nodes for a
+// factor that falls as e^(-extinction h (q - q0)) from its first value; v and w as in phase_form.h. `T`, `h` [m] as
+// LightFromRay, `extinction` [1/m] >= 0, `width` of the phase function. With h = 0 as if h were h_floor: 1e30 and more
+// where the light is within, infinite where the part begins or ends there.
+template <class Real, class Factor>
+Real mapped_integral(const MappedRule<Real>& rule, Real width, Real extinction, Real T, Real h,
+                     const LitPart<Real>& part, Factor&& factor) {
+  const PartMap<Real> map = map_part(rule, width, extinction, T, h, part);
+  if (!(map.h > 0)) return std::numeric_limits<Real>::infinity();
   Real sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const Real s = s1 * rule.node[i], t = 1 - s;
+    const Real s = map.s1 * rule.node[i], t = 1 - s;
     Real power = 1, series = 0;  // t^m, 1 + t + ... + t^(m-1)
     for (int k = 0; k < rule.m; ++k) {
       series += power;
       power *= t;
     }
-    const Real further = c * s * series / power;  // q - q0
-    const Real q = q0 + further, v = 1 / (1 + q * q), w = q * q * v;
-    sum += rule.weight[i] * factor(q, v, w, further) * 2 * v * c * rule.m / (power * t);
+    const Real further = map.c * s * series / power;  // q - q0
+    const Real q = map.q0 + further, v = 1 / (1 + q * q), w = q * q * v;
+    sum += rule.weight[i] * factor(q, v, w, further) * 2 * v * map.c * rule.m / (power * t);
   }
-  return s1 * sum / h;
+  return map.s1 * sum / map.h;
 }
 
 // I [1/m] times the unit of `intensity(q, v, w)`, that of the light towards the point at q.

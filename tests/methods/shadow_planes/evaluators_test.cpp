@@ -8,6 +8,7 @@
 #include "methods/shadow_planes/light_from_ray.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
+#include "methods/shadow_planes/rule_sum.h"
 #include "scene/error.h"
 #include "scene/math/exponential_integral.h"
 #include "tests/methods/shadow_planes/rule_cases.h"
@@ -199,6 +200,26 @@ TEST_CASE("shadow planes: errors of the rules", "[shadow_planes]") {
       fmt::print("kind {} g {}: float 8 {:.1e}, 16 {:.1e}; double 32 {:.1e}, 64 {:.1e}\n", int(row.phase.kind),
                  row.phase.g, worst[0], worst[1], worst[2], worst[3]);
   }
+}
+
+// On vectors, any number of nodes: the same sum.
+TEST_CASE("shadow planes: the sum on vectors", "[shadow_planes]") {
+  const auto one = [](double, double, double) { return 1.0; };
+  double worst = 0;
+  for (const auto& [nodes, m] : {std::pair{1, 1}, {5, 2}, {8, 2}, {13, 3}, {16, 3}, {64, 6}})
+    for (const RuleErrors& row : rule_errors()) {
+      const MappedRule<double> rule(nodes, m);
+      for (const auto& [a, d0, length] : rule_cases()) {
+        const LitPart<double> part{0, length};
+        const double expected = airlight_integral(rule, row.phase, double(a), double(-d0), 1.0, part, one);
+        const double got = isotropic_integral(rule, row.phase, a, -d0, 1, part);
+        worst = std::max(worst, std::abs(got - expected) / expected);
+      }
+    }
+  CAPTURE(worst);
+  CHECK(worst < 1e-13);  // rounding alone
+  const MappedRule<double> rule(16, 3);
+  CHECK(isotropic_integral(rule, PhaseForm{}, 1, 2, 0, {2, 3}) == infinity);  // begins at the light
 }
 
 // p(c) of both houses: 4 pi apart, and printed forms by their means.
