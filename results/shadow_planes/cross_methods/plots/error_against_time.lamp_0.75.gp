@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00056695:0.0600645]
+set xrange [0.000647912:0.0699311]
 set logscale y
 set format y "%g"
 set yrange [1.28821e-07:0.4426]

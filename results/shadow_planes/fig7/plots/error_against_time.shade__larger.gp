@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00231692:0.712533]
+set xrange [0.00266323:0.644404]
 set logscale y
 set format y "%g"
 set yrange [2.06716e-08:1.33921]

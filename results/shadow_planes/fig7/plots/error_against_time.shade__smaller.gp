@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00130442:0.375238]
+set xrange [0.00176945:0.490953]
 set logscale y
 set format y "%g"
 set yrange [2.36033e-08:1.07385]

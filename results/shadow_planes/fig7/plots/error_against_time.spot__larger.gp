@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00387019:0.149486]
+set xrange [0.00449095:0.192738]
 set logscale y
 set format y "%g"
 set yrange [1.45961e-07:0.375701]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00221151:0.109784]
+set xrange [0.00253363:0.119095]
 set logscale y
 set format y "%g"
 set yrange [1.67304e-07:0.421796]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000441579:0.110973]
+set xrange [0.000596933:0.110485]
 set logscale y
 set format y "%g"
 set yrange [4.67765e-08:0.129218]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000390499:0.0605444]
+set xrange [0.000580874:0.0721828]
 set logscale y
 set format y "%g"
 set yrange [3.82518e-09:0.868466]

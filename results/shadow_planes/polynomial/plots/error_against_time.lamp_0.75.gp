@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000468772:0.0531562]
+set xrange [0.000623624:0.0607463]
 set logscale y
 set format y "%g"
 set yrange [9.85e-06:1.45865]

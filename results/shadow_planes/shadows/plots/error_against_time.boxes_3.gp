@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00287306:0.208676]
+set xrange [0.00300199:0.21123]
 set logscale y
 set format y "%g"
 set yrange [1.88203e-06:0.0291512]
