@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 #include "gpu/program.h"
 #include "gpu/raster_program.h"
@@ -191,6 +192,42 @@ TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][sha
   media->media[2].sigma_t = Rgb::Constant(0.1);
   finish(*media);
   compare(media, with(vertices, {{"bounded", "paper"}}));
+}
+
+// Boxes that cut one another, inside out, with faces missing, there twice; lights inside them and in a wall.
+TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> place(-1, 1), size(0.1, 0.8);
+    auto scene = std::make_shared<scene::Scene>();
+    scene->name = "soup " + std::to_string(seed);
+    scene->width = 32;
+    scene->height = 24;
+    scene->camera = scene::look_at({0.4, 1.2, seed % 3 == 2 ? 0.5 : 4.0}, {0, 0, 0}, {0, 1, 0});
+    scene->media.resize(1);
+    scene->media[0].sigma_t = Rgb(0.1, 0.2, 0.4);
+    for (int i = 0; i < 8; ++i) {
+      const Point3 corner(place(random), place(random), place(random));
+      scene::TriangleMesh box = scene::make_box({corner, corner + Vec3(size(random), size(random), size(random))});
+      if (seed % 4 == 1)
+        for (auto& t : box.triangles) std::swap(t[0], t[1]);
+      if (seed % 4 == 2) box.triangles.resize(7);
+      if (seed % 4 == 3 && i > 0) box = std::get<scene::TriangleMesh>(scene->surfaces[0].shape);
+      scene->surfaces.push_back({"box", box, scene::Lambert{}});
+    }
+    const auto& first = std::get<scene::TriangleMesh>(scene->surfaces[0].shape).vertices;
+    const Point3 inside = 0.5 * (first.front() + first.back());
+    Point3 light = seed % 2 ? inside : Point3(0.3, 1.9, -0.2);
+    if (seed == 4) light = {inside.x(), inside.y(), first.front().z()};
+    scene->lights.emplace_back(scene::PointLight{light, Rgb(5, 4, 3), 0.01});
+    finish(*scene);
+    const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, {}).film;
+    const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, {}).film;
+    CAPTURE(scene->name);
+    CHECK(gpu::test::p99(a, b, "airlight") < 1e-5);
+    CHECK(beyond(a, b, "airlight", 1e-4) <= 3);  // silhouettes
+  }
 }
 
 TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {
