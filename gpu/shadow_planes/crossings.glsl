@@ -118,7 +118,8 @@ bool hides(dvec3 c, double radius, dvec3 y) {
   double along = dot(c, u), beside = length(c - along * u);
   if (beside >= radius) return false;
   double half_chord = sqrt((radius - beside) * (radius + beside)), near = along - half_chord, far = along + half_chord;
-  return (near > 0 && near < length_) || (far > 0 && far < length_);
+  double least = 1e-12LF * radius;  // a light on the sphere is outside
+  return far > least && ((near > -least && near < length_) || far < length_);
 }
 
 // What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
@@ -133,7 +134,7 @@ void cross_spheres(Ray ray, double end) {
     dvec2 ball = roots_of(1, dot(from_center, w), dot(from_center, from_center) - s.radius * s.radius);
     // In turn the least place beyond the last one, with 0 the first.
     double place = 0;
-    bool before = false;
+    bool before = hides(c, s.radius, y);
     for (int k = 0; k < 5; ++k) {
       double next = 1e37LF;
       for (int j = 0; j < 4; ++j) {
@@ -143,7 +144,7 @@ void cross_spheres(Ray ray, double end) {
       bool last = next >= 1e37LF;
       double beyond = last ? min(end, 2 * place + 1 + length(c) + length(y)) : next;
       bool hidden = hides(c, s.radius, y + 0.5LF * (place + beyond) * w);
-      if (hidden != before && place > 0) {
+      if (hidden != before) {
         double key = place;
 #if STENCIL
         key = dot(normalize(y + place * w), normalize(y));

@@ -9,6 +9,7 @@
 #include "gpu/raster_program.h"
 #include "gpu/shadow_planes/shading.h"
 #include "gpu/timer.h"
+#include "methods/shadow_planes/general_origin.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
@@ -108,12 +109,14 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
 std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, const View& view,
                                                             const Execution& execution) const {
   if (counts_.empty()) return {0};
-  if (view.camera.kind == scene::Camera::Kind::perspective) return {counts_[light].at(view.camera.position)};
+  const Point3 at = scene::ball(scene_->lights[light])->center;
+  const auto count = [&](const Point3& origin) { return counts_[light].at(shadow_planes::general_origin(origin, at)); };
+  if (view.camera.kind == scene::Camera::Kind::perspective) return {count(view.camera.position)};
   std::vector<int> counts(std::size_t(view.width) * view.height);
   scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
     for (int x = 0; x < view.width; ++x)
       counts[std::size_t(y) * view.width + x] =
-          counts_[light].at(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).origin);
+          count(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).origin);
   });
   return counts;
 }

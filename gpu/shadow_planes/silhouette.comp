@@ -16,10 +16,11 @@ dvec3 from_light(int vertex) {
   int i = 3 * vertex;
   return dvec3(vertex_coordinate[i], vertex_coordinate[i + 1], vertex_coordinate[i + 2]) - light;
 }
-// A triangle seen from its edge has no shadow: either side will do, if it is the same for its three edges.
 bool faces_light(int triangle) {
   int i = 3 * triangle;
-  return dot(from_light(corner[i]), cross(from_light(corner[i + 1]), from_light(corner[i + 2]))) < 0;
+  dvec3 a = from_light(corner[i]), b = from_light(corner[i + 1]), c = from_light(corner[i + 2]);
+  dvec3 normal = cross(b - a, c - a);
+  return dot(normal, a) <= 4e-15LF * sqrt(dot(normal, normal) * (dot(a, a) + dot(b, b) + dot(c, c)));
 }
 
 void main() {

@@ -1,5 +1,6 @@
 #include "methods/shadow_planes/lit_parts.h"
 
+#include "methods/shadow_planes/general_origin.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::shadow_planes {
@@ -40,10 +41,16 @@ void add_lit_parts(const LitLight& lit, EdgeCandidates& edges, std::optional<int
   std::vector<ShadowVolumes::Interval> of_ray, parts;
   std::vector<std::size_t> first{0};
   const bool counted = lit.shadows && lit.how == Options::Shadows::counted;
-  const auto at_origin = [&](const Pixel& pixel) { return count ? *count : lit.shadows->count(pixel.ray.origin); };
+  // Sorts the crossings and finds the lit parts; m of the origin.
+  const auto find = [&](const Pixel& pixel) {
+    const Ray ray = general_ray(pixel.ray, lit.shadows->light());
+    const int m = count ? *count : lit.shadows->count(ray.origin);
+    lit.shadows->lit_parts(ray, pixel.end.t, m, &edges.of(ray), crossings, of_ray);
+    return m;
+  };
   if (counted)
     for (const Pixel& pixel : pixels) {
-      lit.shadows->lit_parts(pixel.ray, pixel.end.t, at_origin(pixel), &edges.of(pixel.ray), crossings, of_ray);
+      find(pixel);
       counts.crossings += double(crossings.size());
       parts.insert(parts.end(), of_ray.begin(), of_ray.end());
       first.push_back(parts.size());
@@ -57,8 +64,7 @@ void add_lit_parts(const LitLight& lit, EdgeCandidates& edges, std::optional<int
     } else if (!lit.shadows) {
       pixel.in_air += over(lit, pixel.ray, {0, pixel.end.t}, counts);
     } else {
-      const int m = at_origin(pixel);
-      lit.shadows->lit_parts(pixel.ray, pixel.end.t, m, &edges.of(pixel.ray), crossings, of_ray);
+      const int m = find(pixel);
       counts.crossings += double(crossings.size());
       pixel.in_air += signed_sum(lit, pixel.ray, pixel.end.t, m, crossings, counts);
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/shadow_planes/general_origin.h"
+
 namespace airlight::shadow_planes {
 namespace {
 
@@ -142,9 +144,10 @@ void PaperStages::draw(std::size_t l, EdgeCandidates& edges, std::optional<int> 
   std::vector<int> at_origin(pixels.size(), 0);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty()) {
-      shadows_[l].cross_edges(pixels[i].ray, pixels[i].end.t, edges.of(pixels[i].ray), work.crossings);
-      shadows_[l].cross_spheres(pixels[i].ray, pixels[i].end.t, work.crossings);
-      at_origin[i] = count ? *count : shadows_[l].count(pixels[i].ray.origin);
+      const Ray ray = general_ray(pixels[i].ray, shadows_[l].light());
+      shadows_[l].cross_edges(ray, pixels[i].end.t, edges.of(ray), work.crossings);
+      shadows_[l].cross_spheres(ray, pixels[i].end.t, work.crossings);
+      at_origin[i] = count ? *count : shadows_[l].count(ray.origin);
     }
     work.first.push_back(work.crossings.size());
   }

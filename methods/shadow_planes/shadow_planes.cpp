@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/shadow_planes/general_origin.h"
 #include "methods/shadow_planes/lit_parts.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/stage_list.h"
@@ -172,7 +173,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
     if (options_.candidates == Options::Candidates::fan) frame.fans.emplace_back(shadows, view.camera);
   }
   if (view.camera.kind == scene::Camera::Kind::perspective)
-    for (const ShadowVolumes& shadows : frame.shadows) frame.at_camera.push_back(shadows.count(view.camera.position));
+    for (const ShadowVolumes& shadows : frame.shadows)
+      frame.at_camera.push_back(shadows.count(general_origin(view.camera.position, shadows.light())));
   const double tiles = watch.lap();
   std::optional<PaperStages>& stages = frame.stages;
   if (in_stages()) stages.emplace(*scene_, options_, airs_, frame.shadows, view.camera, execution.threads);

@@ -65,12 +65,12 @@ void ShadowVolumes::cross_spheres(const Ray& ray, double end, std::vector<Crossi
     places.erase(std::remove_if(places.begin(), places.end(), [&](double t) { return !(t >= 0) || !(t < end); }),
                  places.end());
     std::sort(places.begin(), places.end());
-    bool before = false;
+    bool before = hides(c, sphere.radius, y);  // as count() has it
     for (std::size_t k = 0; k < places.size(); ++k) {
       const double next =
           k + 1 < places.size() ? places[k + 1] : std::min(end, 2 * places[k] + 1 + c.norm() + y.norm());
       const bool hidden = hides(c, sphere.radius, y + 0.5 * (places[k] + next) * w);
-      if (hidden != before && places[k] > 0)
+      if (hidden != before)
         crossings.push_back(
             {places[k], hidden ? 2 : -2, -1, 0, 1, (y + places[k] * w).normalized().dot(y.normalized())});
       before = hidden;

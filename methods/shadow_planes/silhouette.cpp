@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <set>
+
+#include "scene/geometry/clean_mesh.h"
 
 namespace airlight::shadow_planes {
 
@@ -15,15 +17,14 @@ MeshEdges::MeshEdges(const scene::TriangleMesh& mesh) {
     if (is_new) vertices_.push_back(v);
     place_of.push_back(found->second);
   }
-  std::set<std::array<int, 3>> seen;
   std::map<std::array<int, 2>, std::vector<Side>> sides;
-  for (const auto& t : mesh.triangles) {
+  for (const int number : scene::distinct_triangles(mesh)) {
+    const auto& t = mesh.triangles[number];
     const std::array<int, 3> own = {place_of[t[0]], place_of[t[1]], place_of[t[2]]};
-    std::array<int, 3> sorted = own;
-    std::sort(sorted.begin(), sorted.end());
-    if (sorted[0] == sorted[1] || sorted[1] == sorted[2] || !seen.insert(sorted).second) continue;
+    if (own[0] == own[1] || own[1] == own[2] || own[2] == own[0]) continue;
     const int index = int(triangles_.size());
     triangles_.push_back(own);
+    numbers_.push_back(number);
     for (int k = 0; k < 3; ++k) {
       const int a = own[k], b = own[(k + 1) % 3];
       sides[{std::min(a, b), std::max(a, b)}].push_back({index, a < b});
@@ -35,21 +36,26 @@ MeshEdges::MeshEdges(const scene::TriangleMesh& mesh) {
   }
 }
 
+bool faces_light(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  return normal.dot(a) <=
+         4e-15 * std::sqrt(normal.squaredNorm() * (a.squaredNorm() + b.squaredNorm() + c.squaredNorm()));
+}
+
 std::vector<SilhouetteEdge> silhouette(const MeshEdges& mesh, const Point3& light) {
   std::vector<Vec3> from_light;
   from_light.reserve(mesh.vertices().size());
   for (const Point3& v : mesh.vertices()) from_light.push_back(v - light);
-  // A triangle seen from its edge has no shadow: either side will do, if it is the same for its three edges.
-  std::vector<char> faces_light;
-  faces_light.reserve(mesh.triangles().size());
+  std::vector<char> faces;
+  faces.reserve(mesh.triangles().size());
   for (const auto& t : mesh.triangles())
-    faces_light.push_back(from_light[t[0]].dot(from_light[t[1]].cross(from_light[t[2]])) < 0);
+    faces.push_back(faces_light(from_light[t[0]], from_light[t[1]], from_light[t[2]]));
   std::vector<SilhouetteEdge> result;
   for (const MeshEdges::Edge& edge : mesh.edges()) {
     int sum = 0;
     for (int k = edge.first; k < edge.first + edge.count; ++k) {
       const MeshEdges::Side& side = mesh.sides()[k];
-      sum += side.forward == bool(faces_light[side.triangle]) ? 1 : -1;
+      sum += side.forward == bool(faces[side.triangle]) ? 1 : -1;
     }
     if (sum > 0) result.push_back({from_light[edge.a], from_light[edge.b], sum});
     if (sum < 0) result.push_back({from_light[edge.b], from_light[edge.a], -sum});

@@ -8,8 +8,9 @@
 
 namespace airlight::shadow_planes {
 
-// A mesh by its edges. Vertices at the same place are one, triangles that are there twice count once: borders that only
-// a seam of the file makes are none.
+// A mesh by its edges. Vertices at the same place are one, so that a seam of the file is no border. Triangles are those
+// that rays meet (scene/geometry/clean_mesh.h): with the same corners in the same order they count once, one that is
+// there from both sides twice.
 class MeshEdges {
  public:
   explicit MeshEdges(const scene::TriangleMesh&);
@@ -24,12 +25,14 @@ class MeshEdges {
   };
   const std::vector<Point3>& vertices() const { return vertices_; }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
+  int number(int triangle) const { return numbers_[triangle]; }  // in the mesh
   const std::vector<Edge>& edges() const { return edges_; }
   const std::vector<Side>& sides() const { return sides_; }
 
  private:
   std::vector<Point3> vertices_;
   std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> numbers_;
   std::vector<Edge> edges_;
   std::vector<Side> sides_;
 };
@@ -40,6 +43,10 @@ struct SilhouetteEdge {
   Vec3 a, b;  // [m]
   int multiplicity;
 };
+
+// Does the light, at the origin, see the side of a triangle from which its corners run counter-clockwise? As far as
+// rounding tells, a light in its plane does.
+bool faces_light(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // Every triangle is turned to face the light, and an edge counts by how often it is run along more often one way than
 // the other. So it needs neither closed meshes nor agreeing windings, and the light may be inside.

@@ -5,6 +5,15 @@
 #include <cmath>
 
 namespace airlight::shadow_planes {
+namespace {
+
+// Is the triangle through b and c, seen from the origin, on the negative side of the edge from a to b? Computed the
+// same way for both triangles of the edge, so that what passes through it belongs to one of them.
+bool is_below(const Vec3& y, const Vec3& a, int number_of_a, const Vec3& b, int number_of_b) {
+  return number_of_a < number_of_b ? y.dot(a.cross(b)) < 0 : !(y.dot(b.cross(a)) < 0);
+}
+
+}  // namespace
 
 bool hides(const Vec3& c, double radius, const Vec3& y) {
   const double length = y.norm();
@@ -14,41 +23,57 @@ bool hides(const Vec3& c, double radius, const Vec3& y) {
   if (beside >= radius) return false;
   const double half = std::sqrt((radius - beside) * (radius + beside));
   const double near = along - half, far = along + half;
-  return (near > 0 && near < length) || (far > 0 && far < length);
+  const double least = 1e-12 * radius;  // a light on the sphere is outside
+  return far > least && ((near > -least && near < length) || far < length);
 }
 
 Occluders::Occluders(std::shared_ptr<const scene::Scene> scene) : scene_(std::move(scene)) {
-  for (const scene::Surface& surface : scene_->surfaces)
-    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&surface.shape)) meshes_.emplace_back(*mesh);
+  for (std::size_t i = 0; i < scene_->surfaces.size(); ++i)
+    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&scene_->surfaces[i].shape)) {
+      meshes_.emplace_back(*mesh);
+      surfaces_.push_back(int(i));
+    }
 }
 
 SurfaceCount::SurfaceCount(std::shared_ptr<const Occluders> occluders, const Point3& light)
     : occluders_(std::move(occluders)), light_(light) {
-  for (const MeshEdges& mesh : occluders_->meshes())
-    for (const auto& t : mesh.triangles()) {
+  for (std::size_t m = 0; m < occluders_->meshes().size(); ++m) {
+    const MeshEdges& mesh = occluders_->meshes()[m];
+    for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
+      const auto& t = mesh.triangles()[i];
       const Vec3 a = mesh.vertices()[t[0]] - light, b = mesh.vertices()[t[1]] - light,
                  c = mesh.vertices()[t[2]] - light;
       const Vec3 normal = (b - a).cross(c - a);
-      in_wall_ = in_wall_ || std::abs(normal.dot(a)) <= 1e-9 * normal.norm() * (a.norm() + b.norm() + c.norm());
+      if (std::abs(normal.dot(a)) <= 1e-9 * normal.norm() * (a.norm() + b.norm() + c.norm()))
+        walls_.push_back({occluders_->surface(m), mesh.number(i), t, {a, b, c}});
     }
+  }
+  std::sort(walls_.begin(), walls_.end(), [](const Wall& a, const Wall& b) {
+    return std::pair(a.surface, a.triangle) < std::pair(b.surface, b.triangle);
+  });
   for (const scene::Surface& surface : occluders_->scene().surfaces) {
     if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) spheres_.push_back(*sphere);
     if (const auto* plane = std::get_if<scene::Plane>(&surface.shape)) planes_.push_back(*plane);
   }
 }
 
-// The same sides as the silhouette's: of a triangle in whose plane the light lies, too.
-int SurfaceCount::one_by_one(const Vec3& y) const {
-  int sum = 0;
-  for (const MeshEdges& mesh : occluders_->meshes())
-    for (const auto& t : mesh.triangles()) {
-      Vec3 a = mesh.vertices()[t[0]] - light_, b = mesh.vertices()[t[1]] - light_, c = mesh.vertices()[t[2]] - light_;
-      if (!(a.dot(b.cross(c)) < 0))
-        std::swap(b, c);  // faces the light: the shadow is on the negative side of each edge
-      if (!(y.dot(a.cross(b)) < 0 && y.dot(b.cross(c)) < 0 && y.dot(c.cross(a)) < 0)) continue;
-      sum += (y - a).dot((b - a).cross(c - a)) < 0;  // beyond its plane
-    }
-  return sum;
+bool SurfaceCount::is_wall(const scene::Hit& hit) const {
+  const auto found = std::lower_bound(walls_.begin(), walls_.end(), hit, [](const Wall& wall, const scene::Hit& h) {
+    return std::pair(wall.surface, wall.triangle) < std::pair(h.surface, h.triangle);
+  });
+  return found != walls_.end() && found->surface == hit.surface && found->triangle == hit.triangle;
+}
+
+// The same sides as the silhouette's.
+bool SurfaceCount::is_behind(const Wall& wall, const Vec3& y) const {
+  Vec3 a = wall.corners[0], b = wall.corners[1], c = wall.corners[2];
+  auto [ia, ib, ic] = wall.numbers;
+  if (!faces_light(a, b, c)) {  // turned to face the light: the shadow is on the negative side of each edge
+    std::swap(b, c);
+    std::swap(ib, ic);
+  }
+  return is_below(y, a, ia, b, ib) && is_below(y, b, ib, c, ic) && is_below(y, c, ic, a, ia) &&
+         (y - a).dot((b - a).cross(c - a)) < 0;
 }
 
 int SurfaceCount::at(const Point3& point) const {
@@ -56,11 +81,9 @@ int SurfaceCount::at(const Point3& point) const {
   const double distance = offset.norm();
   if (!occluders_->scene().geometry || !(distance > 0)) return 0;
   int sum = 0;
-  if (in_wall_)
-    sum += one_by_one(offset);
-  else
-    for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
-      sum += hit.triangle >= 0;
+  for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
+    sum += hit.triangle >= 0 && !is_wall(hit);
+  for (const Wall& wall : walls_) sum += is_behind(wall, offset);
   for (const scene::Sphere& sphere : spheres_) sum += hides(sphere.center - light_, sphere.radius, offset) ? 2 : 0;
   for (const scene::Plane& plane : planes_) {
     const double here = plane.normal.dot(light_ - plane.point), there = plane.normal.dot(point - plane.point);

@@ -15,10 +15,12 @@ class Occluders {
 
   const scene::Scene& scene() const { return *scene_; }
   const std::vector<MeshEdges>& meshes() const { return meshes_; }
+  int surface(std::size_t mesh) const { return surfaces_[mesh]; }  // which it is of the scene's
 
  private:
   std::shared_ptr<const scene::Scene> scene_;
   std::vector<MeshEdges> meshes_;
+  std::vector<int> surfaces_;
 };
 
 class SurfaceCount {
@@ -26,18 +28,26 @@ class SurfaceCount {
   SurfaceCount(std::shared_ptr<const Occluders>, const Point3& light);
 
   // m(X), the number of surfaces, of either facing, that the open segment from the light to X crosses. Spheres count
-  // twice for all points that they hide. A light that lies on a triangle shines to one side of it, the one that
-  // rounding puts it on.
+  // twice for all points that they hide. A light that lies on a triangle is before it (faces_light), on a
+  // sphere it is outside, on an infinite plane it shines to both sides, and exactly at a vertex through the triangles
+  // there.
   int at(const Point3&) const;
 
   const std::vector<scene::Sphere>& spheres() const { return spheres_; }
 
  private:
-  int one_by_one(const Vec3& from_light) const;
+  // A triangle in whose plane the light lies: rays from there may or may not meet it.
+  struct Wall {
+    int surface, triangle;
+    std::array<int, 3> numbers;   // of its vertices
+    std::array<Vec3, 3> corners;  // from the light [m]
+  };
+  bool is_wall(const scene::Hit&) const;
+  bool is_behind(const Wall&, const Vec3& from_light) const;
 
   std::shared_ptr<const Occluders> occluders_;
   Point3 light_;
-  bool in_wall_ = false;  // in the plane of a triangle: rays from it may or may not meet that
+  std::vector<Wall> walls_;  // by surface and triangle
   std::vector<scene::Sphere> spheres_;
   std::vector<scene::Plane> planes_;
 };

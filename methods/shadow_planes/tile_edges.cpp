@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "methods/shadow_planes/general_origin.h"
+
 namespace airlight::shadow_planes {
 
 TileEdges::TileEdges(const ShadowVolumes& shadows, const scene::View& view, int threads)
@@ -25,7 +27,7 @@ void TileEdges::select(int side, int x, int y, const std::vector<int>& candidate
     const double film_x = std::min(view_.width, side * (x + (corner & 1)));
     const double film_y = std::min(view_.height, side * (y + (corner >> 1)));
     const Ray ray = camera_ray(view_.camera, film_x, film_y, view_.width, view_.height);
-    planes[corner] = ray.direction.cross(shadows_.light() - ray.origin);
+    planes[corner] = ray.direction.cross(shadows_.light() - general_origin(ray.origin, shadows_.light()));
   }
   edges.clear();
   for (const int i : candidates) {

@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/methods/shadow_planes/special_scenes.h"
 
 using namespace airlight;
 using Pairs = std::map<std::string, std::string>;
@@ -227,6 +228,14 @@ TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_
     CAPTURE(scene->name);
     CHECK(gpu::test::p99(a, b, "airlight") < 1e-5);
     CHECK(beyond(a, b, "airlight", 1e-4) <= 3);  // silhouettes
+  }
+}
+
+TEST_CASE("shadow planes: GPU agrees with CPU where camera, light and edges share planes", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  for (const auto& scene : test::special_scenes()) {
+    compare(scene, {});
+    compare(scene, {{"candidates", "tiles"}});
   }
 }
 
