@@ -15,14 +15,7 @@
 const int channels = GREY != 0 ? 1 : 3;
 
 #if SPOT
-uniform dvec3 spot_axis;
-uniform double cos_inner, cos_outer;
-
-// The light's intensity over that on the axis, towards the cosine of the angle from there. Called where it is not 0.
-float spot_factor(float cosine) {
-  float width_ = float(cos_inner - cos_outer), u = width_ > 0 ? clamp((cosine - float(cos_outer)) / width_, 0, 1) : 1;
-  return u * u * (3 - 2 * u);
-}
+#include "shadow_planes/spot.glsl"
 #endif
 
 #if BOUNDED || SPOT
@@ -34,20 +27,14 @@ void meet_place(double place, double from) {
 #endif
 
 #if SPOT
-// Where the cones around the axis are crossed: (y . A)^2 = cos^2 |y|^2 on the right side.
 void meet_cone(Ray ray, double cosine, double from) {
-  dvec3 y = -ray.to_light;
-  double ya = dot(y, spot_axis), wa = dot(ray.direction, spot_axis), c2 = cosine * cosine;
-  dvec2 places = roots_of(wa * wa - c2, ya * wa - c2 * dot(y, ray.direction), ya * ya - c2 * dot(y, y));
-  for (int k = 0; k < 2; ++k)
-    if ((ya + places[k] * wa) * cosine >= 0) meet_place(places[k], from);
+  dvec2 places = cross_cone(ray, cosine);
+  meet_place(places.x, from);
+  meet_place(places.y, from);
 }
 #endif
 
 #if BOUNDED
-layout(std430, binding = 15) readonly buffer FromLight { float from_light[]; };  // lo, hi of regions, seen from the light
-uniform int first_region;  // of this light, in sixes
-
 // Ways from the light through a region have kinks where they pass an edge of it, or graze it.
 void meet_kinks(Ray ray, int m, double from) {
   int kind = media[m].region;
@@ -78,30 +65,39 @@ void meet_kinks(Ray ray, int m, double from) {
   }
 }
 
-// Length of the way from the light in direction d, `r` [m] long, within a region.
-float way_from_light(int m, vec3 d, float r) {
-  int kind = media[m].region, at = 6 * (first_region + m);
+// Length within a region of the way back to the light, `r` [m] long, from the point `further` beyond `start`; d: from the
+// light. All but `start` in single precision: near the region, however far the light is.
+float way_to_light(int m, dvec3 start, vec3 further, vec3 d, float r) {
+  int kind = media[m].region;
   if (kind == region_unbounded) return r;
-  vec3 lo = vec3(from_light[at], from_light[at + 1], from_light[at + 2]);
-  vec3 hi = vec3(from_light[at + 3], from_light[at + 4], from_light[at + 5]);
   float begin = 0, end = r;
   if (kind == region_sphere) {
-    vec3 across = cross(d, lo);
-    float middle = dot(lo, d), reach2 = hi.x * hi.x - dot(across, across);
+    vec3 to_center = vec3(region_lo(m) - start) - further, across = cross(d, to_center);
+    float radius = float(media[m].hi[0]), middle = -dot(to_center, d), reach2 = radius * radius - dot(across, across);
     if (!(reach2 > 0)) return 0;
     begin = max(begin, middle - sqrt(reach2));
     end = min(end, middle + sqrt(reach2));
   } else {
-    int axes = kind == region_slab ? 1 : 3;
+    vec3 low, high, speed = -d;
+    int axes = 3;
+    if (kind == region_slab) {
+      dvec3 normal = region_lo(m), heights = region_hi(m) - dot(normal, start);
+      float there = dot(vec3(normal), further);
+      low.x = float(heights.x) - there;
+      high.x = float(heights.y) - there;
+      speed.x = -dot(d, vec3(normal));
+      axes = 1;
+    } else {
+      low = vec3(region_lo(m) - start) - further;
+      high = vec3(region_hi(m) - start) - further;
+    }
     for (int axis = 0; axis < axes; ++axis) {
-      float speed = kind == region_slab ? dot(d, lo) : d[axis];
-      float low = kind == region_slab ? hi.x : lo[axis], high = kind == region_slab ? hi.y : hi[axis];
-      if (speed == 0) {
-        if (low > 0 || high < 0) return 0;
+      if (speed[axis] == 0) {
+        if (low[axis] > 0 || high[axis] < 0) return 0;
         continue;
       }
-      begin = max(begin, min(low / speed, high / speed));
-      end = min(end, max(low / speed, high / speed));
+      begin = max(begin, min(low[axis] / speed[axis], high[axis] / speed[axis]));
+      end = min(end, max(low[axis] / speed[axis], high[axis] / speed[axis]));
     }
   }
   return max(end - begin, 0);
@@ -126,6 +122,9 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
   if (!(h > 0)) return vec3(1e37);  // through the light itself
 #endif
   vec3 result = vec3(0);
+#if SPOT && !POLYNOMIAL
+  Spot spot = spot_of(ray, from, h);
+#endif
 #if !BOUNDED
   vec3 extinction = extinction_of(air_medium);
   for (int c = 0; c < channels; ++c) {
@@ -134,14 +133,13 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
 #if POLYNOMIAL
     result[c] = polynomial_integral(k, float(ray.h), d0, end, float(k * (ray.T + ray.h)));
 #else
-    Mapped map = map_part(media[air_medium].phase.width, k, d0, length_, h);
+    Mapped map = map_part(media[air_medium].phase.width, k, k, d0, length_, h);
     float sum = 0;
     for (int i = 0; i < rule_nodes; ++i) {
       Node node = node_of(map, i);
       float factor = exp(-k * h * node.further) * phase_of_halves(media[air_medium].phase, node.v, node.w);
 #if SPOT
-      factor *= spot_factor(2 * node.q * node.v * float(dot(ray.n, spot_axis)) +
-                            (node.w - node.v) * float(dot(ray.direction, spot_axis)));
+      factor *= spot_towards(spot, node.q, node.further);
 #endif
       sum += node.weight * factor;
     }
@@ -163,10 +161,16 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
       width_ = min(width_, media[m].phase.width);
     }
   vec3 n = vec3(ray.n), direction = vec3(ray.direction);
+  dvec3 start = ray.origin + from * ray.direction;
+  vec3 first = vec3(start - light);
   for (int c = 0; c < channels; ++c) {
     float k = extinction[c];
     if (!(k > 0)) continue;
-    Mapped map = map_part(width_, k, d0, length_, h);
+    // The light's way may get less along the part, by as much as dims it where that begins.
+    float dimmed = 0;
+    for (int m = 0; m < media_count; ++m)
+      dimmed += media[m].extinction[c] * way_to_light(m, start, vec3(0), first / max(length(first), 1e-30), length(first));
+    Mapped map = map_part(width_, k, 0.5 * k * depth_cut / (depth_cut + dimmed), d0, length_, h);
     vec3 sum = vec3(0);
     for (int i = 0; i < rule_nodes; ++i) {
       Node node = node_of(map, i);
@@ -175,14 +179,15 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
       // x - from, which the difference of both places would lose digits of.
       float further = 0.5 * h * node.further * (1 + 1 / node.q / map.q0);
       float lost = before[c] + k * further;
-      for (int m = 0; m < media_count; ++m) lost += media[m].extinction[c] * way_from_light(m, d, r);
+      for (int m = 0; m < media_count; ++m)
+        lost += media[m].extinction[c] * way_to_light(m, start, further * direction, d, r);
       vec3 scattered = vec3(0);
       for (int m = 0; m < media_count; ++m)
         if ((here & 1 << m) != 0)
           scattered += albedo_of(m) * media[m].extinction[c] * phase_of_halves(media[m].phase, node.v, node.w);
       float weight = node.weight * exp(-lost);
 #if SPOT
-      weight *= spot_factor(dot(d, vec3(spot_axis)));
+      weight *= spot_towards(spot, node.q, node.further);
 #endif
       sum += weight * scattered;
     }

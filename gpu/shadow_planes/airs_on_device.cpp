@@ -56,22 +56,6 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
   return data;
 }
 
-// Regions seen from each light, six numbers each: the shader's nodes are in single precision.
-std::vector<float> from_lights(const scene::Scene& scene) {
-  std::vector<float> values;
-  for (const scene::Light& light : scene.lights)
-    for (const scene::Medium& medium : scene.media) {
-      RegionNumbers region = numbers(medium.region);
-      const Point3 at = scene::ball(light)->center;
-      if (region.kind == 1 || region.kind == 2) region.lo -= at;
-      if (region.kind == 1) region.hi -= at;
-      if (region.kind == 3) region.hi -= Vec3(region.lo.dot(at), region.lo.dot(at), 0);
-      for (const Vec3& v : {region.lo, region.hi})
-        for (int i = 0; i < 3; ++i) values.push_back(float(v[i]));
-    }
-  return values;
-}
-
 }  // namespace
 
 AirsOnDevice::AirsOnDevice(Context& context, const scene::Scene& scene, const Options& options)
@@ -80,8 +64,7 @@ AirsOnDevice::AirsOnDevice(Context& context, const scene::Scene& scene, const Op
       options_(options),
       grey_(std::all_of(scene.media.begin(), scene.media.end(),
                         [](const scene::Medium& m) { return (extinction_of(m) == extinction_of(m)[0]).all(); })),
-      media_(context, "media", media_data(scene, options.printed_phases)),
-      from_lights_(context, "regions from lights", from_lights(scene)) {
+      media_(context, "media", media_data(scene, options.printed_phases)) {
   const auto whole = [](const scene::Medium& m) { return std::holds_alternative<scene::Unbounded>(m.region); };
   if (std::none_of(scene.media.begin(), scene.media.end(),
                    [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); }))
@@ -146,10 +129,6 @@ void AirsOnDevice::bind(LinkedProgram& program, int index, int air) const {
   of.evaluator->bind(5);
   program.set("air_medium", of.medium);
   if (of.paper) program.set("mean_distance", of.mean_distance);
-  if (of.bounded) {
-    from_lights_.bind(15);
-    program.set("first_region", int(index * scene_.media.size()));
-  }
   if (options_.evaluator == Options::Evaluator::polynomial)
     program.set("degree", of.degree);
   else

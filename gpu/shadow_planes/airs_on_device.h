@@ -41,7 +41,7 @@ class AirsOnDevice {
   const scene::Scene& scene_;
   shadow_planes::Options options_;
   bool grey_;
-  Buffer media_, from_lights_;
+  Buffer media_;
   std::vector<Air> airs_;
 };
 

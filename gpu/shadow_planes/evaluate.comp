@@ -26,7 +26,7 @@ float integral_of(Case of, float h) {
   return 4 * pi / of.extinction * polynomial_integral(of.extinction, h, of.d0, of.d0 + of.length_, depth);
 #else
   Phase phase = Phase(phase_kind, phase_g, phase_scale, phase_width);
-  Mapped map = map_part(phase.width, of.extinction, of.d0, of.length_, h);
+  Mapped map = map_part(phase.width, of.extinction, of.extinction, of.d0, of.length_, h);
   float sum = 0;
   for (int n = 0; n < rule_nodes; ++n) {
     Node node = node_of(map, n);

@@ -6,6 +6,18 @@ float hypotenuse(float x, float y) {
   return most * sqrt(1 + share * share);
 }
 
+// Inverse hyperbolic sine and hyperbolic sine, of x >= 0, without losing digits of small ones.
+float arsinh(float x) {
+  if (x > 0.3) return log(x) + log(1 + sqrt(1 + 1 / x / x));
+  float y = x * x;
+  return x * (1 - y * (1 / 6.0 - y * (3 / 40.0 - y * (5 / 112.0 - y * (35 / 1152.0 - y * 63 / 2816.0)))));
+}
+float sinh_of(float x) {
+  if (x > 0.5) return sinh(x);
+  float y = x * x;
+  return x * (1 + y / 6 * (1 + y / 20 * (1 + y / 42 * (1 + y / 72))));
+}
+
 // tan(pi/4 + theta/2) at d [m] beyond the foot point, h > 0.
 float q_at(float d, float h) {
   float r = hypotenuse(d, h);

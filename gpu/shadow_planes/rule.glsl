@@ -14,8 +14,9 @@ struct Mapped {
   float s1, rest;  // s runs from 0 to s1 = 1 - rest
 };
 
-// Lit over `length_` [m] from d0 [m] beyond the foot point; `width` of the phase function.
-Mapped map_part(float width, float extinction, float d0, float length_, float h) {
+// Lit over `length_` [m] from d0 [m] beyond the foot point; `width` of the phase function. What falls by e^-depth_cut with
+// `slowest` instead of the extinction is left out.
+Mapped map_part(float width, float extinction, float slowest, float d0, float length_, float h) {
   Mapped map;
   map.h = h;
   map.q0 = q_at(d0, h);
@@ -25,7 +26,7 @@ Mapped map_part(float width, float extinction, float d0, float length_, float h)
     span = g > 0 ? length_ * (1 + g) / h : map.q0 * q_at(d1, h) * length_ * (1 - g) / h;
   }
   float a = extinction * h;
-  span = clamp(span, 1e-30, min(endless, depth_cut / max(a, 1e-30)));
+  span = clamp(span, 1e-30, min(endless, depth_cut / max(slowest * h, 1e-30)));
   map.c = 1 / (0.1 * a + 1 / hypotenuse(width, map.q0));
   // With x = span / c: (1-s1)^m = 1/(1+x), and 1 - s1^... without cancellation, because 1 - t^m = x/(1+x).
   float x = span / map.c, sum = 1;

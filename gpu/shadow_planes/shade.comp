@@ -68,7 +68,7 @@ void main() {
       float cosine = float(dot(normal, offset / distance_)), d = float(distance_);
 #if SPOT
       double from_axis = -dot(offset / distance_, spot_axis);
-      float factor = from_axis > cos_outer ? spot_factor(float(from_axis)) : 0;
+      float factor = from_axis > cos_outer ? spot_factor(float(1 - from_axis)) : 0;
 #else
       float factor = 1;
 #endif

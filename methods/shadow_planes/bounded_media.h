@@ -66,8 +66,14 @@ Rgb BoundedMedia::airlight(const MappedRule<double>& rule, const Ray& ray, const
     for (int channel = 0; channel < 3; ++channel) {
       if (!(extinction[channel] > 0)) continue;
       const double h = std::max(from.h, 1e-30 * std::abs(part.x0 - from.T));
+      // x - x0 is half of h (q - q0) at least; the light's way, which grows with it elsewhere, may get less here: by as
+      // much as dims it where the part begins.
+      const Vec3 first = ray.at(part.x0) - light;
+      const double cut = MappedRule<double>::depth_cut, r0 = first.norm();
+      const double dimmed = r0 > 0 ? depth({light, first / r0}, r0)[channel] : 0;
+      const double slowest = 0.5 * extinction[channel] * cut / (cut + dimmed);
       sum[channel] += mapped_integral(
-          rule, width, extinction[channel], from.T, from.h, part, [&](double q, double v, double w, double) {
+          rule, width, extinction[channel], slowest, from.T, from.h, part, [&](double q, double v, double w, double) {
             const Vec3 d = 2 * q * v * from.n + (w - v) * ray.direction;
             const double x = from.T + 0.5 * h * (q - 1 / q), r = 0.5 * h * (q + 1 / q);
             const double lost = depth({light, d}, r)[channel] + depth(ray, x)[channel];

@@ -54,8 +54,9 @@ struct PartMap {
   Real q0, c, s1;
 };
 
+// The factor falls as e^(-extinction h (q - q0)), and never slower than e^(-slowest h (q - q0)): there the part is cut.
 template <class Real>
-PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction, Real T, Real h,
+PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction, Real slowest, Real T, Real h,
                        const LitPart<Real>& part) {
   const Real d0 = part.x0 - T, d1 = d0 + part.length;
   PartMap<Real> map{std::max(h, rule.h_floor * std::min(std::abs(d0), std::abs(d1))), 0, 0, 0};
@@ -69,7 +70,7 @@ PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction
     const Real g = (d0 + d1) / (std::hypot(d0, h) + std::hypot(d1, h));
     span = g > 0 ? part.length * (1 + g) / h : map.q0 * q_at(d1, h) * part.length * (1 - g) / h;
   }
-  if (a > 0) span = std::min(span, rule.depth_cut / a);
+  if (slowest > 0) span = std::min(span, rule.depth_cut / (slowest * h));
   map.c = 1 / (a / 10 + 1 / std::sqrt(width * width + map.q0 * map.q0));
   map.s1 = -std::expm1(-std::log1p(span / map.c) / rule.m);
   return map;
@@ -77,12 +78,12 @@ PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction
 
 // (1/h) integral over q of factor(q, v, w, q - q0) 2/(1 + q^2) dq [1/m times the factor's unit], with nodes for a
 // factor that falls as e^(-extinction h (q - q0)) from its first value; v and w as in phase_form.h. `T`, `h` [m] as
-// LightFromRay, `extinction` [1/m] >= 0, `width` of the phase function. With h = 0 as if h were h_floor: 1e30 and more
-// where the light is within, infinite where the part begins or ends there.
+// LightFromRay, `extinction` and `slowest` [1/m] >= 0 as map_part, `width` of the phase function. With h = 0 as if h
+// were h_floor: 1e30 and more where the light is within, infinite where the part begins or ends there.
 template <class Real, class Factor>
-Real mapped_integral(const MappedRule<Real>& rule, Real width, Real extinction, Real T, Real h,
+Real mapped_integral(const MappedRule<Real>& rule, Real width, Real extinction, Real slowest, Real T, Real h,
                      const LitPart<Real>& part, Factor&& factor) {
-  const PartMap<Real> map = map_part(rule, width, extinction, T, h, part);
+  const PartMap<Real> map = map_part(rule, width, extinction, slowest, T, h, part);
   if (!(map.h > 0)) return std::numeric_limits<Real>::infinity();
   Real sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
@@ -105,9 +106,10 @@ Real airlight_integral(const MappedRule<Real>& rule, const PhaseForm& phase, Rea
                        const LitPart<Real>& part, Intensity&& intensity) {
   const Real floor = rule.h_floor * std::min(std::abs(part.x0 - T), std::abs(part.x0 - T + part.length));
   const Real a = extinction * std::max(h, floor);
-  return mapped_integral(rule, Real(phase.width()), extinction, T, h, part, [&](Real q, Real v, Real w, Real further) {
-    return std::exp(-a * further) * phase_of_halves(phase, v, w) * intensity(q, v, w);
-  });
+  return mapped_integral(rule, Real(phase.width()), extinction, extinction, T, h, part,
+                         [&](Real q, Real v, Real w, Real further) {
+                           return std::exp(-a * further) * phase_of_halves(phase, v, w) * intensity(q, v, w);
+                         });
 }
 
 // L [W/m^2/sr] for an isotropic intensity [W/sr].

@@ -81,14 +81,45 @@ double PaperMedium::part(double k, const LightFromRay& from, double x_in, Interv
     return k / (4 * pi * h) * std::exp(-k * (T + R_ - x_in + h * std::tan(centre))) *
            integrate_polynomial(bounded_coefficients(phase_, k * h, options_.degree, centre), centre, begin, end);
   }
-  // The rule for integrands that fall as e^(-extinction h q): far along the ray tan(theta) is q/2.
-  return k / (4 * pi) *
-         mapped_integral(rule_, phase_.width(), 0.5 * k, T, from.h, LitPart<double>{lit.lo, lit.hi - lit.lo},
-                         [&](double q, double v, double w, double) {
-                           const double x = T + 0.5 * h * (q - 1 / q);
-                           return std::exp(-k * (x - x_in + R_)) * phase_of_halves(phase_, v, w) *
-                                  intensity(w - v, 2 * q * v);
-                         });
+  if (!(h > 0)) return infinity;
+  const auto lit_phase = [&](double q, double v, double w) {
+    return phase_of_halves(phase_, v, w) * intensity(w - v, 2 * q * v);
+  };
+  double sum = 0;
+  if (lit.lo < T)
+    sum = std::exp(-k * (lit.lo - x_in + R_)) * before_foot(k, h, T - lit.lo, std::max(0.0, T - lit.hi), lit_phase);
+  // Behind the foot point tan(theta) soon is q/2: the rule for integrands that fall as e^(-extinction h q).
+  if (const double begin = std::max(lit.lo, T); begin < lit.hi)
+    sum += mapped_integral(rule_, phase_.width(), 0.5 * k, 0.5 * k, T, h, LitPart<double>{begin, lit.hi - begin},
+                           [&](double q, double v, double w, double) {
+                             const double x = T + 0.5 * h * (q - 1 / q);
+                             return std::exp(-k * (x - x_in + R_)) * lit_phase(q, v, w);
+                           });
+  return k / (4 * pi) * sum;
+}
+
+// (1/h) integral over theta from `begin` to `end` [m] before the foot point of e^(-k (begin - d)) lit_phase. With
+// d = h sinh(t), q = e^-t and dtheta = dt / cosh(t), in pieces over which neither factor changes by more than e^4 or
+// e^8.
+template <class LitPhase>
+double PaperMedium::before_foot(double k, double h, double begin, double end, LitPhase&& lit_phase) const {
+  // What is deeper in the medium adds nothing, though the light may be close to it there.
+  const double least = std::max(end, begin - (MappedRule<double>::depth_cut + std::log1p(k * begin * begin / h)) / k);
+  double sum = 0, depth = 0;  // to where the piece begins
+  for (double d = begin; d > least;) {
+    const double t = std::asinh(d / h);
+    const double next = std::max({least, d - 4 / k, h * std::sinh(t - 8)}), span = t - std::asinh(next / h);
+    double piece = 0;
+    for (std::size_t i = 0; i < rule_.node.size(); ++i) {
+      const double back = span * rule_.node[i], q = std::exp(back - t), v = 1 / (1 + q * q);
+      const double way = 2 * h * std::cosh(t - 0.5 * back) * std::sinh(0.5 * back);
+      piece += rule_.weight[i] * std::exp(-k * way) * 2 * q * v * lit_phase(q, v, q * q * v);
+    }
+    sum += std::exp(-depth) * span * piece;
+    depth += k * (d - next);
+    d = next;
+  }
+  return sum / h;
 }
 
 }  // namespace airlight::shadow_planes

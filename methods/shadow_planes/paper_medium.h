@@ -28,6 +28,8 @@ class PaperMedium {
  private:
   template <class Intensity>
   double part(double extinction, const LightFromRay&, double x_in, Interval, Intensity&&) const;
+  template <class LitPhase>
+  double before_foot(double extinction, double h, double begin, double end, LitPhase&&) const;
 
   Options options_;
   scene::Region region_;

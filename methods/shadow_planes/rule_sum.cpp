@@ -77,7 +77,7 @@ HWY_EXPORT(SumOfNodes);
 
 double isotropic_integral(const MappedRule<double>& rule, const PhaseForm& phase, double extinction, double T, double h,
                           const LitPart<double>& part) {
-  const PartMap<double> map = map_part(rule, phase.width(), extinction, T, h, part);
+  const PartMap<double> map = map_part(rule, phase.width(), extinction, extinction, T, h, part);
   if (!(map.h > 0)) return infinity;
   return map.s1 * HWY_DYNAMIC_DISPATCH(SumOfNodes)(rule, phase, extinction * map.h, map) / map.h;
 }

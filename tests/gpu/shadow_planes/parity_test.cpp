@@ -239,6 +239,54 @@ TEST_CASE("shadow planes: GPU agrees with CPU where camera, light and edges shar
   }
 }
 
+// Where single precision would cancel: lights far from a region, cones of a thousandth, entries far before a light that
+// is close to the ray.
+TEST_CASE("shadow planes: single precision where numbers cancel", "[gpu][shadow_planes]") {
+  if (!gpu::test::device()) return;
+  const auto scene_with = [](const scene::Light& light, const scene::Region& region, double sigma_t) {
+    auto scene = std::make_shared<scene::Scene>();
+    scene->width = 32;
+    scene->height = 24;
+    scene->camera = scene::look_at({0.4, 1.2, 4}, {0, 0, 0}, {0, 1, 0});
+    scene->media.resize(1);
+    scene->media[0].sigma_t = Rgb(0.5, 1, 2) * sigma_t;
+    scene->media[0].region = region;
+    scene->surfaces.push_back({"floor", scene::Plane{{0, -1.2, 0}, {0, 1, 0}}, scene::Lambert{}});
+    scene->lights.push_back(light);
+    finish(*scene);
+    return scene;
+  };
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  const scene::Sphere ball{{0, 0, 0}, 1.1};
+  const scene::Slab slab{{0, 1, 0}, -1, 0.5};
+  for (const double far : {1e2, 1e4, 1e6})
+    for (const scene::Region& region : {scene::Region(box), scene::Region(ball), scene::Region(slab)}) {
+      CAPTURE(far, region.index());
+      compare(scene_with(scene::PointLight{far * Vec3(0.3, 0.8, 0.2), far * far * Rgb::Ones(), 0}, region, 0.4),
+              {});
+    }
+  for (const double angle : {0.1, 0.01, 0.001}) {
+    CAPTURE(angle);
+    scene::SpotLight spot;
+    spot.position = {0.1, 3, 0.2};
+    spot.axis = Vec3(0.02, -1, -0.05).normalized();
+    spot.intensity = Rgb::Constant(10);
+    spot.inner_angle = 0;
+    spot.outer_angle = angle;
+    const auto scene = scene_with(spot, scene::Unbounded{}, 0.1);
+    scene->camera = scene::look_at({0.4, 0.2, 4}, {0.13, 1.2, 0.11}, {0, 1, 0});
+    scene->camera.vertical_fov = 3 * angle;
+    compare(scene, {});
+    const auto in_box = scene_with(spot, Box{{-2, -1, -2}, {2, 2, 2}}, 0.1);
+    in_box->camera = scene->camera;
+    compare(in_box, {});
+    compare(in_box, {{"bounded", "paper"}});
+  }
+  for (const double sigma_t : {0.5, 3.0})
+    for (const Point3& light : {Point3(0.011, 0.02, 0.03), Point3(0.4, 0.5, -0.3)})
+      compare(scene_with(scene::PointLight{light, Rgb::Ones(), 0}, ball, sigma_t), {{"bounded", "paper"}});
+}
+
 TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
   const auto scene = plates(60);

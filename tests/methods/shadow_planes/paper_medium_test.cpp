@@ -6,6 +6,7 @@
 #include <random>
 
 #include "methods/shadow_planes/polynomial.h"
+#include "scene/math/gauss_legendre.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
 using namespace airlight;
@@ -132,4 +133,44 @@ TEST_CASE("shadow planes: the paper's media against brute force", "[shadow_plane
   CHECK((PaperMedium(medium, {})(scene::PointLight{{0, 1, 0}, Rgb::Ones(), 0}, ray, {0, 4}) == 0).all());
   medium.sigma_t.setZero();
   CHECK((PaperMedium(medium, {})(scene::PointLight{{0, 1, 0}, Rgb::Ones(), 0}, ray, {0, infinity}) == 0).all());
+}
+
+// Rays close to the light, in thin and thick media: the light of the entry, which the medium dims least, and that of
+// the neighbourhood of the lamp both count.
+TEST_CASE("shadow planes: the paper's media close to the light", "[shadow_planes]") {
+  const scene::GaussLegendre rule = scene::gauss_legendre(48);
+  double worst = 0;
+  for (const double k : {0.05, 0.5, 2.0, 6.0, 40.0})
+    for (const double h : {1.0, 0.1, 0.01, 1e-3, 1e-5})
+      for (const double light : {-2.9, -1.0, 0.0, 2.0, 4.0})
+        for (const scene::PhaseFunction& phase :
+             {scene::PhaseFunction(scene::Isotropic{}), scene::PhaseFunction(scene::HenyeyGreenstein{0.7})}) {
+          scene::Medium medium;
+          medium.sigma_t = Rgb::Constant(k);
+          medium.phase = phase;
+          medium.region = Box{{-3, -2, -2}, {3, 2, 2}};
+          const PaperMedium paper(medium, {});
+          const Ray ray{{-5, 0, 0}, {1, 0, 0}};
+          const double got = paper(scene::PointLight{{light, h, 0}, Rgb::Ones(), 0}, ray, {0, infinity})[0];
+          // In x, in pieces that double away from the lamp to both sides, none longer than 2/k.
+          double sum = 0;
+          for (const double side : {-1.0, 1.0}) {
+            const double most = side < 0 ? light + 3 : 3 - light;
+            for (double from = std::max(0.0, side < 0 ? light - 3 : -3 - light), to; from < most; from = to) {
+              to = std::min({most, from + std::max(0.25 * h, 0.5 * from), from + 2 / k});
+              for (std::size_t i = 0; i < rule.node.size(); ++i) {
+                const double d = 0.5 * (from + to + (to - from) * rule.node[i]), r2 = d * d + h * h;
+                const double cosine = -side * d / std::sqrt(r2);  // towards the eye is -x
+                sum += 0.5 * (to - from) * rule.weight[i] * std::exp(-k * (light + side * d + 3 + paper.R())) *
+                       phase_value(medium.phase, cosine) / r2;
+              }
+            }
+          }
+          const double expected = k * sum;
+          CAPTURE(k, h, light, got, expected);
+          CHECK(std::abs(got - expected) <= 1e-9 * expected);
+          worst = std::max(worst, std::abs(got - expected) / expected);
+        }
+  CAPTURE(worst);
+  CHECK(worst < 1e-9);
 }
