@@ -6,6 +6,7 @@
 #include "experiments/verify/vector_scene.h"
 #include "methods/shadow_planes/bounded_media.h"
 #include "methods/shadow_planes/mapped_rule.h"
+#include "methods/shadow_planes/paper_medium.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "methods/shadow_planes/shadow_volumes.h"
 
@@ -180,12 +181,13 @@ Check read_bounded(const Value& v) {
             const Interval inside = clip(medium.region, ray, {0, infinity});
             const double got =
                 BoundedMedia({medium}).airlight(grazing, ray, light, {0, infinity}, [](const Vec3&) { return 1.0; })[0];
-            const LightFromRay from = light_from_ray(ray, light);
-            const double as_printed = paper_bounded_airlight(PhaseForm{}, medium.sigma_t[0], 1, 1, from.T, from.h, R,
-                                                             inside.lo, inside.lo, inside.hi);
+            // The vector's R of a box is sampled.
+            const PaperMedium as_printed(medium, {});
+            const double of_paper = as_printed(scene::PointLight{light, Rgb::Ones(), 0}, ray, inside)[0] *
+                                    std::exp(medium.sigma_t[0] * (as_printed.R() - R));
             return Outcome{{absolute("x_in", x_in, inside.lo, 1e-13 * (1 + x_in)),
                             relative("x_out", x_out, inside.hi, 1e-13), relative("L", exact, got, 1e-11),
-                            relative("L of the paper", paper, as_printed, 1e-12)}};
+                            relative("L of the paper", paper, of_paper, 1e-12)}};
           }};
 }
 

@@ -1,5 +1,5 @@
 // Airlight of the lit parts of a ray, by counting (SHADOWS 1) or as a signed sum (2), or of all of it (0):
-// methods/shadow_planes/shadow_planes.cpp. `state.unfinished` on return: there are more crossings. `m_end`: m where it ends.
+// methods/shadow_planes/lit_parts.cpp. `state.unfinished` on return: there are more crossings. `m_end`: m where it ends.
 vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, inout State state, out int m_end, out int parts) {
   parts = 0;
   m_end = m_origin;

@@ -50,6 +50,7 @@ void main() {
     m = count_at[place];
 #endif
     State state = begin_state(place, m);
+    if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // that of all lights
     vec3 in_air = airlight_of(ray, end, primitive, (pixel.y >> 4) * tile_columns + (pixel.x >> 4), m, state, m_end, parts);
 #if CROSSINGS
     states[place] = state;
@@ -58,7 +59,7 @@ void main() {
 #endif
     atomicAdd(part_sum, uint(parts));
     bool done = state.unfinished == 0;
-    if (done) lit_pixels[place].airlight.rgb += in_air;
+    if (done) lit_pixels[place].airlight.rgb = in_air + (frame_buffer != 0 ? vec3(0) : lit_pixels[place].airlight.rgb);
 #if SURFACES
     if (done && reflects != 0 && surface >= 0 && m_end == 0) {
       if (dot(normal, direction) > 0) normal = -normal;

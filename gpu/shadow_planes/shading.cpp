@@ -14,10 +14,11 @@ namespace airlight::gpu {
 
 using shadow_planes::Options;
 
-LitPicture::LitPicture(Context& context, const scene::View& v)
+LitPicture::LitPicture(Context& context, const scene::View& v, bool shadows)
     : view(v),
-      pixels(context, "light of pixels", std::size_t(v.width) * v.height * 32),
-      states(context, "states of pixels", std::size_t(v.width) * v.height * 48),
+      pixels(context, fmt::format("light of {} x {} pixels", v.width, v.height), std::size_t(v.width) * v.height * 32),
+      states(context, fmt::format("states of {} x {} pixels", v.width, v.height),
+             shadows ? std::size_t(v.width) * v.height * 48 : 48),
       counters(context, "counters", 20) {}
 
 PlaneShading::PlaneShading(Context& context, const scene::Scene& scene, const Options& options,
@@ -103,7 +104,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   p.set("reflects", air <= 0);
   p.set("tile_columns", TileBins::columns(picture.view));
   p.set("edge_split", options_.edge_split);
-  p.set("frame_buffer", options_.frame_buffer);
+  p.set("frame_buffer", options_.frame_buffer && stages);
   p.set("three", 3);
   for (bool resume = false;; resume = true) {
     p.set("resume", resume);

@@ -14,7 +14,7 @@ namespace airlight::gpu {
 
 // What lights leave in a picture.
 struct LitPicture {
-  LitPicture(Context&, const scene::View&);
+  LitPicture(Context&, const scene::View&, bool shadows);  // shadows: edges are crossed
   scene::View view;
   std::unique_ptr<Buffer> primitives;  // of the first hits; null: there are none
   Buffer pixels;                       // the layout of pixels.glsl

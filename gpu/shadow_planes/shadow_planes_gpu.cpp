@@ -171,7 +171,7 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
     find_silhouettes();
     timer.stage("silhouettes");
   }
-  LitPicture picture(context_, view);
+  LitPicture picture(context_, view, silhouettes_ != nullptr);
   if (first_hits_) {
     picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
     first_hits_->draw(view).read_primitives(*picture.primitives, 0);

@@ -87,7 +87,7 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, ino
   more = false;
 #endif
   state.unfinished = 0;
-  if (!(domain.y > domain.x)) return vec3(0);
+  if (!(domain.y > domain.x)) return state.sum.rgb;
   for (int e = resume == 0 ? -1 : 0; e < hit_count; ++e) {
     float share = 0;
     double place = domain.y;

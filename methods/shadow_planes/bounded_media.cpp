@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "scene/math/gauss_legendre.h"
-
 namespace airlight::shadow_planes {
 namespace {
 
@@ -78,21 +76,6 @@ std::vector<double> BoundedMedia::stretches(const Ray& ray, const Point3& light,
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
-}
-
-double paper_bounded_airlight(const PhaseForm& phase, double extinction, double albedo, double intensity, double T,
-                              double h, double R, double x_in, double x0, double x1) {
-  static const scene::GaussLegendre rule = scene::gauss_legendre(64);
-  const double theta0 = std::atan2(x0 - T, h), theta1 = std::atan2(x1 - T, h);
-  double sum = 0;
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const double theta = 0.5 * (theta0 + theta1 + (theta1 - theta0) * rule.node[i]);
-    const double s = std::sin(theta);
-    // x - x_in, the way to the eye, is T - x_in + h tan(theta).
-    sum += rule.weight[i] * std::exp(-extinction * (T + R - x_in + h * std::tan(theta))) *
-           phase_of_halves(phase, 0.5 * (1 - s), 0.5 * (1 + s));
-  }
-  return albedo * extinction * intensity / (4 * pi * h) * 0.5 * (theta1 - theta0) * sum;
 }
 
 }  // namespace airlight::shadow_planes

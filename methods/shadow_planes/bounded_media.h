@@ -1,8 +1,7 @@
 // Airlight in several homogeneous media, each in a convex region: Biri et al. 2006, sections 4.2 and 5.2.
 //
 // Exact: every medium dims the way from the light and the way to the eye by the lengths of both inside it, so that
-// media tint one another. The paper drops those terms and replaces the light's way by a constant
-// (paper_bounded_airlight).
+// media tint one another. The paper drops those terms and replaces the light's way by a constant: paper_medium.h.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -37,12 +36,6 @@ class BoundedMedia {
 
   std::vector<Medium> media_;
 };
-
-// The paper's form for one medium: the way from the light to any point is R [m], and the way to the eye starts where
-// the ray enters at x_in. In the exponent stands tan(theta); the printed one counts the light's way twice. L for an
-// isotropic intensity [W/sr] over [x0, x1] of the ray, finite.
-double paper_bounded_airlight(const PhaseForm&, double extinction, double albedo, double intensity, double T, double h,
-                              double R, double x_in, double x0, double x1);
 
 template <class Intensity>
 Rgb BoundedMedia::airlight(const MappedRule<double>& rule, const Ray& ray, const Point3& light, Interval lit,

@@ -143,6 +143,13 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       reasons.push_back(
           fmt::format("light {} is a {} light, expected point and spot lights", i, light_name(scene.lights[i])));
   const bool paper = options.bounded == Options::Bounded::paper;
+  if (options.evaluator == Options::Evaluator::rule && (options.annex || options.centred))
+    reasons.push_back(fmt::format("{} = true is of the polynomial, expected evaluator = polynomial",
+                                  options.annex ? "annex" : "centred"));
+  if (options.frame_buffer && options.shadows != Options::Shadows::stencil &&
+      options.evaluation != Options::Evaluation::vertices)
+    reasons.push_back(
+        "frame_buffer = true is of the paper's stages, expected shadows = stencil or evaluation = vertices");
   if (options.evaluator == Options::Evaluator::polynomial) {
     const bool whole = scene.media.size() == 1 && std::holds_alternative<scene::Unbounded>(scene.media.front().region);
     if (!scene.media.empty() && !whole && !paper)

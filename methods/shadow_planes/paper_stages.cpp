@@ -140,7 +140,7 @@ void PaperStages::draw(std::size_t l, EdgeCandidates& edges, std::optional<int> 
   scene::Stopwatch watch;
   Work work;
   work.first.push_back(0);
-  work.sum.assign(pixels.size(), Rgb::Zero());
+  for (const Pixel& pixel : pixels) work.sum.push_back(pixel.in_air);  // the frame buffer is that of all lights
   std::vector<int> at_origin(pixels.size(), 0);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty()) {
@@ -163,7 +163,7 @@ void PaperStages::draw(std::size_t l, EdgeCandidates& edges, std::optional<int> 
     draw_planes(l, a, pixels, work, counts);
     seconds.planes += watch.lap();
   }
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].in_air += work.sum[i];
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].in_air = work.sum[i];
 }
 
 // Stage 3: where the ray leaves the air, or ends, if the stencil is 0 there.

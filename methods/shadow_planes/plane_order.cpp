@@ -1,12 +1,24 @@
 #include "methods/shadow_planes/plane_order.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "scene/error.h"
+
 namespace airlight::shadow_planes {
+namespace {
+
+constexpr int most_keys = 100'000'000;  // 0.8 GB
+
+}  // namespace
 
 PlaneOrder::PlaneOrder(const ShadowVolumes& shadows, const scene::Camera& camera, int pieces)
     : shadows_(shadows), pieces_(pieces) {
   if (camera.kind != scene::Camera::Kind::perspective) return;
+  const double count = double(shadows.edges().size()) * pieces;
+  if (count > most_keys)
+    throw Error(fmt::format("{:.0f} pieces of shadow planes, expected at most {}: fewer edge_split", count, most_keys));
   const Vec3 to_camera = (camera.position - shadows.light()).normalized();
   keys_.reserve(shadows.edges().size() * std::size_t(pieces));
   for (int edge = 0; edge < int(shadows.edges().size()); ++edge)

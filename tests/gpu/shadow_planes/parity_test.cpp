@@ -262,8 +262,7 @@ TEST_CASE("shadow planes: single precision where numbers cancel", "[gpu][shadow_
   for (const double far : {1e2, 1e4, 1e6})
     for (const scene::Region& region : {scene::Region(box), scene::Region(ball), scene::Region(slab)}) {
       CAPTURE(far, region.index());
-      compare(scene_with(scene::PointLight{far * Vec3(0.3, 0.8, 0.2), far * far * Rgb::Ones(), 0}, region, 0.4),
-              {});
+      compare(scene_with(scene::PointLight{far * Vec3(0.3, 0.8, 0.2), far * far * Rgb::Ones(), 0}, region, 0.4), {});
     }
   for (const double angle : {0.1, 0.01, 0.001}) {
     CAPTURE(angle);
@@ -285,6 +284,36 @@ TEST_CASE("shadow planes: single precision where numbers cancel", "[gpu][shadow_
   for (const double sigma_t : {0.5, 3.0})
     for (const Point3& light : {Point3(0.011, 0.02, 0.03), Point3(0.4, 0.5, -0.3)})
       compare(scene_with(scene::PointLight{light, Rgb::Ones(), 0}, ball, sigma_t), {{"bounded", "paper"}});
+}
+
+// One frame buffer for all lights and media: it ends at 1, and a step of 1/255 may fall to either side.
+TEST_CASE("shadow planes: the frame buffer of 8 bits is one", "[gpu][shadow_planes]") {
+  const bool device = gpu::test::device() != nullptr;
+  auto scene = std::make_shared<scene::Scene>();
+  scene->width = 32;
+  scene->height = 24;
+  scene->camera = scene::look_at({0.4, 1.2, 5}, {0, 0, 0}, {0, 1, 0});
+  scene->surfaces.push_back({"box", scene::make_box({{-0.4, -0.5, -0.3}, {0.3, 0.1, 0.4}}), scene::Lambert{}});
+  scene->media.resize(2);
+  scene->media[0].region = Box{{-1.5, -1, -1}, {0.1, 1, 1}};
+  scene->media[1].region = scene::Sphere{{0.4, 0, 0}, 1};
+  for (scene::Medium& medium : scene->media) medium.sigma_t = Rgb(0.5, 0.6, 0.7);
+  for (const double x : {-0.7, 0.8}) scene->lights.emplace_back(scene::PointLight{{x, 1.3, 0.2}, Rgb(40, 30, 20), 0});
+  finish(*scene);
+  for (const char* evaluation : {"pixels", "vertices"}) {
+    const Pairs given{
+        {"shadows", "stencil"}, {"bounded", "paper"}, {"frame_buffer", "true"}, {"evaluation", evaluation}};
+    const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, given).film;
+    const std::vector<float>& x = a.layer("airlight");
+    CAPTURE(evaluation);
+    CHECK(*std::max_element(x.begin(), x.end()) == 1);
+    if (!device) continue;
+    const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, given).film;
+    const std::vector<float>& y = b.layer("airlight");
+    int beyond_a_step = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) beyond_a_step += std::abs(x[i] - y[i]) > 1.01 / 255;
+    CHECK(beyond_a_step <= 3);  // silhouettes
+  }
 }
 
 TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {

@@ -39,7 +39,7 @@ TEST_CASE("shadow planes: the paper's media against the vectors", "[shadow_plane
     const Ray ray{vec(in.at("O")), vec(in.at("dir")).normalized()};
     const Rgb got = medium(scene::PointLight{vec(in.at("S")), Rgb(1, 2, 3), 0}, ray, {0, infinity});
     const double expected = number(v.at("expect").at("L_paper")) * std::exp(k * (R - medium.R()));
-    for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx((c + 1) * expected).epsilon(1e-11));
+    for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx((c + 1) * expected).epsilon(1e-12));
   }
 }
 
@@ -139,7 +139,6 @@ TEST_CASE("shadow planes: the paper's media against brute force", "[shadow_plane
 // the neighbourhood of the lamp both count.
 TEST_CASE("shadow planes: the paper's media close to the light", "[shadow_planes]") {
   const scene::GaussLegendre rule = scene::gauss_legendre(48);
-  double worst = 0;
   for (const double k : {0.05, 0.5, 2.0, 6.0, 40.0})
     for (const double h : {1.0, 0.1, 0.01, 1e-3, 1e-5})
       for (const double light : {-2.9, -1.0, 0.0, 2.0, 4.0})
@@ -169,8 +168,5 @@ TEST_CASE("shadow planes: the paper's media close to the light", "[shadow_planes
           const double expected = k * sum;
           CAPTURE(k, h, light, got, expected);
           CHECK(std::abs(got - expected) <= 1e-9 * expected);
-          worst = std::max(worst, std::abs(got - expected) / expected);
         }
-  CAPTURE(worst);
-  CHECK(worst < 1e-9);
 }

@@ -142,6 +142,7 @@ TEST_CASE("shadow planes: the stencil's order is wrong in some pixels", "[shadow
       wrong += std::abs(film.layer("airlight")[i] - counted.layer("airlight")[i]) > 1e-4 * none.layer("airlight")[i];
     CAPTURE(pieces, wrong, before);
     CHECK(wrong <= before);
+    CHECK((wrong > 0 || before < 1 << 20));  // with whole edges some are
     before = wrong;
   }
   CHECK(before <= 2);
