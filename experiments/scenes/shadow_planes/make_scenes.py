@@ -75,9 +75,30 @@ def column(sides=48):
 def shade(sides=32):
     """A lamp shade over the origin, closed: a light in it shines down a cone of half-angle 25 degrees. Unit 1 mm."""
     slope = math.tan(math.radians(25))
-    # Outside from the top down to the rim, inside back up: the lathe wants it from the bottom, so it starts inside.
-    profile = [(0, 120), (60, 120), (600 * slope, -600), (600 * slope + 30, -600), (100, 160), (0, 160)]
+    # Outside from the top down to the rim, inside back up: the lathe wants it from the bottom, so it starts inside. The
+    # wall is in steps of 2 cm beside the light: what is computed at vertices is linear between them.
+    inside = [(60 + (600 * slope - 60) * k / 36, 120 - 20 * k) for k in range(37)]
+    profile = [(0, 120)] + inside + [(600 * slope + 30, -600), (100, 160), (0, 160)]
     lathe("shade", sides, profile)
+
+
+def floor(cells=32):
+    """A floor of cells x cells squares, 75 wide and 20 thick, closed, about the middle of its upper side. Unit 1 cm."""
+    vertices, triangles = [], []
+    for y in (0, -20):
+        vertices += [(75 * i - 75 * cells // 2, y, 75 * k - 75 * cells // 2) for k in range(cells + 1) for i in range(cells + 1)]
+    side, below = cells + 1, (cells + 1) ** 2
+    for k in range(cells):
+        for i in range(cells):
+            a = side * k + i
+            triangles += [(a, a + side, a + side + 1), (a, a + side + 1, a + 1)]
+            b = a + below
+            triangles += [(b, b + side + 1, b + side), (b, b + 1, b + side + 1)]
+    last = side * cells
+    for i in range(cells):
+        for a, b in ((i + 1, i), (last + i, last + i + 1), (side * i, side * (i + 1)), (side * (i + 1) + cells, side * i + cells)):
+            triangles += [(a, a + below, b + below), (a, b + below, b)]
+    write_mesh("floor", vertices, triangles)
 
 
 def cube(cuts=35):
@@ -159,9 +180,10 @@ def figure_7():
             "intensity = 60")
     write_scene("fig7", "After Figure 7 of Biri et al. 2006: a ball of 32 meridians under a spot, so 32 edges in its silhouette.",
                 camera, target, 0.8, spot, fog(0.12), [ball, floor])
+    fine_floor = surface("floor", "mesh", {"file": '"floor.off"', "transform": "{ scale = 0.01, translation = [0, -3, 0] }"}, 0.4)
     lamp = surface("shade", "mesh", {"file": '"shade.off"', "transform": "{ scale = 0.001, translation = [0, 3, 0] }"}, 0.5)
     write_scene("fig7_shade", "The same by a point light in a shade, as the paper made its spot.", camera, target, 0.8,
-                point((0, 3, 0), (60, 60, 60)), fog(0.12), [ball, floor, lamp])
+                point((0, 3, 0), (60, 60, 60)), fog(0.12), [ball, fine_floor, lamp])
 
 
 def figure_8a():
@@ -253,6 +275,7 @@ def edges():
 pen()
 column()
 shade()
+floor()
 cube()
 figure_7()
 figure_8a()
