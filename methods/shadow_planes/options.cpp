@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace airlight::shadow_planes {
 
 std::vector<scene::SettingSpec> setting_specs() {
@@ -142,6 +144,15 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
     if (!scene::ball(scene.lights[i]))
       reasons.push_back(
           fmt::format("light {} is a {} light, expected point and spot lights", i, light_name(scene.lights[i])));
+  const Point3& camera = scene.camera.position;
+  const auto around_camera = [&](const scene::Medium& medium) {
+    return (medium.sigma_t > 0).any() && contains(medium.region, camera);
+  };
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (const auto ball = scene::ball(scene.lights[i]);
+        ball && ball->center == camera && scene.camera.kind == scene::Camera::Kind::perspective &&
+        std::any_of(scene.media.begin(), scene.media.end(), around_camera))
+      reasons.push_back(fmt::format("light {} is at the camera inside a medium: its airlight is infinite", i));
   const bool paper = options.bounded == Options::Bounded::paper;
   if (options.evaluator == Options::Evaluator::rule && (options.annex || options.centred))
     reasons.push_back(fmt::format("{} = true is of the polynomial, expected evaluator = polynomial",

@@ -49,6 +49,11 @@ inline std::vector<std::shared_ptr<const scene::Scene>> special_scenes() {
       {0, 5, 0}, {{"ball", scene::Sphere{{0, 0, 0}, 3}, scene::Lambert{}}});
   add("a light closely before a wall of a box", {4, 2.1, 1.3}, {0, 1, 0}, {0.3, 1, 0.2},
       {box({-1, -1, -1}, {1, 1 - 1e-6, 1})});
+  scene::TriangleMesh fins;  // three triangles on one edge
+  fins.vertices = {{0, 0, -1}, {0, 0, 1}, {1, 0.3, 0}, {-1, 0.2, 0}, {0.1, 1, 0}};
+  fins.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}};
+  add("triangles that share an edge", {2.2, 1.4, 4}, {0, -0.3, 0}, {0.4, 2.3, 0.5},
+      {{"fins", fins, scene::Lambert{}}, ground(-2)});
   return scenes;
 }
 
