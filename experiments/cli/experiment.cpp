@@ -45,7 +45,8 @@ int run_experiments(const ExperimentOptions& options) {
       const auto failed =
           std::count_if(outcome.gates.begin(), outcome.gates.end(), [](const auto& g) { return !g.passed; });
       fmt::print("  {} rows in {:.1f} s, {} of {} gates ok: results/{}/table.md\n", outcome.rows.size(),
-                 outcome.seconds, outcome.gates.size() - std::size_t(failed), outcome.gates.size(), e.id);
+                 outcome.seconds, outcome.gates.size() - std::size_t(failed), outcome.gates.size(),
+                 results_name(e.id, e.profile));
     } catch (const Error& error) {
       // The others are worth having.
       fmt::print(stderr, "airlight: {}: {}\n", e.id, error.what());
@@ -58,13 +59,16 @@ int run_experiments(const ExperimentOptions& options) {
 int plot_experiments(const ExperimentOptions& options) {
   const auto root = project_root(options.root);
   for (const std::string& id : choose_experiments(root, options.names)) {
-    const auto folder = root / "results" / id / "plots";
-    std::vector<std::string> scripts;
-    if (!std::filesystem::is_directory(folder)) continue;
-    for (const auto& file : std::filesystem::directory_iterator(folder))
-      if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
-    run_gnuplot(folder, scripts);
-    fmt::print("{}: {} plots\n", id, scripts.size());
+    for (const std::string profile : {"quick", "paper"}) {
+      const std::string name = results_name(id, profile);
+      const auto folder = root / "results" / name / "plots";
+      std::vector<std::string> scripts;
+      if (!std::filesystem::is_directory(folder)) continue;
+      for (const auto& file : std::filesystem::directory_iterator(folder))
+        if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
+      run_gnuplot(folder, scripts);
+      fmt::print("{}: {} plots\n", name, scripts.size());
+    }
   }
   return 0;
 }

@@ -298,6 +298,10 @@ Experiment read_experiment(const fs::path& root, const std::string& id, const st
   return Reader(root, id, profile).read();
 }
 
+std::string results_name(const std::string& id, const std::string& profile) {
+  return profile == "quick" ? id : id + "." + profile;
+}
+
 std::vector<std::string> experiment_ids(const fs::path& root) {
   std::vector<std::string> ids;
   for (const auto& group : fs::directory_iterator(root / "experiments")) {

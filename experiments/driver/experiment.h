@@ -87,6 +87,10 @@ struct Experiment {
 // and names that refer to one another are checked here, scenes when they are loaded.
 Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
 
+// Where a profile's results lie below results/, and its pictures below results/images/: "group/name" for quick,
+// "group/name.paper" for paper, so that neither overwrites the other.
+std::string results_name(const std::string& id, const std::string& profile);
+
 // All ids below root/experiments, sorted. A file is an experiment if it lies in experiments/<group>/ and group is
 // neither `scenes` nor `data`.
 std::vector<std::string> experiment_ids(const std::filesystem::path& root);

@@ -139,6 +139,26 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   CHECK(anew.rows[1].seconds.value != third.rows[1].seconds.value);
 }
 
+TEST_CASE("profiles have folders, pictures and journals of their own", "[driver]") {
+  const Project project;
+  project.run(false);
+  const fs::path results = project.folder.path() / "results";
+  const std::string quick = read_bytes((results / "g/e/run.json").string());
+  Experiment paper = read_experiment(project.folder.path(), "g/e", "paper");
+  paper.timing = {1, 0, 0, 0};  // its own would warm up for seconds
+  const Outcome outcome = run_experiment(paper, {project.folder.path(), false, 1, false});
+  CHECK(read_bytes((results / "g/e/run.json").string()) == quick);
+  CHECK(fs::exists(results / "images/g/e/one/reference.exr"));  // kept: that of the other profile
+  CHECK(fs::exists(results / "cache/rows/g/e.quick.jsonl"));
+  CHECK(fs::exists(results / "cache/rows/g/e.paper.jsonl"));
+  const auto record = nlohmann::json::parse(read_bytes((results / "g/e.paper/run.json").string()));
+  CHECK(record["experiment"] == "g/e");
+  CHECK(record["profile"] == "paper");
+  CHECK_THAT(outcome.rows.at(0).image, Catch::StartsWith("g/e.paper/"));
+  for (const auto& picture : record["pictures"][0]["pictures"])
+    CHECK(fs::exists(results / "g/e.paper" / picture["file"].get<std::string>()));
+}
+
 TEST_CASE("a damaged cached reference is computed anew", "[driver]") {
   const Project project;
   const Outcome first = project.run(false);
