@@ -19,6 +19,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
+#include "gpu/context.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 
@@ -204,6 +205,11 @@ class Run {
         measure_row(row, m, scene, masks, reference, renderer, settings);
       } catch (const Unavailable& reason) {
         row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
+        row.unavailable = !gpu::Context::device_was_chosen();
+        // Not into the journal: the next run may find what is missing.
+        outcome_.rows.push_back(row);
+        say(row, "left out");
+        return;
       }
     } else {
       row.note = "not supported: " + reasons.front();

@@ -218,8 +218,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   if (!plots.empty()) out += "\n";
   if (!outcome.gates.empty()) {
     out += "## Gates\n\n";
-    for (const GateResult& gate : outcome.gates)
-      out += fmt::format("- {}: {}\n", gate.passed ? "ok" : "FAILED", gate.text);
+    for (const GateResult& gate : outcome.gates) out += fmt::format("- {}: {}\n", word(gate), gate.text);
     out += "\n";
   }
   const Machine machine = this_machine();

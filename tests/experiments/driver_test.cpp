@@ -130,6 +130,11 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   CHECK(resumed.rows[0].seconds.value == whole.rows[0].seconds.value);  // kept
   CHECK(metric(resumed.rows[1], "rel_l2") == metric(whole.rows[1], "rel_l2"));
   CHECK(resumed.references.at(0).cached);
+  // A whole line of another version of the program, which knew no `note`, is passed over.
+  std::string old = journal.substr(1, journal.find('\n', 1) - 1);
+  old.erase(0, 33);
+  old.replace(old.find("\"note\""), 6, "\"noet\"");
+  std::ofstream(project.journal(), std::ios::app) << content_key(std::string_view(old)) << ' ' << old << '\n';
   // Complete now: a third run keeps the times of the second.
   const Outcome third = project.run(true);
   CHECK(third.rows[1].seconds.value == resumed.rows[1].seconds.value);
@@ -211,6 +216,31 @@ TEST_CASE("gates fail only beyond the interval", "[driver]") {
   CHECK_FALSE(passed(most, named_row("s", "m", std::nan(""), std::nan(""), std::nan(""))));
 }
 
+TEST_CASE("gates on what the machine lacks are skipped", "[driver]") {
+  Experiment e;
+  e.id = "g/e";
+  GateCase gate;
+  gate.method = "m";
+  gate.metric = "rel_l2";
+  gate.at_most = 0.1;
+  e.gates = {gate};
+  Row row = named_row("s", "m", 0, 0, 0);
+  row.runs = 0;
+  row.measures.clear();
+  row.note = "not available on this machine: gpu";
+  Row asked_for = row;  // by name
+  row.unavailable = true;
+  const auto results = judge(e, {row, named_row("t", "m", 0.01, 0, 0.02), asked_for});
+  REQUIRE(results.size() == 3);
+  CHECK(results[0].skipped);
+  CHECK_THAT(results[0].text, Catch::Contains("is skipped: not available on this machine"));
+  const GateCounts counts = count(results);
+  CHECK(counts.skipped == 1);
+  CHECK(counts.passed == 1);
+  CHECK(counts.failed == 1);
+  CHECK(std::string(word(results[2])) == "FAILED");
+}
+
 TEST_CASE("rows survive their record", "[driver]") {
   Row row = named_row("s, with \"quotes\"", "m", 0.1, 0.05, 0.2);
   row.parameter = 0.3;
@@ -254,7 +284,11 @@ TEST_CASE("times of stages are medians of the warm runs", "[driver]") {
 TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "gates.xml";
-  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true}, {"g/e: b", "b fails", false}});
+  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true, false},
+                              {"g/e: b", "b fails", false, false},
+                              {"g/e: c", "c is skipped: no <gpu>", false, true}});
   const std::string text = read_bytes(file.string());
-  CHECK_THAT(text, Catch::Contains("tests=\"2\" failures=\"1\"") && Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;"));
+  CHECK_THAT(text, Catch::Contains("tests=\"3\" failures=\"1\" skipped=\"1\"") &&
+                       Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;") &&
+                       Catch::Contains("<skipped message=\"c is skipped: no &lt;gpu&gt;\"/>"));
 }
