@@ -38,8 +38,8 @@ struct ReferenceCase {
 struct TimingRule {
   int runs = 31;             // beside the warm-up; 5 where one takes over a second
   double least_seconds = 0;  // of warm-up
-  double budget = 1;         // [s] per row for all runs; one run is always made
-  int threads = 0;           // 0: all
+  double budget = 1;  // [s] per row for all runs, the warm-up included; 0: the run that makes the picture, no other
+  int threads = 0;    // 0: all
 };
 
 struct PlotCase {

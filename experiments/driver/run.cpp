@@ -176,6 +176,8 @@ class Run {
     row.layer = m.layer;
     row.parameter = c.parameter;
     row.scene_hash = scene->hash;
+    row.width = scene->width;
+    row.height = scene->height;
     row.exposure = exposure;
     if (reference) row.reference_key = reference->key;
     const TimingRule& rule = experiment().timing;

@@ -62,6 +62,13 @@ method = "marcher"
 setting = 4
 metric = "rel_l2"
 at_most = 1e-9
+[[expected]]
+what = "frames per second"
+paper = "120 at 800x600"
+scene = "one"
+method = "marcher"
+setting = 64
+metric = "seconds"
 )";
 
 struct Project {
@@ -116,6 +123,7 @@ TEST_CASE("an experiment leaves its table, plots, pictures and record", "[driver
   CHECK(record["gates"].size() == 2);
   CHECK_THAT(read_bytes((results / "table.md").string()),
              Catch::Contains("| marcher | 64 |") && Catch::Contains("FAILED"));
+  CHECK_THAT(read_bytes((results / "expected.csv").string()), Catch::Contains(" at 16x12, "));
   CHECK_THAT(read_bytes((results / "table.csv").string()), Catch::StartsWith("scene,parameter,method,setting"));
 }
 
@@ -246,6 +254,8 @@ TEST_CASE("rows survive their record", "[driver]") {
   row.parameter = 0.3;
   row.seconds = {1, 0.5, 2};
   row.counters = {{"rays", 12}};
+  row.width = 100;
+  row.height = 75;
   row.stages = {{"slices", 0.25}};
   row.device = "somewhere";
   row.measures.push_back({"p95", std::nan(""), std::nan(""), std::nan(""), 0, false});
@@ -264,6 +274,12 @@ TEST_CASE("timed runs follow the rule", "[driver]") {
   const Timing none = time_runs({5, 0, 0.5, 0}, 0.6, [&] { FAIL("the budget is spent"); });
   CHECK(none.runs == 1);
   CHECK(none.seconds.value == 0.6);
+  count = 0;
+  const Timing least = time_runs({31, 0, 0.1, 0}, 0.12, [&] { ++count; });
+  CHECK(least.runs == 7);  // of a short job, though the budget is spent
+  CHECK(least.coverage > 0.95);
+  CHECK(time_runs({31, 0, 0, 0}, 0.01, [&] { FAIL("there is no budget"); }).runs == 1);
+  CHECK(time_runs({5, 0, 0.01, 0}, 0.01, [&] {}).runs == 5);
   count = 0;
   const Timing warmed = time_runs({31, 0.02, 60, 0}, 0, [&] { ++count; });
   CHECK(warmed.runs == 31);
