@@ -256,6 +256,11 @@ TEST_CASE("rate of kernels", "[cli]") {
   const auto counters =
       method.prepare(scene, {method.settings(), {}}, {})->render(airlight::scene::view_of(*scene), {}).counters;
   CHECK_THAT(both.out, Contains(fmt::format("      2 {:11.1f} ", counters.at("gaussians_crossed") / 48)));
+  REQUIRE(run("rate " + scenes + "fogshop/a30.toml --out record/rate" + small, folder).code == 0);
+  CHECK_THAT(read_bytes(folder.file("record/rate/table.md")),
+             Contains("| paper |  | precise |") && Contains("--runs 1"));
+  CHECK_THAT(read_bytes(folder.file("record/rate/rate.csv")), Catch::StartsWith("variant,K,erf,"));
+  CHECK_THAT(read_bytes(folder.file("record/rate/run.json")), Contains("\"rate.csv\""));
   const Result one = run("rate " + scenes + "fogshop/a30.toml --processor-time --set variant=paper" + small, folder);
   CHECK_THAT(one.out, Contains("processor time") && !Contains("\nS "));
   const Result coloured = run("rate " + scenes + "fogshop/colours.toml" + small, folder);
