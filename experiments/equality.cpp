@@ -111,10 +111,14 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   if (whole.sigma > 0)
     e.detectable_bias =
         (student_quantile(1 - alpha / 6, whole.degrees) + normal_quantile(0.95)) * whole.sigma / std::abs(mb.value);
-  e.equal = e.differing == 0 && e.largest_z <= e.largest_threshold && e.chi_square_probability >= alpha / 9 &&
-            std::abs(e.image_z) <= e.image_threshold;
+  e.equal = objections(e, alpha) == 0;
   e.tested = e.detectable_bias <= 0.01;
   return e;
+}
+
+int objections(const Equality& e, double alpha) {
+  return int(e.differing > 0 || e.largest_z > e.largest_threshold) + int(e.chi_square_probability < alpha / 9) +
+         int(std::abs(e.image_z) > e.image_threshold);
 }
 
 std::string text(const Equality& e) {

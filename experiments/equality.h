@@ -31,6 +31,9 @@ struct Equality {
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
                        const std::vector<unsigned char>& left_out, double alpha);
 
+// How many of the three tests object at that alpha; a block that differs without noise counts with the first.
+int objections(const Equality&, double alpha);
+
 // One line for people.
 std::string text(const Equality&);
 

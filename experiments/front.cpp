@@ -78,6 +78,16 @@ std::optional<Gain> gain(const std::vector<Knot>& baseline, const std::vector<Kn
   return Gain{std::exp(sum / (steps + 1)), std::exp(least), std::exp(greatest), std::exp(from), std::exp(to)};
 }
 
+const Point& fastest(const std::vector<Point>& points) { return points[by_time(points).front()]; }
+const Point& slowest(const std::vector<Point>& points) { return points[by_time(points).back()]; }
+
+// Of those with the least error the fastest.
+const Point& closest(const std::vector<Point>& points) {
+  return *std::min_element(points.begin(), points.end(), [](const Point& a, const Point& b) {
+    return a.error.value != b.error.value ? a.error.value < b.error.value : a.time.value < b.time.value;
+  });
+}
+
 std::optional<double> exponential(std::optional<double> x) { return x ? std::optional(std::exp(*x)) : x; }
 
 }  // namespace
@@ -122,6 +132,25 @@ std::optional<Gain> speed_up(const std::vector<Point>& baseline, const std::vect
 
 std::optional<Gain> error_ratio(const std::vector<Point>& baseline, const std::vector<Point>& other) {
   return gain(error_over_time(baseline), error_over_time(other));
+}
+
+std::optional<Apart> apart_in_error(const std::vector<Point>& baseline, const std::vector<Point>& other) {
+  if (baseline.empty() || other.empty()) return std::nullopt;
+  for (const bool other_is_closer : {true, false}) {
+    const auto &close = other_is_closer ? other : baseline, &far = other_is_closer ? baseline : other;
+    const Point &first = fastest(close), &best = closest(far);
+    if (first.error.value < best.error.value)
+      return Apart{other_is_closer, first.error.value, best.error.value, first.time.value / best.time.value,
+                   slowest(close).time.value / fastest(far).time.value};
+  }
+  return std::nullopt;
+}
+
+std::optional<double> speed_up_of_exact(const std::vector<Point>& baseline, const std::vector<Point>& other) {
+  if (baseline.empty() || other.empty()) return std::nullopt;
+  const Point &a = closest(baseline), &b = closest(other);
+  if (a.error.value != 0 || b.error.value != 0) return std::nullopt;
+  return a.time.value / b.time.value;
 }
 
 }  // namespace airlight::experiments

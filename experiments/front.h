@@ -42,4 +42,18 @@ std::optional<Gain> speed_up(const std::vector<Point>& baseline, const std::vect
 // Error of `baseline` over error of `other`, at equal time.
 std::optional<Gain> error_ratio(const std::vector<Point>& baseline, const std::vector<Point>& other);
 
+// Two curves without an error that both reach: even the fastest point of one has a smaller error than every point of
+// the other. Errors may be 0, times not.
+struct Apart {
+  bool other_is_closer;       // else `baseline` is
+  double error;               // of the closer curve's fastest point
+  double least_error;         // of the other curve, at its closest point
+  double fastest_to_closest;  // time of the first of these points over that of the second
+  double slowest_to_fastest;  // greatest time of the closer curve over the least of the other
+};
+std::optional<Apart> apart_in_error(const std::vector<Point>& baseline, const std::vector<Point>& other);
+
+// Time of `baseline` over time of `other`, the fastest points of both whose error is 0; nothing where one has none.
+std::optional<double> speed_up_of_exact(const std::vector<Point>& baseline, const std::vector<Point>& other);
+
 }  // namespace airlight::experiments

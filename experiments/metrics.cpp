@@ -9,6 +9,7 @@
 #include <span>
 
 #include "experiments/batches.h"
+#include "experiments/equality.h"
 #include "experiments/statistics.h"
 #include "scene/error.h"
 #include "scene/settings.h"
@@ -307,11 +308,29 @@ Measure measure_values(const std::string& base, const Values& v) {
   return squared_family(e, take_root ? root(relative_noise) : relative_noise, take_root, noisy);
 }
 
+bool is_test(const std::string& base) {
+  return base == "objections" || base == "largest_z" || base == "detectable_bias";
+}
+
+Measure test_of_equality(const std::string& name, const scene::Film& image, const scene::Film& reference,
+                         const std::string& layer, const Masks& masks) {
+  constexpr double alpha = 1e-4;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  if (batches(image, layer, "image").empty() && batches(reference, layer, "reference").empty())
+    return {"", nan, nan, nan, 0, false};
+  const Equality e = compare_equal(image, reference, layer, masks.left_out, alpha);
+  const double x = name == "largest_z"         ? e.largest_z
+                   : name == "detectable_bias" ? e.detectable_bias
+                                               : double(objections(e, alpha));
+  return {"", x, x, x, 0, false};
+}
+
 }  // namespace
 
 const std::vector<std::string>& metric_names() {
-  static const std::vector<std::string> names = {"rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse", "bias",
-                                                 "p95",  "p99",    "p999",           "wrong"};
+  static const std::vector<std::string> names = {
+      "rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse",   "bias",           "p95",
+      "p99",  "p999",   "wrong",          "objections", "largest_z", "detectable_bias"};
   return names;
 }
 
@@ -321,6 +340,8 @@ void check_metric_name(const std::string& name, const std::string& where) {
   if (std::find(names.begin(), names.end(), base) == names.end())
     throw Error(fmt::format("{}: unknown metric '{}', expected one of {} (nearest: {})", where, name,
                             fmt::join(names, ", "), scene::nearest(base, names)));
+  if (is_test(base) && name != base)
+    throw Error(fmt::format("{}: metric '{}': expected '{}', which is of the whole picture", where, name, base));
 }
 
 std::vector<unsigned char> foreground_mask(const scene::Film& film) {
@@ -351,7 +372,8 @@ std::vector<Measure> measure(const std::vector<std::string>& names, const scene:
     if (parsed.foreground && masks.foreground.size() != image.pixels())
       throw Error(
           fmt::format("metric '{}' needs the foreground, and the reference has no layer 'transmittance'", name));
-    Measure m = measure_values(parsed.base, Values(image, reference, layer, parsed, masks));
+    Measure m = is_test(parsed.base) ? test_of_equality(name, image, reference, layer, masks)
+                                     : measure_values(parsed.base, Values(image, reference, layer, parsed, masks));
     m.name = name;
     measures.push_back(m);
   }

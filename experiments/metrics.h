@@ -9,8 +9,14 @@
 //   p95, p99, p999  95th, 99th and 99.9th percentile of |d| / (R + 0.01 max R)
 //   wrong           share of pixels where |d| > 1e-4 mean(R) in some channel; not defined with noise
 //
+//   objections       of the three tests of equality (equality.h, false alarms 1e-4 together), how many object: 0 if the
+//                    images are equal but for noise; not defined without noise
+//   largest_z        the largest |z| of a block of 8x8 pixels
+//   detectable_bias  smallest relative bias of the whole image that those tests find with probability 0.95
+//
 // Prefix "foreground." : only pixels where 1 - transmittance > 1e-3 in some channel. Suffix ".r", ".g", ".b": one
-// channel; else all channels together. Pixels that touch a light's ball are left out of all of them.
+// channel; else all channels together. Tests of equality take neither. Pixels that touch a light's ball are left out of
+// all of them.
 //
 // With noise, squares are means over pairs of different batches, (A - R_p)(A - R_q), so that no noise is squared, and
 // intervals are delete-one jackknives over the batches. Percentiles cannot be corrected that way: their interval is the

@@ -46,6 +46,8 @@ std::string key_of(std::string file, const std::map<std::string, std::string>& d
 
 void Context::choose_device(const std::string& name) { wish() = name; }
 
+bool Context::device_was_chosen() { return wish() != "auto" && wish() != "none"; }
+
 // Whatever goes wrong is in the answer's failure.
 Attempt Context::attempt(const Place& place, std::unique_ptr<EglContext>& context) {
   Attempt result{place, {}, {}, {}, {}};
@@ -84,6 +86,7 @@ std::vector<Attempt> Context::try_everything() {
 Context& Context::get() {
   // Never destroyed: drivers may be gone when the process ends.
   static Context* const context = [] {
+    if (wish() == "none") throw Unavailable("gpu: none is to be used (AIRLIGHT_GPU=none)");
     const auto places = Egl::get().places();
     if (places.empty()) throw Unavailable("gpu: EGL lists no device and no surfaceless platform: CPU only");
     std::string failures;

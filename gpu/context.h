@@ -31,8 +31,11 @@ class Context {
   // in attempts().
   static Context& get();
   // "auto", the name of a place ("device 1", "surfaceless"), or a part of GL_VENDOR or GL_RENDERER. Before the first
-  // get().
+  // get(). "none": get() throws Unavailable, as on a machine without a device.
   static void choose_device(const std::string& wish);
+  // Whether a certain device was asked for, by choose_device or AIRLIGHT_GPU: then its absence is a failure, where it
+  // otherwise is a reason to leave something out.
+  static bool device_was_chosen();
   // What was tried so far, and what came of it; tries everything, for `airlight doctor`, if nothing was.
   static std::vector<Attempt> try_everything();
 

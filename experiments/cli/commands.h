@@ -54,7 +54,7 @@ struct ExplainOptions {
 int explain(const ExplainOptions&);
 
 struct RateOptions {
-  std::string scene;
+  std::string scene, out;  // out: folder for a record, none if empty
   Pairs settings, overrides;
   int threads = 0, runs = 7;
   bool processor_time = false;  // of one thread, not the wall clock: on a machine that others use

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "experiments/cli/commands.h"
@@ -8,6 +7,7 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/folders.h"
+#include "gpu/context.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::cli {
@@ -16,6 +16,12 @@ namespace {
 void check_profile(const ExperimentOptions& options) {
   if (options.profile != "quick" && options.profile != "paper")
     throw Error(fmt::format("--profile '{}': expected quick or paper", options.profile));
+}
+
+std::string gates_text(const std::vector<GateResult>& gates) {
+  const GateCounts counts = count(gates);
+  return fmt::format("{} of {} gates ok{}", counts.passed, gates.size(),
+                     counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "");
 }
 
 }  // namespace
@@ -42,10 +48,8 @@ int run_experiments(const ExperimentOptions& options) {
     std::fflush(stdout);
     try {
       const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true});
-      const auto failed =
-          std::count_if(outcome.gates.begin(), outcome.gates.end(), [](const auto& g) { return !g.passed; });
-      fmt::print("  {} rows in {:.1f} s, {} of {} gates ok: results/{}/table.md\n", outcome.rows.size(),
-                 outcome.seconds, outcome.gates.size() - std::size_t(failed), outcome.gates.size(), e.id);
+      fmt::print("  {} rows in {:.1f} s, {}: results/{}/table.md\n", outcome.rows.size(), outcome.seconds,
+                 gates_text(outcome.gates), results_name(e.id, e.profile));
     } catch (const Error& error) {
       // The others are worth having.
       fmt::print(stderr, "airlight: {}: {}\n", e.id, error.what());
@@ -58,13 +62,16 @@ int run_experiments(const ExperimentOptions& options) {
 int plot_experiments(const ExperimentOptions& options) {
   const auto root = project_root(options.root);
   for (const std::string& id : choose_experiments(root, options.names)) {
-    const auto folder = root / "results" / id / "plots";
-    std::vector<std::string> scripts;
-    if (!std::filesystem::is_directory(folder)) continue;
-    for (const auto& file : std::filesystem::directory_iterator(folder))
-      if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
-    run_gnuplot(folder, scripts);
-    fmt::print("{}: {} plots\n", id, scripts.size());
+    for (const std::string profile : {"quick", "paper"}) {
+      const std::string name = results_name(id, profile);
+      const auto folder = root / "results" / name / "plots";
+      std::vector<std::string> scripts;
+      if (!std::filesystem::is_directory(folder)) continue;
+      for (const auto& file : std::filesystem::directory_iterator(folder))
+        if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
+      run_gnuplot(folder, scripts);
+      fmt::print("{}: {} plots\n", name, scripts.size());
+    }
   }
   return 0;
 }
@@ -83,19 +90,20 @@ int gates(const ExperimentOptions& options) {
       const Outcome outcome = run_experiment(e, {root, true, options.threads, false});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const Error& error) {
-      results.push_back({e.id, fmt::format("{} fails: {}", e.id, error.what()), false});
+      const bool skipped = error.exit_code() == 3 && !gpu::Context::device_was_chosen();
+      results.push_back(
+          {e.id, fmt::format("{} {}: {}", e.id, skipped ? "is skipped" : "fails", error.what()), false, skipped});
     }
     for (std::size_t i = 0; i < results.size(); ++i)
       if (results[i].name.rfind(e.id + ":", 0) == 0 || results[i].name == e.id)
-        fmt::print("{}  {}\n", results[i].passed ? "ok    " : "FAILED", results[i].text);
+        fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
     std::fflush(stdout);
   }
   if (!options.junit.empty()) write_junit(options.junit, results);
-  const auto failed = std::count_if(results.begin(), results.end(), [](const auto& g) { return !g.passed; });
-  fmt::print("{} of {} gates ok\n", results.size() - std::size_t(failed), results.size());
+  fmt::print("{}\n", gates_text(results));
   for (const GateResult& g : results)
-    if (!g.passed) fmt::print(stderr, "airlight: gate failed: {}\n", g.name);
-  return failed ? 1 : 0;
+    if (!g.passed && !g.skipped) fmt::print(stderr, "airlight: gate failed: {}\n", g.name);
+  return count(results).failed ? 1 : 0;
 }
 
 }  // namespace airlight::experiments::cli

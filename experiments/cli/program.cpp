@@ -211,6 +211,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--runs", rate_options.runs, "pictures of each variant, of which the fastest counts (7)");
   c->add_flag("--processor-time", rate_options.processor_time,
               "of one thread, not the wall clock: on a machine that others use");
+  c->add_option("--out,-o", rate_options.out, "folder for a record: rate.csv, table.md, run.json");
   add_pairs(c, "--set", rate_options.settings, "a setting of fogshop");
   add_pairs(c, "--override", rate_options.overrides, "a value of the scene file, e.g. film.width=320");
   data_option(c);

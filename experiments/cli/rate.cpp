@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "experiments/cli/commands.h"
+#include "experiments/cli/rate_record.h"
 #include "experiments/progress.h"
 #include "methods/fogshop/airlight_pass.h"
 #include "methods/fogshop/bare_loop.h"
@@ -91,8 +92,8 @@ fogshop::Model prepare(const scene::Scene& scene, const fogshop::Options& o, con
   return model;
 }
 
-void measure(const scene::Scene& scene, const Pairs& given, const RateOptions& options,
-             const scene::Execution& execution) {
+RateRow measure(const scene::Scene& scene, const Pairs& given, const RateOptions& options,
+                const scene::Execution& execution) {
   const fogshop::Fogshop method;
   const scene::Settings settings(method.settings(), given, "rate");
   const fogshop::Options o = fogshop::read_options(settings);
@@ -119,11 +120,25 @@ void measure(const scene::Scene& scene, const Pairs& given, const RateOptions& o
   const double evaluations = model.paper() ? pairs * double(model.lights.size()) : depths;
   const double bare =
       pairs * crossing.seconds() + depths * depth.seconds() + (model.paper() ? evaluations * term.seconds() : 0);
-  fmt::print("{:8} {:>4} {:8} {:7} {:11.1f} {:12.1f} {:11.1f} {:6.0f} % {:11.1f} {:11.1f} {:6.0f} %\n",
-             settings.text("variant"), model.paper() ? "" : std::to_string(o.slices), settings.text("erf"),
-             execution.threads, pairs / double(distance.size()), evaluations / best / 1e6, evaluations / bare / 1e6,
-             100 * bare / best, image.evaluations / best / 1e6, 1e-6 / erf.seconds(),
-             100 * image.evaluations * erf.seconds() / best);
+  return {settings.text("variant"),
+          settings.text("erf"),
+          model.paper() ? 0 : o.slices,
+          execution.threads,
+          pairs / double(distance.size()),
+          evaluations / best / 1e6,
+          evaluations / bare / 1e6,
+          image.evaluations / best / 1e6,
+          1e-6 / erf.seconds()};
+}
+
+// As the user would type it again.
+std::string command_of(const RateOptions& options) {
+  std::string out = fmt::format("airlight rate {} --runs {}", options.scene, options.runs);
+  if (options.threads > 0) out += fmt::format(" --threads {}", options.threads);
+  if (options.processor_time) out += " --processor-time";
+  for (const auto& [name, value] : options.settings) out += fmt::format(" --set {}={}", name, value);
+  for (const auto& [path, value] : options.overrides) out += fmt::format(" --override {}={}", path, value);
+  return out;
 }
 
 }  // namespace
@@ -140,18 +155,21 @@ int rate(const RateOptions& options) {
                                              : int(std::max(1u, std::thread::hardware_concurrency()));
   Progress progress("rate " + scene->name);
   const scene::Execution execution = progress.execution(threads);
-  fmt::print("{}, {}x{} pixels, fastest of {} runs, {}; millions per second\n", scene->name, scene->width,
-             scene->height, options.runs, options.processor_time ? "processor time" : "wall clock");
-  fmt::print(
-      "variant     K erf      threads  pairs/ray  evaluations   bare loop    share   erf calls   bare loop    share\n");
+  RateRun run;
+  run.scene = scene->name;
+  run.how = fmt::format("{}x{} pixels, fastest of {} runs, {}", scene->width, scene->height, options.runs,
+                        options.processor_time ? "processor time" : "wall clock");
+  run.command = command_of(options);
   std::vector<std::string> variants{"paper", "S"};
   const auto chosen = options.settings.find("variant");
   if (chosen != options.settings.end()) variants = {chosen->second};
   for (const std::string& variant : variants) {
     Pairs settings = options.settings;
     settings["variant"] = variant;
-    measure(*scene, settings, options, execution);
+    run.rows.push_back(measure(*scene, settings, options, execution));
   }
+  fmt::print("{}", rate_text(run));
+  if (!options.out.empty()) write_rate_record(options.out, run);
   return 0;
 }
 

@@ -50,6 +50,19 @@ std::string break_even(const Outcome& outcome, const SpeedUpCase& s, const std::
   return saved > 0 ? fmt::format("{:.0f}", std::ceil(longer / saved)) : "never";
 }
 
+// Why there is no equal error: in which direction, and at what time.
+std::string no_common_error(const SpeedUpCase& s, const std::vector<Point>& baseline, const std::vector<Point>& other) {
+  if (const auto ratio = speed_up_of_exact(baseline, other)) return fmt::format("{:.3g}, both with error 0", *ratio);
+  const auto apart = apart_in_error(baseline, other);
+  if (!apart) return "no common error";
+  const std::string &close = apart->other_is_closer ? s.method : s.baseline,
+                    &far = apart->other_is_closer ? s.baseline : s.method;
+  return fmt::format(
+      "none: even the fastest of {} has a smaller error ({:.2g}) than the closest of {} ({:.2g}), in {:.3g} times its "
+      "time; its slowest takes {:.3g} times as long as the fastest of {}",
+      close, apart->error, far, apart->least_error, apart->fastest_to_closest, apart->slowest_to_fastest, far);
+}
+
 }  // namespace
 
 TextTable equal_error_and_time(const Outcome& outcome) {
@@ -67,7 +80,7 @@ TextTable equal_error_and_time(const Outcome& outcome) {
                                  fmt::format("{:.2g} to {:.2g}", faster->from, faster->to),
                                  break_even(outcome, s, scene, baseline, other, *faster)});
       else
-        line.insert(line.end(), {"no common error", "", "", ""});
+        line.insert(line.end(), {no_common_error(s, baseline, other), "", "", ""});
       if (const auto better = error_ratio(baseline, other))
         line.insert(line.end(), {fmt::format("{:.3g}", better->geometric_mean),
                                  fmt::format("{:.3g} to {:.3g}", better->least, better->greatest),

@@ -108,6 +108,8 @@ class Reader {
       const Pairs finer = settings(raw, "reference", reader);
       const int runs = int(reader.integer("runs", 1, 10000, rule.runs));
       const double budget = reader.number("budget", scene::load::not_negative, rule.budget);
+      if (reader.has("runs") && budget == 0)
+        reader.fail("runs", "has no effect where budget = 0: then the picture is rendered once");
       if (name != experiment_.profile) continue;
       scene_overrides = changed;
       reference_settings = finer;
@@ -296,6 +298,10 @@ class Reader {
 
 Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
   return Reader(root, id, profile).read();
+}
+
+std::string results_name(const std::string& id, const std::string& profile) {
+  return profile == "quick" ? id : id + "." + profile;
 }
 
 std::vector<std::string> experiment_ids(const fs::path& root) {

@@ -38,8 +38,8 @@ struct ReferenceCase {
 struct TimingRule {
   int runs = 31;             // beside the warm-up; 5 where one takes over a second
   double least_seconds = 0;  // of warm-up
-  double budget = 1;         // [s] per row for all runs; one run is always made
-  int threads = 0;           // 0: all
+  double budget = 1;  // [s] per row for all runs, the warm-up included; 0: the run that makes the picture, no other
+  int threads = 0;    // 0: all
 };
 
 struct PlotCase {
@@ -86,6 +86,10 @@ struct Experiment {
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers
 // and names that refer to one another are checked here, scenes when they are loaded.
 Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
+
+// Where a profile's results lie below results/, and its pictures below results/images/: "group/name" for quick,
+// "group/name.paper" for paper, so that neither overwrites the other.
+std::string results_name(const std::string& id, const std::string& profile);
 
 // All ids below root/experiments, sorted. A file is an experiment if it lies in experiments/<group>/ and group is
 // neither `scenes` nor `data`.

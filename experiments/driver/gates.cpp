@@ -19,16 +19,28 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
   const double bound = upper ? gate.at_most : gate.at_least;
   const auto e = quantity(row, gate.metric);
   GateResult result;
+  result.skipped = row.unavailable;
   result.passed = e && (upper ? e->low <= bound : e->high >= bound);
   result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
                             row.setting.empty() ? "" : " " + row.setting, gate.metric);
   result.text = fmt::format("{} {} {:g}{} {}", result.name, upper ? "<=" : ">=", bound,
-                            result.passed ? ":" : " fails:", figure(row, gate.metric));
+                            result.skipped  ? " is skipped:"
+                            : result.passed ? ":"
+                                            : " fails:",
+                            figure(row, gate.metric));
   if (!gate.why.empty()) result.text += fmt::format(" ({})", gate.why);
   return result;
 }
 
 }  // namespace
+
+GateCounts count(const std::vector<GateResult>& gates) {
+  GateCounts counts;
+  for (const GateResult& gate : gates) ++(gate.skipped ? counts.skipped : gate.passed ? counts.passed : counts.failed);
+  return counts;
+}
+
+const char* word(const GateResult& gate) { return gate.skipped ? "skipped" : gate.passed ? "ok" : "FAILED"; }
 
 std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::vector<GateResult> results;
@@ -43,7 +55,7 @@ std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Ro
     if (results.size() == before) {
       const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
                                            gate.method, gate.setting, gate.metric);
-      results.push_back({name, name + " fails: there is no such row", false});
+      results.push_back({name, name + " fails: there is no such row", false, false});
     }
   }
   return results;

@@ -26,8 +26,12 @@ Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
   for (std::string line; std::getline(in, line);) {
     const std::size_t space = line.find(' ');
     if (space != 32 || content_key(std::string_view(line).substr(33)) != line.substr(0, 32)) continue;
-    const Row row = row_from_json(nlohmann::json::parse(line.substr(33)));
-    rows_[row.key] = row;
+    try {
+      const Row row = row_from_json(nlohmann::json::parse(line.substr(33)));
+      rows_[row.key] = row;
+    } catch (const nlohmann::json::exception&) {
+      // A row of another version of the program, with other fields: its key would match nothing either.
+    }
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scene/atomic_file.h"
 
 namespace airlight::experiments {
@@ -29,16 +27,17 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 void write_junit(const std::string& file, const std::vector<GateResult>& gates) {
-  const auto failed = std::count_if(gates.begin(), gates.end(), [](const auto& g) { return !g.passed; });
+  const GateCounts counts = count(gates);
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"airlight gates\" tests=\"{}\" "
-      "failures=\"{}\">\n",
-      gates.size(), failed);
+      "failures=\"{}\" skipped=\"{}\">\n",
+      gates.size(), counts.failed, counts.skipped);
   for (const GateResult& gate : gates) {
     const std::string group = gate.name.substr(0, gate.name.find(':'));
     out += fmt::format("<testcase classname=\"{}\" name=\"{}\">", escaped(group), escaped(gate.name));
-    out += gate.passed ? fmt::format("<system-out>{}</system-out>", escaped(gate.text))
-                       : fmt::format("<failure message=\"{}\"/>", escaped(gate.text));
+    out += gate.skipped  ? fmt::format("<skipped message=\"{}\"/>", escaped(gate.text))
+           : gate.passed ? fmt::format("<system-out>{}</system-out>", escaped(gate.text))
+                         : fmt::format("<failure message=\"{}\"/>", escaped(gate.text));
     out += "</testcase>\n";
   }
   scene::write_file_atomically(file, out + "</testsuite>\n</testsuites>\n");

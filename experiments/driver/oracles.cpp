@@ -72,7 +72,7 @@ Outcome run_oracles(Experiment experiment, const RunOptions& options) {
     if (options.talk) fmt::print("  {}\n", outcome.gates.back().text);
   }
 
-  const fs::path folder = options.root / "results" / e.id;
+  const fs::path folder = options.root / "results" / results_name(e.id, e.profile);
   make_folder(folder);
   const auto put = [&](const char* name, const std::string& text) {
     scene::write_file_atomically((folder / name).string(), text);

@@ -20,7 +20,15 @@ struct GateResult {
   std::string name;  // "fogshop/fig4: f100, P: rel_l2"
   std::string text;  // with figures
   bool passed = false;
+  bool skipped = false;  // neither passed nor failed: the row is unavailable on this machine
 };
+
+// How many passed, failed and were skipped.
+struct GateCounts {
+  std::size_t passed = 0, failed = 0, skipped = 0;
+};
+GateCounts count(const std::vector<GateResult>&);
+const char* word(const GateResult&);  // ok, skipped or FAILED
 
 struct Outcome {
   Experiment experiment;
@@ -32,7 +40,7 @@ struct Outcome {
 };
 
 // Each gate against every row that it names: fails if the whole interval lies beyond the bound, if the figure is not
-// defined, and if there is no such row.
+// defined, and if there is no such row. Skipped if the row is unavailable on this machine.
 std::vector<GateResult> judge(const Experiment&, const std::vector<Row>&);
 
 }  // namespace airlight::experiments

@@ -80,7 +80,8 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   j["pictures"] = pictures(outcome);
   j["gates"] = json::array();
   for (const GateResult& gate : outcome.gates)
-    j["gates"].push_back({{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}});
+    j["gates"].push_back(
+        {{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}, {"skipped", gate.skipped}});
   j["rows"] = json::array();
   for (const Row& row : outcome.rows) j["rows"].push_back(to_json(row));
   return j.dump(1) + "\n";

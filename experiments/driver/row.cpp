@@ -34,10 +34,12 @@ json to_json(const Row& row) {
             {"renderer", row.renderer},
             {"settings", row.settings},
             {"layer", row.layer},
+            {"film", {row.width, row.height}},
             {"scene_hash", row.scene_hash},
             {"reference", row.reference_key},
             {"errors", measures},
             {"note", row.note},
+            {"unavailable", row.unavailable},
             {"runs", row.runs},
             {"seconds", {row.seconds.value, row.seconds.low, row.seconds.high}},
             {"seconds_interval_coverage", row.coverage},
@@ -70,6 +72,9 @@ Row row_from_json(const json& j) {
   for (const json& m : j.at("errors"))
     row.measures.push_back({m.at("metric"), number(m.at("value")), number(m.at("low")), number(m.at("high")),
                             number(m.at("noise_floor")), m.at("below_noise_floor")});
+  row.unavailable = j.at("unavailable");
+  row.width = j.at("film").at(0);
+  row.height = j.at("film").at(1);
   row.runs = j.at("runs");
   row.seconds = {j.at("seconds").at(0), j.at("seconds").at(1), j.at("seconds").at(2)};
   row.coverage = j.at("seconds_interval_coverage");

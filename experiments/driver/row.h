@@ -18,6 +18,8 @@ struct Row {
   std::optional<double> parameter;
   std::vector<Measure> measures;
   std::string note;           // why there are no figures: the method cannot render this scene
+  bool unavailable = false;   // they need hardware or a library that is not here, and that nobody asked for by name
+  int width = 0, height = 0;  // pixels of the scene's film
   int runs = 0;               // timed runs; 0: not rendered
   Estimate seconds{0, 0, 0};  // median wall time of one render, interval by ranks
   double coverage = 0;        // of that interval

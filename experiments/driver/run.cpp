@@ -19,6 +19,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
+#include "gpu/context.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 
@@ -86,7 +87,8 @@ class Run {
         results_(options.root / "results"),
         journal_(results_ / "cache" / "rows" / (experiment.id + "." + experiment.profile + ".jsonl"), options.resume) {
     outcome_.experiment = std::move(experiment);
-    if (!options.resume) fs::remove_all(results_ / "images" / outcome_.experiment.id);
+    name_ = results_name(outcome_.experiment.id, outcome_.experiment.profile);
+    if (!options.resume) fs::remove_all(results_ / "images" / name_);
     if (options.threads > 0) outcome_.experiment.timing.threads = options.threads;
   }
 
@@ -146,7 +148,7 @@ class Run {
                          reference->key,
                          renderer.name(),
                          settings.canonical(),
-                         experiment().id + "/" + file_name(c.name) + "/reference",
+                         name_ + "/" + file_name(c.name) + "/reference",
                          reference->seconds,
                          reference->cached,
                          exposure,
@@ -174,6 +176,8 @@ class Run {
     row.layer = m.layer;
     row.parameter = c.parameter;
     row.scene_hash = scene->hash;
+    row.width = scene->width;
+    row.height = scene->height;
     row.exposure = exposure;
     if (reference) row.reference_key = reference->key;
     const TimingRule& rule = experiment().timing;
@@ -203,6 +207,11 @@ class Run {
         measure_row(row, m, scene, masks, reference, renderer, settings);
       } catch (const Unavailable& reason) {
         row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
+        row.unavailable = !gpu::Context::device_was_chosen();
+        // Not into the journal: the next run may find what is missing.
+        outcome_.rows.push_back(row);
+        say(row, "left out");
+        return;
       }
     } else {
       row.note = "not supported: " + reasons.front();
@@ -245,7 +254,7 @@ class Run {
       row.measures =
           measure(experiment().metrics, m.count_noise ? without_noise_layers(rendering.film) : rendering.film,
                   reference->film, layer, masks);
-    row.image = experiment().id + "/" + file_name(row.scene) + "/" +
+    row.image = name_ + "/" + file_name(row.scene) + "/" +
                 file_name(row.setting.empty() ? row.method : row.method + "_" + row.setting);
     if (!reference) row.exposure = exposure_of(rendering.film, layer);
     keep_picture(results_ / "images", row.image, rendering.film, m.layer, row.exposure);
@@ -275,7 +284,7 @@ class Run {
   }
 
   void write() const {
-    const fs::path folder = results_ / experiment().id;
+    const fs::path folder = results_ / name_;
     make_folder(folder);
     const auto plots = draw_plots(outcome_, folder);
     const auto put = [&](const char* name, const std::string& text) {
@@ -292,6 +301,7 @@ class Run {
 
   RunOptions options_;
   fs::path results_;
+  std::string name_;  // of the folder with the results, and of that with the pictures
   Journal journal_;
   Outcome outcome_;
 };

@@ -13,8 +13,8 @@ struct RunOptions {
   bool talk = true;  // one line per row on standard output
 };
 
-// Everything below root/results. Interrupted: writes what is finished, then throws scene::Interrupted. A scene that
-// fails is left out, the others are computed and written, then its Error is thrown.
+// Everything below root/results (results_name). Interrupted: writes what is finished, then throws scene::Interrupted. A
+// scene that fails is left out, the others are computed and written, then its Error is thrown.
 Outcome run_experiment(Experiment, const RunOptions&);
 
 }  // namespace airlight::experiments

@@ -126,7 +126,8 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
       for (const Measure& m : row.measures)
         if (m.name == e.metric) return text(m);
       if (e.metric == "seconds" && row.runs > 0)
-        return fmt::format("{}, {:.3g} per second", time_text(row), 1 / row.seconds.value);
+        return fmt::format("{} at {}x{}, {:.3g} per second", time_text(row), row.width, row.height,
+                           1 / row.seconds.value);
     }
   return "not in this profile";
 }
@@ -218,8 +219,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   if (!plots.empty()) out += "\n";
   if (!outcome.gates.empty()) {
     out += "## Gates\n\n";
-    for (const GateResult& gate : outcome.gates)
-      out += fmt::format("- {}: {}\n", gate.passed ? "ok" : "FAILED", gate.text);
+    for (const GateResult& gate : outcome.gates) out += fmt::format("- {}: {}\n", word(gate), gate.text);
     out += "\n";
   }
   const Machine machine = this_machine();

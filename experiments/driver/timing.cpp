@@ -29,8 +29,9 @@ Timing time_runs(const TimingRule& rule, double first, const std::function<void(
     last_median = now;
   }
   const int wanted = first > 1 ? std::min(rule.runs, 5) : rule.runs;
+  const int certain = rule.budget > 0 && least_runs * first < 1 ? least_runs : 0;
   std::vector<double> times;
-  while (int(times.size()) < wanted && spent + first <= rule.budget) {
+  while (int(times.size()) < wanted && (int(times.size()) < certain || spent + first <= rule.budget)) {
     times.push_back(once(job));
     spent += times.back();
   }

@@ -16,9 +16,13 @@ struct Timing {
   int runs = 0;
 };
 
-// `first` is the time of a run that was made already: it counts as warm-up, and as the only run if the budget is spent.
-// Rule: warm up until the rule's time is spent or the median of the last runs moves less than 1 %, then at least
-// `runs` (5 where one takes longer than a second), fewer if the budget ends.
+// Runs that are made whatever the budget, unless it is 0, where all of them take less than a second: fewer have no
+// interval by ranks worth the name.
+inline constexpr int least_runs = 7;
+
+// `first` is the time [s] of a run that was made already: it counts as warm-up, and as the only run if the budget
+// allows no other. Rule: warm up until the rule's time is spent or the median of the last runs moves less than 1 %,
+// then `runs` (5 where one takes longer than a second), fewer if the budget ends, but `least_runs` of short ones.
 Timing time_runs(const TimingRule&, double first, const std::function<void()>& job);
 
 // Times of the stages of several renders, by name in the order of their first appearance.

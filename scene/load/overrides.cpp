@@ -86,6 +86,23 @@ void assign(toml::node& container, const Walk& walk, toml::node&& value) {
   });
 }
 
+// Assigns below every child of a list where a part is `*`.
+void descend(toml::node& node, const Walk& walk, std::size_t i, const std::string& text) {
+  if (walk.parts[i] == "*") {
+    const toml::array* array = node.as_array();
+    if (!array) walk.fail(fmt::format("{} is {}, expected a list for '*'", walk.container(i), written(node)));
+    for (std::size_t k = 0; k < array->size(); ++k) {
+      Walk one = walk;
+      one.parts[i] = std::to_string(k);
+      descend(node, one, i, text);
+    }
+  } else if (i + 1 == walk.parts.size()) {
+    assign(node, walk, std::move(*parse_value(walk, text).get("value")));
+  } else {
+    descend(walk.step(node, i), walk, i + 1, text);
+  }
+}
+
 }  // namespace
 
 bool is_override(const std::string& source_path) { return source_path.rfind("override ", 0) == 0; }
@@ -99,12 +116,10 @@ void apply_overrides(toml::table& root, const std::map<std::string, std::string>
     const Walk walk{fmt::format("override {} = {} of {}", path, shown, file), split(path)};
     if (std::find(walk.parts.begin(), walk.parts.end(), "") != walk.parts.end())
       walk.fail("found an empty part in the path, expected names and indices joined by dots");
-    toml::table parsed = parse_value(walk, text);
+    parse_value(walk, text);  // a mistake there is told before one in the path
     if (walk.parts.size() > 1 && std::find(implied.begin(), implied.end(), walk.parts[0]) != implied.end())
       root.emplace<toml::table>(walk.parts[0]);  // nothing happens if it is there
-    toml::node* container = &root;
-    for (std::size_t i = 0; i + 1 < walk.parts.size(); ++i) container = &walk.step(*container, i);
-    assign(*container, walk, std::move(*parsed.get("value")));
+    descend(root, walk, 0, text);
   }
 }
 

@@ -7,11 +7,11 @@
 
 namespace airlight::scene::load {
 
-// Sets the value at each dotted path (keys, and indices of lists from 0) to the value that its TOML text stands for.
-// The last part may be a key that is not there yet; everything before it must be there, except for the tables named in
-// `implied`, which are created. Throws Error, beginning "override PATH = TEXT of FILE:", for a text that is no TOML
-// value or a path that leads nowhere. Values keep that beginning as their source: location() prints it for later
-// errors.
+// Sets the value at each dotted path (keys, and indices of lists from 0 or `*` for all) to the value that its TOML text
+// stands for. The last part may be a key that is not there yet; everything before it must be there, except for the
+// tables named in `implied`, which are created. Throws Error, beginning "override PATH = TEXT of FILE:", for a text
+// that is no TOML value or a path that leads nowhere. Values keep that beginning as their source: location() prints it
+// for later errors.
 void apply_overrides(toml::table&, const std::map<std::string, std::string>& overrides, const std::string& file,
                      const std::vector<std::string>& implied = {});
 

@@ -181,6 +181,66 @@ TEST_CASE("without a GPU, asking for it is one line and exit code 3, and the res
   unsetenv("AIRLIGHT_GPU");
 }
 
+TEST_CASE("gates of a machine without a GPU are skipped, unless the device was asked for by name", "[cli]") {
+  const TemporaryFolder folder;
+  folder.write("experiments/README.md", "");
+  folder.write("experiments/g/e.toml", R"(title = "Both backends"
+layer = "airlight"
+metrics = ["rel_l2"]
+[[scene]]
+file = "scenes/one.toml"
+[reference]
+renderer = "deterministic"
+[[method]]
+name = "CPU"
+renderer = "ray_marcher"
+[[method]]
+name = "GPU"
+renderer = "ray_marcher_gpu"
+[profile.quick]
+budget = 0
+[[gate]]
+method = "CPU"
+metric = "rel_l2"
+at_most = 0.1
+[[gate]]
+method = "GPU"
+metric = "rel_l2"
+at_most = 0.1
+)");
+  folder.write("experiments/scenes/one.toml", R"([film]
+width = 8
+height = 6
+[camera]
+position = [0, 0, 4]
+look_at = [0, 0, 0]
+[[light]]
+type = "point"
+position = [1.5, 2, 1]
+intensity = 5
+[[medium]]
+type = "homogeneous"
+sigma_t = 0.5
+region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
+)");
+  setenv("AIRLIGHT_GPU", "none", 1);
+  const Result without = run("gates --root . --junit gates.xml", folder);
+  CAPTURE(without.out, without.err);
+  CHECK(without.code == 0);
+  CHECK(without.err.empty());
+  CHECK_THAT(without.out, Contains("ok       g/e: one, CPU") && Contains("skipped  g/e: one, GPU") &&
+                              Contains("not available on this machine: gpu: none is to be used") &&
+                              Contains("\n1 of 2 gates ok, 1 skipped\n"));
+  CHECK_THAT(read_bytes(folder.file("gates.xml")), Contains("failures=\"0\" skipped=\"1\"") && Contains("<skipped "));
+  // Rows that were left out are not kept: whoever asks for a device by name learns that it is not there.
+  setenv("AIRLIGHT_GPU", "no such device", 1);
+  const Result asked = run("gates --root .", folder);
+  CHECK(asked.code == 1);
+  CHECK_THAT(asked.out, Contains("FAILED   g/e: one, GPU") && Contains("\n1 of 2 gates ok\n"));
+  CHECK_THAT(asked.err, Contains("gate failed: g/e: one, GPU"));
+  unsetenv("AIRLIGHT_GPU");
+}
+
 // The figures are the machine's; that the loops ran and what was counted is not.
 TEST_CASE("rate of kernels", "[cli]") {
   const TemporaryFolder folder;
@@ -196,6 +256,11 @@ TEST_CASE("rate of kernels", "[cli]") {
   const auto counters =
       method.prepare(scene, {method.settings(), {}}, {})->render(airlight::scene::view_of(*scene), {}).counters;
   CHECK_THAT(both.out, Contains(fmt::format("      2 {:11.1f} ", counters.at("gaussians_crossed") / 48)));
+  REQUIRE(run("rate " + scenes + "fogshop/a30.toml --out record/rate" + small, folder).code == 0);
+  CHECK_THAT(read_bytes(folder.file("record/rate/table.md")),
+             Contains("| paper |  | precise |") && Contains("--runs 1"));
+  CHECK_THAT(read_bytes(folder.file("record/rate/rate.csv")), Catch::StartsWith("variant,K,erf,"));
+  CHECK_THAT(read_bytes(folder.file("record/rate/run.json")), Contains("\"rate.csv\""));
   const Result one = run("rate " + scenes + "fogshop/a30.toml --processor-time --set variant=paper" + small, folder);
   CHECK_THAT(one.out, Contains("processor time") && !Contains("\nS "));
   const Result coloured = run("rate " + scenes + "fogshop/colours.toml" + small, folder);

@@ -62,6 +62,13 @@ method = "marcher"
 setting = 4
 metric = "rel_l2"
 at_most = 1e-9
+[[expected]]
+what = "frames per second"
+paper = "120 at 800x600"
+scene = "one"
+method = "marcher"
+setting = 64
+metric = "seconds"
 )";
 
 struct Project {
@@ -116,6 +123,7 @@ TEST_CASE("an experiment leaves its table, plots, pictures and record", "[driver
   CHECK(record["gates"].size() == 2);
   CHECK_THAT(read_bytes((results / "table.md").string()),
              Catch::Contains("| marcher | 64 |") && Catch::Contains("FAILED"));
+  CHECK_THAT(read_bytes((results / "expected.csv").string()), Catch::Contains(" at 16x12, "));
   CHECK_THAT(read_bytes((results / "table.csv").string()), Catch::StartsWith("scene,parameter,method,setting"));
 }
 
@@ -130,6 +138,11 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   CHECK(resumed.rows[0].seconds.value == whole.rows[0].seconds.value);  // kept
   CHECK(metric(resumed.rows[1], "rel_l2") == metric(whole.rows[1], "rel_l2"));
   CHECK(resumed.references.at(0).cached);
+  // A whole line of another version of the program, which knew no `note`, is passed over.
+  std::string old = journal.substr(1, journal.find('\n', 1) - 1);
+  old.erase(0, 33);
+  old.replace(old.find("\"note\""), 6, "\"noet\"");
+  std::ofstream(project.journal(), std::ios::app) << content_key(std::string_view(old)) << ' ' << old << '\n';
   // Complete now: a third run keeps the times of the second.
   const Outcome third = project.run(true);
   CHECK(third.rows[1].seconds.value == resumed.rows[1].seconds.value);
@@ -137,6 +150,26 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   const Outcome anew = project.run(false);
   CHECK(anew.references.at(0).cached);
   CHECK(anew.rows[1].seconds.value != third.rows[1].seconds.value);
+}
+
+TEST_CASE("profiles have folders, pictures and journals of their own", "[driver]") {
+  const Project project;
+  project.run(false);
+  const fs::path results = project.folder.path() / "results";
+  const std::string quick = read_bytes((results / "g/e/run.json").string());
+  Experiment paper = read_experiment(project.folder.path(), "g/e", "paper");
+  paper.timing = {1, 0, 0, 0};  // its own would warm up for seconds
+  const Outcome outcome = run_experiment(paper, {project.folder.path(), false, 1, false});
+  CHECK(read_bytes((results / "g/e/run.json").string()) == quick);
+  CHECK(fs::exists(results / "images/g/e/one/reference.exr"));  // kept: that of the other profile
+  CHECK(fs::exists(results / "cache/rows/g/e.quick.jsonl"));
+  CHECK(fs::exists(results / "cache/rows/g/e.paper.jsonl"));
+  const auto record = nlohmann::json::parse(read_bytes((results / "g/e.paper/run.json").string()));
+  CHECK(record["experiment"] == "g/e");
+  CHECK(record["profile"] == "paper");
+  CHECK_THAT(outcome.rows.at(0).image, Catch::StartsWith("g/e.paper/"));
+  for (const auto& picture : record["pictures"][0]["pictures"])
+    CHECK(fs::exists(results / "g/e.paper" / picture["file"].get<std::string>()));
 }
 
 TEST_CASE("a damaged cached reference is computed anew", "[driver]") {
@@ -191,11 +224,38 @@ TEST_CASE("gates fail only beyond the interval", "[driver]") {
   CHECK_FALSE(passed(most, named_row("s", "m", std::nan(""), std::nan(""), std::nan(""))));
 }
 
+TEST_CASE("gates on what the machine lacks are skipped", "[driver]") {
+  Experiment e;
+  e.id = "g/e";
+  GateCase gate;
+  gate.method = "m";
+  gate.metric = "rel_l2";
+  gate.at_most = 0.1;
+  e.gates = {gate};
+  Row row = named_row("s", "m", 0, 0, 0);
+  row.runs = 0;
+  row.measures.clear();
+  row.note = "not available on this machine: gpu";
+  Row asked_for = row;  // by name
+  row.unavailable = true;
+  const auto results = judge(e, {row, named_row("t", "m", 0.01, 0, 0.02), asked_for});
+  REQUIRE(results.size() == 3);
+  CHECK(results[0].skipped);
+  CHECK_THAT(results[0].text, Catch::Contains("is skipped: not available on this machine"));
+  const GateCounts counts = count(results);
+  CHECK(counts.skipped == 1);
+  CHECK(counts.passed == 1);
+  CHECK(counts.failed == 1);
+  CHECK(std::string(word(results[2])) == "FAILED");
+}
+
 TEST_CASE("rows survive their record", "[driver]") {
   Row row = named_row("s, with \"quotes\"", "m", 0.1, 0.05, 0.2);
   row.parameter = 0.3;
   row.seconds = {1, 0.5, 2};
   row.counters = {{"rays", 12}};
+  row.width = 100;
+  row.height = 75;
   row.stages = {{"slices", 0.25}};
   row.device = "somewhere";
   row.measures.push_back({"p95", std::nan(""), std::nan(""), std::nan(""), 0, false});
@@ -214,6 +274,12 @@ TEST_CASE("timed runs follow the rule", "[driver]") {
   const Timing none = time_runs({5, 0, 0.5, 0}, 0.6, [&] { FAIL("the budget is spent"); });
   CHECK(none.runs == 1);
   CHECK(none.seconds.value == 0.6);
+  count = 0;
+  const Timing least = time_runs({31, 0, 0.1, 0}, 0.12, [&] { ++count; });
+  CHECK(least.runs == 7);  // of a short job, though the budget is spent
+  CHECK(least.coverage > 0.95);
+  CHECK(time_runs({31, 0, 0, 0}, 0.01, [&] { FAIL("there is no budget"); }).runs == 1);
+  CHECK(time_runs({5, 0, 0.01, 0}, 0.01, [&] {}).runs == 5);
   count = 0;
   const Timing warmed = time_runs({31, 0.02, 60, 0}, 0, [&] { ++count; });
   CHECK(warmed.runs == 31);
@@ -234,7 +300,11 @@ TEST_CASE("times of stages are medians of the warm runs", "[driver]") {
 TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "gates.xml";
-  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true}, {"g/e: b", "b fails", false}});
+  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true, false},
+                              {"g/e: b", "b fails", false, false},
+                              {"g/e: c", "c is skipped: no <gpu>", false, true}});
   const std::string text = read_bytes(file.string());
-  CHECK_THAT(text, Catch::Contains("tests=\"2\" failures=\"1\"") && Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;"));
+  CHECK_THAT(text, Catch::Contains("tests=\"3\" failures=\"1\" skipped=\"1\"") &&
+                       Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;") &&
+                       Catch::Contains("<skipped message=\"c is skipped: no &lt;gpu&gt;\"/>"));
 }

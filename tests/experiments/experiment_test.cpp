@@ -100,5 +100,7 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "at_most = 0.1", "")), Contains("at_most"));
   CHECK_THAT(failure(replaced(good, "[[scene]]", "[scene]")), Contains("[[scene]]"));
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 0")), Contains("runs = 0"));
+  CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 3\nbudget = 0")),
+             Contains("e.toml:16:") && Contains("no effect"));
   CHECK_THAT(failure(replaced(good, "[reference]\nrenderer = \"deterministic\"", "")), Contains("no [reference]"));
 }

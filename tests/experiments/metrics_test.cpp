@@ -207,6 +207,15 @@ TEST_CASE("equal images pass the z-tests, biased ones do not", "[metrics]") {
   const Film other = noisy(32, 24, gradient, 0.05, 1);
   CHECK(compare_equal(noisy(32, 24, gradient, 0.05, 2), other, "mean", {}, 1e-4).equal);
   const auto scaled = [](double f) { return [f](int x, int y, int c) { return f * gradient(x, y, c); }; };
+  const auto tested = [&](const Film& image) {
+    return measure({"objections", "largest_z", "detectable_bias"}, image, other, "mean", {});
+  };
+  CHECK(tested(noisy(32, 24, gradient, 0.05, 2))[0].value == 0);
+  CHECK(tested(exact(32, 24, scaled(1.01)))[0].value >= 1);
+  CHECK(tested(exact(32, 24, scaled(1)))[2].value ==
+        compare_equal(exact(32, 24, scaled(1)), other, "mean", {}, 1e-4).detectable_bias);
+  CHECK(std::isnan(measure({"objections"}, exact(32, 24, gradient), exact(32, 24, gradient), "mean", {})[0].value));
+  CHECK_THROWS_WITH(check_metric_name("foreground.objections", "here"), Catch::Contains("expected 'objections'"));
   const Equality biased = compare_equal(exact(32, 24, scaled(1.01)), other, "mean", {}, 1e-4);
   CHECK_FALSE(biased.equal);
   CHECK(biased.tested);

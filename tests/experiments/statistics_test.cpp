@@ -151,6 +151,24 @@ TEST_CASE("equal time and equal error between two curves", "[statistics]") {
   CHECK_FALSE(error_ratio({point(0.5, 0.8)}, good));
 }
 
+TEST_CASE("two curves without a common error say which one is closer", "[statistics]") {
+  const std::vector<Point> far{point(2, 0.5), point(4, 0.1)}, close{point(1, 0.05), point(3, 0.01), point(5, 0)};
+  CHECK_FALSE(speed_up(far, close));
+  const auto apart = apart_in_error(far, close);
+  REQUIRE(apart);
+  CHECK(apart->other_is_closer);
+  CHECK(apart->error == 0.05);
+  CHECK(apart->least_error == 0.1);
+  CHECK(apart->fastest_to_closest == Approx(0.25));
+  CHECK(apart->slowest_to_fastest == Approx(2.5));
+  REQUIRE(apart_in_error(close, far));
+  CHECK_FALSE(apart_in_error(close, far)->other_is_closer);
+  CHECK_FALSE(apart_in_error(far, far));
+  CHECK_FALSE(apart_in_error({}, far));
+  CHECK_FALSE(speed_up_of_exact(far, close));
+  CHECK(*speed_up_of_exact({point(8, 0.1), point(20, 0), point(10, 0)}, close) == Approx(2));
+}
+
 // 95 % intervals cover the true mean in about 95 % of 2000 repeats. The count outside is binomial: with rate 0.05 its
 // standard deviation is 9.7; 100 +- 45 is 4.6 of them (false alarm 4e-6). Gaussian groups: the interval is exact.
 TEST_CASE("jackknife intervals of a mean cover it", "[statistics]") {

@@ -53,6 +53,23 @@ TEST_CASE("a scene of Gaussians and a point light is what its file says", "[load
   CHECK(sum.gaussians.at(0).amplitude == 0.5);
 }
 
+TEST_CASE("an override with a star changes every entry of a list", "[load]") {
+  const std::string sphere = R"([[surface]]
+name = "ball"
+type = "sphere"
+center = [0, 0, 0]
+radius = 1
+material = { type = "lambert", albedo = 0.5 }
+)";
+  const std::string camera = "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\n";
+  const auto scene = parse_scene(camera + sphere + sphere, "s.toml", "", {{"surface.*.material.albedo", "0"}});
+  REQUIRE(scene.surfaces.size() == 2);
+  for (const Surface& surface : scene.surfaces) CHECK(std::get<Lambert>(surface.material).albedo.isZero());
+  CHECK_THROWS_WITH(parse_scene(camera, "s.toml", "", {{"camera.*", "0"}}), Catch::Contains("expected a list for '*'"));
+  CHECK_THROWS_WITH(parse_scene(camera + sphere, "s.toml", "", {{"surface.*.colour.r", "0"}}),
+                    Catch::Contains("there is no 'surface.0.colour'"));
+}
+
 TEST_CASE("overrides change values before they are read", "[load]") {
   const Scene scene = parse_scene(fog, "fog.toml", "",
                                   {{"film.width", "64"},
