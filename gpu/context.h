@@ -27,13 +27,13 @@ struct Limits {
 class Context {
  public:
   // The context of this process, made on the first call: the first place that works, or the one asked for by
-  // choose_device or the variable AIRLIGHT_GPU. Throws Unavailable in one line if there is none; every attempt is then
-  // in attempts().
+  // choose_device or the variable AIRLIGHT_GPU. Places that lack something are passed over. Throws Unavailable in one
+  // line, which lists all places, if there is none.
   static Context& get();
-  // "auto", the name of a place ("device 1", "surfaceless"), or a part of GL_VENDOR or GL_RENDERER. Before the first
-  // get().
+  // As device_choice.h reads it; takes the place of the variable. Throws Error for an empty wish, and after the first
+  // get(), when it is too late.
   static void choose_device(const std::string& wish);
-  // What was tried so far, and what came of it; tries everything, for `airlight doctor`, if nothing was.
+  // Tries every place, for `airlight doctor`: what is there, and what each of the others lacks.
   static std::vector<Attempt> try_everything();
 
   // One line: renderer, version, place.
