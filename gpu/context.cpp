@@ -119,6 +119,7 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
     gl_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits_.groups[axis]);
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
+  gl_.GetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &limits_.texture_units);
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
   gl_.GetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &limits_.vertex_storage_blocks);
   gl_.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &limits_.fragment_storage_blocks);

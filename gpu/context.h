@@ -21,6 +21,7 @@ struct Limits {
   int groups[3] = {0, 0, 0};      // work groups of a dispatch
   int shared_memory = 0;          // bytes
   int texture_size_3d = 0, texture_size = 0;
+  int texture_units = 0;                                       // of a compute shader
   int vertex_storage_blocks = 0, fragment_storage_blocks = 0;  // OpenGL promises none; raster passes need some
 };
 
@@ -45,6 +46,8 @@ class Context {
 
   // Throws Error with the driver's words if a call has failed since the last check. `what` names the work done.
   void check(const std::string& what);
+  // For those who tell the failure in words of their own.
+  void forget_errors() { errors_.clear(); }
 
   // Compute programs by file name and definitions, compiled once (program.h).
   Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});
