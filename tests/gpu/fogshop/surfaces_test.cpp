@@ -11,6 +11,7 @@
 #include "scene/geometry/shapes.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/silhouette.h"
 #include "tests/scene/geometry_scenes.h"
 
 using namespace airlight;
@@ -34,16 +35,7 @@ struct Pair {
     a = cpu->render(view, {1, {}}).film;
     b = gpu->render(view, {1, {}}).film;
   }
-  // Does what ends the ray change within 1/64 pixel? There either backend may show either side.
-  bool on_silhouette(int x, int y) const {
-    Interval range;
-    for (int k = 0; k <= 8; ++k) {
-      const double r = k == 8 ? 0 : 1 / 64.0, dx = r * std::cos(k * pi / 4), dy = r * std::sin(k * pi / 4);
-      const double t = ray_end(*scene, camera_ray(view.camera, x + 0.5 + dx, y + 0.5 + dy, view.width, view.height)).t;
-      range = {std::min(range.lo, t), std::max(range.hi, t)};
-    }
-    return range.hi > 1.02 * range.lo;
-  }
+  bool on_silhouette(int x, int y) const { return gpu::test::on_silhouette(*scene, view, x, y); }
   // The CPU's film of one pixel, its centre moved by (dx, dy) pixels.
   scene::Film beside(int x, int y, double dx, double dy) const {
     const Ray ray = camera_ray(view.camera, x + 0.5 + dx, y + 0.5 + dy, view.width, view.height);
