@@ -9,26 +9,13 @@
 #include "gpu/shader_source.h"
 #include "gpu/timer.h"
 #include "tests/gpu/device.h"
-#include "tests/temporary_folder.h"
+#include "tests/gpu/shader_folder.h"
 
 using namespace airlight;
 using namespace airlight::gpu;
+using test::ShaderFolder;
 
 namespace {
-
-// Shaders of a test, read from a folder as while one works on them.
-class ShaderFolder {
- public:
-  explicit ShaderFolder(const std::string& text) {
-    folder_.write("test.comp", text);
-    setenv("AIRLIGHT_SHADERS", folder_.path().c_str(), 1);
-  }
-  ~ShaderFolder() { unsetenv("AIRLIGHT_SHADERS"); }
-  const TemporaryFolder& folder() const { return folder_; }
-
- private:
-  TemporaryFolder folder_;
-};
 
 const char* const doubling = R"(layout(local_size_x = LOCAL_SIZE_X) in;
 layout(std430, binding = 0) buffer Values { float values[]; };
