@@ -6,7 +6,7 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/ray_marcher/grids_on_device.h"
-#include "gpu/ray_marcher/occluders.h"
+#include "gpu/raster/occluders.h"
 #include "gpu/timer.h"
 #include "reference/ray_marcher/plan.h"
 #include "scene/renderer.h"

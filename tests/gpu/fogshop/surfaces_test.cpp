@@ -101,7 +101,7 @@ void check(const Scene& scene, const Pairs& given) {
     CAPTURE(scene.name, given, layer, d.p99, d.most, d.far, d.unexplained, d.first);
     CHECK(d.p99 < 2e-3);
     CHECK(d.unexplained == 0);
-    CHECK(d.far <= 0.002 * scene.width * scene.height);
+    CHECK(d.far <= 3);  // measured: 1
     if (std::getenv("AIRLIGHT_TEST_FIGURES"))
       fmt::print("{} {} {}: 99 % {:.1e}, most {:.1e}, {} far, {} unexplained {}\n", scene.name,
                  given.count("reflectance") ? given.at("reflectance") : "", layer, d.p99, d.most, d.far, d.unexplained,
@@ -237,14 +237,13 @@ TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
   }
 }
 
-// Shadows of a mesh: with coarse maps a few pixels at their edges differ, with finer ones fewer.
-TEST_CASE("fogshop: edges of shadows and the maps' resolution", "[gpu]") {
+// What the maps do not decide the tree of surfaces does.
+TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "[gpu]") {
   if (!gpu::test::device()) return;
   Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                   {{"film.width", "160"}, {"film.height", "120"}});
   scene.media.clear();
-  int before = scene.width * scene.height / 50;
-  for (const char* side : {"64", "256", "1024"}) {
+  for (const char* side : {"1", "64", "512"}) {
     const Pair pair(scene, {});
     const scene::Film b =
         gpu::FogshopGpu()
@@ -255,9 +254,7 @@ TEST_CASE("fogshop: edges of shadows and the maps' resolution", "[gpu]") {
     int differ = 0;
     for (std::size_t i = 0; i < x.size(); i += 3) differ += std::abs(y[i] - x[i]) > 1e-3 * x[i] + 1e-6;
     CAPTURE(side);
-    CHECK(differ <= before);
-    before = differ;
+    CHECK(differ <= 4);  // silhouettes: measured 1
     if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("maps of {}^2: {} of {} pixels\n", side, differ, x.size() / 3);
   }
-  CHECK(before <= 0.001 * scene.width * scene.height);
 }
