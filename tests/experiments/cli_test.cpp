@@ -181,7 +181,7 @@ TEST_CASE("without a GPU, asking for it is one line and exit code 3, and the res
   unsetenv("AIRLIGHT_GPU");
 }
 
-TEST_CASE("--gpu chooses the device; what is not there is one line and exit code 3", "[cli]") {
+TEST_CASE("the device is chosen by --gpu, and one that is not there is one line and exit code 3", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
   for (const std::string& command :
