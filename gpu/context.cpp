@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <atomic>
 #include <cstdlib>
 
+#include "gpu/device_choice.h"
 #include "gpu/program.h"
 #include "gpu/raster_program.h"
 #include "scene/error.h"
@@ -15,21 +16,12 @@ namespace {
 std::string& wish() {
   static std::string text = [] {
     const char* variable = std::getenv("AIRLIGHT_GPU");
-    return std::string(variable && *variable ? variable : "auto");
+    return small_letters(variable && *variable ? variable : "auto");
   }();
   return text;
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
-bool fits(const Attempt& attempt, const std::string& wanted) {
-  return wanted == "auto" || attempt.place.name == wanted ||
-         lower(attempt.vendor).find(lower(wanted)) != std::string::npos ||
-         lower(attempt.renderer).find(lower(wanted)) != std::string::npos;
-}
+std::atomic<bool> is_made{false};
 
 void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* text, const void* user) {
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
@@ -44,7 +36,11 @@ std::string key_of(std::string file, const std::map<std::string, std::string>& d
 
 }  // namespace
 
-void Context::choose_device(const std::string& name) { wish() = name; }
+void Context::choose_device(const std::string& name) {
+  if (name.empty()) throw Error("gpu: no name of a device; expected a number, a part of a name, surfaceless or none");
+  if (is_made) throw Error("gpu: another device is in use already");
+  wish() = small_letters(name);
+}
 
 bool Context::device_was_chosen() { return wish() != "auto" && wish() != "none"; }
 
@@ -62,13 +58,22 @@ Attempt Context::attempt(const Place& place, std::unique_ptr<EglContext>& contex
     result.renderer = text(GL_RENDERER);
     result.vendor = text(GL_VENDOR);
     result.version = text(GL_VERSION);
-    context->release();
-    const std::string name = lower(result.renderer);
     for (const char* soft : {"llvmpipe", "softpipe", "swrast"})
-      result.place.software = result.place.software || name.find(soft) != std::string::npos;
-    if (result.renderer.empty()) result.failure = place.name + ": the driver tells no GL_RENDERER";
+      result.place.software = result.place.software || result.renderer.find(soft) != std::string::npos;
+    Gl gl;
+    const std::string objection = load_gl([&](const char* name) { return context->function(name); }, gl);
+    context->release();
+    if (result.renderer.empty())
+      result.failure = place.name + ": the driver tells no GL_RENDERER";
+    else if (!objection.empty())
+      result.failure = fmt::format("{}: {} {}", place.name, result.renderer, objection);
+    if (!result.failure.empty()) {
+      result.renderer.clear();
+      context.reset();
+    }
   } catch (const Error& error) {
     result.failure = error.what();
+    result.renderer.clear();
     context.reset();
   }
   return result;
@@ -86,34 +91,25 @@ std::vector<Attempt> Context::try_everything() {
 Context& Context::get() {
   // Never destroyed: drivers may be gone when the process ends.
   static Context* const context = [] {
-    if (wish() == "none") throw Unavailable("gpu: none is to be used (AIRLIGHT_GPU=none)");
-    const auto places = Egl::get().places();
-    if (places.empty()) throw Unavailable("gpu: EGL lists no device and no surfaceless platform: CPU only");
-    std::string failures;
-    for (const Place& place : places) {
+    std::vector<Attempt> attempts;
+    if (wish() == "none") throw Unavailable(refusal(attempts, wish()));
+    for (const Place& place : Egl::get().places()) {
       std::unique_ptr<EglContext> egl;
-      const Attempt a = attempt(place, egl);
-      if (!a.failure.empty()) {
-        failures += (failures.empty() ? "" : "; ") + a.failure;
-      } else if (fits(a, wish())) {
-        return new Context(a, std::move(egl));
-      } else {
-        failures += fmt::format("{}{}: {} is not '{}'", failures.empty() ? "" : "; ", place.name, a.renderer, wish());
-      }
+      attempts.push_back(attempt(place, egl));
+      if (!attempts.back().failure.empty() || !fits(attempts.back(), wish())) continue;
+      auto* made = new Context(attempts.back(), std::move(egl));
+      is_made = true;
+      return made;
     }
-    throw Unavailable("gpu: no device works: " + failures);
+    throw Unavailable(refusal(attempts, wish()));
   }();
   return *context;
 }
 
 Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
     : attempt_(std::move(attempt)), egl_(std::move(egl)) {
-#define AIRLIGHT_LOAD(type, name)                                \
-  gl_.name = reinterpret_cast<type>(egl_->function("gl" #name)); \
-  if (!gl_.name) throw Unavailable("gpu: " + attempt_.renderer + " lacks gl" + #name);
   egl_->make_current();
-  AIRLIGHT_GL_FUNCTIONS(AIRLIGHT_LOAD)
-#undef AIRLIGHT_LOAD
+  load_gl([&](const char* name) { return egl_->function(name); }, gl_);  // what it lacks, attempt() has told
   gl_.Enable(GL_DEBUG_OUTPUT);
   gl_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   gl_.DebugMessageCallback(on_message, &errors_);
@@ -125,6 +121,7 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
     gl_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits_.groups[axis]);
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
+  gl_.GetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &limits_.texture_units);
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
   gl_.GetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &limits_.vertex_storage_blocks);
   gl_.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &limits_.fragment_storage_blocks);

@@ -21,22 +21,23 @@ struct Limits {
   int groups[3] = {0, 0, 0};      // work groups of a dispatch
   int shared_memory = 0;          // bytes
   int texture_size_3d = 0, texture_size = 0;
+  int texture_units = 0;                                       // of a compute shader
   int vertex_storage_blocks = 0, fragment_storage_blocks = 0;  // OpenGL promises none; raster passes need some
 };
 
 class Context {
  public:
   // The context of this process, made on the first call: the first place that works, or the one asked for by
-  // choose_device or the variable AIRLIGHT_GPU. Throws Unavailable in one line if there is none; every attempt is then
-  // in attempts().
+  // choose_device or the variable AIRLIGHT_GPU. Places that lack something are passed over. Throws Unavailable in one
+  // line, which lists all places, if there is none.
   static Context& get();
-  // "auto", the name of a place ("device 1", "surfaceless"), or a part of GL_VENDOR or GL_RENDERER. Before the first
-  // get(). "none": get() throws Unavailable, as on a machine without a device.
+  // As device_choice.h reads it; takes the place of the variable. Throws Error for an empty wish, and after the first
+  // get(), when it is too late.
   static void choose_device(const std::string& wish);
   // Whether a certain device was asked for, by choose_device or AIRLIGHT_GPU: then its absence is a failure, where it
   // otherwise is a reason to leave something out.
   static bool device_was_chosen();
-  // What was tried so far, and what came of it; tries everything, for `airlight doctor`, if nothing was.
+  // Tries every place, for `airlight doctor`: what is there, and what each of the others lacks.
   static std::vector<Attempt> try_everything();
 
   // One line: renderer, version, place.
@@ -48,6 +49,8 @@ class Context {
 
   // Throws Error with the driver's words if a call has failed since the last check. `what` names the work done.
   void check(const std::string& what);
+  // For those who tell the failure in words of their own.
+  void forget_errors() { errors_.clear(); }
 
   // Compute programs by file name and definitions, compiled once (program.h).
   Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});

@@ -10,6 +10,7 @@ namespace airlight::gpu {
   /* context */                                                                                                      \
   X(PFNGLGETINTEGERVPROC, GetIntegerv) X(PFNGLGETINTEGER64VPROC, GetInteger64v)                                      \
   X(PFNGLGETINTEGERI_VPROC, GetIntegeri_v) X(PFNGLENABLEPROC, Enable)                                                \
+  X(PFNGLGETERRORPROC, GetError)                                                                                     \
   X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback)                                                             \
   /* programs */                                                                                                     \
   X(PFNGLCREATESHADERPROC, CreateShader) X(PFNGLSHADERSOURCEPROC, ShaderSource)                                      \
@@ -41,6 +42,10 @@ namespace airlight::gpu {
   X(PFNGLVIEWPORTPROC, Viewport) X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                    \
   X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays) X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)              \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                  \
+  /* textures of voxels */                                                                                           \
+  X(PFNGLTEXTURESTORAGE3DPROC, TextureStorage3D) X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                    \
+  X(PFNGLGETTEXTURESUBIMAGEPROC, GetTextureSubImage) X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                \
+  X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                                                                       \
   /* timestamps */                                                                                                   \
   X(PFNGLCREATEQUERIESPROC, CreateQueries) X(PFNGLDELETEQUERIESPROC, DeleteQueries)                                  \
   X(PFNGLQUERYCOUNTERPROC, QueryCounter) X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)

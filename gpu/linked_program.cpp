@@ -10,10 +10,7 @@ namespace {
 
 std::string refusal(const std::string& files, const char* what, Context& context, const char* log,
                     const ShaderSource& source) {
-  try {
-    context.check("");  // the same words again
-  } catch (const Error&) {
-  }
+  context.forget_errors();  // the same words again
   return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
 }
 

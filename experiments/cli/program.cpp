@@ -6,12 +6,15 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
 #include "experiments/renderers.h"
 #include "experiments/verify/verify.h"
+#include "gpu/context.h"
+#include "gpu/device_choice.h"
 #include "scene/data_folder.h"
 #include "scene/error.h"
 #include "scene/settings.h"
@@ -83,6 +86,7 @@ int dispatch(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
   app.option_defaults()->always_capture_default(false);
   std::string data;
+  std::optional<std::string> gpu;
   std::function<int()> action;
   const auto command = [&](CLI::App& parent, const std::string& name, const std::string& doc) {
     CLI::App* c = parent.add_subcommand(name, doc);
@@ -93,6 +97,14 @@ int dispatch(int argc, char** argv) {
   const auto data_option = [&](CLI::App* c) {
     c->add_option("--data", data, "folder of large inputs (default: the variable AIRLIGHT_DATA)");
   };
+  const auto gpu_option = [&](CLI::App* c) {
+    c->add_option("--gpu", gpu,
+                  "device: its number, a part of its or its vendor's name, surfaceless, none, or auto, the first that "
+                  "works (default: the variable AIRLIGHT_GPU; airlight doctor lists them)")
+        ->type_name("WHICH");
+  };
+  app.footer(
+      "Commands that may use a GPU (render, experiment run, gates, explain, evaluators, doctor) take --gpu WHICH.");
   app.allow_extras();
 
   RenderOptions render_options;
@@ -109,6 +121,7 @@ int dispatch(int argc, char** argv) {
   add_pairs(c, "--set", render_options.settings, "a setting of the method (airlight explain lists them)");
   add_pairs(c, "--override", render_options.overrides, "a value of the scene file, e.g. film.width=64");
   data_option(c);
+  gpu_option(c);
   c->final_callback([&] {
     action = [&] {
       require(render_options.scene, "SCENE");
@@ -179,6 +192,7 @@ int dispatch(int argc, char** argv) {
   e->final_callback([&] { action = [&] { return list_experiments(experiment_options); }; });
   e = command(*experiment, "run", "compute tables, plots and pictures into results/");
   experiment_flags(e, true);
+  gpu_option(e);
   e->add_flag("--resume", experiment_options.resume, "keep rows that an earlier run of the same program finished");
   e->final_callback([&] { action = [&] { return run_experiments(experiment_options); }; });
   e = command(*experiment, "plot", "draw the plots again from their data");
@@ -187,6 +201,7 @@ int dispatch(int argc, char** argv) {
 
   c = command(app, "gates", "accuracy gates of the experiments; exit 1 if one fails");
   experiment_flags(c, true);
+  gpu_option(c);
   c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
   c->final_callback([&] { action = [&] { return gates(experiment_options); }; });
 
@@ -197,6 +212,7 @@ int dispatch(int argc, char** argv) {
   add_pairs(c, "--set", explain_options.settings, "a setting of the method");
   add_pairs(c, "--override", explain_options.overrides, "a value of the scene file");
   data_option(c);
+  gpu_option(c);
   c->final_callback([&] {
     action = [&] {
       require(explain_options.scene, "SCENE");
@@ -227,6 +243,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--root", evaluators_options.root, "the project's folder (default: found from here upwards)");
   c->add_option("--cases", evaluators_options.cases, "random lit parts of each table (20000)");
   c->add_option("--runs", evaluators_options.runs, "of every evaluator, of which the fastest counts (15)");
+  gpu_option(c);
   c->final_callback([&] { action = [&] { return evaluators(evaluators_options); }; });
 
   AuthorOptions author_options;
@@ -259,6 +276,8 @@ int dispatch(int argc, char** argv) {
   });
 
   c = command(app, "doctor", "versions, processor, graphics devices");
+  gpu_option(c);
+  CLI::App* const examination = c;
   c->final_callback([&] { action = [] { return doctor(); }; });
 
   try {
@@ -275,6 +294,11 @@ int dispatch(int argc, char** argv) {
   refuse_extras(app);
   if (!action) throw Error(fmt::format("expected a command: {}", fmt::join(command_names(app), ", ")));
   if (!data.empty()) scene::set_data_folder(data);
+  if (gpu) {
+    gpu::Context::choose_device(*gpu);
+    // A device that is not there is told at once, whatever the command would make of it; doctor tells it in its table.
+    if (gpu::small_letters(*gpu) != "none" && !examination->parsed()) gpu::Context::get();
+  }
   catch_interrupts();
   return action();
 }

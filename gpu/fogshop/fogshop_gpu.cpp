@@ -180,6 +180,12 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
     film.layers["transmittance"].assign(3 * pixels, 1.0f);
   }
   if (surface) film.layers["surface"] = surface->download<float>();
+  // The mark of surfaces.comp. How long rays through the tree of surfaces take nobody knows before.
+  if (shading_ &&
+      std::any_of(film.layers["surface"].begin(), film.layers["surface"].end(), [](float v) { return v < 0; }))
+    throw Unavailable(fmt::format(
+        "gpu: shadow rays take more loop iterations than {} allows: fewer lights or a coarser mesh expected",
+        context_.renderer()));
   film.add("surface");
   if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
   timer.stage("read back");
@@ -203,7 +209,7 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
   settings.push_back({"light_distance_side",
                       scene::SettingSpec::Type::integer,
                       "512",
-                      "texels to a side of a light-distance map's six faces",
+                      "texels to a side of a light-distance map's six faces; shadows are exact whatever it is",
                       1,
                       8192,
                       {}});

@@ -55,6 +55,7 @@ void SurfaceShading::fill_light_distances(int side) {
   std::vector<Point3> positions;
   for (const fogshop::LightModel& light : model_.lights) positions.push_back(light.position);
   maps_ = std::make_unique<LightDistances>(context_, scene_, positions, side);
+  tree_ = std::make_unique<ShadowTree>(context_, scene_);
 }
 
 void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, const scene::View& view,
@@ -79,7 +80,7 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   primitives.bind(1);
   if (maps_) {
     maps_->primitives().bind(5);
-    maps_->distances().bind(14);
+    tree_->bind(p);
   }
   if (pixels) pixels->bind(6);
   surface.bind(7);
@@ -87,6 +88,7 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   set_view(p, view);
   p.set("light_count", int(model_.lights.size()));
   p.set("triangle_count", surfaces.triangles());
+  p.set("three", 3);
   p.set("map_side", maps_ ? maps_->side() : 0);
   p.set("has_airlight", pixels != nullptr);
   p.set("has_scattered", scattered != nullptr);

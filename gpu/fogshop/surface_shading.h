@@ -6,6 +6,7 @@
 #include "gpu/fogshop/passes.h"
 #include "gpu/fogshop/surface_tables.h"
 #include "gpu/raster/light_distances.h"
+#include "gpu/raster/shadow_tree.h"
 
 namespace airlight::gpu {
 
@@ -31,6 +32,7 @@ class SurfaceShading {
   SurfaceTables places_;
   Buffer materials_, light_places_, tables_, transfer_;
   std::unique_ptr<LightDistances> maps_;  // null: nothing casts a shadow
+  std::unique_ptr<ShadowTree> tree_;      // the same
 };
 
 // A point light shines on something that is not a lone plane or sphere, which shadows itself only where it is turned

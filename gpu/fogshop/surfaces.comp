@@ -5,6 +5,7 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/light_distances.glsl"
+#include "common/loops_cut.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
 
@@ -90,4 +91,5 @@ void main() {
     surface_layer[3 * place + c] = visible[c] * (direct[c] + scattered[c]);
     if (has_scattered != 0) scattered_layer[3 * place + c] = visible[c] * scattered[c];
   }
+  if (loops_cut()) surface_layer[3 * place] = -1;  // as no light is: the host refuses the picture
 }

@@ -1,8 +1,7 @@
-// Shadows by what a light sees (gpu/raster/light_distances.h).
+// Shadows by what a light sees, and by all there is (gpu/raster/light_distances.h).
 #include "raster/primitive.glsl"
 
 layout(std430, binding = 5) readonly buffer LightPrimitives { int light_primitive[]; };
-layout(std430, binding = 14) readonly buffer LightDistances { float light_distance[]; };  // [m]
 uniform int map_side;        // texels; 0: there are no maps
 
 // Texel in which a direction from the light lies: the faces and their axes are those of LightDistances::face_view.
@@ -39,15 +38,10 @@ bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, do
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
 }
 
-// The longest edge of a triangle [m]; infinite for solids, which are met exactly however small they are.
-float longest_edge(int primitive) {
-  if (primitive >= triangle_count) return 1e37;
-  ivec4 corners = triangles[primitive];
-  dvec3 a = mesh_vertex(corners.x), ab = mesh_vertex(corners.y) - a, ac = mesh_vertex(corners.z) - a;
-  return float(max(length(ab), max(length(ac), length(ac - ab))));
-}
+#include "raster/shadow_tree.glsl"
 
-// Is anything between a point of primitive `own` and the light, `end` metres along `to_light`?
+// Is anything between a point of primitive `own` and the light, `end` metres along `to_light`? The primitives of the nine texels
+// around the direction are tried first: in a shadow one of them is the answer mostly. Then all, by the tree.
 bool in_shadow(int light, int own, dvec3 point, dvec3 to_light, double end) {
   if (primitive_blocks(own, true, point, to_light, end)) return true;
   if (map_side == 0) return false;
@@ -56,24 +50,15 @@ bool in_shadow(int light, int own, dvec3 point, dvec3 to_light, double end) {
   int axis = m.x >= m.y && m.x >= m.z ? 0 : (m.y >= m.z ? 1 : 2);
   u /= m[axis];
   float step_ = 2 / float(map_side);
-  // A sliver that covers no texel's centre is missed. Where all nine texels see something well before the point, by four
-  // texels' width, the point lies inside a shadow, and the sliver that its ray meets was only one part of what casts it.
-  float before = float(end) * (1 - 4 * step_);
-  bool inside = true, small = false;
   int last = own;
   for (int i = 0; i < 9; ++i) {
     vec3 beside = u;
     beside[(axis + 1) % 3] += float(i % 3 - 1) * step_;
     beside[(axis + 2) % 3] += float(i / 3 - 1) * step_;
-    int texel = light * 6 * map_side * map_side + map_texel_of(beside);
-    int primitive = light_primitive[texel];
-    bool nearer = light_distance[texel] < before;
-    inside = inside && nearer;
-    // Triangles about as small as texels: too few of them are among the nine, and the texel itself decides.
-    if (i == 4 && nearer && longest_edge(primitive) < 4 * step_ * light_distance[texel]) small = true;
+    int primitive = light_primitive[light * 6 * map_side * map_side + map_texel_of(beside)];
     if (primitive < 0 || primitive == own || primitive == last) continue;
     last = primitive;
     if (primitive_blocks(primitive, false, point, to_light, end)) return true;
   }
-  return inside || small;
+  return tree_blocks(own, point, to_light, end);
 }

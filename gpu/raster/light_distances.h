@@ -2,10 +2,9 @@
 // met.
 //
 // Six raster passes per light, by the code of the camera's (first_hits.h): no near plane and no bias. Distances are
-// those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) rarely compare distances:
-// they take the primitives of the nine texels around a direction and test each exactly, so the edge of a shadow is as
-// sharp as the geometry. Where triangles are about as small as texels, too few of them are among the nine: there the
-// texel itself decides, and the edge is good to half a texel. What covers no texel's centre casts no shadow.
+// those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) compare no distances: they
+// test the primitives of the nine texels around a direction exactly, and where none of them blocks the ray, all others
+// by a tree of boxes (shadow_tree.h). So shadows are those of the geometry, whatever the maps' resolution.
 #pragma once
 #include <vector>
 

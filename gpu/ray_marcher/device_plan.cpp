@@ -50,17 +50,17 @@ double iterations_at_once(const ray_marcher::Plan& plan) {
 
 }  // namespace
 
-PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan)
+PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, GridStorage storage)
     : context_(context),
       plan_(plan),
       middle_(middle_of(plan)),
       balls_(int(std::count_if(plan.lights.begin(), plan.lights.end(), [](const auto& l) { return bool(ball(l)); }))),
       has_occluders_(plan.scene->geometry && plan.scatters),
       occluders_(has_occluders_ ? make_occluders(plan.scene->surfaces, middle_) : Occluders{}),
-      layers_(context, "layers", layer_data(plan, middle_)),
-      gaussians_(context, "Gaussians", field_data(plan).gaussians),
-      grids_(context, "voxel grids", field_data(plan).grids),
-      bricks_(context, "maps of empty space", field_data(plan).bricks),
+      grids_(context, plan, storage),
+      layers_(context, "layers", layer_data(plan, middle_, grids_.textures() > 0)),
+      gaussians_(context, "Gaussians", gaussian_data(plan)),
+      bricks_(context, "maps of empty space", brick_data(plan)),
       lights_(context, "lights", light_data(plan, middle_)),
       nodes_(context, "boxes of surfaces", occluders_.nodes),
       triangles_(context, "triangles", occluders_.triangles),
@@ -74,6 +74,7 @@ Program& PlanOnDevice::program(const scene::View& view) {
                                  {"LOCAL_SIZE_Y", std::to_string(tile)},
                                  {"LAYERS", std::to_string(plan_.layers.size())},
                                  {"GRIDS", flag(any_layer(plan_, [](const auto& l) { return bool(l.grid); }))},
+                                 {"TEXTURES", std::to_string(grids_.textures())},
                                  {"GAUSSIANS", flag(any_layer(plan_, [](const auto& l) { return bool(l.gaussians); }))},
                                  {"SKIP", flag(o.skip_empty)},
                                  {"GRADED", flag(o.graded)},
@@ -97,7 +98,7 @@ Program& PlanOnDevice::program(const scene::View& view) {
   return p;
 }
 
-std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const std::vector<double>& distance,
+std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const Buffer* distances,
                                               const scene::Execution& execution, StageTimer& timer) {
   const Use use(context_);
   if (context_.software() && iterations_at_once(plan_) > software_most)
@@ -110,14 +111,15 @@ std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const std
   const int band = int(std::max<std::size_t>(1, band_bytes / tile_row_bytes)) * tile;
   layers_.bind(0);
   gaussians_.bind(1);
-  grids_.bind(2);
+  grids_.bind();
   bricks_.bind(3);
   lights_.bind(4);
   nodes_.bind(7);
   triangles_.bind(8);
   solids_.bind(9);
   p.set("tile_columns", columns);
-  p.set("has_distances", !distance.empty());
+  p.set("has_distances", distances != nullptr);
+  if (distances) distances->bind(5);
 
   p.set("budget", context_.software() ? software_budget : budget);
   Buffer unfinished(context_, "unfinished pixels", sizeof(unsigned));
@@ -131,13 +133,7 @@ std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const std
   for (int row = 0; row < view.height; row += band) {
     const int end_row = std::min(row + band, view.height);
     const std::size_t begin = std::size_t(row) * view.width, end = std::size_t(end_row) * view.width;
-    const std::vector<double> here(distance.begin() + (distance.empty() ? 0 : begin),
-                                   distance.begin() + (distance.empty() ? 0 : end));
-    std::vector<float> ends;
-    for (const double t : here) ends.push_back(t < far_away ? float(t) : far_away);
-    const Buffer distances(context_, "distances", ends);
     const Buffer pixels(context_, "pixels", (end - begin) * sizeof(MarchedPixel));
-    distances.bind(5);
     pixels.bind(6);
     p.set("first_row", row);
     const int end_tile = (end_row + tile - 1) / tile * columns;

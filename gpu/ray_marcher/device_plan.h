@@ -5,7 +5,8 @@
 
 #include "gpu/buffer.h"
 #include "gpu/program.h"
-#include "gpu/ray_marcher/occluders.h"
+#include "gpu/ray_marcher/grids_on_device.h"
+#include "gpu/raster/occluders.h"
 #include "gpu/timer.h"
 #include "reference/ray_marcher/plan.h"
 #include "scene/renderer.h"
@@ -29,12 +30,14 @@ struct MarchedPixel {
 class PlanOnDevice {
  public:
   // Uploads; keeps the plan by reference. Throws Unavailable where the device has no room for a grid.
-  PlanOnDevice(Context&, const ray_marcher::Plan&);
+  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage);
 
-  // `distance` ends every pixel's ray [m], empty where all are infinite. The image is done in dispatches of some tenths
-  // of a second, with progress between them; throws scene::Interrupted if asked to stop. Requires a layer.
-  std::vector<MarchedPixel> march(const scene::View&, const std::vector<double>& distance, const scene::Execution&,
-                                  StageTimer&);
+  const GridsOnDevice& grids() const { return grids_; }
+
+  // `distances` end the pixels' rays: floats [m], row 0 first; null where all are infinite. The image is done in
+  // dispatches of some tenths of a second, with progress between them; throws scene::Interrupted if asked to stop.
+  // Requires a layer.
+  std::vector<MarchedPixel> march(const scene::View&, const Buffer* distances, const scene::Execution&, StageTimer&);
 
  private:
   Program& program(const scene::View&);
@@ -45,7 +48,8 @@ class PlanOnDevice {
   int balls_;      // point and spot lights
   bool has_occluders_;
   Occluders occluders_;
-  Buffer layers_, gaussians_, grids_, bricks_, lights_, nodes_, triangles_, solids_;
+  GridsOnDevice grids_;
+  Buffer layers_, gaussians_, bricks_, lights_, nodes_, triangles_, solids_;
 };
 
 }  // namespace airlight::gpu

@@ -16,7 +16,7 @@ struct Layer {
   vec4 shape_frame[3];  // local = xyz . world + w
   vec4 field_frame[3];
   vec3 lo;  // support of the field, local
-  int first;  // of its Gaussians or grid values
+  int first;  // of its Gaussians; of its grid values, or the number of its texture
   vec3 hi;
   int count;  // of its Gaussians
   ivec3 size;  // padded samples of a grid
@@ -41,7 +41,11 @@ layout(std430, binding = 0) readonly buffer Layers { Layer layers[]; };
 layout(std430, binding = 1) readonly buffer GaussianList { Gaussian gaussians[]; };
 #endif
 #if GRIDS
+#if TEXTURES
+layout(binding = 0) uniform sampler3D grid_texture[TEXTURES];
+#else
 layout(std430, binding = 2) readonly buffer GridValues { float grid_value[]; };      // x fastest
+#endif
 layout(std430, binding = 3) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
 #endif
 
@@ -87,15 +91,33 @@ vec2 clip_field(int k, vec3 x, vec3 direction, vec2 t) {
 }
 
 #if GRIDS
+#if TEXTURES
+// By hand from eight texels: the hardware's filter has weights of 8 bits (texture_3d.h).
+#define CORNER(x, y, z) texelFetch(grid_texture[s], i + ivec3(x, y, z), 0).r
+void grid_corners(int k, ivec3 i, out vec4 near, out vec4 beyond) {
+  near = beyond = vec4(0);
+  int mine = TEXTURES > 1 ? layers[k].first : 0;
+  for (int s = 0; s < TEXTURES; ++s)  // samplers are indexed by what all invocations agree on
+    if (s == mine) {
+      near = vec4(CORNER(0, 0, 0), CORNER(1, 0, 0), CORNER(0, 1, 0), CORNER(1, 1, 0));
+      beyond = vec4(CORNER(0, 0, 1), CORNER(1, 0, 1), CORNER(0, 1, 1), CORNER(1, 1, 1));
+    }
+}
+#else
+void grid_corners(int k, ivec3 i, out vec4 near, out vec4 beyond) {
+  ivec3 size = layers[k].size;
+  int at = layers[k].first + i.x + size.x * (i.y + size.y * i.z), row = size.x, slice = size.x * size.y;
+  near = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
+  at += slice;
+  beyond = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
+}
+#endif
 // Trilinear at local coordinates: sample coordinates plus 2. Nothing outside the array is read, whatever comes.
 float grid_density(int k, vec3 p) {
-  ivec3 size = layers[k].size;
-  ivec3 i = clamp(ivec3(p), ivec3(0), size - 2);
+  ivec3 i = clamp(ivec3(p), ivec3(0), layers[k].size - 2);
   vec3 f = p - vec3(i);
-  int at = layers[k].first + i.x + size.x * (i.y + size.y * i.z), row = size.x, slice = size.x * size.y;
-  vec4 near = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
-  at += slice;
-  vec4 beyond = vec4(grid_value[at], grid_value[at + 1], grid_value[at + row], grid_value[at + row + 1]);
+  vec4 near, beyond;
+  grid_corners(k, i, near, beyond);
   vec4 v = near + f.z * (beyond - near);
   vec2 w = v.xy + f.y * (v.zw - v.xy);
   return w.x + f.x * (w.y - w.x);

@@ -28,7 +28,7 @@ layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
 layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
 layout(std430, binding = 10) buffer Unfinished { uint unfinished; };
 uniform int first_tile, tile_columns;  // of this dispatch; of the image
-uniform int first_row;                 // of pixels in the buffers
+uniform int first_row;                 // of the pixels in their buffer
 uniform int light_count, balls;        // the first `balls` of the lights are point and spot lights
 uniform int has_distances;
 uniform float darkest;  // a ray ends at that optical depth
@@ -216,7 +216,7 @@ void main() {
   if (resumed > balls) return;
   vec3 origin, direction;
   camera_ray(vec2(at) + 0.5, origin, direction);
-  float t_end = has_distances != 0 ? distances[place] : far_away;
+  float t_end = has_distances != 0 ? distances[at.y * width + at.x] : far_away;
   for (int i = 0; i < BALL_WORDS; ++i) own_marches[i] = 0u;
   at_part = pixels[place].part;
   at_step = pixels[place].step_;

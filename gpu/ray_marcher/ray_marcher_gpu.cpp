@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <mutex>
 
+#include "gpu/raster/first_hits.h"
+#include "gpu/raster/pixel_ends.h"
+#include "gpu/raster_program.h"
 #include "gpu/ray_marcher/device_plan.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "reference/ray_marcher/scalar.h"
@@ -20,65 +23,67 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
+// Surfaces, or balls of lights.
+bool something_ends_rays(const Scene& scene) {
+  return scene.geometry || std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+           const auto ball = scene::ball(light);
+           return ball && ball->radius > 0;
+         });
+}
+
 class PreparedMarchGpu final : public scene::Prepared {
  public:
-  PreparedMarchGpu(Plan plan, std::string settings)
+  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage)
       : plan_(std::move(plan)), settings_(std::move(settings)), context_(Context::get()) {
     StageTimer timer(context_);
-    if (!plan_.layers.empty()) device_ = std::make_unique<PlanOnDevice>(context_, plan_);
+    if (!plan_.layers.empty()) device_ = std::make_unique<PlanOnDevice>(context_, plan_, storage);
+    if (something_ends_rays(*plan_.scene)) first_hits_ = std::make_unique<FirstHits>(context_, *plan_.scene);
     timer.stage("upload");
     times_ = timer.times();
   }
 
-  std::vector<scene::Stage> stages() const override {
-    std::vector<scene::Stage> stages = describe_stages(plan_);
-    stages.insert(stages.begin(), {"device", true, context_.description()});
-    return stages;
-  }
+  std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  void shade_behind(const View&, const Execution&, const std::vector<scene::RayEnd>&, const std::vector<float>&,
+  void shade_behind(const View&, const Execution&, const std::vector<int>& primitives,
+                    const std::vector<float>& distances, const std::vector<float>& transmittance,
                     std::vector<float>& surface, ray_marcher::Counters&) const;
 
   Plan plan_;
   std::string settings_;
   Context& context_;
-  std::unique_ptr<PlanOnDevice> device_;  // null: no medium with extinction
+  std::unique_ptr<PlanOnDevice> device_;   // null: no medium with extinction
+  std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
   std::vector<scene::StageTime> times_;
 };
 
-// Where rays end on surfaces and lights' balls, by Embree; empty where nothing can end one.
-std::vector<scene::RayEnd> ray_ends(const Scene& scene, const View& view, const Execution& execution) {
-  std::vector<scene::RayEnd> ends;
-  const bool balls = std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& light) {
-    const auto ball = scene::ball(light);
-    return ball && ball->radius > 0;
-  });
-  if (!scene.geometry && !balls) return ends;
-  ends.resize(std::size_t(view.width) * view.height);
-  scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
-    for (int x = 0; x < view.width; ++x)
-      ends[std::size_t(y) * view.width + x] =
-          ray_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
-  });
-  return ends;
+std::vector<scene::Stage> PreparedMarchGpu::stages() const {
+  std::vector<scene::Stage> stages = describe_stages(plan_);
+  const std::string grids = device_ ? device_->grids().description() : "";
+  stages.insert(stages.begin(), {{"device", true, context_.description()},
+                                 {"distances", bool(first_hits_),
+                                  first_hits_ ? "where camera rays end, by a raster pass" : "nothing ends a ray"},
+                                 {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
+  return stages;
 }
 
 // What surfaces reflect, and the environment, through the media.
-void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution,
-                                    const std::vector<scene::RayEnd>& ends, const std::vector<float>& transmittance,
+void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution, const std::vector<int>& primitives,
+                                    const std::vector<float>& distances, const std::vector<float>& transmittance,
                                     std::vector<float>& surface, ray_marcher::Counters& total) const {
   std::mutex mutex;
+  const PixelEnds ends(*plan_.scene);
   scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
     ray_marcher::Counters counters;
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       const Rgb through(transmittance[3 * i], transmittance[3 * i + 1], transmittance[3 * i + 2]);
-      const scene::RayEnd end = ends.empty() ? scene::RayEnd{} : ends[i];
-      if ((through == 0).all() || end.on_ball) continue;
+      if ((through == 0).all()) continue;
       const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+      const scene::RayEnd end = primitives.empty() ? scene::RayEnd{} : ends.at(primitives[i], distances[i], ray);
+      if (end.on_ball) continue;
       const Rgb behind = through * (end.hit ? lit_surface(plan_, *end.hit, ray.direction, counters)
                                             : scene::background(*plan_.scene, ray.direction));
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(behind[c]);
@@ -97,19 +102,24 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
                    {"settings", settings_},
                    {"scene", plan_.scene->name},
                    {"hash", plan_.scene->hash}};
-  const long dispatches = Program::dispatches();
+  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
   const Use use(context_);
   StageTimer timer(context_);
   ray_marcher::Counters counters;
   counters.rays = static_cast<long long>(film.pixels());
 
-  const std::vector<scene::RayEnd> ends = ray_ends(*plan_.scene, view, execution);
-  if (!ends.empty()) timer.stage("distances");
+  std::unique_ptr<Buffer> distances, primitives;
+  if (first_hits_) {
+    const HitImage& hits = first_hits_->draw(view);
+    distances = std::make_unique<Buffer>(context_, "distances", film.pixels() * 4);
+    primitives = std::make_unique<Buffer>(context_, "primitives", film.pixels() * 4);
+    hits.read_distances(*distances, 0);
+    hits.read_primitives(*primitives, 0);
+    timer.stage("distances");
+  }
   std::fill(transmittance.begin(), transmittance.end(), 1.0f);
   if (device_) {
-    std::vector<double> distance;
-    for (const scene::RayEnd& end : ends) distance.push_back(end.t);
-    const std::vector<MarchedPixel> image = device_->march(view, distance, execution, timer);
+    const std::vector<MarchedPixel> image = device_->march(view, distances.get(), execution, timer);
     for (std::size_t i = 0; i < image.size(); ++i) {
       std::copy_n(image[i].airlight.data(), 3, airlight.data() + 3 * i);
       std::copy_n(image[i].transmittance.data(), 3, transmittance.data() + 3 * i);
@@ -120,7 +130,8 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
     }
   }
   if ((plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene)) {
-    shade_behind(view, execution, ends, transmittance, surface, counters);
+    shade_behind(view, execution, primitives ? primitives->download<int>() : std::vector<int>{},
+                 distances ? distances->download<float>() : std::vector<float>{}, transmittance, surface, counters);
     timer.stage("surfaces");
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
@@ -130,7 +141,8 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
                      {"shadow_rays", double(counters.shadow_rays)},
                      {"shadow_steps", double(counters.shadow_steps)},
                      {"occlusion_rays", double(counters.occlusion_rays)},
-                     {"dispatches", double(Program::dispatches() - dispatches)}};
+                     {"dispatches", double(Program::dispatches() - dispatches)},
+                     {"draws", double(RasterProgram::draws() - draws)}};
   return result;
 }
 
@@ -140,7 +152,17 @@ std::string RayMarcherGpu::about() const {
   return "brute-force single scattering in compute shaders, the steps of ray_marcher in single precision";
 }
 
-std::vector<scene::SettingSpec> RayMarcherGpu::settings() const { return ray_marcher::option_specs(); }
+std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
+  auto settings = ray_marcher::option_specs();
+  settings.push_back({"grid_storage",
+                      scene::SettingSpec::Type::choice,
+                      "auto",
+                      "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough",
+                      0,
+                      0,
+                      {"auto", "buffer", "texture"}});
+  return settings;
+}
 
 std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
@@ -165,7 +187,11 @@ std::unique_ptr<scene::Prepared> RayMarcherGpu::prepare(std::shared_ptr<const Sc
   const std::vector<std::string> reasons = supports(*scene, settings);
   if (!reasons.empty()) throw Error(fmt::format("ray_marcher_gpu: {}", reasons.front()));
   const ray_marcher::Options options = ray_marcher::read_options(settings, ray_marcher::length_unit(*scene));
-  return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical());
+  const std::string& storage = settings.text("grid_storage");
+  return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical(),
+                                            storage == "buffer"    ? GridStorage::buffer
+                                            : storage == "texture" ? GridStorage::texture
+                                                                   : GridStorage::automatic);
 }
 
 }  // namespace airlight::gpu

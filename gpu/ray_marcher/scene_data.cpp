@@ -46,9 +46,9 @@ Point3 middle_of(const ray_marcher::Plan& plan) {
   return box.empty() ? plan.scene->camera.position : box.center();
 }
 
-std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& middle) {
+std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& middle, bool textures) {
   std::vector<LayerData> data;
-  std::size_t gaussians = 0, values = 0, bricks = 0;
+  std::size_t gaussians = 0, values = 0, bricks = 0, grids = 0;
   for (const Layer& layer : plan.layers) {
     LayerData d{};
     d.sigma_t = float3(Vec3(layer.medium->sigma_t));
@@ -65,10 +65,10 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
       d.field = 1;
       d.field_frame = frame_data(grid.frame, middle);
       d.lo = float3(grid.lo), d.hi = float3(grid.hi);
-      d.first = int(values), d.first_brick = int(bricks);
+      d.first = int(textures ? grids : values), d.first_brick = int(bricks);
       d.size = {grid.size[0], grid.size[1], grid.size[2]};
       d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
-      values += samples(grid), bricks += grid.free_distance.size();
+      values += samples(grid), bricks += grid.free_distance.size(), ++grids;
     } else if (layer.gaussians) {
       const ray_marcher::GaussianField& field = *layer.gaussians;
       d.field = 2;
@@ -83,24 +83,40 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
   return data;
 }
 
-FieldData field_data(const ray_marcher::Plan& plan) {
-  FieldData data;
+std::vector<GaussianData> gaussian_data(const ray_marcher::Plan& plan) {
+  std::vector<GaussianData> data;
   for (const Layer& layer : plan.layers) {
-    if (layer.grid) {
-      // The CPU keeps each sample with its neighbour along z; here only the samples.
-      const std::size_t count = samples(*layer.grid);
-      data.grids.reserve(data.grids.size() + count);
-      for (std::size_t i = 0; i < count; ++i) data.grids.push_back(layer.grid->pairs[2 * i]);
-      data.bricks.insert(data.bricks.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
-    }
-    if (layer.gaussians) {
-      const ray_marcher::GaussianField& f = *layer.gaussians;
-      for (std::size_t i = 0; i < f.count; ++i) {
-        const float reach = f.reach[i] * f.inverse_width[i];
-        data.gaussians.push_back({{f.x[i], f.y[i], f.z[i]}, f.inverse_width[i], f.amplitude[i], reach * reach, {0, 0}});
-      }
+    if (!layer.gaussians) continue;
+    const ray_marcher::GaussianField& f = *layer.gaussians;
+    for (std::size_t i = 0; i < f.count; ++i) {
+      const float reach = f.reach[i] * f.inverse_width[i];
+      data.push_back({{f.x[i], f.y[i], f.z[i]}, f.inverse_width[i], f.amplitude[i], reach * reach, {0, 0}});
     }
   }
+  return data;
+}
+
+std::vector<float> brick_data(const ray_marcher::Plan& plan) {
+  std::vector<float> data;
+  for (const Layer& layer : plan.layers)
+    if (layer.grid) data.insert(data.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
+  return data;
+}
+
+void grid_slice(const ray_marcher::GridField& grid, int z, std::vector<float>& values) {
+  // The CPU keeps each sample with its neighbour along z; here only the samples.
+  values.resize(std::size_t(grid.size[0]) * grid.size[1]);
+  const float* pair = grid.pairs.data() + 2 * values.size() * std::size_t(z);
+  for (float& value : values) value = *pair, pair += 2;
+}
+
+std::vector<float> grid_data(const ray_marcher::Plan& plan) {
+  std::vector<float> data, slice;
+  for (const Layer& layer : plan.layers)
+    for (int z = 0; layer.grid && z < layer.grid->size[2]; ++z) {
+      grid_slice(*layer.grid, z, slice);
+      data.insert(data.end(), slice.begin(), slice.end());
+    }
   return data;
 }
 

@@ -48,17 +48,17 @@ struct LightData {
   float cos_outer;
 };
 
-// Values of all layers, one list after the other.
-struct FieldData {
-  std::vector<GaussianData> gaussians;
-  std::vector<float> grids, bricks;
-};
-
 // Centre of the finite regions and supports; of the camera if there are none.
 Point3 middle_of(const ray_marcher::Plan&);
 
-std::vector<LayerData> layer_data(const ray_marcher::Plan&, const Point3& middle);
-FieldData field_data(const ray_marcher::Plan&);
+// With `textures` a grid's `first` is the number of its texture, else the place of its values.
+std::vector<LayerData> layer_data(const ray_marcher::Plan&, const Point3& middle, bool textures);
+// Values of all layers, one list after the other.
+std::vector<GaussianData> gaussian_data(const ray_marcher::Plan&);
+std::vector<float> brick_data(const ray_marcher::Plan&);
+std::vector<float> grid_data(const ray_marcher::Plan&);
+// Slice z of one grid, x fastest: padded samples.
+void grid_slice(const ray_marcher::GridField&, int z, std::vector<float>& values);
 std::vector<LightData> light_data(const ray_marcher::Plan&, const Point3& middle);
 
 }  // namespace airlight::gpu

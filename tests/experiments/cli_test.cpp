@@ -241,6 +241,50 @@ region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
   unsetenv("AIRLIGHT_GPU");
 }
 
+TEST_CASE("the device is chosen by --gpu, and one that is not there is one line and exit code 3", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
+  for (const std::string& command :
+       {"render " + scene + " --method fogshop --out picture.exr", "explain " + scene,
+        std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1"), std::string("evaluators")}) {
+    const Result r = run(command + " --gpu 'no such device'", folder);
+    CAPTURE(command, r.err);
+    CHECK(r.code == 3);
+    CHECK(r.error_lines() == 1);
+    CHECK_THAT(r.err, Catch::StartsWith("airlight: gpu: "));
+  }
+  CHECK(!std::filesystem::exists(folder.path() / "picture.exr"));
+  const Result empty = run("render " + scene + " --method fogshop --out picture.exr --gpu ''", folder);
+  CHECK(empty.code == 2);
+  CHECK(empty.error_lines() == 1);
+  // Without one, what needs none goes on; what does says so.
+  CHECK(run("render " + scene + " --method fogshop --out picture.exr --gpu none" + small, folder).code == 0);
+  const Result none = run("render " + scene + " --method fogshop_gpu --out gpu.exr --gpu None" + small, folder);
+  CHECK(none.code == 3);
+  CHECK(none.err == "airlight: gpu: none is to be used, as asked for\n");
+  CHECK_THAT(run("doctor --gpu none", folder).out, Contains("graphics   gpu: none is to be used"));
+  CHECK_THAT(run("render --help", folder).out, Contains("--gpu WHICH"));
+  CHECK_THAT(run("--help", folder).out, Contains("--gpu WHICH"));
+  // The option is stronger than the variable, and a driver that is too old is passed over with the reason.
+  setenv("AIRLIGHT_GPU", "no such device", 1);
+  const Result doctor = run("doctor --gpu auto", folder);
+  unsetenv("AIRLIGHT_GPU");
+  if (doctor.out.find("chosen: ") == std::string::npos) {
+    WARN("skipped: no device");
+    return;
+  }
+  CHECK_THAT(run("render " + scene + " --method fogshop --out picture.exr --gpu amdahl" + small, folder).err,
+             Contains("gpu: no device 'amdahl' that works; there is "));
+  if (doctor.out.find("Mesa") == std::string::npos) return;
+  setenv("MESA_GL_VERSION_OVERRIDE", "4.3", 1);
+  const Result old = run("doctor", folder), render = run("render " + scene + " -m fogshop_gpu -o gpu.exr", folder);
+  unsetenv("MESA_GL_VERSION_OVERRIDE");
+  CHECK(old.code == 0);
+  CHECK_THAT(old.out, Contains("graphics   gpu: no device works; there is "));
+  CHECK(render.code == 3);
+  CHECK(render.error_lines() == 1);
+}
+
 // The figures are the machine's; that the loops ran and what was counted is not.
 TEST_CASE("rate of kernels", "[cli]") {
   const TemporaryFolder folder;

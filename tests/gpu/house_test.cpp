@@ -1,32 +1,21 @@
 // The GPU house: context, programs, buffers, timers, and how each fails.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "gpu/buffer.h"
+#include "gpu/device_choice.h"
 #include "gpu/program.h"
 #include "gpu/shader_source.h"
 #include "gpu/timer.h"
 #include "tests/gpu/device.h"
-#include "tests/temporary_folder.h"
+#include "tests/gpu/shader_folder.h"
 
 using namespace airlight;
 using namespace airlight::gpu;
+using test::ShaderFolder;
 
 namespace {
-
-// Shaders of a test, read from a folder as while one works on them.
-class ShaderFolder {
- public:
-  explicit ShaderFolder(const std::string& text) {
-    folder_.write("test.comp", text);
-    setenv("AIRLIGHT_SHADERS", folder_.path().c_str(), 1);
-  }
-  ~ShaderFolder() { unsetenv("AIRLIGHT_SHADERS"); }
-  const TemporaryFolder& folder() const { return folder_; }
-
- private:
-  TemporaryFolder folder_;
-};
 
 const char* const doubling = R"(layout(local_size_x = LOCAL_SIZE_X) in;
 layout(std430, binding = 0) buffer Values { float values[]; };
@@ -52,6 +41,48 @@ TEST_CASE("every place is tried, and the one chosen works", "[gpu]") {
   CHECK(context.limits().storage_block >= std::size_t(1) << 24);
   CHECK(context.limits().groups[0] >= 65535);
   CHECK(context.description().find(context.renderer()) == 0);
+}
+
+TEST_CASE("a device is chosen by number, by place or by a part of its names", "[gpu-choice]") {
+  const Attempt fast{{"device 1", false, nullptr}, "GeForce 4090", "NVIDIA Corporation", "4.6", ""},
+      soft{{"surfaceless", true, nullptr}, "llvmpipe (LLVM 15)", "Mesa", "4.5", ""},
+      broken{{"device 0", false, nullptr}, "", "", "", "device 0: eglInitialize: EGL_NOT_INITIALIZED (0x3001)"};
+  for (const char* wish : {"auto", "1", "device 1", "nvidia", "geforce"}) CHECK(fits(fast, wish));
+  for (const char* wish : {"none", "0", "4", "device 0", "surfaceless", "mesa"}) CHECK_FALSE(fits(fast, wish));
+  for (const char* wish : {"auto", "surfaceless", "llvmpipe", "mesa"}) CHECK(fits(soft, wish));
+  CHECK_FALSE(fits(soft, "15"));  // a number counts devices
+  CHECK(refusal({broken, fast, soft}, "amd") ==
+        "gpu: no device 'amd' that works; there is device 0: eglInitialize: EGL_NOT_INITIALIZED (0x3001); device 1: "
+        "GeForce 4090, NVIDIA Corporation; surfaceless: llvmpipe (LLVM 15), Mesa");
+  CHECK(refusal({broken}, "auto") ==
+        "gpu: no device works; there is device 0: eglInitialize: EGL_NOT_INITIALIZED (0x3001)");
+  CHECK(refusal({}, "auto") == "gpu: EGL lists no device and no surfaceless platform: CPU only");
+}
+
+// A driver with holes in it: a stand-in for its eglGetProcAddress.
+TEST_CASE("a context that lacks something is known by it", "[gpu-choice]") {
+  static GLint minor;
+  const PFNGLGETINTEGERVPROC version = [](GLenum name, GLint* value) { *value = name == GL_MAJOR_VERSION ? 4 : minor; };
+  const auto driver = [&](std::vector<std::string> holes) {
+    return [version, holes](const char* name) -> void* {
+      if (std::find(holes.begin(), holes.end(), name) != holes.end()) return nullptr;
+      return reinterpret_cast<void*>(version);  // never called under other names
+    };
+  };
+  Gl gl;
+  minor = 6;
+  CHECK(load_gl(driver({}), gl).empty());
+  CHECK(load_gl(driver({"glDispatchCompute"}), gl) == "lacks glDispatchCompute");
+  CHECK(load_gl(driver({"glEnable", "glViewport", "glDispatchCompute", "glReadPixels", "glDepthFunc"}), gl) ==
+        "lacks glEnable, glDispatchCompute, glReadPixels and 2 more");
+  minor = 3;
+  CHECK(load_gl(driver({}), gl) == "has OpenGL 4.3, expected 4.5");
+}
+
+TEST_CASE("the device cannot be changed once it is in use", "[gpu]") {
+  if (!test::device()) return;
+  CHECK_THROWS_WITH(Context::choose_device("surfaceless"), Catch::Contains("in use already"));
+  CHECK_THROWS_WITH(Context::choose_device(""), Catch::Contains("no name of a device"));
 }
 
 TEST_CASE("a program runs over a buffer, and only within it", "[gpu]") {

@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "gpu/fogshop/passes.h"
+#include "gpu/program.h"
+#include "methods/fogshop/surface_psf.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/shader_folder.h"
 #include "tests/methods/fogshop/ray_model.h"
 #include "tests/methods/fogshop/stress_cases.h"
 
@@ -126,5 +129,68 @@ TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[
     const double got =
         one_ray(*context, options, grey_fog({{}, c.beta, infinity}), Point3::Zero(), c.d_vp, &light).airlight[0];
     CHECK(std::abs(got - c.expected) <= 5e-7 * c.expected);
+  }
+}
+
+// Of an endless ray at depth 1 from the light, the airlight is NPSF / (e d^2) (Eq. 17). From 100 m: lights nearer to
+// the ray than 1e-9 m are taken as that far.
+TEST_CASE("limits of the NPSF on the device", "[gpu]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  for (const auto& [gamma, expected] : {std::pair(1e-10, 2.499999996188e9), {pi, 0.02207023608763}}) {
+    const Point3 light(100 * std::sin(gamma), 0, 100 * std::cos(gamma));
+    const Fog fog = grey_fog({{}, 0.01, infinity});
+    const double got =
+        one_ray(*context, exact(Options::Variant::slices, 8), fog, Point3::Zero(), infinity, &light).airlight[0];
+    CAPTURE(gamma, got);
+    CHECK(std::abs(1e4 * got * std::exp(1.0) / expected - 1) <= 5e-7);
+  }
+}
+
+// Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its table and by its series far away.
+TEST_CASE("average depth under extreme inputs on the device", "[gpu]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const gpu::Use use(*context);
+  const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
+#include "fogshop/fog.glsl"
+layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
+uniform int has_scattered;
+#include "common/reflection.glsl"
+#include "fogshop/harmonics.glsl"
+layout(std430, binding = 1) readonly buffer Distances { float distance_of[]; };
+layout(std430, binding = 3) writeonly buffer Depths { float depth_of[]; };
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
+}
+)");
+  gpu::Program program(*context, "test.comp",
+                       {{"SH_ORDER", "4"}, {"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"TRANSFER", "0"}});
+  std::vector<float> table;
+  for (const AverageDepthNode& node : average_depth_nodes())
+    table.insert(table.end(), {float(node.value), float(node.slope)});
+  // At the origin, width 1, half_depth so that the sum is average_depth(u).
+  const gpu::Buffer gaussian(*context, "Gaussian",
+                             std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0}),
+      tables(*context, "tables", table);
+  const std::vector<float> u = {0, 1e-6f, 0.3f, 1, 3, 9.99f, 10, 10.01f, 1e3f, 1e6f, 1e15f, 1e25f};
+  const gpu::Buffer distances(*context, "distances", u), depths(*context, "depths", u.size() * 4);
+  gaussian.bind(0);
+  distances.bind(1);
+  depths.bind(3);
+  tables.bind(9);
+  program.set("gaussian_count", 1);
+  program.set("average_at", 0);
+  program.set("average_nodes", int(average_depth_nodes().size()));
+  program.dispatch(int(u.size()));
+  const std::vector<float> got = depths.download<float>();
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    CAPTURE(u[i], got[i]);
+    const double expected = u[i] == 1e6f ? 4.431134627266e-13 : average_depth(double(u[i]));
+    if (expected < 1.2e-38)
+      CHECK(got[i] == 0);
+    else
+      CHECK(std::abs(got[i] / expected - 1) <= 1e-6);
   }
 }

@@ -11,6 +11,7 @@
 #include "scene/geometry/shapes.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/silhouette.h"
 #include "tests/scene/geometry_scenes.h"
 
 using namespace airlight;
@@ -34,16 +35,7 @@ struct Pair {
     a = cpu->render(view, {1, {}}).film;
     b = gpu->render(view, {1, {}}).film;
   }
-  // Does what ends the ray change within 1/64 pixel? There either backend may show either side.
-  bool on_silhouette(int x, int y) const {
-    Interval range;
-    for (int k = 0; k <= 8; ++k) {
-      const double r = k == 8 ? 0 : 1 / 64.0, dx = r * std::cos(k * pi / 4), dy = r * std::sin(k * pi / 4);
-      const double t = ray_end(*scene, camera_ray(view.camera, x + 0.5 + dx, y + 0.5 + dy, view.width, view.height)).t;
-      range = {std::min(range.lo, t), std::max(range.hi, t)};
-    }
-    return range.hi > 1.02 * range.lo;
-  }
+  bool on_silhouette(int x, int y) const { return gpu::test::on_silhouette(*scene, view, x, y); }
   // The CPU's film of one pixel, its centre moved by (dx, dy) pixels.
   scene::Film beside(int x, int y, double dx, double dy) const {
     const Ray ray = camera_ray(view.camera, x + 0.5 + dx, y + 0.5 + dy, view.width, view.height);
@@ -109,7 +101,7 @@ void check(const Scene& scene, const Pairs& given) {
     CAPTURE(scene.name, given, layer, d.p99, d.most, d.far, d.unexplained, d.first);
     CHECK(d.p99 < 2e-3);
     CHECK(d.unexplained == 0);
-    CHECK(d.far <= 0.002 * scene.width * scene.height);
+    CHECK(d.far <= 3);  // measured: 1
     if (std::getenv("AIRLIGHT_TEST_FIGURES"))
       fmt::print("{} {} {}: 99 % {:.1e}, most {:.1e}, {} far, {} unexplained {}\n", scene.name,
                  given.count("reflectance") ? given.at("reflectance") : "", layer, d.p99, d.most, d.far, d.unexplained,
@@ -245,14 +237,13 @@ TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
   }
 }
 
-// Shadows of a mesh: with coarse maps a few pixels at their edges differ, with finer ones fewer.
-TEST_CASE("fogshop: edges of shadows and the maps' resolution", "[gpu]") {
+// What the maps do not decide the tree of surfaces does.
+TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "[gpu]") {
   if (!gpu::test::device()) return;
   Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                   {{"film.width", "160"}, {"film.height", "120"}});
   scene.media.clear();
-  int before = scene.width * scene.height / 50;
-  for (const char* side : {"64", "256", "1024"}) {
+  for (const char* side : {"1", "64", "512"}) {
     const Pair pair(scene, {});
     const scene::Film b =
         gpu::FogshopGpu()
@@ -263,9 +254,7 @@ TEST_CASE("fogshop: edges of shadows and the maps' resolution", "[gpu]") {
     int differ = 0;
     for (std::size_t i = 0; i < x.size(); i += 3) differ += std::abs(y[i] - x[i]) > 1e-3 * x[i] + 1e-6;
     CAPTURE(side);
-    CHECK(differ <= before);
-    before = differ;
+    CHECK(differ <= 4);  // silhouettes: measured 1
     if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("maps of {}^2: {} of {} pixels\n", side, differ, x.size() / 3);
   }
-  CHECK(before <= 0.001 * scene.width * scene.height);
 }

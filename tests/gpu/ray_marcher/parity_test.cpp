@@ -1,5 +1,7 @@
 // The ray marcher on the GPU against the ray marcher on the CPU: same settings, same steps, same picture to single
 // precision; and against the truth by itself.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "scene/error.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/gpu/silhouette.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
 using namespace airlight;
@@ -85,6 +88,41 @@ TEST_CASE("ray marcher: meshes cast shadows on the GPU", "[gpu][ray_marcher]") {
   CHECK(gpu.counters.at("shadow_rays") < 0.999 * gpu.counters.at("occlusion_rays"));  // some are hidden
 }
 
+// First hits come from the raster pass: meshes, a sphere, a plane, a light's ball.
+TEST_CASE("ray marcher: pixels that differ from the CPU's lie on silhouettes", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  for (const char* file : {"crosscheck/mesh_in_fog", "crosscheck/surfaces_in_fog", "elephant_fog"}) {
+    auto changed = scene::load_scene(fmt::format(AIRLIGHT_SOURCE_DIR "/experiments/scenes/{}.toml", file));
+    for (scene::Light& light : changed.lights)
+      if (auto* point = std::get_if<scene::PointLight>(&light)) point->radius = 0.05;
+    const auto scene = std::make_shared<const scene::Scene>(changed);
+    scene::View view = view_of(*scene);
+    view.width = 96, view.height = 72;
+    const Given given{{"steps", "4"}, {"shadow_steps", "2"}, {"environment_directions", "4"}};
+    const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
+    CHECK(std::any_of(gpu.times.begin(), gpu.times.end(), [](const auto& t) { return t.name == "distances"; }));
+    CHECK(gpu.counters.at("draws") > 0);
+    CAPTURE(file);
+    for (const char* layer : {"surface", "transmittance", "mean"}) {
+      CHECK(p99(cpu.film, gpu.film, layer) < 2e-3);
+      const std::vector<float>&x = cpu.film.layer(layer), &y = gpu.film.layer(layer);
+      const double most = *std::max_element(x.begin(), x.end());
+      int far = 0, unexplained = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::abs(y[i] - x[i]) <= 2e-3 * (x[i] + 0.01 * most)) continue;
+        ++far;
+        const int pixel = int(i / 3);
+        unexplained += !gpu::test::on_silhouette(*scene, view, pixel % view.width, pixel / view.width);
+      }
+      CAPTURE(layer, far);
+      CHECK(unexplained == 0);
+      CHECK(far <= 3 * 5);
+      if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+        fmt::print("{} {}: 99 % {:.1e}, {} far\n", file, layer, p99(cpu.film, gpu.film, layer), far);
+    }
+  }
+}
+
 TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
   if (!gpu::test::device()) return;
   for (const auto& [name, scene] : assorted_scenes()) {
@@ -94,6 +132,57 @@ TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_march
     CHECK(p99(cpu.film, gpu.film, "airlight") < 1e-4);
     CHECK(gpu.counters.at("shadow_steps") == 0);
   }
+}
+
+TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  // Two of them, of different sizes, one turned.
+  const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 2) / 3).toRotationMatrix();
+  const auto medium = [](std::shared_ptr<const scene::VoxelGrid> grid, const Rgb& sigma_t) {
+    return make_medium(grid, scene::Unbounded{}, sigma_t, Rgb::Constant(0.8), scene::HenyeyGreenstein{0.3});
+  };
+  const auto scene =
+      make_scene({medium(make_smoke(12, 0.15, Vec3(-1, -1, -1), turned), Rgb(2, 3, 4)),
+                  medium(make_smoke(7, 0.2, Vec3(-0.2, -0.6, -0.7), Mat3::Identity(), true), Rgb(1, 1, 2))},
+                 {scene::PointLight{{Point3(1.5, 2, 1)}, Rgb(5, 4, 3)}});
+  const Given steps{{"steps", "24"}, {"shadow_steps", "12"}};
+  Given texture = steps, buffer = steps;
+  texture["grid_storage"] = "texture", buffer["grid_storage"] = "buffer";
+  const scene::Rendering cpu = render(scene, look(), steps, 1), a = render_gpu(scene, look(), texture),
+                         b = render_gpu(scene, look(), buffer);
+  for (const char* layer : {"airlight", "transmittance"}) {
+    CHECK(p99(cpu.film, a.film, layer) < 1e-4);
+    CHECK(p99(b.film, a.film, layer) < 1e-6);  // llvmpipe: the same bits
+  }
+  CHECK(a.counters.at("shadow_steps") == b.counters.at("shadow_steps"));
+}
+
+// More than a storage buffer of llvmpipe holds: automatic storage changes over, and a buffer is refused in one line.
+TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_marcher]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  if (context->limits().storage_block > std::size_t(128) << 20) {
+    WARN("skipped: storage buffers of this device are larger");
+    return;
+  }
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  const int side = 322;  // with its padding 326^3 values, 132 MiB
+  grid->size.setConstant(side);
+  grid->voxel_size = 2.0 / side;
+  grid->translation = Vec3::Constant(-1);
+  grid->values.resize(std::size_t(side) * side * side);
+  for (int k = 0; k < side; ++k)  // two ramps, the second one partly behind the limit
+    std::fill_n(grid->values.begin() + std::size_t(k) * side * side, std::size_t(side) * side, float(k % 160) / 160);
+  const auto scene = make_scene({make_medium(std::shared_ptr<const scene::VoxelGrid>(grid), scene::Unbounded{},
+                                             Rgb(2, 3, 4), Rgb::Constant(0.8))},
+                                {scene::PointLight{{Point3(1.5, 2, 1)}, Rgb(5, 4, 3)}});
+  const Given steps{{"steps", "16"}, {"shadow_steps", "8"}};
+  const scene::Rendering cpu = render(scene, look(), steps, 1), gpu = render_gpu(scene, look(), steps);
+  CHECK(p99(cpu.film, gpu.film, "airlight") < 1e-4);
+  Given buffer = steps;
+  buffer["grid_storage"] = "buffer";
+  CHECK_THROWS_AS(render_gpu(scene, look(), buffer), Unavailable);
+  CHECK_THROWS_WITH(render_gpu(scene, look(), buffer), Catch::Contains("buffer 'voxel grids' needs 132.2 MiB"));
 }
 
 // Order 2, towards the closed reference and not towards the CPU's marcher.

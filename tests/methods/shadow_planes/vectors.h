@@ -30,16 +30,19 @@ inline double number(const json& v) {
 
 inline airlight::Vec3 vec(const json& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
 
-// Hazy and murky as printed: the vectors' normalisation.
-inline airlight::shadow_planes::PhaseForm phase_of(const json& in) {
+inline airlight::scene::PhaseFunction phase_function_of(const json& in) {
   using namespace airlight::scene;
   const std::string name = in.at("phase");
-  const PhaseFunction phase = name == "rayleigh" ? PhaseFunction(Rayleigh{})
-                              : name == "hazy"   ? PhaseFunction(Hazy{})
-                              : name == "murky"  ? PhaseFunction(Murky{})
-                              : name == "hg"     ? PhaseFunction(HenyeyGreenstein{number(in.at("g"))})
-                                                 : PhaseFunction(Isotropic{});
-  return airlight::shadow_planes::phase_form(phase, true);
+  return name == "rayleigh" ? PhaseFunction(Rayleigh{})
+         : name == "hazy"   ? PhaseFunction(Hazy{})
+         : name == "murky"  ? PhaseFunction(Murky{})
+         : name == "hg"     ? PhaseFunction(HenyeyGreenstein{number(in.at("g"))})
+                            : PhaseFunction(Isotropic{});
+}
+
+// Hazy and murky as printed: the vectors' normalisation.
+inline airlight::shadow_planes::PhaseForm phase_of(const json& in) {
+  return airlight::shadow_planes::phase_form(phase_function_of(in), true);
 }
 
 }  // namespace shadow_planes_test

@@ -1,4 +1,4 @@
-#include "gpu/ray_marcher/occluders.h"
+#include "gpu/raster/occluders.h"
 
 #include <algorithm>
 #include <numeric>
@@ -48,6 +48,7 @@ class Builder {
       for (int i = begin; i < end; ++i) {
         const auto& c = triangles_[order_[i]].corner;
         out_.triangles.push_back({corner(c[0]), corner(c[1]), corner(c[2])});
+        out_.order.push_back(order_[i]);
       }
     } else {
       int axis = 0;

@@ -1,4 +1,4 @@
-// Surfaces as shaders test shadow rays against them: occluders.glsl.
+// Surfaces as shaders test shadow rays against them: ray_marcher/occluders.glsl, raster/shadow_tree.glsl.
 #pragma once
 #include <array>
 #include <vector>
@@ -25,6 +25,7 @@ struct OccluderSolid {
 struct Occluders {
   std::vector<OccluderNode> nodes;  // depth first
   std::vector<OccluderTriangle> triangles;
+  std::vector<int> order;  // of each of them the number among all triangles of the scene
   std::vector<OccluderSolid> solids;
 };
 
