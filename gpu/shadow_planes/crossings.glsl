@@ -169,8 +169,9 @@ bool gather(Ray ray, double end, int tile, inout double key, inout int origin) {
 #endif
   last_key = key;
   last_origin = origin;
-  cross_edges(ray, end, tile);
-  cross_spheres(ray, end);
+  Ray from = general_ray(ray);
+  cross_edges(from, end, tile);
+  cross_spheres(from, end);
   if (hit_count <= most_hits) return false;
   hit_count = most_hits;
   key = hit_key[most_hits - 1];

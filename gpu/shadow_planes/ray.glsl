@@ -7,10 +7,7 @@ struct Ray {
   double T, h;     // methods/shadow_planes/light_from_ray.h
   dvec3 n;
 };
-// From beside the origin: methods/shadow_planes/general_origin.h.
 Ray ray_to(dvec3 origin, dvec3 direction) {
-  double aside = 2e-13LF * length(origin - light) + 4e-15LF * (length(origin) + length(light));
-  origin += aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF);
   Ray ray;
   ray.origin = origin;
   ray.direction = direction;
@@ -21,6 +18,12 @@ Ray ray_to(dvec3 origin, dvec3 direction) {
   dvec3 other = abs(direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
   ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(direction, other));
   return ray;
+}
+
+// From beside the origin: methods/shadow_planes/general_origin.h.
+Ray general_ray(Ray ray) {
+  double aside = 2e-13LF * length(ray.to_light) + 4e-15LF * (length(ray.origin) + length(light));
+  return ray_to(ray.origin + aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF), ray.direction);
 }
 
 // Roots of a t^2 + 2 b t + c; -1 for those that are not real.
