@@ -108,6 +108,7 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   e.image_z = whole.z;
   e.image_threshold = normal_quantile(1 - alpha / 6);
   e.largest_threshold = e.blocks ? sidak_threshold(e.blocks, alpha / 3) : 0;
+  e.detectable_bias = std::numeric_limits<double>::quiet_NaN();
   if (whole.sigma > 0)
     e.detectable_bias =
         (student_quantile(1 - alpha / 6, whole.degrees) + normal_quantile(0.95)) * whole.sigma / std::abs(mb.value);

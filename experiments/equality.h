@@ -21,7 +21,7 @@ struct Equality {
   double chi_square_probability = 1;
   double image_z = 0;
   double image_threshold = 0;
-  double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image
+  double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image; NaN: no noise
   bool equal = false;          // no test objects
   bool tested = false;         // detectable_bias <= 1 %: an `equal` without it means little
 };

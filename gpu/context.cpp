@@ -42,6 +42,14 @@ void Context::choose_device(const std::string& name) {
   wish() = small_letters(name);
 }
 
+std::string Context::name_of_device() {
+  try {
+    return get().description();
+  } catch (const NoDevice& reason) {
+    return reason.what();
+  }
+}
+
 bool Context::device_was_chosen() { return wish() != "auto" && wish() != "none"; }
 
 // Whatever goes wrong is in the answer's failure.
@@ -92,7 +100,7 @@ Context& Context::get() {
   // Never destroyed: drivers may be gone when the process ends.
   static Context* const context = [] {
     std::vector<Attempt> attempts;
-    if (wish() == "none") throw Unavailable(refusal(attempts, wish()));
+    if (wish() == "none") throw NoDevice(refusal(attempts, wish()));
     for (const Place& place : Egl::get().places()) {
       std::unique_ptr<EglContext> egl;
       attempts.push_back(attempt(place, egl));
@@ -101,7 +109,7 @@ Context& Context::get() {
       is_made = true;
       return made;
     }
-    throw Unavailable(refusal(attempts, wish()));
+    throw NoDevice(refusal(attempts, wish()));
   }();
   return *context;
 }

@@ -34,6 +34,8 @@ class Context {
   // As device_choice.h reads it; takes the place of the variable. Throws Error for an empty wish, and after the first
   // get(), when it is too late.
   static void choose_device(const std::string& wish);
+  // description() of get(), or the line that says why there is none. Does not throw.
+  static std::string name_of_device();
   // Whether a certain device was asked for, by choose_device or AIRLIGHT_GPU: then its absence is a failure, where it
   // otherwise is a reason to leave something out.
   static bool device_was_chosen();

@@ -38,10 +38,10 @@ const Egl& Egl::get() {
 
 Egl::Egl() : f_(std::make_shared<Functions>()) {
   void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw Unavailable("gpu: libEGL.so.1 is not installed: CPU only");
+  if (!library) throw NoDevice("gpu: libEGL.so.1 is not installed: CPU only");
   const auto load = [&](auto& function, const char* name) {
     function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-    if (!function) throw Unavailable(fmt::format("gpu: libEGL.so.1 lacks {}: CPU only", name));
+    if (!function) throw NoDevice(fmt::format("gpu: libEGL.so.1 lacks {}: CPU only", name));
   };
   load(f_->get_proc_address, "eglGetProcAddress");
   load(f_->query_string, "eglQueryString");
@@ -59,7 +59,7 @@ Egl::Egl() : f_(std::make_shared<Functions>()) {
   extension(f_->query_devices, "eglQueryDevicesEXT");
   extension(f_->query_device_string, "eglQueryDeviceStringEXT");
   if (!f_->get_platform_display || !has_client("EGL_EXT_platform_base"))
-    throw Unavailable("gpu: libEGL.so.1 finds no driver (it offers no platform): CPU only");
+    throw NoDevice("gpu: libEGL.so.1 finds no driver (it offers no platform): CPU only");
 }
 
 std::string Egl::error() const {

@@ -22,4 +22,11 @@ class Unavailable : public Error {
   explicit Unavailable(const std::string& line) : Error(line, 3) {}
 };
 
+// No device to compute on: none is there, or none of those is the one asked for. A device that is there and refuses a
+// task is Unavailable only.
+class NoDevice : public Unavailable {
+ public:
+  using Unavailable::Unavailable;
+};
+
 }  // namespace airlight

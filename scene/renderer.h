@@ -66,6 +66,9 @@ class Renderer {
   virtual ~Renderer() = default;
   virtual std::string name() const = 0;   // as in --method: "fogshop", "ray_marcher", "path_tracer"
   virtual std::string about() const = 0;  // one line, with the source
+  // On what it computes beside the processor, in one line; empty for the processor alone. Where it is missing, the line
+  // says so.
+  virtual std::string device() const { return ""; }
   virtual std::vector<SettingSpec> settings() const = 0;
   // Empty: it can render the scene. Else the reasons why not, one line each.
   virtual std::vector<std::string> supports(const Scene&, const Settings&) const = 0;

@@ -195,6 +195,7 @@ class Run {
         fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
     parts.insert(parts.end(), experiment().metrics.begin(), experiment().metrics.end());
     parts.push_back(fmt::format("{} {}", m.picture_only, m.count_noise));
+    parts.push_back(renderer.device());
     row.key = content_key(parts);
     if (const Row* finished = journal_.find(row.key)) {
       outcome_.rows.push_back(*finished);
@@ -207,7 +208,7 @@ class Run {
         measure_row(row, m, scene, masks, reference, renderer, settings);
       } catch (const Unavailable& reason) {
         row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
-        row.unavailable = !gpu::Context::device_was_chosen();
+        row.unavailable = dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen();
         // Not into the journal: the next run may find what is missing.
         outcome_.rows.push_back(row);
         say(row, "left out");

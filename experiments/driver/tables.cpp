@@ -123,6 +123,7 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
   if (e.method.empty()) return "";
   for (const Row& row : outcome.rows)
     if (row.scene == e.scene && row.method == e.method && (e.setting.empty() || row.setting == e.setting)) {
+      if (!row.note.empty()) return row.note;
       for (const Measure& m : row.measures)
         if (m.name == e.metric) return text(m);
       if (e.metric == "seconds" && row.runs > 0)

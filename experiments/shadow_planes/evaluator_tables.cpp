@@ -113,7 +113,8 @@ void write_evaluator_tables(const std::filesystem::path& folder, const Evaluator
   gpu::Context* device = nullptr;
   try {
     device = &gpu::Context::get();
-  } catch (const Unavailable& reason) {
+  } catch (const NoDevice& reason) {
+    if (gpu::Context::device_was_chosen()) throw;
     fmt::print(stderr, "airlight: no device, its rows are left out: {}\n", reason.what());
   }
   const std::vector<TimedRow> times = errors_and_times(effort.cases, effort.runs, device);

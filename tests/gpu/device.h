@@ -12,7 +12,7 @@ inline Context* device() {
   try {
     return &Context::get();
   } catch (const Unavailable& reason) {
-    WARN("skipped: " << reason.what());
+    WARN("test skipped: " << reason.what());
     return nullptr;
   }
 }

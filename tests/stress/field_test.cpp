@@ -97,15 +97,15 @@ TEST_CASE("stress 21: renderers add overlapping media", "[stress]") {
 }
 
 TEST_CASE("stress 22: a Legendre field that is negative everywhere", "[stress]") {
-  WARN("skipped: the Legendre box does not exist yet");
+  WARN("test skipped: the Legendre box does not exist yet");
 }
 
 TEST_CASE("stress 23: Legendre degree 23 per axis", "[stress]") {
-  WARN("skipped: the Legendre box does not exist yet");
+  WARN("test skipped: the Legendre box does not exist yet");
 }
 
 TEST_CASE("stress 24: a fogmap of 4096 x 4096 with a single spike", "[stress]") {
-  WARN("skipped: the fogmap does not exist yet");
+  WARN("test skipped: the fogmap does not exist yet");
 }
 
 TEST_CASE("stress 25: renderers on a Gaussian spike and a flat one", "[stress]") {

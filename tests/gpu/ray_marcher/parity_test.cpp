@@ -162,7 +162,7 @@ TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   if (context->limits().storage_block > std::size_t(128) << 20) {
-    WARN("skipped: storage buffers of this device are larger");
+    WARN("test skipped: storage buffers of this device are larger");
     return;
   }
   auto grid = std::make_shared<scene::VoxelGrid>();
