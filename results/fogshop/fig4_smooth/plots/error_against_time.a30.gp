@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000215432:0.00403726]
+set xrange [0.000203174:0.003641]
 set logscale y
 set format y "%g"
 set yrange [0.000117423:1.05266]

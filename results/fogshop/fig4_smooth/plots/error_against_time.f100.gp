@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000357043:0.00938628]
+set xrange [0.000265309:0.0073428]
 set logscale y
 set format y "%g"
 set yrange [0.000137106:0.375714]

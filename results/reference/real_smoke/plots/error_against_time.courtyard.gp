@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0100169:1.69023]
+set xrange [0.00874558:1.27354]
 set logscale y
 set format y "%g"
 set yrange [0.00104774:0.0820194]

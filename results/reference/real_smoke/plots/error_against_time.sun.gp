@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000802061:0.653106]
+set xrange [0.00059484:0.637458]
 set logscale y
 set format y "%g"
 set yrange [0.00626901:0.487264]

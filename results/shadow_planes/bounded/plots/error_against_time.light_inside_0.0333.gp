@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00163732:0.0476611]
+set xrange [0.00236152:0.0488683]
 set logscale y
 set format y "%g"
 set yrange [2.59712e-05:1.07455]

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00266323:0.644404]
+set xrange [0.00177307:0.515274]
 set logscale y
 set format y "%g"
-set yrange [2.06716e-08:1.33921]
+set yrange [2.04492e-08:0.474371]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.shade__larger.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "rule", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00176945:0.490953]
+set xrange [0.00153183:0.361207]
 set logscale y
 set format y "%g"
-set yrange [2.36033e-08:1.07385]
+set yrange [2.2513e-08:0.462596]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.shade__smaller.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "rule", \

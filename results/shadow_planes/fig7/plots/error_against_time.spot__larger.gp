@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00449095:0.192738]
+set xrange [0.0037184:0.148891]
 set logscale y
 set format y "%g"
-set yrange [1.45961e-07:0.375701]
+set yrange [1.13108e-07:0.381163]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.spot__larger.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "rule", \

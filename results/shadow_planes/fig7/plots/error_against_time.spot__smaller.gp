@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00253363:0.119095]
+set xrange [0.00185876:0.0879666]
 set logscale y
 set format y "%g"
-set yrange [1.67304e-07:0.421796]
+set yrange [7.57855e-08:0.441133]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.spot__smaller.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "rule", \

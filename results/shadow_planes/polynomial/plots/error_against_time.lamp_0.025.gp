@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000596933:0.110485]
+set xrange [0.000430792:0.0821836]
 set logscale y
 set format y "%g"
-set yrange [4.67765e-08:0.129218]
+set yrange [4.22472e-08:0.781122]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.lamp_0.025.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polynomial", \

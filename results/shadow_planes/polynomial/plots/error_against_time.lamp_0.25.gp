@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000580874:0.0721828]
+set xrange [0.000430461:0.0560721]
 set logscale y
 set format y "%g"
-set yrange [3.82518e-09:0.868466]
+set yrange [3.68602e-09:1.67144]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.lamp_0.25.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polynomial", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00261677:0.243048]
+set xrange [0.00193758:0.118263]
 set logscale y
 set format y "%g"
 set yrange [7.34762e-07:0.0178168]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00300199:0.21123]
+set xrange [0.00199663:0.134687]
 set logscale y
 set format y "%g"
 set yrange [1.88203e-06:0.0291512]
