@@ -5,8 +5,8 @@
 
 #include "gpu/buffer.h"
 #include "gpu/program.h"
-#include "gpu/ray_marcher/grids_on_device.h"
 #include "gpu/raster/occluders.h"
+#include "gpu/ray_marcher/grids_on_device.h"
 #include "gpu/timer.h"
 #include "reference/ray_marcher/plan.h"
 #include "scene/renderer.h"
