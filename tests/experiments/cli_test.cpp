@@ -1,7 +1,6 @@
 // The program itself, as users call it: exit codes, one line on standard error, nothing half-written.
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -11,34 +10,15 @@
 #include "methods/fogshop/fogshop.h"
 #include "scene/film.h"
 #include "scene/scene.h"
-#include "tests/temporary_folder.h"
+#include "tests/experiments/run_program.h"
 
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
+using airlight::test::Result;
+using airlight::test::root;
+using airlight::test::run;
+using airlight::test::scenes;
 using Catch::Contains;
-
-namespace {
-
-// The program runs in a folder of its own, so everything is named from the root of the file system.
-const std::string root = std::filesystem::absolute(AIRLIGHT_SOURCE_DIR).string();
-const std::string program = std::filesystem::absolute(AIRLIGHT_PROGRAM).string();
-const std::string scenes = root + "/experiments/scenes/";
-
-struct Result {
-  int code;
-  std::string out, err;
-  int error_lines() const { return int(std::count(err.begin(), err.end(), '\n')); }
-};
-
-Result run(const std::string& arguments, const TemporaryFolder& folder) {
-  const std::string out = (folder.path() / "stdout").string(), err = (folder.path() / "stderr").string();
-  const int status = std::system(
-      ("cd '" + folder.path().string() + "' && '" + program + "' " + arguments + " >'" + out + "' 2>'" + err + "'")
-          .c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), read_bytes(err)};
-}
-
-}  // namespace
 
 TEST_CASE("help is quick", "[cli]") {
   const TemporaryFolder folder;
@@ -160,171 +140,6 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
   refused(scenes + "constant_grid.toml a.exr.samples b.exr.samples -o x.exr", "do not belong together");
   refused(small + "a.exr -o x.exr", "not a file of path tracer samples");
   CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
-}
-
-// A wish that no device fulfils stands for a machine without one.
-TEST_CASE("without a GPU, asking for it is one line and exit code 3, and the rest works", "[cli]") {
-  const TemporaryFolder folder;
-  setenv("AIRLIGHT_GPU", "no such device", 1);
-  const std::string scene = scenes + "fogshop/f100.toml";
-  const Result rendered = run("render " + scene + " --method fogshop_gpu --out picture.exr", folder);
-  CHECK(rendered.code == 3);
-  CHECK(rendered.error_lines() == 1);
-  CHECK_THAT(rendered.err, Catch::StartsWith("airlight: gpu: "));
-  CHECK(!std::filesystem::exists(folder.path() / "picture.exr"));
-  const Result explained = run("explain " + scene, folder);
-  CHECK(explained.code == 0);
-  CHECK_THAT(explained.out, Contains("not available on this machine: gpu: "));
-  const Result examined = run("doctor", folder);
-  CHECK(examined.code == 0);
-  CHECK_THAT(examined.out, Contains("graphics   gpu: "));
-  unsetenv("AIRLIGHT_GPU");
-}
-
-namespace {
-
-const char* const box_of_fog = R"([film]
-width = 8
-height = 6
-[camera]
-position = [0, 0, 4]
-look_at = [0, 0, 0]
-[[light]]
-type = "point"
-position = [1.5, 2, 1]
-intensity = 5
-[[medium]]
-type = "homogeneous"
-sigma_t = 0.5
-region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
-)";
-
-}  // namespace
-
-TEST_CASE("gates of a machine without a GPU are skipped, unless the device was asked for by name", "[cli]") {
-  const TemporaryFolder folder;
-  folder.write("experiments/README.md", "");
-  folder.write("experiments/g/e.toml", R"(title = "Both backends"
-layer = "airlight"
-metrics = ["rel_l2"]
-[[scene]]
-file = "scenes/one.toml"
-[reference]
-renderer = "deterministic"
-[[method]]
-name = "CPU"
-renderer = "ray_marcher"
-[[method]]
-name = "GPU"
-renderer = "ray_marcher_gpu"
-[profile.quick]
-budget = 0
-[[gate]]
-method = "CPU"
-metric = "rel_l2"
-at_most = 0.1
-[[gate]]
-method = "GPU"
-metric = "rel_l2"
-at_most = 0.1
-)");
-  folder.write("experiments/scenes/one.toml", box_of_fog);
-  setenv("AIRLIGHT_GPU", "none", 1);
-  const Result without = run("gates --root . --junit gates.xml", folder);
-  CAPTURE(without.out, without.err);
-  CHECK(without.code == 0);
-  CHECK(without.err.empty());
-  CHECK_THAT(without.out, Contains("ok       g/e: one, CPU") && Contains("skipped  g/e: one, GPU") &&
-                              Contains("not available on this machine: gpu: none is to be used") &&
-                              Contains("\n1 of 2 gates ok, 1 skipped\n"));
-  CHECK_THAT(read_bytes(folder.file("gates.xml")), Contains("failures=\"0\" skipped=\"1\"") && Contains("<skipped "));
-  // Rows that were left out are not kept: whoever asks for a device by name learns that it is not there.
-  setenv("AIRLIGHT_GPU", "no such device", 1);
-  const Result asked = run("gates --root .", folder);
-  CHECK(asked.code == 1);
-  CHECK_THAT(asked.out, Contains("FAILED   g/e: one, GPU") && Contains("\n1 of 2 gates ok\n"));
-  CHECK_THAT(asked.err, Contains("gate failed: g/e: one, GPU"));
-  unsetenv("AIRLIGHT_GPU");
-}
-
-// What a device computed is kept for that device alone.
-TEST_CASE("rows of a device are not taken for another's", "[cli]") {
-  const TemporaryFolder folder;
-  folder.write("experiments/README.md", "");
-  folder.write("experiments/g/e.toml", R"(title = "GPU"
-layer = "airlight"
-metrics = ["rel_l2"]
-[[scene]]
-file = "scenes/one.toml"
-[reference]
-renderer = "deterministic"
-[[method]]
-name = "GPU"
-renderer = "ray_marcher_gpu"
-[profile.quick]
-budget = 0
-[[gate]]
-method = "GPU"
-metric = "rel_l2"
-at_most = 0.1
-)");
-  folder.write("experiments/scenes/one.toml", box_of_fog);
-  const Result first = run("gates --root .", folder);
-  CAPTURE(first.out);
-  CHECK(first.code == 0);
-  setenv("AIRLIGHT_GPU", "none", 1);
-  CHECK_THAT(run("gates --root .", folder).out, Contains("\n0 of 1 gates ok, 1 skipped\n"));
-  unsetenv("AIRLIGHT_GPU");
-  CHECK(run("gates --root .", folder).out == first.out);
-}
-
-TEST_CASE("the device is chosen by --gpu, and one that is not there is one line and exit code 3", "[cli]") {
-  const TemporaryFolder folder;
-  const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
-  for (const std::string& command :
-       {"render " + scene + " --method fogshop --out picture.exr", "explain " + scene,
-        std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1"), std::string("evaluators")}) {
-    const Result r = run(command + " --gpu 'no such device'", folder);
-    CAPTURE(command, r.err);
-    CHECK(r.code == 3);
-    CHECK(r.error_lines() == 1);
-    CHECK_THAT(r.err, Catch::StartsWith("airlight: gpu: "));
-  }
-  CHECK(!std::filesystem::exists(folder.path() / "picture.exr"));
-  const Result empty = run("render " + scene + " --method fogshop --out picture.exr --gpu ''", folder);
-  CHECK(empty.code == 2);
-  CHECK(empty.error_lines() == 1);
-  // Without one, what needs none goes on; what does says so.
-  CHECK(run("render " + scene + " --method fogshop --out picture.exr --gpu none" + small, folder).code == 0);
-  const Result none = run("render " + scene + " --method fogshop_gpu --out gpu.exr --gpu None" + small, folder);
-  CHECK(none.code == 3);
-  CHECK(none.err == "airlight: gpu: none is to be used, as asked for\n");
-  CHECK_THAT(run("doctor --gpu none", folder).out, Contains("graphics   gpu: none is to be used"));
-  CHECK_THAT(run("render --help", folder).out, Contains("--gpu WHICH"));
-  CHECK_THAT(run("--help", folder).out, Contains("--gpu WHICH"));
-}
-
-TEST_CASE("the device: the option is stronger than the variable, and an old driver is passed over", "[cli]") {
-  const TemporaryFolder folder;
-  const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
-  setenv("AIRLIGHT_GPU", "no such device", 1);
-  const Result doctor = run("doctor --gpu auto", folder);
-  unsetenv("AIRLIGHT_GPU");
-  if (doctor.out.find("chosen: ") == std::string::npos) {
-    WARN("test skipped: no device");
-    return;
-  }
-  CHECK_THAT(run("render " + scene + " --method fogshop --out picture.exr --gpu amdahl" + small, folder).err,
-             Contains("gpu: no device 'amdahl' that works; there is "));
-  if (doctor.out.find("llvmpipe") == std::string::npos) return;
-  setenv("MESA_GL_VERSION_OVERRIDE", "4.3", 1);
-  const Result old = run("doctor", folder);
-  const Result render = run("render " + scene + " -m fogshop_gpu -o gpu.exr --gpu llvmpipe", folder);
-  unsetenv("MESA_GL_VERSION_OVERRIDE");
-  CHECK(old.code == 0);
-  CHECK_THAT(old.out, Contains("OpenGL 4.5"));
-  CHECK(render.code == 3);
-  CHECK(render.error_lines() == 1);
 }
 
 // The figures are the machine's; that the loops ran and what was counted is not.

@@ -167,6 +167,6 @@ TEST_CASE("shadow planes: the paper's media close to the light", "[shadow_planes
           }
           const double expected = k * sum;
           CAPTURE(k, h, light, got, expected);
-          CHECK(std::abs(got - expected) <= 1e-9 * expected);
+          CHECK(std::abs(got - expected) <= 1e-12 * expected);
         }
 }
