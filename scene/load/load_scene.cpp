@@ -46,7 +46,11 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   for (const TableReader& light : reader.tables("light")) scene.lights.push_back(read_light(light, folder));
   for (const TableReader& medium : reader.tables("medium")) scene.media.push_back(read_medium(medium, folder));
   for (const TableReader& surface : reader.tables("surface")) scene.surfaces.push_back(read_surface(surface, folder));
-  finish(scene);
+  try {
+    finish(scene);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: {}", name, e.what()));
+  }
   return scene;
 }
 
