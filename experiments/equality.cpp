@@ -86,6 +86,42 @@ Difference difference(const Mean& a, const Mean& b) {
           a.third - b.third};
 }
 
+// Skewness of the means of one channel: over a block, from all blocks; and over the image, which is the sum of its
+// blocks (its own sixteen means would be too few for a third moment).
+class Skewness {
+ public:
+  // The sample skewness of n normal values has the variance 6 n (n-1) / ((n-2) (n+1) (n+3)); that of their mean an
+  // n-th.
+  explicit Skewness(std::size_t batches) {
+    const double n = double(batches);
+    unit_ = std::sqrt(6 * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));
+  }
+  void add(const Difference& d, double pixels) {
+    const double cube = d.sigma * d.sigma * d.sigma, volume = pixels * pixels * pixels;
+    thirds_ += d.third;
+    cubes_ += cube;
+    squared_cubes_ += cube * cube;
+    image_third_ += d.third * volume;
+    image_variance_ += d.sigma * d.sigma * pixels * pixels;
+    image_squared_cubes_ += cube * cube * volume * volume;
+  }
+  // Is it in range? `greatest` becomes it if it is greater.
+  bool of_blocks(double& greatest) const { return judge(thirds_, cubes_, squared_cubes_, greatest); }
+  bool of_image(double& greatest) const {
+    return judge(image_third_, std::pow(image_variance_, 1.5), image_squared_cubes_, greatest);
+  }
+
+ private:
+  bool judge(double third, double cube, double squares, double& greatest) const {
+    const double value = third / cube;
+    if (std::abs(value) > std::abs(greatest)) greatest = value;
+    return std::abs(value) <= most_skewness + 2 * unit_ * std::sqrt(squares) / cube;
+  }
+  double unit_;
+  double thirds_ = 0, cubes_ = 0, squared_cubes_ = 0;
+  double image_third_ = 0, image_variance_ = 0, image_squared_cubes_ = 0;
+};
+
 }  // namespace
 
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
@@ -101,9 +137,9 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   Equality e;
   std::vector<std::size_t> everything;
   e.chi_square_probability = 1;
-  double thirds = 0, cubes = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    double chi_square = 0, sum_third = 0, sum_variance = 0;  // of the sum over the channel
+    double chi_square = 0;
+    Skewness skewness(std::max(first.batches.size(), second.batches.size()));
     std::size_t m = 0;
     for (int y0 = 0; y0 < a.height; y0 += side)
       for (int x0 = 0; x0 < a.width; x0 += side) {
@@ -121,19 +157,14 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
           continue;
         }
         ++m;
-        thirds += d.third;
-        cubes += d.sigma * d.sigma * d.sigma;
-        const double pixels = double(index.size());
-        sum_third += d.third * pixels * pixels * pixels;
-        sum_variance += d.sigma * d.sigma * pixels * pixels;
+        skewness.add(d, double(index.size()));
         chi_square += d.z * d.z;
         e.largest_z = std::max(e.largest_z, std::abs(d.z));
       }
     e.blocks += m;
     if (m == 0) continue;
-    // The image's own sixteen means are too few for a third moment.
-    const double skewness = sum_third / std::pow(sum_variance, 1.5);
-    if (std::abs(skewness) > std::abs(e.image_skewness)) e.image_skewness = skewness;
+    e.blocks_in_range = skewness.of_blocks(e.block_skewness) && e.blocks_in_range;
+    e.image_in_range = skewness.of_image(e.image_skewness) && e.image_in_range;
     const double tail = std::min(chi_square_above(chi_square, double(m)), chi_square_below(chi_square, double(m)));
     const double probability = std::min(1.0, 2 * tail);  // both tails
     if (probability <= e.chi_square_probability) {
@@ -144,9 +175,6 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   if (everything.empty()) throw Error("every pixel is left out: nothing to compare");
   const Mean ma = mean_over(first, everything), mb = mean_over(second, everything);
   const Difference whole = difference(ma, mb);
-  e.block_skewness = cubes > 0 ? thirds / cubes : 0;
-  e.blocks_in_range = std::abs(e.block_skewness) <= most_skewness;
-  e.image_in_range = std::abs(e.image_skewness) <= most_skewness;
   e.image_z = whole.z;
   e.image_threshold = normal_quantile(1 - alpha / 6);
   e.largest_threshold = e.blocks ? sidak_threshold(e.blocks, alpha / 3) : 0;

@@ -22,8 +22,8 @@ struct Equality {
   double image_z = 0;
   double image_threshold = 0;
   double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image; NaN: no noise
-  double block_skewness = 0;   // of the mean over a block, pooled over all blocks
-  double image_skewness = 0;   // of the mean over the image
+  double block_skewness = 0;   // of the mean over a block, pooled over a channel: the largest of the three
+  double image_skewness = 0;   // of the mean over the image: the same
   bool blocks_in_range = true;
   bool image_in_range = true;
   bool equal = false;   // no test objects

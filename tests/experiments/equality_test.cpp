@@ -151,8 +151,19 @@ TEST_CASE("skewness by hand", "[equality]") {
   const Equality e = compare_equal(constant(1, 1, 1), reference, "mean", {}, 0.06);
   CHECK(e.block_skewness == Approx(-1));
   CHECK(e.image_skewness == Approx(-1));
+  // The skewness of six normal values has the variance 6 6 5 / (4 7 9), of their mean 5/7 / 6: 0.345. Twice that and
+  // 0.1 are less than 1, but not less than half of it.
   CHECK_FALSE(e.blocks_in_range);
   CHECK_FALSE(e.image_in_range);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (const auto& [batch, value] : {std::pair{0, 3.0f}, std::pair{1, 3.0f}, std::pair{2, 6.0f}})
+      reference.layers[batch_name(batch)][c] = value;
+  // 0, 0, 0, 3, 3, 6: mean 2, squares of differences 30, cubes 3 (-8) + 2 + 64 = 42. Third cumulant 42 6 / (5 4),
+  // variance 6; of the mean a 36th and a sixth.
+  const Equality milder = compare_equal(constant(1, 1, 1), reference, "mean", {}, 0.06);
+  CHECK(milder.block_skewness == Approx(-42 * 6 / 20.0 / 36));
+  CHECK(milder.blocks_in_range);
+  CHECK(milder.image_in_range);
 }
 
 // Blocks without noise differ or they do not; where the standard error knows of more than the batches, nothing is sure.
@@ -181,4 +192,14 @@ TEST_CASE("blocks without noise", "[equality]") {
   CHECK(unknown.differing == 0);
   CHECK(unknown.blocks == 6);
   CHECK(objections(unknown, 1e-4) == 0);
+}
+
+// An image that is its reference: every z is 0, and no chance makes 36 of them so.
+TEST_CASE("shared random numbers scatter too little", "[equality]") {
+  const Film reference = noisy(32, 24, gradient, 0.05, 1);
+  const Equality e = compare_equal(reference, reference, "mean", {}, 1e-4);
+  CHECK(e.largest_z == 0);
+  CHECK(e.chi_square_probability < 1e-9);
+  CHECK(objections(e, 1e-4) == 1);
+  CHECK_FALSE(e.equal);
 }
