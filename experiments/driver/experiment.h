@@ -54,6 +54,7 @@ struct GateCase {
   double at_most = infinity;
   double at_least = -infinity;
   std::string why;
+  std::string position;  // file:line:column
 };
 
 struct SpeedUpCase {

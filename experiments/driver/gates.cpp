@@ -14,11 +14,30 @@ std::string figure(const Row& row, const std::string& metric) {
   return row.note.empty() ? "undefined" : row.note;
 }
 
+std::string kind_of(const Row& row, const std::string& metric) {
+  if (metric == "seconds" || metric == "prepare_seconds") return "time";
+  if (metric.rfind("counter.", 0) == 0) return "counter";
+  for (const char* test : {"objections", "largest_z", "detectable_bias"})
+    if (metric == test) return "Monte Carlo";  // of equality but for noise
+  for (const Measure& m : row.measures)
+    if (m.name == metric && (m.floor > 0 || m.low < m.high)) return "Monte Carlo";
+  return "deterministic";
+}
+
 GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& row) {
   const bool upper = std::isfinite(gate.at_most);
   const double bound = upper ? gate.at_most : gate.at_least;
   const auto e = quantity(row, gate.metric);
   GateResult result;
+  result.scene = row.scene;
+  result.method = row.method;
+  result.setting = row.setting;
+  result.metric = gate.metric;
+  result.position = gate.position;
+  result.kind = kind_of(row, gate.metric);
+  result.upper = upper;
+  result.bound = bound;
+  result.measured = e;
   result.skipped = row.unavailable;
   result.passed = e && (upper ? e->low <= bound : e->high >= bound);
   result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
@@ -55,7 +74,7 @@ std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Ro
     if (results.size() == before) {
       const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
                                            gate.method, gate.setting, gate.metric);
-      results.push_back({name, name + " fails: there is no such row", false, false});
+      results.push_back({name, name + " fails: there is no such row"});
     }
   }
   return results;
