@@ -79,9 +79,10 @@ int author(const AuthorOptions&);
 int doctor();
 
 struct ExperimentOptions {
-  std::string root, profile = "quick", junit;
+  std::string root, profile = "quick", junit, margins_csv;
   std::vector<std::string> names;
   bool resume = false;
+  bool margins = false;  // gates: how far each is from failing
   int threads = 0;
 };
 int list_experiments(const ExperimentOptions&);

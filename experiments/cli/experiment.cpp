@@ -4,10 +4,12 @@
 
 #include "experiments/cli/commands.h"
 #include "experiments/driver/junit.h"
+#include "experiments/driver/margins.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/folders.h"
 #include "gpu/context.h"
+#include "scene/atomic_file.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::cli {
@@ -94,11 +96,13 @@ int gates(const ExperimentOptions& options) {
       results.push_back(
           {e.id, fmt::format("{} {}: {}", e.id, skipped ? "is skipped" : "fails", error.what()), false, skipped});
     }
-    for (std::size_t i = 0; i < results.size(); ++i)
+    for (std::size_t i = 0; !options.margins && i < results.size(); ++i)
       if (results[i].name.rfind(e.id + ":", 0) == 0 || results[i].name == e.id)
         fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
     std::fflush(stdout);
   }
+  if (options.margins) fmt::print("{}", margins_text(results));
+  if (!options.margins_csv.empty()) scene::write_file_atomically(options.margins_csv, margins_csv(results));
   if (!options.junit.empty()) write_junit(options.junit, results);
   fmt::print("{}\n", gates_text(results));
   for (const GateResult& g : results)

@@ -203,6 +203,8 @@ int dispatch(int argc, char** argv) {
   experiment_flags(c, true);
   gpu_option(c);
   c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
+  c->add_flag("--margins", experiment_options.margins, "how many times worse each figure could be, the loosest first");
+  c->add_option("--margins-csv", experiment_options.margins_csv, "the same as a CSV file");
   c->final_callback([&] { action = [&] { return gates(experiment_options); }; });
 
   ExplainOptions explain_options;

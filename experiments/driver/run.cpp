@@ -253,9 +253,8 @@ class Run {
     const std::string& layer = experiment().layer;
     if (m.layer != layer) rendering.film.layers[layer] = rendering.film.layer(m.layer);
     if (reference && !m.picture_only)
-      row.measures =
-          measure(experiment().metrics, m.count_noise ? without_noise_layers(rendering.film) : rendering.film,
-                  reference->film, layer, masks);
+      row.measures = measure(experiment().metrics, rendering.film, reference->film, layer, masks,
+                             m.count_noise ? ImageNoise::counted : ImageNoise::removed);
     row.image = name_ + "/" + file_name(row.scene) + "/" +
                 file_name(row.setting.empty() ? row.method : row.method + "_" + row.setting);
     if (!reference) row.exposure = exposure_of(rendering.film, layer);

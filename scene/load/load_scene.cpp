@@ -50,7 +50,11 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
     require_resolved(medium, scene, scene.media.back());
   }
   for (const TableReader& surface : reader.tables("surface")) scene.surfaces.push_back(read_surface(surface, folder));
-  finish(scene);
+  try {
+    finish(scene);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: {}", name, e.what()));
+  }
   return scene;
 }
 
