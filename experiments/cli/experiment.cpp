@@ -8,6 +8,7 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/folders.h"
+#include "experiments/say.h"
 #include "gpu/context.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -54,7 +55,7 @@ int run_experiments(const ExperimentOptions& options) {
                  gates_text(outcome.gates), results_name(e.id, e.profile));
     } catch (const Error& error) {
       // The others are worth having.
-      fmt::print(stderr, "airlight: {}: {}\n", e.id, error.what());
+      say(fmt::format("{}: {}", e.id, error.what()));
       if (!failure || error.exit_code() < failure->exit_code()) failure = error;
     }
   }
@@ -106,7 +107,7 @@ int gates(const ExperimentOptions& options) {
   if (!options.junit.empty()) write_junit(options.junit, results);
   fmt::print("{}\n", gates_text(results));
   for (const GateResult& g : results)
-    if (!g.passed && !g.skipped) fmt::print(stderr, "airlight: gate failed: {}\n", g.name);
+    if (!g.passed && !g.skipped) say("gate failed: " + g.name);
   return count(results).failed ? 1 : 0;
 }
 

@@ -10,7 +10,9 @@
 #include "experiments/metrics.h"
 #include "experiments/renderers.h"
 #include "scene/error.h"
+#include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
+#include "scene/read_file.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments {
@@ -24,13 +26,7 @@ class Reader {
     experiment_.id = id;
     experiment_.profile = profile;
     file_ = (root / "experiments" / (id + ".toml")).string();
-    try {
-      toml_ = toml::parse_file(file_);
-    } catch (const toml::parse_error& e) {
-      std::string what(e.description());
-      std::replace(what.begin(), what.end(), '\n', ' ');
-      throw Error(fmt::format("{}:{}:{}: {}", file_, e.source().begin.line, e.source().begin.column, what));
-    }
+    toml_ = scene::load::parse_toml(scene::read_whole_file(file_, scene::load::most_toml_bytes), file_);
   }
 
   Experiment read() {

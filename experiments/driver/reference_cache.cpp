@@ -10,6 +10,7 @@
 #include "experiments/build_info.h"
 #include "experiments/driver/content_key.h"
 #include "experiments/folders.h"
+#include "experiments/say.h"
 #include "reference/path_tracer/cache.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -31,7 +32,7 @@ bool load(const fs::path& image, const fs::path& record, Reference& reference) {
   const auto checksum = j.find("checksum"), seconds = j.find("seconds");
   if (checksum == j.end() || !checksum->is_string() || seconds == j.end() || !seconds->is_number()) return false;
   if (content_key(std::string_view(file_bytes(image))) != checksum->get<std::string>()) {
-    fmt::print(stderr, "airlight: {}: checksum differs, computing it anew\n", image.string());
+    say(fmt::format("{}: checksum differs, computing it anew", image.string()));
     return false;
   }
   reference.film = scene::read_exr(image.string());
@@ -45,7 +46,7 @@ void trace(const fs::path& folder, std::shared_ptr<const scene::Scene> scene, co
   const scene::View view = scene::view_of(*scene);
   make_folder(folder);
   path_tracer::CachedRendering traced = path_tracer::render_cached(scene, settings, view, folder.string(), execution);
-  for (const std::string& note : traced.notes) fmt::print(stderr, "airlight: {}\n", note);
+  for (const std::string& note : traced.notes) say(note);
   if (!traced.complete) throw scene::Interrupted("interrupted");
   reference.film = std::move(traced.film);
   reference.seconds = traced.seconds;

@@ -9,10 +9,12 @@
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
+#include "scene/printable.h"
 
 namespace airlight::scene::load {
 namespace {
 
+constexpr std::size_t most_gaussians = std::size_t(1) << 20;  // every ray may have to look at each
 constexpr std::string_view header = "center_x,center_y,center_z,width,amplitude";
 
 std::string_view trimmed(std::string_view text) {
@@ -26,11 +28,7 @@ std::string_view trimmed(std::string_view text) {
   throw Error(fmt::format("{}:{}:{}: {}", path, line, column, message));
 }
 
-std::string shown(std::string_view text) {
-  std::string line;
-  for (const char c : text.substr(0, 40)) line += c >= ' ' && c <= '~' ? c : '?';
-  return text.size() > 40 ? line + "..." : line;
-}
+std::string shown(std::string_view text) { return printable(text, 40); }
 
 Gaussian read_row(std::string_view row, const std::string& path, std::size_t line) {
   static constexpr const char* names[] = {"center_x", "center_y", "center_z", "width", "amplitude"};
@@ -64,6 +62,8 @@ std::vector<Gaussian> read_csv(const std::string& path) {
     if (number == 1) {
       if (line != header) fail_at(path, 1, 1, fmt::format("found '{}', expected the header {}", shown(line), header));
     } else if (!line.empty() && line.front() != '#') {
+      if (gaussians.size() == most_gaussians)
+        fail_at(path, number, 1, fmt::format("found more than {} Gaussians, expected fewer", most_gaussians));
       gaussians.push_back(read_row(line, path, number));
     }
   }

@@ -10,11 +10,14 @@
 namespace airlight::scene::load {
 namespace {
 
+// A file of a few bytes can span any number of voxels: these take a gigabyte.
+constexpr std::size_t most_voxels = std::size_t(1) << 28;
+
 VoxelGrid read_file(const TableReader& reader, const std::string& folder) {
   const std::string path = find_asset(reader, "file", folder);
   const std::string name = reader.text("grid", "density");
   try {
-    return read_vdb(path, name);
+    return read_vdb(path, name, most_voxels);
   } catch (const Error& e) {
     reader.fail("file", e.what());
   }

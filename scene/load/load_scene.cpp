@@ -1,37 +1,19 @@
-#include <fmt/format.h>
-
 #include <filesystem>
 
 #include "scene/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/overrides.h"
+#include "scene/load/parse_toml.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {
-namespace {
-
 using namespace load;
-
-toml::table parse(const std::string& text, const std::string& name) {
-  if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
-    throw Error(fmt::format("{}: found a zero byte at offset {}, expected a text file", name, zero));
-  try {
-    return toml::parse(text, name);
-  } catch (const toml::parse_error& e) {
-    std::string what(e.description());
-    for (char& c : what)
-      if (c == '\n' || c == '\r') c = ' ';
-    throw Error(fmt::format("{}:{}:{}: {}", name, e.source().begin.line, e.source().begin.column, what));
-  }
-}
-
-}  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::string& folder,
                   const Overrides& overrides) {
-  toml::table root = parse(text, name);
+  toml::table root = parse_toml(text, name);
   apply_overrides(root, overrides, name, {"film"});
   TableReader reader(root, "");
   reader.allow({"name", "ambient_in_scatter", "film", "camera", "light", "medium", "surface"});
@@ -59,7 +41,8 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
 }
 
 Scene load_scene(const std::string& path, const Overrides& overrides) {
-  return parse_scene(read_whole_file(path), path, std::filesystem::path(path).parent_path().string(), overrides);
+  return parse_scene(read_whole_file(path, most_toml_bytes), path, std::filesystem::path(path).parent_path().string(),
+                     overrides);
 }
 
 }  // namespace airlight::scene

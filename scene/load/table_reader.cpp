@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/load/overrides.h"
 #include "scene/load/ranges.h"
+#include "scene/printable.h"
 #include "scene/settings.h"
 
 namespace airlight::scene::load {
@@ -27,8 +28,8 @@ void TableReader::allow(std::vector<std::string> keys) {
     if (std::find(keys_.begin(), keys_.end(), name) != keys_.end()) continue;
     const bool from_override = value.source().path && is_override(*value.source().path);
     throw Error(fmt::format("{}: {}unknown key '{}', expected one of {} (nearest: {})",
-                            location(from_override ? value.source() : key.source()), prefix(where_), name,
-                            fmt::join(keys_, ", "), nearest(name, keys_)));
+                            location(from_override ? value.source() : key.source()), prefix(where_),
+                            printable(name, 100), fmt::join(keys_, ", "), nearest(name, keys_)));
   }
 }
 

@@ -72,6 +72,40 @@ TEST_CASE("bad files", "[load]") {
       "");
 }
 
+// Tables in tables are walked and freed by recursion: the depth is bounded before anything is parsed, and what looks
+// like depth within strings and comments is none.
+TEST_CASE("deep nesting", "[load]") {
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  const std::string keys = "found a key of more than 32 parts", levels = "found lists or tables in more than 32 levels";
+  check(
+      {
+          {repeated("a.", 100000) + "a = 1\n" + camera, "s.toml:1:64: " + keys},
+          {repeated("\"a\" . ", 100000) + "a = 1\n" + camera, "s.toml:1:", {keys}},
+          {camera + "[" + repeated("a.", 100000) + "a]\n", "s.toml:4:65: " + keys},
+          {camera + "[[" + repeated("a.", 100000) + "a]]\n", "s.toml:4:66: " + keys},
+          {camera + "name = { " + repeated("a.", 40) + "a = 1 }\n", "s.toml:4:", {keys}},
+          {"name = " + repeated("[", 33) + repeated("]", 33) + "\n" + camera, "s.toml:1:40: " + levels},
+          {"name = " + repeated("[", 100000), "s.toml:1:40: " + levels},
+          {"name = " + repeated("{a=", 100000), "s.toml:1:104: " + levels},
+          {"name = " + repeated("[{a=", 100000), "s.toml:1:", {levels}},
+          // A string that ends early or not at all: the parser's own words.
+          {"name = \"" + repeated("[", 100) + "\n" + camera, "s.toml:1:"},
+          {"name = \"\"\"" + repeated("[", 100) + "\n" + camera, "s.toml:"},
+      },
+      "");
+  for (const std::string& name :
+       {"'" + repeated("[a.", 99) + "'", "\"" + repeated("{\\\"", 99) + "\"", "'''" + repeated("[.\n", 99) + "'''''",
+        "\"\"\"\"" + repeated("\"[. ", 99) + "\"\"\""}) {
+    INFO(name);
+    CHECK(message("name = " + name + " # " + repeated("[.", 99) + "\n" + camera).empty());
+  }
+  CHECK(message(std::string((1 << 24) + 1, ' ')) == "s.toml: found 16777217 bytes, expected at most 16777216");
+}
+
 TEST_CASE("bad film and camera", "[load]") {
   check(
       {
