@@ -85,6 +85,7 @@ Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scen
   // A renderer may keep what it has when it is stopped: that is no reference.
   if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
 
+  require_finite(reference.film, fmt::format("{}: reference {}", scene->name, renderer.name()));
   make_folder(folder);
   fs::remove(record);  // never a record beside another image
   scene::write_exr(image.string(), reference.film);

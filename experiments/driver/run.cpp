@@ -76,6 +76,7 @@ void keep_picture(const fs::path& images, const std::string& name, const scene::
                   double exposure) {
   const fs::path file = images / name;
   make_folder(file.parent_path());
+  require_finite(film, file.string() + ".exr");  // the noise layers too, which decide on intervals
   scene::write_exr(file.string() + ".exr", without_noise_layers(film));
   scene::write_png(file.string() + ".png", film, layer, exposure);
 }
