@@ -65,12 +65,8 @@ std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Ro
   std::vector<GateResult> results;
   for (const GateCase& gate : experiment.gates) {
     const std::size_t before = results.size();
-    for (const Row& row : rows) {
-      // A swept scene is called "name value": a gate on the name means all of them.
-      const bool scene = gate.scene.empty() || row.scene == gate.scene || row.scene.rfind(gate.scene + " ", 0) == 0;
-      if (scene && row.method == gate.method && (gate.setting.empty() || row.setting == gate.setting))
-        results.push_back(judge(experiment, gate, row));
-    }
+    for (const Row& row : rows)
+      if (judges(gate, row.scene, row.method, row.setting)) results.push_back(judge(experiment, gate, row));
     if (results.size() == before) {
       const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
                                            gate.method, gate.setting, gate.metric);
