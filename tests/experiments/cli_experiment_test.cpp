@@ -38,7 +38,6 @@ std::string steps_experiment(const std::string& gate) {
   return R"(title = "Steps"
 layer = "airlight"
 metrics = ["rel_l2"]
-in_tests = true
 [[scene]]
 file = "scenes/one.toml"
 [reference]
@@ -95,10 +94,9 @@ TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
 
 TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   const Project project;
-  project.write("experiments/g/bad.toml", steps_experiment("at_most = 1e-12"));
-  std::string slow = steps_experiment("at_most = 1e-12");
-  slow.erase(slow.find("in_tests"), 16);
-  project.write("experiments/g/slow.toml", slow);
+  const std::string text = steps_experiment("at_most = 1e-12");
+  project.write("experiments/g/bad.toml", "in_tests = true\n" + text);
+  project.write("experiments/g/slow.toml", text);
   const Result in_tests = run("gates --root . --in-tests", project);
   CHECK(in_tests.code == 1);
   CHECK_THAT(in_tests.out, Contains("g/bad: one") && !Contains("g/slow"));
