@@ -85,20 +85,24 @@ TEST_CASE("scenes, methods and metrics are kept apart", "[comparisons]") {
   CHECK(cell(table, 2, "times less error at equal time") == "no common time");
 }
 
-// In the middle of the errors, at 0.1, the times are 10 and sqrt(10): 6.84 s saved per render. 21 s more of preparation
-// (medians of 2 and 22, and of 0, 1 and 5) are repaid after 20 / 6.84 = 2.92, so 3 renders.
+// Errors from 4 to 0.04. In their middle, at 0.4, the times are 10 and sqrt(10): 6.84 s saved per render. 20 s more of
+// preparation (medians of 5, 0, 1 and of 20, 22) are repaid after 20 / 6.84 = 2.92, so 3 renders.
 TEST_CASE("how many renders repay a preparation", "[comparisons]") {
   std::vector<Row> rows = two_curves;
+  for (Row& r : rows) r.measures[0].value = r.measures[0].low = r.measures[0].high = 4 * r.measures[0].value;
   const auto repaid = [&] {
     return cell(equal_error_and_time(outcome_of(rows)), 1, "preparation repaid after renders");
   };
   CHECK(repaid() == "1");
   rows[0].prepare_seconds = 5;
   rows[1].prepare_seconds = 0;
-  rows.push_back(row("s", "slow", 1000, 2));
+  rows.push_back(row("s", "slow", 1000, 8));
   rows.back().prepare_seconds = 1;
   rows[2].prepare_seconds = 20;
   rows[3].prepare_seconds = 22;
+  rows.push_back(row("s", "fast", 1, 1));  // never rendered
+  rows.back().prepare_seconds = 1000;
+  rows.back().runs = 0;
   CHECK(repaid() == "3");
   // Longer to prepare and slower: never. Slower, and quicker to prepare: never either.
   Outcome swapped = outcome_of(rows);
