@@ -25,6 +25,10 @@ GateResult judge(const std::string& id, const std::string& file, const VerifyKin
   GateResult gate;
   gate.name = fmt::format("{}: {}, {}", id, file, kind.kind);
   gate.passed = kind.out == 0;
+  gate.kind = "deterministic";
+  gate.metric = "share of tolerance";
+  gate.bound = 1;
+  gate.measured = Estimate{kind.worst_share, kind.worst_share, kind.worst_share};
   gate.text =
       fmt::format("{}: {} of {} numbers within tolerance, worst at {:.2g} of it{}", gate.name, kind.numbers - kind.out,
                   kind.numbers, kind.worst_share, kind.worst.empty() ? "" : " (" + kind.worst + ")");

@@ -5,13 +5,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "experiments/interrupt.h"
+#include "experiments/json.h"
 #include "experiments/verify/check.h"
 #include "scene/error.h"
 #include "scene/settings.h"
@@ -25,20 +24,6 @@ struct Work {
   std::string id, kind;
   Check check;
 };
-
-nlohmann::json read_json(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(fmt::format("{}: cannot be read", path));
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  try {
-    return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    // The library's message holds line and column; one line of it is enough.
-    std::string what = e.what();
-    what = what.substr(0, what.find('\n'));
-    throw Error(fmt::format("{}: not JSON: {}", path, what));
-  }
-}
 
 // Everything of a file is read before anything is computed: a malformed last entry is not found after minutes of work.
 std::vector<Work> read_file(const std::string& path) {

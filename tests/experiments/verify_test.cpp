@@ -121,7 +121,7 @@ TEST_CASE("figures per file and kind", "[verify]") {
 
 TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
   using Catch::Contains;
-  CHECK_THAT(complaint(""), Contains("not JSON"));
+  CHECK_THAT(complaint(""), Contains("an empty file"));
   CHECK_THAT(complaint(fogshop_file(good).substr(0, 70)), Contains("not JSON"));
   CHECK_THAT(complaint("[1, 2]"), Contains("array"));
   CHECK_THAT(complaint(R"({"vectors": []})"), Contains("'format'"));
@@ -145,6 +145,13 @@ TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
                Contains("'a'.value") && Contains("expected a finite number"));
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0, "v": NaN}, "value": "1"})")),
              Contains("not JSON"));
+  // Messages print what they found by recursion: 100,000 levels end the stack.
+  const std::string deep(100000, '[');
+  CHECK_THAT(complaint("{\"format\": 1,\n \"vectors\": " + deep + std::string(deep.size(), ']') + "}"),
+             Contains(":2:44: found lists or objects in more than 32 levels"));
+  CHECK_THAT(complaint(R"({"format": "airlight-fogshop-vectors-1", "vectors": [{"id": "a]\")" + std::string(40, '[') +
+                       "\"}]}"),
+             Contains("missing field 'kind'"));
 }
 
 TEST_CASE("a kind that no file has is refused", "[verify]") {
