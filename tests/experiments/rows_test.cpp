@@ -170,8 +170,13 @@ TEST_CASE("journals forget damaged lines alone", "[driver]") {
   const Journal damaged(file, true);
   CHECK_FALSE(damaged.find("key a"));
   CHECK(damaged.find("key b"));
-  CHECK_FALSE(Journal(file, false).find("key b"));  // begun anew
+  Journal anew(file, false);
+  CHECK_FALSE(anew.find("key b"));
+  anew.begin_anew();
   CHECK_FALSE(Journal(file, true).find("key b"));
+  anew.add(a);
+  CHECK_FALSE(Journal(file, true).find("key b"));
+  CHECK(Journal(file, true).find("key a"));
 }
 
 // Jobs of more than a second are run 5 times; others as often as asked for, within the budget.
