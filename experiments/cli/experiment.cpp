@@ -9,6 +9,7 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/folders.h"
+#include "experiments/say.h"
 #include "gpu/context.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -83,7 +84,7 @@ int run_experiments(const ExperimentOptions& options) {
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const Error& error) {
       // The others are worth having.
-      fmt::print(stderr, "airlight: {}: {}\n", e.id, error.what());
+      say(fmt::format("{}: {}", e.id, error.what()));
       if (!failure || error.exit_code() < failure->exit_code()) failure = error;
     }
   }

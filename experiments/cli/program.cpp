@@ -12,6 +12,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
 #include "experiments/renderers.h"
+#include "experiments/say.h"
 #include "experiments/verify/verify.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
@@ -293,9 +294,7 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::CallForVersion& wanted) {
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    std::string line = error.what();
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw Error(line);
+    throw Error(error.what());
   }
   refuse_extras(app);
   if (!action) throw Error(fmt::format("expected a command: {}", fmt::join(command_names(app), ", ")));
@@ -312,7 +311,6 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int run(int argc, char** argv) {
-  const auto say = [](const std::string& line) { fmt::print(stderr, "airlight: {}\n", line); };
   try {
     const int code = dispatch(argc, argv);
     std::cout.flush();

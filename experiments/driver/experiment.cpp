@@ -5,11 +5,14 @@
 
 #include <algorithm>
 
+#include "experiments/driver/bounds.h"
 #include "experiments/driver/toml_values.h"
 #include "experiments/metrics.h"
 #include "experiments/renderers.h"
 #include "scene/error.h"
+#include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
+#include "scene/read_file.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments {
@@ -23,13 +26,7 @@ class Reader {
     experiment_.id = id;
     experiment_.profile = profile;
     file_ = (root / "experiments" / (id + ".toml")).string();
-    try {
-      toml_ = toml::parse_file(file_);
-    } catch (const toml::parse_error& e) {
-      std::string what(e.description());
-      std::replace(what.begin(), what.end(), '\n', ' ');
-      throw Error(fmt::format("{}:{}:{}: {}", file_, e.source().begin.line, e.source().begin.column, what));
-    }
+    toml_ = scene::load::parse_toml(scene::read_whole_file(file_, scene::load::most_toml_bytes), file_);
   }
 
   Experiment read() {
@@ -233,10 +230,11 @@ class Reader {
              const std::string& list) const {
     std::vector<std::string> names;
     if (list == "metric") {
+      if (value.rfind("counter.", 0) == 0) return;
       names = experiment_.metrics;
       names.push_back("seconds");
       names.push_back("prepare_seconds");
-      if (value.rfind("counter.", 0) == 0) return;  // each renderer has its own
+      names.push_back("counter.NAME");
     } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
       for (const toml::node& node : *array) {
         const toml::table& table = *node.as_table();
@@ -268,6 +266,7 @@ class Reader {
         if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
         found = true;
         if (of_time_or_work) continue;
+        if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
         if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
         if (test && !noisy_reference && m.renderer != "path_tracer")
           wrong(fmt::format("{} needs noise, and neither '{}' nor the reference has any", gate.metric, m.name));
@@ -284,15 +283,16 @@ class Reader {
       reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "measured", "why", "profiles"});
       GateCase gate;
       gate.scene = reader.text("scene", "");
-      gate.method = reader.text("method");
+      gate.method = reader.text("method", "");
       gate.metric = reader.text("metric");
       if (reader.has("setting")) gate.setting = plain(*table->get("setting"));
       gate.why = reader.text("why", "");
       gate.position = scene::load::location(table->source());
       if (!gate.scene.empty()) known(reader, "scene", gate.scene, "scene");
-      known(reader, "method", gate.method, "method");
+      if (!gate.method.empty()) known(reader, "method", gate.method, "method");
       known(reader, "metric", gate.metric, "metric");
-      reader.one_of({"at_most", "at_least"});
+      const bool bounded = reader.has("at_most") || reader.has("at_least");  // else by row alone
+      if (bounded) reader.one_of({"at_most", "at_least"});
       if (reader.has("at_most")) gate.at_most = reader.number("at_most", scene::load::any_number);
       if (reader.has("at_least")) gate.at_least = reader.number("at_least", scene::load::any_number);
       if (reader.has("measured")) {
@@ -301,10 +301,11 @@ class Reader {
         if (measured > gate.at_most || measured < gate.at_least)
           reader.fail("measured", fmt::format("measured = {:g} fails this gate", measured));
       }
-      if (!in_profile(*table, reader)) continue;
+      if (!in_profile(*table, reader) || !(bounded || experiment_.profile == "quick")) continue;
       has_figures(reader, gate);
       experiment_.gates.push_back(gate);
     }
+    if (experiment_.profile == "quick") add_bounds(experiment_, fs::path(file_).replace_extension(".bounds.csv"));
     for (auto& [table, reader] : lists(top, "speed_up")) {
       reader.allow({"baseline", "method", "metric"});
       experiment_.speed_ups.push_back({reader.text("baseline"), reader.text("method"), reader.text("metric")});
@@ -349,8 +350,9 @@ bool is_on(const MethodCase& m, const SceneCase& c) {
 }
 
 bool judges(const GateCase& gate, const std::string& scene, const std::string& method, const std::string& setting) {
-  const bool on = gate.scene.empty() || scene == gate.scene || scene.rfind(gate.scene + " ", 0) == 0;
-  return on && method == gate.method && (gate.setting.empty() || setting == gate.setting);
+  if (gate.by_row) return scene == gate.scene && method == gate.method && setting == gate.setting;
+  return (gate.scene.empty() || scene == gate.scene || scene.rfind(gate.scene + " ", 0) == 0) &&
+         (gate.method.empty() || method == gate.method) && (gate.setting.empty() || setting == gate.setting);
 }
 
 std::string results_name(const std::string& id, const std::string& profile) {

@@ -54,11 +54,13 @@ struct PlotCase {
 };
 
 struct GateCase {
-  std::string scene, method, setting, metric;  // empty scene, setting: every one
+  std::string scene, method, setting, metric;  // empty scene, method, setting: every one
   double at_most = infinity;
   double at_least = -infinity;
   std::string why;
   std::string position;  // file:line:column
+  bool by_row = false;   // a bound by row (bounds.h): names are exact
+  std::string device;    // that it was measured on, if not the processor
 };
 
 // Does the gate judge the row of this scene, method and setting? A swept scene is called "name value": a gate on the

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "experiments/driver/outcome.h"
 
@@ -51,6 +52,18 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
   return result;
 }
 
+// A figure that a gate covers and that nothing bounds: new, or measured on another device.
+GateResult unbounded(const Experiment& experiment, const GateCase& gate, const Row& row, bool other_device) {
+  GateResult result;
+  result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
+                            row.setting.empty() ? "" : " " + row.setting, gate.metric);
+  result.skipped = other_device;
+  result.text = result.name + (other_device ? " is skipped: its bound was measured on another device: "
+                                            : " fails: it has no bound; scripts/tighten gives it one: ");
+  result.text += figure(row, gate.metric);
+  return result;
+}
+
 }  // namespace
 
 GateCounts count(const std::vector<GateResult>& gates) {
@@ -63,11 +76,26 @@ const char* word(const GateResult& gate) { return gate.skipped ? "skipped" : gat
 
 std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::vector<GateResult> results;
+  std::set<std::pair<const Row*, std::string>> held;   // row and metric have a bound by row,
+  std::set<std::pair<const Row*, std::string>> apart;  // one that was measured on another device
   for (const GateCase& gate : experiment.gates) {
-    const std::size_t before = results.size();
-    for (const Row& row : rows)
-      if (judges(gate, row.scene, row.method, row.setting)) results.push_back(judge(experiment, gate, row));
-    if (results.size() == before) {
+    bool any = false;
+    for (const Row& row : rows) {
+      if (!judges(gate, row.scene, row.method, row.setting)) continue;
+      any = true;
+      const auto figure = std::make_pair(&row, gate.metric);
+      if (gate.by_row) {
+        const bool same = row.unavailable || row.device == gate.device;
+        (same ? held : apart).insert(figure);
+        if (same) results.push_back(judge(experiment, gate, row));
+      } else if (!held.count(figure)) {
+        if (std::isfinite(gate.at_most) || std::isfinite(gate.at_least))
+          results.push_back(judge(experiment, gate, row));
+        else if (quantity(row, gate.metric))
+          results.push_back(unbounded(experiment, gate, row, apart.count(figure)));
+      }
+    }
+    if (!any) {
       const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
                                            gate.method, gate.setting, gate.metric);
       results.push_back({name, name + " fails: there is no such row"});

@@ -11,6 +11,7 @@
 
 #include "experiments/driver/content_key.h"
 #include "experiments/folders.h"
+#include "experiments/json.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
@@ -22,10 +23,12 @@ Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
     const std::size_t space = line.find(' ');
     if (space != 32 || content_key(std::string_view(line).substr(33)) != line.substr(0, 32)) continue;
     try {
-      const Row row = row_from_json(nlohmann::json::parse(line.substr(33)));
+      const Row row = row_from_json(parse_json(line.substr(33), file.string()));
       rows_[row.key] = row;
     } catch (const nlohmann::json::exception&) {
       // A row of another version of the program, with other fields: its key would match nothing either.
+    } catch (const Error&) {
+      // No row.
     }
   }
 }

@@ -48,7 +48,8 @@ struct Outcome {
 };
 
 // Each gate against every row that it names: fails if the whole interval lies beyond the bound, if the figure is not
-// defined, and if there is no such row. Skipped if the row is unavailable on this machine.
+// defined, and if there is no such row. Skipped if the row is unavailable on this machine. Where a bound by row
+// (bounds.h) was measured on the same device it stands for that of the [[gate]]; a figure without any bound fails.
 std::vector<GateResult> judge(const Experiment&, const std::vector<Row>&);
 
 }  // namespace airlight::experiments

@@ -40,13 +40,15 @@ double exposure_of(const scene::Film& film, const std::string& layer) {
 std::vector<Measure> compare(const Experiment& e, const MethodCase& m, const scene::Film& film,
                              const scene::Film& reference, const Masks& masks) {
   if (m.picture_only) return {};
-  return measure(e.metrics, m.count_noise ? without_noise_layers(film) : film, reference, e.layer, masks);
+  return measure(e.metrics, film, reference, e.layer, masks,
+                 m.count_noise ? ImageNoise::counted : ImageNoise::removed);
 }
 
 void keep_picture(const std::filesystem::path& images, const std::string& name, const scene::Film& film,
                   const std::string& layer, double exposure) {
   const std::filesystem::path file = images / name;
   make_folder(file.parent_path());
+  require_finite(film, file.string() + ".exr");  // the noise layers too, which decide on intervals
   scene::write_exr(file.string() + ".exr", without_noise_layers(film));
   scene::write_png(file.string() + ".png", film, layer, exposure);
 }

@@ -276,6 +276,38 @@ TEST_CASE("gates fail only beyond the interval", "[driver]") {
   CHECK_FALSE(passed(most, named_row("s", "m", std::nan(""), std::nan(""), std::nan(""))));
 }
 
+TEST_CASE("a bound by row stands for that of the gate, on the device where it was measured", "[driver]") {
+  Experiment e;
+  e.id = "g/e";
+  GateCase law;
+  law.metric = "rel_l2";
+  law.at_most = 0.1;
+  GateCase bound = law;
+  bound.by_row = true;
+  bound.scene = "s";
+  bound.method = "m";
+  bound.at_most = 0.02;
+  const auto judged = [&](const std::vector<GateCase>& gates, const Row& row) {
+    e.gates = gates;
+    const auto results = judge(e, {row});
+    REQUIRE(results.size() == 1);
+    return std::string(word(results[0]));
+  };
+  Row row = named_row("s", "m", 0.03, 0.03, 0.03);
+  CHECK(judged({law}, row) == "ok");
+  CHECK(judged({bound, law}, row) == "FAILED");
+  row.device = "another";
+  CHECK(judged({bound, law}, row) == "ok");  // the gate's own bound
+  law.at_most = airlight::infinity;
+  CHECK(judged({bound, law}, row) == "skipped");  // there is none for this device
+  row.device.clear();
+  CHECK(judged({law}, row) == "FAILED");  // nothing bounds a figure that a gate covers
+  // Names are exact: "s 2" is another scene, and a line whose row has gone fails.
+  bound.scene = "gone";
+  e.gates = {bound};
+  CHECK_FALSE(judge(e, {named_row("gone 2", "m", 0, 0, 0)})[0].passed);
+}
+
 TEST_CASE("gates on what the machine lacks are skipped", "[driver]") {
   Experiment e;
   e.id = "g/e";

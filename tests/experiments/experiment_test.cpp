@@ -104,7 +104,7 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "scene = \"one\"", "scene = \"on\"")), Contains("nearest: one"));
   CHECK_THAT(failure(replaced(good, "method = \"marcher\"", "method = \"marchr\"")), Contains("nearest: marcher"));
   CHECK_THAT(failure(replaced(good, "y = \"rel_l2\"", "y = \"rel_l3\"")), Contains("e.toml") && Contains("rel_l3"));
-  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "")), Contains("at_most"));
+  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.1\nat_least = 0")), Contains("found both 'at_most'"));
   CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.0\nmeasured = 0")), Contains("no failure"));
   CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.1\nmeasured = 0.2")),
              Contains("e.toml:26:") && Contains("measured = 0.2 fails this gate"));
@@ -134,4 +134,31 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 3\nbudget = 0")),
              Contains("e.toml:16:") && Contains("no effect"));
   CHECK_THAT(failure(replaced(good, "[reference]\nrenderer = \"deterministic\"", "")), Contains("no [reference]"));
+}
+
+TEST_CASE("bounds by row come before the gates of the file, and belong to one", "[experiment]") {
+  const TemporaryFolder folder;
+  folder.write("experiments/g/e.toml", good);
+  const std::string header = "scene,method,setting,metric,device,measured,at_least,at_most\n";
+  const auto gates = [&](const std::string& lines, const std::string& profile = "quick") {
+    folder.write("experiments/g/e.bounds.csv", lines);
+    return read_experiment(folder.path(), "g/e", profile).gates;
+  };
+  const auto read = gates(header + "one 0.5,marcher,32,rel_l2,\"a \"\"card\"\", 2\",0.05,0.04,0.075\n");
+  REQUIRE(read.size() == 3);
+  CHECK(read[0].by_row);
+  CHECK(read[0].scene == "one 0.5");
+  CHECK(read[0].device == "a \"card\", 2");
+  CHECK(read[0].at_most == 0.075);
+  CHECK(read[0].why == "measured 0.05");
+  CHECK(read[1].at_least == 0.04);
+  CHECK(read[2].at_most == 0.1);
+  CHECK(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,0.075\n", "paper").size() == 1);
+  CHECK_THROWS_WITH(gates("scene\n"), Contains("e.bounds.csv:1: 'scene', expected scene,method"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,0.1\n"), Contains("e.bounds.csv:2: 5 fields"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,much\n"), Contains("'much', expected a number"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,\n"), Contains("neither at_least nor at_most"));
+  CHECK_THROWS_WITH(gates(header + "\"one 0.5,marcher,32,rel_l2,,0.05,,1\n"), Contains("a quote is not closed"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,16,rel_l2,,0.05,,1\n"),
+                    Contains("e.bounds.csv:2: no [[gate]] covers one 0.5, marcher 16: rel_l2"));
 }
