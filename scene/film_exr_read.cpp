@@ -14,6 +14,7 @@
 
 #include "scene/error.h"
 #include "scene/film.h"
+#include "scene/printable.h"
 
 namespace airlight::scene {
 namespace {
@@ -21,12 +22,7 @@ namespace {
 constexpr int max_side = 1 << 16;  // pixels; also bounds the library's table of scan lines
 
 // Text from the file, fit for one line of a message.
-std::string shown(const std::string& text) {
-  std::string line = text.substr(0, 200);
-  for (char& c : line)
-    if (c < 32 || c > 126) c = '?';
-  return line;
-}
+std::string shown(const std::string& text) { return printable(text, 200); }
 
 // Walks the attributes (name, type, size, value) before OpenEXR does, which would allocate any size it is told.
 void check_attributes(const std::string& path) {

@@ -9,9 +9,12 @@
 #include <numeric>
 
 #include "scene/error.h"
+#include "scene/printable.h"
 
 namespace airlight::scene {
 namespace {
+
+constexpr std::size_t most = 100;  // of a word from outside that is compared, or shown
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -46,18 +49,18 @@ void check(const SettingSpec& spec, const std::string& text, const std::string& 
   if (spec.type == Type::integer) {
     long long value = 0;
     if (!parse_number(text, value))
-      throw Error(fmt::format("{}: {} = '{}', expected an integer", where, spec.name, text));
+      throw Error(fmt::format("{}: {} = '{}', expected an integer", where, spec.name, printable(text, most)));
     check_range(spec, double(value), where);
   } else if (spec.type == Type::real) {
     double value = 0;
     if (!parse_number(text, value) || std::isnan(value))
-      throw Error(fmt::format("{}: {} = '{}', expected a number", where, spec.name, text));
+      throw Error(fmt::format("{}: {} = '{}', expected a number", where, spec.name, printable(text, most)));
     check_range(spec, value, where);
   } else if (spec.type == Type::flag) {
     if (text != "true" && text != "false")
-      throw Error(fmt::format("{}: {} = '{}', expected true or false", where, spec.name, text));
+      throw Error(fmt::format("{}: {} = '{}', expected true or false", where, spec.name, printable(text, most)));
   } else if (std::find(spec.choices.begin(), spec.choices.end(), text) == spec.choices.end()) {
-    throw Error(fmt::format("{}: {} = '{}', expected one of {} (nearest: {})", where, spec.name, text,
+    throw Error(fmt::format("{}: {} = '{}', expected one of {} (nearest: {})", where, spec.name, printable(text, most),
                             fmt::join(spec.choices, ", "), nearest(text, spec.choices)));
   }
 }
@@ -65,8 +68,9 @@ void check(const SettingSpec& spec, const std::string& text, const std::string& 
 }  // namespace
 
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string start = word.substr(0, most);
   const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
+    return edit_distance(start, a) < edit_distance(start, b);
   });
   return best == candidates.end() ? std::string() : *best;
 }
@@ -82,8 +86,8 @@ Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, s
   for (const auto& [name, text] : given) {
     const auto spec = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
     if (spec == specs_.end())
-      throw Error(fmt::format("{}: unknown setting '{}', expected one of {} (nearest: {})", where, name,
-                              fmt::join(names, ", "), nearest(name, names)));
+      throw Error(fmt::format("{}: unknown setting '{}', expected one of {} (nearest: {})", where,
+                              printable(name, most), fmt::join(names, ", "), nearest(name, names)));
     check(*spec, text, where);
     values_[name] = text;
   }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "experiments/authoring/printable.h"
 #include "scene/error.h"
+#include "scene/printable.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments::authoring {
@@ -44,11 +44,12 @@ Operation::Operation(const std::string& line, std::string where) : where_(std::m
   } catch (const json::exception& e) {
     std::string what = e.what();  // "[json.exception.parse_error.101] parse error at line 1, column 5: ..."
     what = what.substr(what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2);
-    throw Error(fmt::format("{}: not JSON: {}, expected an object on one line", where_, printable(what)));
+    throw Error(fmt::format("{}: not JSON: {}, expected an object on one line", where_, scene::printable(what, 200)));
   }
   if (!json_.is_object())
     throw Error(fmt::format("{}: found {}, expected an object {{\"op\": ...}}", where_, written(json_)));
-  if (!twice.empty()) throw Error(fmt::format("{}: key '{}' is there twice, expected once", where_, printable(twice)));
+  if (!twice.empty())
+    throw Error(fmt::format("{}: key '{}' is there twice, expected once", where_, scene::printable(twice, 200)));
 }
 
 std::string Operation::name(const std::vector<std::string>& choices) {
@@ -60,8 +61,8 @@ std::string Operation::name(const std::vector<std::string>& choices) {
 void Operation::allow(std::vector<std::string> keys) const {
   for (const auto& [key, value] : json_.items()) {
     if (key == "op" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    fail(fmt::format("unknown key '{}', expected one of {} (nearest: {})", printable(key), fmt::join(keys, ", "),
-                     scene::nearest(key.substr(0, 100), keys)));
+    fail(fmt::format("unknown key '{}', expected one of {} (nearest: {})", scene::printable(key, 200),
+                     fmt::join(keys, ", "), scene::nearest(key, keys)));
   }
 }
 
@@ -125,7 +126,7 @@ std::string Operation::choice(const std::string& key, const std::vector<std::str
   if (!value.is_string()) expected(key, words);
   const std::string found = value.get<std::string>();
   if (std::find(choices.begin(), choices.end(), found) == choices.end())
-    expected(key, fmt::format("{} (nearest: {})", words, scene::nearest(found.substr(0, 100), choices)));
+    expected(key, fmt::format("{} (nearest: {})", words, scene::nearest(found, choices)));
   return found;
 }
 

@@ -8,9 +8,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "experiments/authoring/printable.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/load/parse_toml.h"
+#include "scene/printable.h"
 #include "scene/read_file.h"
 
 namespace airlight::experiments::authoring {
@@ -53,11 +54,7 @@ std::string with_moved_assets(std::string text, const fs::path& from, const fs::
         changes.emplace_back(file->source(), fs::proximate(from / file->get(), to).generic_string());
     }
   };
-  try {
-    walk(toml::parse(text, name));
-  } catch (const toml::parse_error& e) {
-    throw Error(fmt::format("{}: {}", name, std::string(e.description())));
-  }
+  walk(scene::load::parse_toml(text, name));
   // From the end, so that the positions before stay right.
   std::sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) { return b.first.begin < a.first.begin; });
   for (const auto& [where, path] : changes) {
@@ -87,7 +84,7 @@ SceneFiles scene_files(const Authored& authored, const std::string& script, cons
   const fs::path folder = fs::absolute(out).parent_path();
   SceneFiles files;
   files.toml = fmt::format("# Made by `airlight author {}`: change that and not this.\n",
-                           printable(fs::path(script).filename().string()));
+                           scene::printable(fs::path(script).filename().string(), 200));
   if (same_file(script, out)) throw Error(fmt::format("{}: is the script, expected another file to write", out));
   if (!authored.base.empty()) {
     if (same_file(authored.base, out))
@@ -125,10 +122,10 @@ SceneFiles scene_files(const Authored& authored, const std::string& script, cons
     files.tables.push_back(std::move(table));
   }
   try {
-    const toml::table whole = toml::parse(files.toml, out);
-  } catch (const toml::parse_error& e) {
-    throw Error(fmt::format("{}: media cannot be added at its end ({}), expected [[medium]] tables", authored.base,
-                            std::string(e.description())));
+    scene::load::parse_toml(files.toml, out);
+  } catch (const Error& e) {
+    throw Error(
+        fmt::format("{}: media cannot be added at its end ({}), expected [[medium]] tables", authored.base, e.what()));
   }
   return files;
 }

@@ -12,6 +12,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
 #include "experiments/renderers.h"
+#include "experiments/say.h"
 #include "experiments/verify/verify.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
@@ -205,7 +206,11 @@ int dispatch(int argc, char** argv) {
   c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
   c->add_flag("--margins", experiment_options.margins, "how many times worse each figure could be, the loosest first");
   c->add_option("--margins-csv", experiment_options.margins_csv, "the same as a CSV file");
-  c->final_callback([&] { action = [&] { return gates(experiment_options); }; });
+  c->add_flag("--in-tests", experiment_options.in_tests, "only of experiments with in_tests = true, as scripts/test");
+  c->final_callback([&] {
+    experiment_options.gates_only = true;
+    action = [&] { return gates(experiment_options); };
+  });
 
   ExplainOptions explain_options;
   c = command(app, "explain", "what each renderer would compute or leave out in a scene, and why");
@@ -289,9 +294,7 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::CallForVersion& wanted) {
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    std::string line = error.what();
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw Error(line);
+    throw Error(error.what());
   }
   refuse_extras(app);
   if (!action) throw Error(fmt::format("expected a command: {}", fmt::join(command_names(app), ", ")));
@@ -308,7 +311,6 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int run(int argc, char** argv) {
-  const auto say = [](const std::string& line) { fmt::print(stderr, "airlight: {}\n", line); };
   try {
     const int code = dispatch(argc, argv);
     std::cout.flush();

@@ -10,6 +10,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
+#include "experiments/say.h"
 #include "reference/path_tracer/cache.h"
 #include "scene/error.h"
 
@@ -65,7 +66,7 @@ int render(const RenderOptions& options) {
     film = render_samples(scene, settings, *range, execution, options.out + ".samples");
   else if (!options.cache.empty()) {
     auto kept = path_tracer::render_cached(scene, settings, scene::view_of(*scene), options.cache, execution);
-    for (const std::string& note : kept.notes) fmt::print(stderr, "airlight: {}\n", note);
+    for (const std::string& note : kept.notes) say(note);
     film = std::move(kept.film);
   } else
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;

@@ -10,6 +10,8 @@
 #include "experiments/build_info.h"
 #include "experiments/driver/content_key.h"
 #include "experiments/folders.h"
+#include "experiments/say.h"
+#include "gpu/shader_source.h"
 #include "reference/path_tracer/cache.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -31,7 +33,7 @@ bool load(const fs::path& image, const fs::path& record, Reference& reference) {
   const auto checksum = j.find("checksum"), seconds = j.find("seconds");
   if (checksum == j.end() || !checksum->is_string() || seconds == j.end() || !seconds->is_number()) return false;
   if (content_key(std::string_view(file_bytes(image))) != checksum->get<std::string>()) {
-    fmt::print(stderr, "airlight: {}: checksum differs, computing it anew\n", image.string());
+    say(fmt::format("{}: checksum differs, computing it anew", image.string()));
     return false;
   }
   reference.film = scene::read_exr(image.string());
@@ -45,7 +47,7 @@ void trace(const fs::path& folder, std::shared_ptr<const scene::Scene> scene, co
   const scene::View view = scene::view_of(*scene);
   make_folder(folder);
   path_tracer::CachedRendering traced = path_tracer::render_cached(scene, settings, view, folder.string(), execution);
-  for (const std::string& note : traced.notes) fmt::print(stderr, "airlight: {}\n", note);
+  for (const std::string& note : traced.notes) say(note);
   if (!traced.complete) throw scene::Interrupted("interrupted");
   reference.film = std::move(traced.film);
   reference.seconds = traced.seconds;
@@ -58,8 +60,10 @@ std::string reference_key(const scene::Scene& scene, const scene::Renderer& rend
   // A method may stand as the reference of its twin on the GPU: it depends on more than the folder `reference`.
   bool below_reference = false;
   for (const char* name : {"deterministic", "path_tracer", "ray_marcher"}) below_reference |= renderer.name() == name;
+  const std::string device = renderer.device();
   return content_key({scene.hash, fmt::format("{}x{}", scene.width, scene.height), renderer.name(),
-                      settings.canonical(), below_reference ? reference_id() : source_id()});
+                      settings.canonical(), below_reference ? reference_id() : source_id(), compiler(), device,
+                      device.empty() ? "" : gpu::foreign_shaders()});
 }
 
 Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scene> scene,
@@ -84,6 +88,7 @@ Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scen
   // A renderer may keep what it has when it is stopped: that is no reference.
   if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
 
+  require_finite(reference.film, fmt::format("{}: reference {}", scene->name, renderer.name()));
   make_folder(folder);
   fs::remove(record);  // never a record beside another image
   scene::write_exr(image.string(), reference.film);

@@ -10,6 +10,7 @@
 #include "experiments/driver/plots.h"
 #include "experiments/folders.h"
 #include "experiments/machine.h"
+#include "experiments/say.h"
 #include "experiments/shadow_planes/evaluator_errors.h"
 #include "experiments/shadow_planes/evaluator_plots.h"
 #include "scene/atomic_file.h"
@@ -115,7 +116,7 @@ void write_evaluator_tables(const std::filesystem::path& folder, const Evaluator
     device = &gpu::Context::get();
   } catch (const NoDevice& reason) {
     if (gpu::Context::device_was_chosen()) throw;
-    fmt::print(stderr, "airlight: no device, its rows are left out: {}\n", reason.what());
+    say(fmt::format("no device, its rows are left out: {}", reason.what()));
   }
   const std::vector<TimedRow> times = errors_and_times(effort.cases, effort.runs, device);
   const Lines shares = share_lines(map), angles = angle_lines(effort.cases), image = image_lines();

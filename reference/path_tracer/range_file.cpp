@@ -4,13 +4,12 @@
 #include <xxhash.h>
 
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 
 #include "reference/path_tracer/accumulation.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/read_file.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -106,11 +105,7 @@ void write_range_file(const std::string& path, const Accumulation& a) {
 }
 
 Accumulation read_range_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(fmt::format("{}: cannot be read", path));
-  std::ostringstream buffer;
-  buffer << stream.rdbuf();
-  const std::string bytes = std::move(buffer).str();
+  const std::string bytes = scene::read_whole_file(path, std::size_t(1) << 40);
   if (bytes.size() < magic.size() + 8 || std::string_view(bytes).substr(0, magic.size()) != magic)
     throw Error(fmt::format("{}: not a file of path tracer samples", path));
   const std::string_view body(bytes.data(), bytes.size() - 8);
@@ -133,7 +128,10 @@ Accumulation read_range_file(const std::string& path) {
   a.layout = {int(orders), squares != 0};
   a.seconds = in.word<double>();
   for (const auto field : counter_fields) a.counters.*field = in.word<std::uint64_t>();
-  a.tiles.resize(std::size_t(a.tiles_across()) * a.tiles_down());
+  // A tile takes 8 bytes at least: more of them than that cannot be true, and would only cost memory.
+  const double tiles = double(a.tiles_across()) * a.tiles_down();
+  if (tiles > double(bytes.size()) / 8) in.fail("the sample file ends too early");
+  a.tiles.resize(std::size_t(tiles));
   for (int tile = 0; tile < int(a.tiles.size()); ++tile) {
     const int x0 = tile % a.tiles_across() * tile_size, y0 = tile / a.tiles_across() * tile_size;
     const std::size_t doubles = std::size_t(a.layout.doubles()) * (std::min(x0 + tile_size, a.width) - x0) *

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/error.h"
+#include "scene/printable.h"
 
 namespace airlight::scene {
 namespace {
@@ -15,12 +16,7 @@ constexpr std::string_view blanks = " \t\r\v\f";
 
 }  // namespace
 
-std::string TextLines::shown(std::string_view word) {
-  std::string text(word.substr(0, 40));
-  for (char& c : text)
-    if (c < 32 || c > 126) c = '?';
-  return text;
-}
+std::string TextLines::shown(std::string_view word) { return printable(word, 40); }
 
 bool TextLines::next_raw(std::string_view& line) {
   if (rest_.empty()) return false;

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "scene/error.h"
+#include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
+#include "scene/printable.h"
 #include "scene/settings.h"
 
 namespace airlight::scene::load {
@@ -65,9 +67,9 @@ struct Walk {
 toml::table parse_value(const Walk& walk, const std::string& text) {
   toml::table table;
   try {
-    table = toml::parse("value = " + text, walk.label);
-  } catch (const toml::parse_error& e) {
-    walk.fail(fmt::format("{}; expected a TOML value, texts in quotes", e.description()));
+    table = parse_toml("value = " + text, walk.label);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}; expected a TOML value, texts in quotes", e.what()));
   }
   if (table.size() != 1 || !table.contains("value")) walk.fail("expected one TOML value");
   return table;
@@ -110,10 +112,8 @@ bool is_override(const std::string& source_path) { return source_path.rfind("ove
 void apply_overrides(toml::table& root, const std::map<std::string, std::string>& overrides, const std::string& file,
                      const std::vector<std::string>& implied) {
   for (const auto& [path, text] : overrides) {
-    std::string shown = text;
-    std::replace(shown.begin(), shown.end(), '\n', ' ');
-    if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
-    const Walk walk{fmt::format("override {} = {} of {}", path, shown, file), split(path)};
+    const Walk walk{fmt::format("override {} = {} of {}", printable(path, 100), printable(text, 60), file),
+                    split(path)};
     if (std::find(walk.parts.begin(), walk.parts.end(), "") != walk.parts.end())
       walk.fail("found an empty part in the path, expected names and indices joined by dots");
     parse_value(walk, text);  // a mistake there is told before one in the path

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/load/overrides.h"
+#include "scene/printable.h"
 
 namespace airlight::scene::load {
 namespace {
@@ -18,9 +19,7 @@ void append(std::string& text, const toml::node& node, std::size_t most) {
   } else if (const auto* value = node.as_boolean()) {
     text += value->get() ? "true" : "false";
   } else if (const auto* value = node.as_string()) {
-    text += '"';
-    for (const char c : value->get().substr(0, most)) text += c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
-    text += '"';
+    text += '"' + value->get().substr(0, most) + '"';
   } else if (const toml::array* array = node.as_array()) {
     text += '[';
     for (std::size_t i = 0; i < array->size() && text.size() <= most; ++i) {
@@ -45,14 +44,13 @@ std::string written(const toml::node& node) {
   constexpr std::size_t most = 60;
   std::string text;
   append(text, node, most);
-  if (text.size() <= most) return text;
-  std::size_t end = most - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // not inside a UTF-8 character
-  return text.substr(0, end) + "...";
+  return printable(text, most);
 }
 
 bool Range::contains(double x) const {
-  if (!std::isfinite(x)) return infinite && x == infinity && greatest == infinity;
+  if (!std::isfinite(x)) return infinite && x == infinity;
+  if (signs) x = std::abs(x);
+  if (zero && x == 0) return true;
   return (open_least ? x > least : x >= least) && (open_greatest ? x < greatest : x <= greatest);
 }
 
@@ -60,8 +58,9 @@ std::string Range::words() const {
   if (least == -infinity && greatest == infinity) return "a finite number";
   if (greatest == infinity) return fmt::format("a number {} {}", open_least ? ">" : ">=", least);
   if (least == -infinity) return fmt::format("a number {} {}", open_greatest ? "<" : "<=", greatest);
-  return fmt::format("a number in {}{:.6g}, {:.6g}{}", open_least ? '(' : '[', least, greatest,
-                     open_greatest ? ')' : ']');
+  return fmt::format("{}a number {}in {}{:.6g}, {:.6g}{}{}", zero ? "0 or " : "",
+                     signs ? "of either sign, its size " : "", open_least ? '(' : '[', least, greatest,
+                     open_greatest ? ')' : ']', infinite ? ", or inf" : "");
 }
 
 }  // namespace airlight::scene::load

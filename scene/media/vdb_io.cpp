@@ -25,6 +25,8 @@
 #include "scene/error.h"
 #include "scene/media/vdb_layout.h"
 #include "scene/media/voxel_grid.h"
+#include "scene/printable.h"
+#include "scene/read_file.h"
 
 namespace airlight::scene {
 namespace {
@@ -44,11 +46,9 @@ void initialize_once() {
   });
 }
 
-// One line of at most 200 characters: messages of damaged files can hold anything.
+// Messages of damaged files can hold anything.
 [[noreturn]] void fail(const std::string& where, const std::string& what) {
-  std::string line;
-  for (char c : what.substr(0, 200)) line += c >= ' ' && c <= '~' ? c : ' ';
-  throw Error(where + ": " + line);
+  throw Error(where + ": " + printable(what, 200));
 }
 
 // Minus zero is kept: what is written comes back bit for bit.
@@ -105,14 +105,17 @@ class Writer : public openvdb::io::Archive {
   }
 };
 
-// World = index * matrix in OpenVDB's rows; ours is the transpose.
 void set_transform(VoxelGrid& grid, const openvdb::math::Transform& transform, const std::string& where) {
   if (!transform.isLinear()) fail(where, "its transform is a frustum, expected a uniform scale with rotation");
-  const openvdb::math::Mat4d m = transform.baseMap()->getAffineMap()->getMat4();
+  // Not by its matrix: OpenVDB takes one of a determinant below 1e-15, voxels of 10 um, for singular and throws.
+  const openvdb::math::MapBase& map = *transform.baseMap();
   Mat3 linear;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) linear(row, column) = m(column, row);
-  grid.translation = {m(3, 0), m(3, 1), m(3, 2)};
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0.0);
+    unit[axis] = 1;
+    linear.col(axis) = Eigen::Map<const Vec3>(map.applyJacobian(unit).asPointer());
+  }
+  grid.translation = Eigen::Map<const Vec3>(map.applyMap(openvdb::Vec3d(0.0)).asPointer());
   if (!linear.allFinite() || !grid.translation.allFinite()) fail(where, "its transform is not finite");
 
   if (linear(0, 0) > 0 && linear.isApprox(linear(0, 0) * Mat3::Identity(), 0)) {
@@ -189,19 +192,8 @@ void copy_values(VoxelGrid& grid, const openvdb::FloatGrid& source, const openvd
   }
 }
 
-std::string read_bytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!stream || std::filesystem::is_directory(path) || !(bytes << stream.rdbuf()))
-    fail(path,
-         fmt::format("cannot be read ({}), expected an OpenVDB file", std::filesystem::is_directory(path) ? "a folder"
-                                                                      : stream                            ? "empty"
-                                                                               : std::strerror(errno)));
-  return std::move(bytes).str();
-}
-
 openvdb::FloatGrid::Ptr open_grid(const std::string& path, const std::string& name, const std::string& where) {
-  std::istringstream stream(read_bytes(path));
+  std::istringstream stream(read_whole_file(path, std::size_t(1) << 29));
   stream.exceptions(std::ios::failbit | std::ios::badbit);
   const std::string_view file = stream.view();
   check_sidecar(path, file);
@@ -235,10 +227,10 @@ VoxelGrid read_vdb(const std::string& path, const std::string& name, std::size_t
   const std::string where = fmt::format("{}: grid '{}'", path, name);
   const openvdb::FloatGrid::Ptr source = open_grid(path, name, where);
   VoxelGrid grid;
-  set_transform(grid, source->transform(), where);
-  if (source->background() != 0)
-    fail(where, fmt::format("has background {}, expected 0 (a fog volume)", source->background()));
   try {
+    set_transform(grid, source->transform(), where);
+    if (source->background() != 0)
+      fail(where, fmt::format("has background {}, expected 0 (a fog volume)", source->background()));
     check_statistics(*source, where);
     const openvdb::CoordBBox box = sample_box(*source, check_values(*source, where));
     if (box.empty()) return grid;

@@ -16,6 +16,8 @@ import sys
 import tempfile
 import time
 
+import hostile_cases
+
 PROGRAM, SOURCE = (os.path.abspath(p) for p in sys.argv[1:3])
 WORD = sys.argv[3] if len(sys.argv) > 3 else ''
 VERBOSE = len(sys.argv) > 3  # else only what fails is printed: a log is read from its end
@@ -27,7 +29,7 @@ cases = []
 
 
 def run(arguments, timeout=60, **more):
-    return subprocess.run([PROGRAM, *arguments], cwd=WORK, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    return subprocess.run([PROGRAM, *(os.fsencode(a) for a in arguments)], cwd=WORK, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           timeout=timeout, **more)
 
 
@@ -409,6 +411,7 @@ def main():
         queue_scripts()
         queue_experiments()
         queue_outputs()
+        hostile_cases.queue(WORK, SOURCE, case, write, project, scene_with, SCENE, EXPERIMENT)
         # Standard output to a full device needs its own call.
         for item in [c for c in cases if c[0] == 'standard output full']:
             cases.remove(item)

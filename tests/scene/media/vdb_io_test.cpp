@@ -213,7 +213,7 @@ TEST_CASE("what is not a grid of densities is refused, and why is said", "[media
     INFO(message);
     CHECK(message.find(words) != std::string::npos);
   };
-  says("No such file");
+  says("no such file");
   write_file(path, "");
   says("empty");
   write_file(path, "#usda 1.0\nnot a volume at all\n");
@@ -246,6 +246,38 @@ TEST_CASE("what is not a grid of densities is refused, and why is said", "[media
   nowhere.translation[1] = infinity;
   write_vdb(path, nowhere);
   says("not finite");
+}
+
+// A map is stored as a matrix of 16 doubles behind its name: the first three are a row.
+TEST_CASE("a singular transform is refused with file and grid, a very fine one is not", "[media][vdb]") {
+  const Folder folder;
+  const std::string path = folder / "singular.vdb";
+  write_vdb(path, some_grid({4, 5, 3}));  // a rotation: stored as an AffineMap
+  const std::string whole = read_file(path);
+  const std::size_t at = whole.find("AffineMap") + 9;
+  REQUIRE(at < whole.size());
+  for (const double row : {0.0, 1e-200, 1e-30}) {
+    std::string bytes = whole;
+    for (int i = 0; i < 3; ++i) std::memcpy(bytes.data() + at + 8 * i, &row, 8);
+    write_file(path, bytes);
+    INFO(row << ": " << refusal(path));
+    CHECK(refusal(path).find("grid 'density'") != std::string::npos);
+  }
+  // Without a rotation: behind the name the translation, then the scale and the size of a voxel, three doubles each.
+  VoxelGrid plain = some_grid({4, 5, 3});
+  plain.rotation = Mat3::Identity();
+  write_vdb(path, plain);
+  const std::string uniform = read_file(path), name = "UniformScaleTranslateMap";
+  REQUIRE(uniform.find(name) != std::string::npos);
+  for (const double size : {0.5, 1e-4, 1e-6, 1e-30}) {
+    std::string bytes = uniform;
+    for (int i = 3; i < 9; ++i) std::memcpy(bytes.data() + bytes.find(name) + name.size() + 8 * i, &size, 8);
+    write_file(path, bytes);
+    INFO(size << ": " << refusal(path));
+    REQUIRE(refusal(path).empty());
+    CHECK(read_vdb(path).voxel_size == size);
+    CHECK(read_vdb(path).translation == plain.translation);
+  }
 }
 
 TEST_CASE("writing OpenVDB leaves all or nothing", "[media][vdb]") {
