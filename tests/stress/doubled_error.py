@@ -3,7 +3,7 @@
 
 doubled_error.py [ROOT] [--profile quick|paper] [--gates]
 
-Reads the gates of experiments/*/*.toml and the rows of results/*/*/run.json, and doubles every error that a gate bounds
+Reads the gates of experiments/*/*.toml, with their bounds by row (*.bounds.csv, profile quick), and the rows of results/*/*/run.json, and doubles every error that a gate bounds
 (four times where it is a square); its interval stays as wide as it was, so an error in the noise of its reference is not
 found. Prints for every renderer and variant how many of its rows are gated, how many gates
 would object, and the one nearest to objecting. Exit code 1 if some renderer and variant has no gate that would, 2 for
@@ -11,6 +11,7 @@ files that cannot be read. What an error is compared with is the experiment's re
 difference of the two.
 """
 import argparse
+import csv
 import json
 import math
 import os
@@ -39,8 +40,21 @@ def text_of(value):
 
 def belongs(gate, row):
     scene = gate.get("scene", "")
-    return ((not scene or row["scene"] == scene or row["scene"].startswith(scene + " ")) and row["method"] == gate["method"]
+    if gate.get("by_row"):
+        return all(row[k] == gate[k] for k in ("scene", "method", "setting", "device"))
+    return ((not scene or row["scene"] == scene or row["scene"].startswith(scene + " ")) and row["method"] == gate.get("method", row["method"])
             and ("setting" not in gate or row["setting"] == text_of(gate["setting"])))
+
+
+def gates_of(experiment, bounds):
+    """The gates with bounds of their own, and those by row, which the driver judges first."""
+    gates = [g for g in experiment.get("gate", []) if "at_most" in g or "at_least" in g]
+    if os.path.exists(bounds):
+        with open(bounds, newline="") as f:
+            for line in csv.DictReader(f):
+                row = {**{k: line[k] for k in ("scene", "method", "setting", "metric", "device")}, "by_row": True}
+                gates += [{**row, side: float(line[side])} for side in ("at_most", "at_least") if line[side]]
+    return gates
 
 
 def doubled(row, gate):
@@ -79,6 +93,8 @@ def main():
             with open(os.path.join(folder, group, file), "rb") as f:
                 experiment = tomllib.load(f)
             name = f"{group}/{file[:-5]}"
+            bounds = os.path.join(folder, group, file[:-5] + ".bounds.csv") if a.profile == "quick" else ""
+            gates = gates_of(experiment, bounds)
             record = os.path.join(a.root, "results", name + (".paper" if a.profile == "paper" else ""), "run.json")
             if experiment.get("kind") == "oracles" or not os.path.exists(record):
                 continue
@@ -87,7 +103,7 @@ def main():
             for row in rows:
                 entry = found.setdefault(variant(row), {"rows": 0, "gated": 0, "objects": [], "nearest": None})
                 entry["rows"] += 1
-                results = [(doubled(row, g), g) for g in experiment.get("gate", []) if belongs(g, row)]
+                results = [(doubled(row, g), g) for g in gates if belongs(g, row)]
                 results = [(r, g) for r, g in results if r]
                 entry["gated"] += bool(results)
                 for (ratio, objects), gate in results:
