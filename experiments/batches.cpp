@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/error.h"
@@ -20,9 +21,47 @@ std::span<const float> finite_layer(const scene::Film& film, const std::string& 
   return values;
 }
 
+namespace {
+
+std::string prefix_of(const std::string& layer) { return layer == "mean" ? "" : layer + "."; }
+
+}  // namespace
+
+std::span<const float> standard_errors(const scene::Film& film, const std::string& layer, const std::string& what) {
+  const std::string name = prefix_of(layer) + "se";
+  if (!film.has(name)) return {};
+  const std::span<const float> values = finite_layer(film, name, what);
+  if (std::any_of(values.begin(), values.end(), [](float x) { return x < 0; }))
+    throw Error(fmt::format("{}: layer '{}' has values below 0", what, name));
+  return values;
+}
+
+bool has_only_errors(const scene::Film& film, const std::string& layer, const std::string& what) {
+  if (film.has(prefix_of(layer) + "batch.00") || standard_errors(film, layer, what).empty()) return false;
+  if (!film.has("n")) return true;
+  const std::span<const float> n = finite_layer(film, "n", what);
+  return std::all_of(n.begin(), n.end(), [](float x) { return x >= 2; });
+}
+
+std::vector<float> unresolved(const scene::Film& film, const std::string& layer, const std::string& what) {
+  const std::vector<std::span<const float>> groups = batches(film, layer, what);
+  const std::span<const float> errors = standard_errors(film, layer, what);
+  if (groups.empty() || errors.empty()) return {};
+  std::vector<float> result(errors.size(), 0.0f);
+  bool any = false;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const auto same = [&](const std::span<const float>& group) { return group[i] == groups.front()[i]; };
+    if (errors[i] > 0 && std::all_of(groups.begin(), groups.end(), same)) {
+      result[i] = errors[i];
+      any = true;
+    }
+  }
+  return any ? result : std::vector<float>();
+}
+
 std::vector<std::span<const float>> batches(const scene::Film& film, const std::string& layer,
                                             const std::string& what) {
-  const std::string prefix = layer == "mean" ? "" : layer + ".";
+  const std::string prefix = prefix_of(layer);
   std::vector<std::span<const float>> found;
   for (int i = 0;; ++i) {
     const std::string name = fmt::format("{}batch.{:02}", prefix, i);

@@ -22,17 +22,26 @@ struct Equality {
   double image_z = 0;
   double image_threshold = 0;
   double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image; NaN: no noise
-  bool equal = false;          // no test objects
-  bool tested = false;         // detectable_bias <= 1 %: an `equal` without it means little
+  double block_skewness = 0;   // of the mean over a block, pooled over a channel: the largest of the three
+  double image_skewness = 0;   // of the mean over the image: the same
+  bool blocks_in_range = true;
+  bool image_in_range = true;
+  bool equal = false;   // no test objects
+  bool tested = false;  // all in range, and detectable_bias <= 1 %: an `equal` without it means little
 };
 
-// Throws Error if sizes differ, a value is not finite, or neither image is noisy. The images must not share random
-// numbers.
+inline constexpr double most_skewness = 0.1;
+
+// Throws Error if sizes differ, a value is not finite, neither image is noisy, or every pixel is left out. The images
+// must not share random numbers.
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
                        const std::vector<unsigned char>& left_out, double alpha);
 
 // How many of the three tests object at that alpha; a block that differs without noise counts with the first.
 int objections(const Equality&, double alpha);
+
+// Those among them whose means are in range.
+int sure_objections(const Equality&, double alpha);
 
 // One line for people.
 std::string text(const Equality&);

@@ -6,22 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "experiments/batches.h"
 #include "experiments/equality.h"
+#include "experiments/metric_values.h"
 #include "experiments/statistics.h"
 #include "scene/error.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments {
 namespace {
-
-struct MetricName {
-  std::string base;
-  bool foreground = false;
-  int channel = -1;  // all
-};
 
 MetricName parse(std::string name) {
   MetricName parsed;
@@ -41,97 +35,22 @@ MetricName parse(std::string name) {
   return parsed;
 }
 
-// The values that a metric looks at, and the differences per batch. Batch means stand for the batches; with exact
-// images there are none, and every function below sees one difference without noise.
-class Values {
- public:
-  Values(const scene::Film& image, const scene::Film& reference, const std::string& layer, const MetricName& name,
-         const Masks& masks)
-      : a_(finite_layer(image, layer, "image")),
-        r_(finite_layer(reference, layer, "reference")),
-        a_batches_(batches(image, layer, "image")),
-        r_batches_(batches(reference, layer, "reference")),
-        width_(image.width),
-        height_(image.height) {
-    if (!a_batches_.empty() && !r_batches_.empty() && a_batches_.size() != r_batches_.size())
-      throw Error(
-          fmt::format("image has {} batches and reference {}, expected as many", a_batches_.size(), r_batches_.size()));
-    const std::size_t pixels = image.pixels();
-    kept_.assign(pixels, 1);
-    for (std::size_t p = 0; p < pixels; ++p) {
-      if (!masks.left_out.empty() && masks.left_out[p]) kept_[p] = 0;
-      if (name.foreground && !masks.foreground[p]) kept_[p] = 0;
-      if (kept_[p])
-        for (int c = 0; c < 3; ++c)
-          if (name.channel < 0 || c == name.channel) index_.push_back(3 * p + std::size_t(c));
-    }
+// Squared difference of one value without the noise of the reference, and without that of the image unless it counts.
+// Where it counts, a picture of all batches but one is noisier: what it has more of is taken out.
+double square(const Values& v, std::size_t i, const Group& group, int without) {
+  if (group.size() == 0) return v.d(i) * v.d(i);
+  if (!v.counted()) return group.pair_mean([&](int b) { return v.d(i, b); });
+  double a = v.a(i), excess = 0;
+  if (without >= 0 && v.image_has_batches()) {
+    const Group all(0, v.batch_count(), without);
+    const auto of_batch = [&](int b) { return v.a(i, b); };
+    a = all.mean(of_batch);
+    excess = all.variance(of_batch) * (1 / all.size() - 1 / (all.size() + 1));
   }
-
-  std::size_t size() const { return index_.size(); }
-  int batch_count() const { return int(std::max(a_batches_.size(), r_batches_.size())); }
-  std::size_t pixel(std::size_t i) const { return index_[i] / 3; }
-  double a(std::size_t i) const { return a_[index_[i]]; }
-  double r(std::size_t i) const { return r_[index_[i]]; }
-  double a(std::size_t i, int b) const { return a_batches_.empty() ? a(i) : a_batches_[std::size_t(b)][index_[i]]; }
-  double r(std::size_t i, int b) const { return r_batches_.empty() ? r(i) : r_batches_[std::size_t(b)][index_[i]]; }
-  double d(std::size_t i, int b) const { return a(i, b) - r(i, b); }
-
-  // Greatest less least value of the reference, smoothed over the kept pixels among 3x3.
-  double smoothed_range() const {
-    double least = infinity_, greatest = -infinity_;
-    for (const std::size_t at : index_) {
-      const int pixel = int(at / 3), px = pixel % width_, py = pixel / width_;
-      double sum = 0;
-      int count = 0;
-      for (int y = std::max(0, py - 1); y <= std::min(height_ - 1, py + 1); ++y)
-        for (int x = std::max(0, px - 1); x <= std::min(width_ - 1, px + 1); ++x)
-          if (kept_[std::size_t(y * width_ + x)]) {
-            sum += r_[std::size_t(y * width_ + x) * 3 + at % 3];
-            ++count;
-          }
-      least = std::min(least, sum / count);
-      greatest = std::max(greatest, sum / count);
-    }
-    return greatest - least;
-  }
-
- private:
-  static constexpr double infinity_ = std::numeric_limits<double>::infinity();
-  std::span<const float> a_, r_;
-  std::vector<std::span<const float>> a_batches_, r_batches_;
-  int width_, height_;
-  std::vector<unsigned char> kept_;
-  std::vector<std::size_t> index_;
-};
-
-// Over the batches [begin, end) without one: mean, mean over pairs of different batches, variance of the mean.
-class Group {
- public:
-  Group(int begin, int end, int without)
-      : begin_(begin), end_(end), without_(without), n_(end - begin - (without >= begin && without < end)) {}
-  template <class F>
-  double mean(F value) const {
-    double sum = 0;
-    for (int b = begin_; b < end_; ++b)
-      if (b != without_) sum += value(b);
-    return sum / n_;
-  }
-  template <class F>
-  double pair_mean(F value) const {
-    double sum = 0, squares = 0;
-    for (int b = begin_; b < end_; ++b)
-      if (b != without_) {
-        const double v = value(b);
-        sum += v;
-        squares += v * v;
-      }
-    return (sum * sum - squares) / (double(n_) * (n_ - 1));
-  }
-
- private:
-  int begin_, end_, without_;
-  double n_;
-};
+  const double plain =
+      v.reference_is_noisy() ? group.pair_mean([&](int b) { return a - v.r(i, b); }) : (a - v.r(i)) * (a - v.r(i));
+  return plain - excess;
+}
 
 // Mean squared difference and mean squared reference, noise left out of both.
 struct Squares {
@@ -141,73 +60,121 @@ struct Squares {
 
 Squares squares(const Values& v, int without) {
   Squares s{0, 0};
-  const int count = v.batch_count();
+  const Group group(0, v.batch_count(), without);
   for (std::size_t i = 0; i < v.size(); ++i) {
-    if (count == 0) {
-      const double d = v.a(i) - v.r(i);
-      s.error += d * d;
-      s.signal += v.r(i) * v.r(i);
-    } else {
-      const Group group(0, count, without);
-      s.error += group.pair_mean([&](int b) { return v.d(i, b); });
-      s.signal += group.pair_mean([&](int b) { return v.r(i, b); });
-    }
+    s.error += square(v, i, group, without);
+    s.signal += v.reference_is_noisy() ? group.pair_mean([&](int b) { return v.r(i, b); }) : v.r(i) * v.r(i);
   }
   return {s.error / double(v.size()), s.signal / double(v.size())};
 }
 
+// 1 / (R^2 + 0.01 mean(R)^2) for each value, from the batches of `group`.
+std::vector<double> relative_weights(const Values& v, const Group& group) {
+  std::vector<double> r(v.size());
+  double mean = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    r[i] = group.size() > 0 ? group.mean([&](int b) { return v.r(i, b); }) : v.r(i);
+    mean += r[i] / double(v.size());
+  }
+  for (double& x : r) x = 1 / (x * x + 0.01 * mean * mean);
+  return r;
+}
+
 double relative_mse(const Values& v, int without) {
-  const int count = v.batch_count();
-  const auto one_way = [&](const Group* above, const Group* below) {
-    const auto r = [&](std::size_t i) { return below ? below->mean([&](int b) { return v.r(i, b); }) : v.r(i); };
-    double mean = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) mean += r(i) / double(v.size());
+  const auto one_way = [&](const Group& above, const Group& below) {
+    const std::vector<double> weights = relative_weights(v, below);
     double sum = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const double exact = v.a(i) - v.r(i);
-      const double square = above ? above->pair_mean([&](int b) { return v.d(i, b); }) : exact * exact;
-      sum += square / (r(i) * r(i) + 0.01 * mean * mean);
-    }
+    for (std::size_t i = 0; i < v.size(); ++i) sum += square(v, i, above, without) * weights[i];
     return sum / double(v.size());
   };
-  if (count == 0) return one_way(nullptr, nullptr);
+  const int count = v.batch_count();
   const Group first(0, count / 2, without), second(count / 2, count, without);
-  return 0.5 * (one_way(&first, &second) + one_way(&second, &first));
+  return 0.5 * (one_way(first, second) + one_way(second, first));
 }
 
 double signed_bias(const Values& v, int without) {
-  const int count = v.batch_count();
+  const Group group(0, v.batch_count(), without);
   double a = 0, r = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const Group group(0, count, without);
-    a += count ? group.mean([&](int b) { return v.a(i, b); }) : v.a(i);
-    r += count ? group.mean([&](int b) { return v.r(i, b); }) : v.r(i);
+    a += group.size() > 0 ? group.mean([&](int b) { return v.a(i, b); }) : v.a(i);
+    r += group.size() > 0 ? group.mean([&](int b) { return v.r(i, b); }) : v.r(i);
   }
   return a / r - 1;
 }
 
-// Mean variance of the difference of the two means.
-double mean_noise(const Values& v) {
-  const int n = v.batch_count();
-  if (n == 0) return 0;
+std::vector<double> ones(const Values& v) { return std::vector<double>(v.size(), 1.0); }
+
+// Mean variance of the difference of the two means, times weights; without the image's part if that counts as error.
+double mean_noise(const Values& v, const std::vector<double>& weights) {
+  const Group group(0, v.batch_count(), -1);
   double sum = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    double mean = 0, square = 0;
-    for (int b = 0; b < n; ++b) mean += v.d(i, b) / n;
-    for (int b = 0; b < n; ++b) square += (v.d(i, b) - mean) * (v.d(i, b) - mean);
-    sum += square / (double(n) * (n - 1));
+    const double variance =
+        group.size() == 0 ? 0
+                          : group.variance([&](int b) { return v.counted() ? v.r(i, b) : v.d(i, b); }) / group.size();
+    sum += (variance + v.unresolved(i) * v.unresolved(i)) * weights[i];
   }
   return sum / double(v.size());
 }
 
+// Sum over pixels of the square of the sum over channels: the variance of the sum of all values whose standard errors
+// these are, if channels share their samples and pixels do not.
 template <class F>
-Estimate with_interval(const Values& v, F statistic) {
+double sum_variance(const Values& v, F error) {
+  double variance = 0;
+  for (std::size_t i = 0; i < v.size();) {
+    double of_pixel = 0;
+    for (const std::size_t pixel = v.pixel(i); i < v.size() && v.pixel(i) == pixel; ++i) of_pixel += error(i);
+    variance += of_pixel * of_pixel;
+  }
+  return variance;
+}
+
+// Variance of the weighted mean of d^2 by the standard errors of an image without batches (statistics.h,
+// squared_error).
+double variance_by_errors(const Values& v, const std::vector<double>& weights) {
+  if (!v.only_errors()) return 0;
+  const double count = double(v.size());
+  return sum_variance(v,
+                      [&](std::size_t i) {
+                        const double s2 = v.se(i) * v.se(i), d2 = v.d(i) * v.d(i);
+                        const double own = 4 * d2 * s2 - 2 * s2 * s2 + 2 * s2 * s2 / (v.samples(i) - 1);
+                        return weights[i] * std::sqrt(std::max(0.0, own));
+                      }) /
+         (count * count);
+}
+
+// By what the weighted mean of d^2 may be too large and too small where the batches do not show the noise: |d| is off
+// by at most u.
+struct Slack {
+  double below = 0;
+  double above = 0;
+};
+Slack unresolved_squares(const Values& v, const std::vector<double>& weights) {
+  Slack slack;
+  if (!v.has_unresolved()) return slack;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double d = std::abs(v.d(i)), u = v.unresolved(i), sure = std::max(0.0, d - u);
+    slack.below += (d * d - sure * sure) * weights[i] / double(v.size());
+    slack.above += ((d + u) * (d + u) - d * d) * weights[i] / double(v.size());
+  }
+  return slack;
+}
+
+// The value from all batches and its jackknife; `variance` as of jackknife().
+template <class F>
+Estimate with_interval(const Values& v, double variance, bool corrected, F statistic) {
   const double whole = statistic(v, -1);
-  if (v.batch_count() == 0) return {whole, whole, whole};
+  if (v.batch_count() == 0) {
+    const double half = normal_quantile(0.975) * std::sqrt(variance);
+    return {whole, whole - half, whole + half};
+  }
   std::vector<double> without;
   for (int b = 0; b < v.batch_count(); ++b) without.push_back(statistic(v, b));
-  return jackknife(whole, without);
+  return jackknife(corrected ? jackknife_value(whole, without) : whole, without, variance);
 }
+
+Estimate widened(Estimate e, const Slack& slack) { return {e.value, e.low - slack.below, e.high + slack.above}; }
 
 double quantile(std::vector<double>& x, double p) {
   if (x.empty()) return 0;
@@ -218,27 +185,33 @@ double quantile(std::vector<double>& x, double p) {
 
 // |error| <= |d| + |noise| for each value, so for the p-quantile Q and half the tail q = (1-p)/2:
 //   Q(|error|, p) <= Q(|d|, p+q) + Q(|noise|, 1-q) and Q(|error|, p) >= Q(|d|, p-q) - Q(|noise|, 1-q).
+// An image whose noise counts is one draw of as many errors as it has pixels: 1.96 sqrt(p (1-p) / pixels) on both
+// sides.
 Measure percentile(const Values& v, double p) {
   const int n = v.batch_count();
   double greatest = 0;
   for (std::size_t i = 0; i < v.size(); ++i) greatest = std::max(greatest, v.r(i));
   std::vector<double> error, noise;
+  std::size_t pixels = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
+    pixels += i == 0 || v.pixel(i) != v.pixel(i - 1);
     const double scale = std::max(v.r(i), 0.0) + 0.01 * greatest;
-    error.push_back(std::abs(v.a(i) - v.r(i)) / scale);
-    if (n > 0) {
-      const auto d = [&](int b) { return v.d(i, b); };
-      noise.push_back(0.5 * std::abs(Group(0, n / 2, -1).mean(d) - Group(n / 2, n, -1).mean(d)) / scale);
-    }
+    error.push_back(std::abs(v.d(i)) / scale);
+    const auto d = [&](int b) { return v.counted() ? v.r(i, b) : v.d(i, b); };
+    if (n > 0)
+      noise.push_back((0.5 * std::abs(Group(0, n / 2, -1).mean(d) - Group(n / 2, n, -1).mean(d)) + v.unresolved(i)) /
+                      scale);
   }
   Measure m;
   m.value = m.low = m.high = quantile(error, p);
-  if (n > 0) {
-    const double tail = (1 - p) / 2;
-    const double noise_bound = quantile(noise, 1 - tail);
-    m.floor = quantile(noise, p);
-    m.low = std::max(0.0, quantile(error, p - tail) - noise_bound);
-    m.high = quantile(error, p + tail) + noise_bound;
+  const bool removed = v.reference_is_noisy() || (n > 0 && !v.counted());
+  const double drawn = v.counted() ? normal_quantile(0.975) * std::sqrt(p * (1 - p) / double(pixels)) : 0;
+  const double tail = removed ? (1 - p) / 2 : 0;
+  const double noise_bound = quantile(noise, 1 - tail);
+  m.floor = quantile(noise, p);
+  if (v.noisy()) {
+    m.low = std::max(0.0, quantile(error, p - tail - drawn) - noise_bound);
+    m.high = quantile(error, p + tail + drawn) + noise_bound;
     m.below_floor = m.low <= 0;
   }
   return m;
@@ -271,41 +244,59 @@ Measure squared_family(const Estimate& e, double floor, bool take_root, bool noi
   return m;
 }
 
+Measure measure_bias(const Values& v) {
+  double reference = 0, unresolved = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    reference += v.r(i);
+    unresolved += v.unresolved(i);
+  }
+  const double variance = v.only_errors() ? sum_variance(v, [&](std::size_t i) { return v.se(i); }) : 0;
+  const double slack = v.has_unresolved() ? unresolved / std::abs(reference) : 0;
+  const Estimate e = widened(with_interval(v, variance / (reference * reference), false, signed_bias), {slack, slack});
+  // The standard error, back from the interval.
+  const double quantile = v.batch_count() ? student_quantile(0.975, v.batch_count() - 1) : normal_quantile(0.975);
+  const double floor = v.noisy() ? (e.high - e.low) / 2 / quantile : 0;
+  return {"", e.value, e.low, e.high, floor, v.noisy() && e.low <= 0 && e.high >= 0};
+}
+
 Measure measure_values(const std::string& base, const Values& v) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool noisy = v.batch_count() > 0;
   if (v.size() == 0) return {"", nan, nan, nan, nan, false};
   if (base == "p95") return percentile(v, 0.95);
   if (base == "p99") return percentile(v, 0.99);
   if (base == "p999") return percentile(v, 0.999);
   if (base == "wrong") {
-    const double share = noisy ? nan : wrong_share(v);
+    const double share = v.noisy() ? nan : wrong_share(v);
     return {"", share, share, share, 0, false};
   }
-  if (base == "bias") {
-    const Estimate e = with_interval(v, signed_bias);
-    // The standard error, back from the interval.
-    const double floor = noisy ? (e.high - e.low) / 2 / student_quantile(0.975, v.batch_count() - 1) : 0;
-    return {"", e.value, e.low, e.high, floor, noisy && e.low <= 0 && e.high >= 0};
-  }
+  if (base == "bias") return measure_bias(v);
   if (base == "rel_mse") {
-    double signal = squares(v, -1).signal;
-    return squared_family(with_interval(v, relative_mse), mean_noise(v) / signal, false, noisy);
+    const std::vector<double> weights = relative_weights(v, Group(0, v.batch_count(), -1));
+    const Estimate e = with_interval(v, variance_by_errors(v, weights), true, relative_mse);
+    return squared_family(widened(e, unresolved_squares(v, weights)), mean_noise(v, weights), false, v.noisy());
   }
-  const double noise = mean_noise(v);
+  const std::vector<double> weights = ones(v);
+  const double noise = mean_noise(v, weights), by_errors = variance_by_errors(v, weights);
+  const Slack slack = unresolved_squares(v, weights);
+  // With `per` a divisor without noise to speak of.
+  const auto in_units = [&](const Estimate& e, double per, bool take_root) {
+    const double floor = noise * per;
+    return squared_family(widened(e, {slack.below * per, slack.above * per}), take_root ? root(floor) : floor,
+                          take_root, v.noisy());
+  };
   if (base == "rmse" || base == "rmse_range") {
-    const Estimate e = with_interval(v, [](const Values& x, int without) { return squares(x, without).error; });
+    const Estimate e =
+        with_interval(v, by_errors, false, [](const Values& x, int without) { return squares(x, without).error; });
     const double range = base == "rmse" ? 1 : v.smoothed_range();
     const double per = range > 0 ? 1 / (range * range) : nan;
-    return squared_family({e.value * per, e.low * per, e.high * per}, std::sqrt(noise * per), true, noisy);
+    return in_units({e.value * per, e.low * per, e.high * per}, per, true);
   }
-  const Estimate e = with_interval(v, [&](const Values& x, int without) {
+  const double signal = squares(v, -1).signal;
+  const Estimate e = with_interval(v, by_errors / (signal * signal), false, [&](const Values& x, int without) {
     const Squares s = squares(x, without);
     return s.signal > 0 ? s.error / s.signal : nan;
   });
-  const double relative_noise = noise / squares(v, -1).signal;
-  const bool take_root = base == "rel_l2";
-  return squared_family(e, take_root ? root(relative_noise) : relative_noise, take_root, noisy);
+  return in_units(e, 1 / signal, base == "rel_l2");
 }
 
 bool is_test(const std::string& base) {
@@ -316,12 +307,16 @@ Measure test_of_equality(const std::string& name, const scene::Film& image, cons
                          const std::string& layer, const Masks& masks) {
   constexpr double alpha = 1e-4;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  if (batches(image, layer, "image").empty() && batches(reference, layer, "reference").empty())
+  const auto& left_out = masks.left_out;
+  const bool nothing = !left_out.empty() && std::find(left_out.begin(), left_out.end(), 0) == left_out.end();
+  if (nothing || (batches(image, layer, "image").empty() && batches(reference, layer, "reference").empty()))
     return {"", nan, nan, nan, 0, false};
   const Equality e = compare_equal(image, reference, layer, masks.left_out, alpha);
-  const double x = name == "largest_z"         ? e.largest_z
-                   : name == "detectable_bias" ? e.detectable_bias
-                                               : double(objections(e, alpha));
+  if (name == "objections") {
+    const double all = objections(e, alpha), sure = sure_objections(e, alpha);
+    return {"", all, sure, all, 0, false};
+  }
+  const double x = name == "largest_z" ? e.largest_z : e.image_in_range ? e.detectable_bias : nan;
   return {"", x, x, x, 0, false};
 }
 
@@ -361,7 +356,8 @@ std::string text(const Measure& m) {
 }
 
 std::vector<Measure> measure(const std::vector<std::string>& names, const scene::Film& image,
-                             const scene::Film& reference, const std::string& layer, const Masks& masks) {
+                             const scene::Film& reference, const std::string& layer, const Masks& masks,
+                             ImageNoise noise) {
   if (image.width != reference.width || image.height != reference.height)
     throw Error(fmt::format("image is {}x{} and reference {}x{}, expected the same size", image.width, image.height,
                             reference.width, reference.height));
@@ -372,8 +368,9 @@ std::vector<Measure> measure(const std::vector<std::string>& names, const scene:
     if (parsed.foreground && masks.foreground.size() != image.pixels())
       throw Error(
           fmt::format("metric '{}' needs the foreground, and the reference has no layer 'transmittance'", name));
-    Measure m = is_test(parsed.base) ? test_of_equality(name, image, reference, layer, masks)
-                                     : measure_values(parsed.base, Values(image, reference, layer, parsed, masks));
+    Measure m = is_test(parsed.base)
+                    ? test_of_equality(name, image, reference, layer, masks)
+                    : measure_values(parsed.base, Values(image, reference, layer, parsed, masks, noise));
     m.name = name;
     measures.push_back(m);
   }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
+#include <limits>
 
 #include "scene/error.h"
 
@@ -72,15 +75,31 @@ double denominator_squared_error(std::span<const double> a, std::span<const doub
 
 double peak_signal_to_noise(double mse, double peak) { return 10 * std::log10(peak * peak / mse); }
 
-Estimate jackknife(double whole, std::span<const double> without) {
+namespace {
+
+double mean_of(std::span<const double> x) {
+  double mean = 0;
+  for (const double v : x) mean += v / double(x.size());
+  return mean;
+}
+
+}  // namespace
+
+Estimate jackknife(double whole, std::span<const double> without, double variance) {
   const double groups = double(without.size());
   if (without.size() < 2) throw Error("jackknife: fewer than two groups");
-  double mean = 0;
-  for (const double x : without) mean += x / groups;
+  const double mean = mean_of(without);
   double sum = 0;
   for (const double x : without) sum += (x - mean) * (x - mean);
-  const double half = student_quantile(0.975, groups - 1) * std::sqrt((groups - 1) / groups * sum);
+  const double own = (groups - 1) / groups * sum, all = own + variance;
+  const double degrees = own > 0 ? (groups - 1) * (all / own) * (all / own) : std::numeric_limits<double>::infinity();
+  const double half = student_quantile(0.975, degrees) * std::sqrt(all);
   return {whole, whole - half, whole + half};
+}
+
+double jackknife_value(double whole, std::span<const double> without) {
+  const double groups = double(without.size());
+  return groups * whole - (groups - 1) * mean_of(without);
 }
 
 double sidak_threshold(std::size_t m, double alpha) {
@@ -105,6 +124,17 @@ double normal_from_student(double t, double degrees) {
   // Below the smallest double the normal value would be infinite; 38 is already beyond any threshold.
   const double z = tail > 0 ? bm::quantile(bm::complement(bm::normal(), tail)) : 38.0;
   return std::copysign(z, t);
+}
+
+double detectable_shift(double threshold, double degrees, double power) {
+  if (std::isinf(degrees)) return threshold + normal_quantile(power);
+  const auto excess = [&](double shift) {
+    return bm::cdf(bm::complement(bm::non_central_t(degrees, shift), threshold)) - power;
+  };
+  double top = 1;
+  while (excess(top) < 0) top *= 2;
+  const auto [low, high] = bm::tools::bisect(excess, 0.0, top, bm::tools::eps_tolerance<double>(40));
+  return 0.5 * (low + high);
 }
 
 double normal_quantile(double p) { return bm::quantile(bm::normal(), p); }

@@ -40,8 +40,11 @@ double denominator_squared_error(std::span<const double> a, std::span<const doub
 double peak_signal_to_noise(double mse, double peak);
 
 // Delete-one jackknife: `whole` from all groups, `without[b]` from all but group b. The interval uses Student's t with
-// one degree less than there are groups.
-Estimate jackknife(double whole, std::span<const double> without);
+// one degree less than there are groups; a further `variance` that is known better widens it (Welch's degrees).
+Estimate jackknife(double whole, std::span<const double> without, double variance = 0);
+
+// The value without its bias of first order in 1 / groups: n whole - (n - 1) mean of `without` (Quenouille).
+double jackknife_value(double whole, std::span<const double> without);
 
 // Two-sided threshold on the largest |z| of m independent standard normal values at false-alarm rate alpha:
 // Phi^-1(1 - (1 - (1-alpha)^(1/m))/2); and Bonferroni's, which is a little larger.
@@ -57,6 +60,10 @@ double chi_square_below(double x, double m);
 
 // The standard normal value with the same two-sided probability as Student's t with `degrees` of freedom.
 double normal_from_student(double t, double degrees);
+
+// How many standard deviations a mean must lie from 0 for Student's t of it to exceed `threshold` with probability
+// `power`: the noncentrality of t. Infinite degrees: the sum of threshold and normal quantile.
+double detectable_shift(double threshold, double degrees, double power);
 
 // Quantiles: of the standard normal, and of Student's t.
 double normal_quantile(double p);

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "scene/error.h"
 
 namespace airlight::scene {
@@ -34,6 +37,18 @@ const std::vector<float>& Film::layer(const std::string& name) const {
 void Film::set(const std::string& name, int x, int y, const Rgb& value) {
   float* pixel = add(name).data() + offset_of(*this, x, y);
   for (int c = 0; c < 3; ++c) pixel[c] = float(value[c]);
+}
+
+void require_finite(const Film& film, const std::string& what) {
+  for (const auto& [name, values] : film.layers)
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::isfinite(values[i])) continue;
+      const std::size_t pixel = i / 3, width = std::max(film.width, 1);
+      const auto by = film.metadata.find("renderer");
+      throw Error(fmt::format("{}: layer '{}', pixel ({}, {}), {}: found {}, expected a finite 32-bit number{}", what,
+                              name, pixel % width, pixel / width, "RGB"[i % 3], values[i],
+                              by == film.metadata.end() ? "" : " from " + by->second));
+    }
 }
 
 Rgb Film::get(const std::string& name, int x, int y) const {

@@ -32,9 +32,13 @@ struct Film {
   Rgb get(const std::string& layer, int x, int y) const;
 };
 
+// Throws Error that begins with `what` and names the first pixel, layer and channel whose value is NaN or infinite.
+void require_finite(const Film&, const std::string& what);
+
 // Writes all layers and metadata, ZIP-compressed floats, to a temporary name and renames it: never half a file. Throws
-// Error.
-void write_exr(const std::string& path, const Film&);
+// Error, also for a value that is not finite (require_finite) unless `any_value`: every picture that is kept passes
+// through here.
+void write_exr(const std::string& path, const Film&, bool any_value = false);
 
 // Reads every RGB layer, whatever the channels' type and the compression; other channels (alpha, depth) are left out.
 // Error (file, what was found) on anything missing, damaged, cropped, deep or multi-part, larger than max_bytes once

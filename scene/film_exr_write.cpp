@@ -73,10 +73,11 @@ void encode(const std::string& path, const Film& film, MemoryStream& stream) {
 
 }  // namespace
 
-void write_exr(const std::string& path, const Film& film) {
+void write_exr(const std::string& path, const Film& film, bool any_value) {
   if (film.width < 1 || film.height < 1 || film.layers.empty())
     throw Error(fmt::format("{}: a film of {} x {} pixels and {} layers cannot be written", path, film.width,
                             film.height, film.layers.size()));
+  if (!any_value) require_finite(film, path);
   MemoryStream stream;
   try {
     encode(path, film, stream);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "experiments/driver/bounds.h"
 #include "experiments/driver/toml_values.h"
 #include "experiments/metrics.h"
 #include "experiments/renderers.h"
@@ -31,14 +32,15 @@ class Reader {
   Experiment read() {
     TableReader top(toml_, "");
     const bool oracles = toml_["kind"].value_or(std::string()) == "oracles";
-    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "vectors"}
+    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "in_tests", "vectors"}
                       : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "stages",
-                                                 "scene", "method", "reference", "timing", "plot", "gate", "speed_up",
-                                                 "expected", "profile"});
+                                                 "in_tests", "scene", "method", "reference", "timing", "plot", "gate",
+                                                 "speed_up", "expected", "profile"});
     experiment_.kind = top.choice("kind", {"images", "oracles"}, "images");
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
     experiment_.about = top.text("about", "");
+    experiment_.in_tests = top.flag("in_tests", false);
     if (experiment_.kind == "oracles") {
       for (const std::string& file : strings(toml_, "vectors", top)) experiment_.vector_files.push_back(root_ / file);
       return experiment_;
@@ -157,6 +159,7 @@ class Reader {
           cases.back().overrides[key] = fmt::format("{}", value);
           cases.back().parameter = value;
           cases.back().name = fmt::format("{} {:g}", scene.name, value);
+          cases.back().swept_from = scene.name;
         }
       }
       if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());
@@ -176,6 +179,7 @@ class Reader {
       method.picture_only = reader.flag("picture_only", false);
       method.count_noise = reader.flag("count_noise", false);
       method.scenes = strings(*table, "scenes", reader);
+      for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
       std::vector<MethodCase> cases{method};
       if (auto sweep = reader.table("sweep")) {
         sweep->allow({"key", "values"});
@@ -206,6 +210,7 @@ class Reader {
       plot.y_label = reader.text("y_label", "");
       plot.per_scene = reader.flag("per_scene", plot.x != "parameter");
       plot.methods = strings(*table, "methods", reader);
+      for (const std::string& name : plot.methods) known(reader, "methods", name, "method");
       for (const std::string key : {"x", "y"}) {
         const std::string& axis = key == "x" ? plot.x : plot.y;
         const std::vector<std::string> axes = {"seconds", "prepare_seconds", "parameter", "setting"};
@@ -225,8 +230,11 @@ class Reader {
              const std::string& list) const {
     std::vector<std::string> names;
     if (list == "metric") {
+      if (value.rfind("counter.", 0) == 0) return;
       names = experiment_.metrics;
       names.push_back("seconds");
+      names.push_back("prepare_seconds");
+      names.push_back("counter.NAME");
     } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
       for (const toml::node& node : *array) {
         const toml::table& table = *node.as_table();
@@ -242,23 +250,62 @@ class Reader {
                       fmt::format("one of {} (nearest: {})", fmt::join(names, ", "), scene::nearest(value, names)));
   }
 
+  // A gate must have a row to judge, and each of its rows a figure.
+  void has_figures(const TableReader& reader, const GateCase& gate) const {
+    const auto wrong = [&](const std::string& what) {
+      reader.fail("", fmt::format("{} in profile {}", what, experiment_.profile));
+    };
+    const std::vector<std::string> tests = {"objections", "largest_z", "detectable_bias"};
+    const bool of_time_or_work =
+        gate.metric == "seconds" || gate.metric == "prepare_seconds" || gate.metric.rfind("counter.", 0) == 0;
+    const bool test = std::find(tests.begin(), tests.end(), gate.metric) != tests.end();
+    const bool noisy_reference = experiment_.reference.renderer == "path_tracer";
+    bool found = false;
+    for (const SceneCase& c : experiment_.scenes)
+      for (const MethodCase& m : experiment_.methods) {
+        if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
+        found = true;
+        if (of_time_or_work) continue;
+        if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
+        if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
+        if (test && !noisy_reference && m.renderer != "path_tracer")
+          wrong(fmt::format("{} needs noise, and neither '{}' nor the reference has any", gate.metric, m.name));
+        if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");
+      }
+    if (!found)
+      wrong(fmt::format("there is no row of method '{}'{}{}", gate.method,
+                        gate.setting.empty() ? "" : fmt::format(" with setting {}", gate.setting),
+                        gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene)));
+  }
+
   void checks(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "gate")) {
-      reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "why", "profiles"});
+      reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "measured", "why", "profiles"});
       GateCase gate;
       gate.scene = reader.text("scene", "");
-      gate.method = reader.text("method");
+      gate.method = reader.text("method", "");
       gate.metric = reader.text("metric");
       if (reader.has("setting")) gate.setting = plain(*table->get("setting"));
       gate.why = reader.text("why", "");
+      gate.position = scene::load::location(table->source());
       if (!gate.scene.empty()) known(reader, "scene", gate.scene, "scene");
-      known(reader, "method", gate.method, "method");
+      if (!gate.method.empty()) known(reader, "method", gate.method, "method");
       known(reader, "metric", gate.metric, "metric");
-      reader.one_of({"at_most", "at_least"});
+      const bool bounded = reader.has("at_most") || reader.has("at_least");  // else by row alone
+      if (bounded) reader.one_of({"at_most", "at_least"});
       if (reader.has("at_most")) gate.at_most = reader.number("at_most", scene::load::any_number);
       if (reader.has("at_least")) gate.at_least = reader.number("at_least", scene::load::any_number);
-      if (in_profile(*table, reader)) experiment_.gates.push_back(gate);
+      if (reader.has("measured")) {
+        // For people who read the file; what it is now, `airlight gates --margins` tells.
+        const double measured = reader.number("measured", scene::load::any_number);
+        if (measured > gate.at_most || measured < gate.at_least)
+          reader.fail("measured", fmt::format("measured = {:g} fails this gate", measured));
+      }
+      if (!in_profile(*table, reader) || !(bounded || experiment_.profile == "quick")) continue;
+      has_figures(reader, gate);
+      experiment_.gates.push_back(gate);
     }
+    if (experiment_.profile == "quick") add_bounds(experiment_, fs::path(file_).replace_extension(".bounds.csv"));
     for (auto& [table, reader] : lists(top, "speed_up")) {
       reader.allow({"baseline", "method", "metric"});
       experiment_.speed_ups.push_back({reader.text("baseline"), reader.text("method"), reader.text("metric")});
@@ -294,6 +341,18 @@ class Reader {
 
 Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
   return Reader(root, id, profile).read();
+}
+
+bool is_on(const MethodCase& m, const SceneCase& c) {
+  return m.scenes.empty() || std::any_of(m.scenes.begin(), m.scenes.end(), [&](const std::string& name) {
+           return name == c.name || name == c.swept_from;
+         });
+}
+
+bool judges(const GateCase& gate, const std::string& scene, const std::string& method, const std::string& setting) {
+  if (gate.by_row) return scene == gate.scene && method == gate.method && setting == gate.setting;
+  return (gate.scene.empty() || scene == gate.scene || scene.rfind(gate.scene + " ", 0) == 0) &&
+         (gate.method.empty() || method == gate.method) && (gate.setting.empty() || setting == gate.setting);
 }
 
 std::string results_name(const std::string& id, const std::string& profile) {

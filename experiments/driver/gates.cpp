@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "experiments/driver/outcome.h"
 
@@ -14,11 +15,30 @@ std::string figure(const Row& row, const std::string& metric) {
   return row.note.empty() ? "undefined" : row.note;
 }
 
+std::string kind_of(const Row& row, const std::string& metric) {
+  if (metric == "seconds" || metric == "prepare_seconds") return "time";
+  if (metric.rfind("counter.", 0) == 0) return "counter";
+  for (const char* test : {"objections", "largest_z", "detectable_bias"})
+    if (metric == test) return "Monte Carlo";  // of equality but for noise
+  for (const Measure& m : row.measures)
+    if (m.name == metric && (m.floor > 0 || m.low < m.high)) return "Monte Carlo";
+  return "deterministic";
+}
+
 GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& row) {
   const bool upper = std::isfinite(gate.at_most);
   const double bound = upper ? gate.at_most : gate.at_least;
   const auto e = quantity(row, gate.metric);
   GateResult result;
+  result.scene = row.scene;
+  result.method = row.method;
+  result.setting = row.setting;
+  result.metric = gate.metric;
+  result.position = gate.position;
+  result.kind = kind_of(row, gate.metric);
+  result.upper = upper;
+  result.bound = bound;
+  result.measured = e;
   result.skipped = row.unavailable;
   result.passed = e && (upper ? e->low <= bound : e->high >= bound);
   result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
@@ -29,6 +49,18 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
                                             : " fails:",
                             figure(row, gate.metric));
   if (!gate.why.empty()) result.text += fmt::format(" ({})", gate.why);
+  return result;
+}
+
+// A figure that a gate covers and that nothing bounds: new, or measured on another device.
+GateResult unbounded(const Experiment& experiment, const GateCase& gate, const Row& row, bool other_device) {
+  GateResult result;
+  result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
+                            row.setting.empty() ? "" : " " + row.setting, gate.metric);
+  result.skipped = other_device;
+  result.text = result.name + (other_device ? " is skipped: its bound was measured on another device: "
+                                            : " fails: it has no bound; scripts/tighten gives it one: ");
+  result.text += figure(row, gate.metric);
   return result;
 }
 
@@ -44,18 +76,29 @@ const char* word(const GateResult& gate) { return gate.skipped ? "skipped" : gat
 
 std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::vector<GateResult> results;
+  std::set<std::pair<const Row*, std::string>> held;   // row and metric have a bound by row,
+  std::set<std::pair<const Row*, std::string>> apart;  // one that was measured on another device
   for (const GateCase& gate : experiment.gates) {
-    const std::size_t before = results.size();
+    bool any = false;
     for (const Row& row : rows) {
-      // A swept scene is called "name value": a gate on the name means all of them.
-      const bool scene = gate.scene.empty() || row.scene == gate.scene || row.scene.rfind(gate.scene + " ", 0) == 0;
-      if (scene && row.method == gate.method && (gate.setting.empty() || row.setting == gate.setting))
-        results.push_back(judge(experiment, gate, row));
+      if (!judges(gate, row.scene, row.method, row.setting)) continue;
+      any = true;
+      const auto figure = std::make_pair(&row, gate.metric);
+      if (gate.by_row) {
+        const bool same = row.unavailable || row.device == gate.device;
+        (same ? held : apart).insert(figure);
+        if (same) results.push_back(judge(experiment, gate, row));
+      } else if (!held.count(figure)) {
+        if (std::isfinite(gate.at_most) || std::isfinite(gate.at_least))
+          results.push_back(judge(experiment, gate, row));
+        else if (quantity(row, gate.metric))
+          results.push_back(unbounded(experiment, gate, row, apart.count(figure)));
+      }
     }
-    if (results.size() == before) {
+    if (!any) {
       const std::string name = fmt::format("{}: {}, {} {}: {}", experiment.id, gate.scene.empty() ? "any" : gate.scene,
                                            gate.method, gate.setting, gate.metric);
-      results.push_back({name, name + " fails: there is no such row", false, false});
+      results.push_back({name, name + " fails: there is no such row"});
     }
   }
   return results;

@@ -25,6 +25,10 @@ GateResult judge(const std::string& id, const std::string& file, const VerifyKin
   GateResult gate;
   gate.name = fmt::format("{}: {}, {}", id, file, kind.kind);
   gate.passed = kind.out == 0;
+  gate.kind = "deterministic";
+  gate.metric = "share of tolerance";
+  gate.bound = 1;
+  gate.measured = Estimate{kind.worst_share, kind.worst_share, kind.worst_share};
   gate.text =
       fmt::format("{}: {} of {} numbers within tolerance, worst at {:.2g} of it{}", gate.name, kind.numbers - kind.out,
                   kind.numbers, kind.worst_share, kind.worst.empty() ? "" : " (" + kind.worst + ")");
@@ -70,6 +74,11 @@ Outcome run_oracles(Experiment experiment, const RunOptions& options) {
     if (kind.numbers == 0) continue;
     outcome.gates.push_back(judge(e.id, file, kind));
     if (options.talk) fmt::print("  {}\n", outcome.gates.back().text);
+  }
+
+  if (outcome.gates.empty()) {
+    const std::string name = e.id + ": any vector";
+    outcome.gates.push_back({name, name + " fails: no number was compared", false, false});
   }
 
   const fs::path folder = options.root / "results" / results_name(e.id, e.profile);

@@ -1,5 +1,6 @@
 // What a run of an experiment found: rows, what they were compared with, gates.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct GateResult {
   std::string text;  // with figures
   bool passed = false;
   bool skipped = false;  // neither passed nor failed: the row is unavailable on this machine
+  // What margins.h lists.
+  std::string scene = {}, method = {}, setting = {}, metric = {};  // empty where the gate judges no row
+  std::string position = {};                                       // of the [[gate]]: file:line:column
+  std::string kind = {};                                           // "deterministic", "Monte Carlo", "counter", "time"
+  bool upper = true;                                               // at_most; else at_least
+  double bound = 0;
+  std::optional<Estimate> measured = {};  // nothing where the figure is not defined
 };
 
 // How many passed, failed and were skipped.
@@ -40,7 +48,8 @@ struct Outcome {
 };
 
 // Each gate against every row that it names: fails if the whole interval lies beyond the bound, if the figure is not
-// defined, and if there is no such row. Skipped if the row is unavailable on this machine.
+// defined, and if there is no such row. Skipped if the row is unavailable on this machine. Where a bound by row
+// (bounds.h) was measured on the same device it stands for that of the [[gate]]; a figure without any bound fails.
 std::vector<GateResult> judge(const Experiment&, const std::vector<Row>&);
 
 }  // namespace airlight::experiments

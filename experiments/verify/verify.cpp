@@ -33,6 +33,8 @@ std::vector<Work> read_file(const std::string& path) {
   const Value vectors = file["vectors"];
   std::vector<Work> work;
   std::set<std::string> ids;
+  std::string unknown;  // the first vector of an unknown kind
+  std::size_t unknown_count = 0;
   if (file.has("count") && file["count"].integer() != int(vectors.size()))
     file["count"].complain(fmt::format("{}, the number of vectors", vectors.size()));
   for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -44,11 +46,15 @@ std::vector<Work> read_file(const std::string& path) {
     const Reader read = find_reader(family, kind);
     if (!read) {
       const std::vector<std::string> kinds = known_kinds(family);
-      throw Error(fmt::format("{}: unknown kind '{}', expected one of {} (nearest: {})", named.where(), kind,
-                              fmt::join(kinds, ", "), scene::nearest(kind, kinds)));
+      if (++unknown_count == 1)
+        unknown = fmt::format("{}: unknown kind '{}', expected one of {} (nearest: {})", named.where(), kind,
+                              fmt::join(kinds, ", "), scene::nearest(kind, kinds));
+      continue;
     }
     work.push_back({id, kind, read(named)});
   }
+  if (unknown_count)
+    throw Error(fmt::format("{}; {} of {} vectors are of unknown kinds", unknown, unknown_count, vectors.size()));
   return work;
 }
 
@@ -82,9 +88,23 @@ void count(VerifyKind& line, const std::string& id, const Outcome& outcome) {
   }
 }
 
+// What became of the vectors of one file, or of all.
 struct Totals {
   int vectors = 0, numbers = 0, out = 0, not_yet = 0, left_out = 0;
+  void add(const VerifyKind& line) {
+    vectors += line.vectors;
+    numbers += line.numbers;
+    out += line.out;
+    not_yet += line.not_yet;
+    left_out += line.left_out;
+  }
 };
+
+std::string text(const Totals& t) {
+  return fmt::format(
+      "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors not known yet",
+      t.vectors, t.numbers, t.numbers - t.out, t.out, t.left_out, t.not_yet);
+}
 
 }  // namespace
 
@@ -101,7 +121,6 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
                             scene::nearest(kind, {kinds.begin(), kinds.end()})));
 
   std::vector<VerifyKind> kinds_found;
-  Totals totals;
   std::map<std::string, int> waiting;
   std::vector<std::string> failures;
   for (const auto& [path, work] : all) {
@@ -110,44 +129,43 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
                        "got", "rel.err", "tolerance", "");
     for (const Work& w : work) {
       if (!kind.empty() && w.kind != kind) continue;
+      VerifyKind& line = line_of(kinds_found, path, w.kind);
       if (!w.check.job) {
         out << fmt::format("{:<42} {:<32} not yet: {}\n", w.id, w.kind, w.check.not_yet);
-        ++totals.not_yet;
         ++waiting[w.check.not_yet];
-        ++line_of(kinds_found, path, w.kind).not_yet;
+        ++line.not_yet;
         continue;
       }
       check_interrupted();
       const auto start = std::chrono::steady_clock::now();
       const Outcome outcome = w.check.job(profile);
-      VerifyKind& line = line_of(kinds_found, path, w.kind);
       line.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       count(line, w.id, outcome);
-      if (!outcome.comparisons.empty()) ++totals.vectors;
       for (const Comparison& c : outcome.comparisons) {
-        const bool ok = c.ok();
         out << fmt::format("{:<42} {:<32} {:<22} {:>20.13g} {:>20.13g} {:>9.1e}  {:<26} {}\n", w.id, w.kind, c.what,
-                           c.expected, c.got, relative_error(c), c.tolerance_text, ok ? "ok" : "OUT");
-        ++totals.numbers;
-        if (ok) continue;
-        ++totals.out;
-        failures.push_back(w.id + (c.what.empty() ? "" : " " + c.what));
+                           c.expected, c.got, relative_error(c), c.tolerance_text, c.ok() ? "ok" : "OUT");
+        if (!c.ok()) failures.push_back(w.id + (c.what.empty() ? "" : " " + c.what));
       }
-      if (outcome.left_out) {
+      if (outcome.left_out)
         out << fmt::format("{:<42} {:<32} {} numbers left out: {}\n", w.id, w.kind, outcome.left_out,
                            outcome.left_out_because);
-        totals.left_out += outcome.left_out;
-      }
       out.flush();
     }
   }
   for (const auto& [what, count] : waiting) out << fmt::format("not yet: {} of {}\n", count, what);
   for (const std::string& f : failures) out << "OUT: " << f << "\n";
-  out << fmt::format(
-      "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors not yet\n",
-      totals.vectors, totals.numbers, totals.numbers - totals.out, totals.out, totals.left_out, totals.not_yet);
+  Totals totals;
+  for (const VerifyKind& line : kinds_found) totals.add(line);
+  for (const auto& [path, work] : all) {
+    Totals of_file;
+    for (const VerifyKind& line : kinds_found)
+      if (line.file == path) of_file.add(line);
+    out << path << ": " << text(of_file) << "\n";
+  }
+  if (all.size() > 1) out << "all files: " << text(totals) << "\n";
+  if (totals.numbers == 0) out << "FAILED: no number was compared\n";
   if (table) *table = kinds_found;
-  return totals.out ? 1 : 0;
+  return totals.out || totals.numbers == 0 ? 1 : 0;
 }
 
 }  // namespace airlight::experiments

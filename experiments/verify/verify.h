@@ -27,12 +27,12 @@ struct VerifyKind {
 
 // Reads every vector of the files, whatever their schema, and prints one line per compared number:
 //   id, kind, what, expected, got, relative error, tolerance, ok or OUT
-// then the counts. Kinds of methods that are not built are listed as "not yet" and counted. With `kind`, only vectors
-// of that kind. Everything is read before anything is computed.
+// then the counts of each file. Vectors of methods that are not built are listed as "not yet" and counted. With `kind`,
+// only vectors of that kind. Everything is read before anything is computed.
 //
-// Returns 0 if all compared numbers are within tolerance, 1 if any is out. Throws Error (exit code 2) naming file and
-// entry for a file that cannot be parsed, an unknown format or kind, or a malformed entry; and if no vector has the
-// wanted kind. `kinds` receives the figures per file and kind, in their order of appearance.
+// Returns 0 if all compared numbers are within tolerance, 1 if any is out or none was compared. Throws Error (exit code
+// 2) naming file and entry for a file that cannot be parsed, an unknown format or kind, or a malformed entry; and if no
+// vector has the wanted kind. `kinds` receives the figures per file and kind, in their order of appearance.
 int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile, std::ostream&,
            std::vector<VerifyKind>* kinds = nullptr);
 

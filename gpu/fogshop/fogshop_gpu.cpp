@@ -14,6 +14,7 @@
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
+#include "scene/single_precision.h"
 
 namespace airlight::gpu {
 namespace {
@@ -218,6 +219,7 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const fogshop::Options options = fogshop::read_options(settings);
   if (options.slices > most_slices)
     reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));

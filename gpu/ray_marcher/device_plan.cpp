@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "gpu/ray_marcher/scene_data.h"
@@ -15,15 +14,14 @@ namespace {
 
 constexpr int tile = 8;                                    // pixels, to both sides; a tile is a work group
 constexpr std::size_t band_bytes = std::size_t(32) << 20;  // of the pixels that are on the device at once
-constexpr double aim_seconds = 0.1;                        // of a dispatch
-constexpr double first_tiles = 16;                         // of the first one
+constexpr double first_tiles = 16;                         // of the first dispatch
 // Iterations of loops that an invocation does in a dispatch, about. llvmpipe ends all loops of eight invocations
 // together after 65535 iterations, silently; on a GPU what counts is that a dispatch does not last.
 constexpr int software_budget = 3000, budget = 100000;
+// Of all invocations of a dispatch, about, in units of 256: a tenth of a second or less.
+constexpr double software_aim = 4e6 / 256, aim = 2e9 / 256;
 constexpr double software_most = 65535;
 constexpr float far_away = 1e37f;  // as layer.glsl
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <class Has>
 bool any_layer(const ray_marcher::Plan& plan, Has has) {
@@ -122,10 +120,11 @@ std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const Buf
   if (distances) distances->bind(5);
 
   p.set("budget", context_.software() ? software_budget : budget);
-  Buffer unfinished(context_, "unfinished pixels", sizeof(unsigned));
-  unfinished.bind(10);
+  Buffer progress(context_, "progress", 2 * sizeof(unsigned));
+  progress.bind(10);
 
-  // How many tiles a dispatch takes follows from how long the last one took; no pixel depends on it.
+  // How many tiles a dispatch takes follows from the work that the last one did, not from the clock: dispatches are
+  // counted, and the same picture takes the same number of them. No pixel depends on it.
   const double tiles = double(columns) * ((view.height + tile - 1) / tile);
   double tiles_at_once = first_tiles;
   std::vector<MarchedPixel> image;
@@ -142,11 +141,12 @@ std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const Buf
       const int count = std::clamp(int(std::min(tiles_at_once, 1e9)), 1, most);
       p.set("first_tile", first);
       for (bool done = false; !done;) {
-        const double start = now();
-        unfinished.upload(std::vector<unsigned>{0});
+        progress.upload(std::vector<unsigned>{0, 0});
         p.dispatch(count * tile, tile);
-        done = unfinished.download<unsigned>()[0] == 0;
-        tiles_at_once = std::clamp(count * aim_seconds / std::max(now() - start, 1e-6), 1.0, 4.0 * count);
+        const std::vector<unsigned> after = progress.download<unsigned>();
+        done = after[0] == 0;
+        const double wanted = context_.software() ? software_aim : aim;
+        tiles_at_once = std::clamp(count * wanted / std::max(1u, after[1]), 1.0, 4.0 * count);
         if (execution.progress && !execution.progress((first + (done ? count : 0)) / tiles))
           throw scene::Interrupted("interrupted");
       }

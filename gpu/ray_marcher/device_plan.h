@@ -35,7 +35,7 @@ class PlanOnDevice {
   const GridsOnDevice& grids() const { return grids_; }
 
   // `distances` end the pixels' rays: floats [m], row 0 first; null where all are infinite. The image is done in
-  // dispatches of some tenths of a second, with progress between them; throws scene::Interrupted if asked to stop.
+  // dispatches of about a tenth of a second, with progress between them; throws scene::Interrupted if asked to stop.
   // Requires a layer.
   std::vector<MarchedPixel> march(const scene::View&, const Buffer* distances, const scene::Execution&, StageTimer&);
 

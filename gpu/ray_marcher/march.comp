@@ -26,7 +26,7 @@ struct Pixel {
 };
 layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
 layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
-layout(std430, binding = 10) buffer Unfinished { uint unfinished; };
+layout(std430, binding = 10) buffer Progress { uint unfinished, work_done; };  // pixels; work of all / 256
 uniform int first_tile, tile_columns;  // of this dispatch; of the image
 uniform int first_row;                 // of the pixels in their buffer
 uniform int light_count, balls;        // the first `balls` of the lights are point and spot lights
@@ -152,6 +152,7 @@ bool grids_alone(Part part) {
 // A march along the parts from where it is. False: no budget left.
 bool march(vec3 origin, vec3 direction, int own, Approach seen) {
   float total = measure_of_all();
+  ended = false;
   for (; at_part < part_count; ++at_part) {
     Part part = part_at(at_part);
     float share = measure(part);
@@ -250,6 +251,7 @@ void main() {
   } else {
     atomicAdd(unfinished, 1u);
   }
+  atomicAdd(work_done, work >> 8);
   pixels[place].transmittance = result;
   pixels[place].march = done ? balls + 1 : now;
   pixels[place].part = at_part;

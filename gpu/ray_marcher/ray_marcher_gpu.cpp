@@ -14,6 +14,7 @@
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/single_precision.h"
 
 namespace airlight::gpu {
 namespace {
@@ -166,6 +167,7 @@ std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
 
 std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;

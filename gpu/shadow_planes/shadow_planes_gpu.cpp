@@ -13,6 +13,7 @@
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
+#include "scene/single_precision.h"
 
 namespace airlight::gpu {
 namespace {
@@ -224,6 +225,7 @@ std::vector<scene::SettingSpec> ShadowPlanesGpu::settings() const {
 
 std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = shadow_planes::ShadowPlanes().supports(scene, settings);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = shadow_planes::read_options(settings);
   if (options.evaluator == Options::Evaluator::polynomial && options.degree > most_degree)
     reasons.push_back(fmt::format("degree = {}: single precision takes {} at most", options.degree, most_degree));

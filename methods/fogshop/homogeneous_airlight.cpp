@@ -79,7 +79,7 @@ double homogeneous_airlight(const LightFromRay& light, double d_vp, double beta)
   }
 
   // L_a^h with F in closed form: the factors e^(-T_sv cos gamma) and e^z of the two ends combine into these two.
-  const double height = std::max(h, 1e-30 * d_sv);  // the limit of an exactly aligned light behind the camera
+  const double height = std::max(h, 1e-120 * d_sv);  // the limit of an exactly aligned light behind the camera
   const double one_minus_cos = along > 0 ? height / d_sv * (height / (d_sv + along)) : (d_sv - along) / d_sv;
   double sum = std::exp(-beta * d_sv) * imaginary_e1s(beta * d_sv * one_minus_cos, -beta * height);
   const double end = std::exp(-beta * (d_vp + d_ps));

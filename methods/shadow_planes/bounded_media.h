@@ -58,7 +58,7 @@ Rgb BoundedMedia::airlight(const MappedRule<double>& rule, const Ray& ray, const
     if (here.empty()) continue;
     for (int channel = 0; channel < 3; ++channel) {
       if (!(extinction[channel] > 0)) continue;
-      const double h = std::max(from.h, 1e-30 * std::abs(part.x0 - from.T));
+      const double h = std::max(from.h, 1e-120 * std::abs(part.x0 - from.T));
       // x - x0 is half of h (q - q0) at least; the light's way, which grows with it elsewhere, may get less here: by as
       // much as dims it where the part begins.
       const Vec3 first = ray.at(part.x0) - light;

@@ -31,7 +31,7 @@ struct MappedRule {
   std::vector<Real> node, weight;  // on [0, 1]
   // Depths beyond which nothing is left, and the least h that may be told from 0.
   static constexpr Real depth_cut = std::is_same_v<Real, float> ? Real(20) : Real(38);
-  static constexpr Real h_floor = std::is_same_v<Real, float> ? Real(1e-12) : Real(1e-30);
+  static constexpr Real h_floor = std::is_same_v<Real, float> ? Real(1e-12) : Real(1e-120);
 };
 
 // Lit from x0 [m] along the ray over `length` [m], which may be infinite.
@@ -79,7 +79,7 @@ PartMap<Real> map_part(const MappedRule<Real>& rule, Real width, Real extinction
 // (1/h) integral over q of factor(q, v, w, q - q0) 2/(1 + q^2) dq [1/m times the factor's unit], with nodes for a
 // factor that falls as e^(-extinction h (q - q0)) from its first value; v and w as in phase_form.h. `T`, `h` [m] as
 // LightFromRay, `extinction` and `slowest` [1/m] >= 0 as map_part, `width` of the phase function. With h = 0 as if h
-// were h_floor: 1e30 and more where the light is within, infinite where the part begins or ends there.
+// were h_floor: 1e120 and more where the light is within, infinite where the part begins or ends there.
 template <class Real, class Factor>
 Real mapped_integral(const MappedRule<Real>& rule, Real width, Real extinction, Real slowest, Real T, Real h,
                      const LitPart<Real>& part, Factor&& factor) {

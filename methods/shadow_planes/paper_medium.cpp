@@ -74,7 +74,7 @@ Rgb PaperMedium::operator()(const scene::Light& light, const Ray& ray, Interval 
 template <class Intensity>
 double PaperMedium::part(double k, const LightFromRay& from, double x_in, Interval lit, Intensity&& intensity) const {
   // x - x_in, the way to the eye, is T - x_in + h tan(theta).
-  const double T = from.T, h = std::max(from.h, 1e-30 * std::min(std::abs(lit.lo - T), std::abs(lit.hi - T)));
+  const double T = from.T, h = std::max(from.h, 1e-120 * std::min(std::abs(lit.lo - T), std::abs(lit.hi - T)));
   if (options_.evaluator == Options::Evaluator::polynomial) {
     const double begin = std::atan2(lit.lo - T, h), end = std::atan2(lit.hi - T, h);
     const double centre = options_.centred ? 0.5 * (begin + end) : 0;

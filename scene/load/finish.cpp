@@ -2,6 +2,7 @@
 #include <string>
 
 #include "scene/geometry/brdf_table.h"
+#include "scene/light_on_surface.h"
 #include "scene/load/content_hash.h"
 #include "scene/scene.h"
 
@@ -164,6 +165,7 @@ std::string content_hash(const Scene& scene) {
 
 void finish(Scene& scene) {
   scene.geometry = scene.surfaces.empty() ? nullptr : std::make_shared<const Geometry>(scene.surfaces);
+  move_lights_off_surfaces(scene);
   scene.hash = content_hash(scene);
 }
 

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include "scene/error.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 
 namespace airlight::scene::load {
 
@@ -9,7 +12,8 @@ Camera read_camera(TableReader reader) {
   const Vec3 position = reader.vector("position");
   const Vec3 target = reader.vector("look_at");
   const Vec3 up = reader.direction("up", Vec3::UnitY());
-  if (position == target) reader.expected("look_at", "a point other than the camera's position");
+  if (!((target - position).norm() >= least_length))
+    reader.expected("look_at", fmt::format("a point {} m or more from the camera's position", least_length));
   Camera camera;
   try {
     camera = look_at(position, target, up);
@@ -18,9 +22,9 @@ Camera read_camera(TableReader reader) {
   }
   camera.kind = perspective ? Camera::Kind::perspective : Camera::Kind::orthographic;
   if (perspective)
-    camera.vertical_fov = reader.number("vertical_fov", {0, pi, true, true}, 0.7);
+    camera.vertical_fov = reader.number("vertical_fov", field_of_view, 0.7);
   else
-    camera.height = reader.number("height", positive);
+    camera.height = reader.number("height", length);
   return camera;
 }
 

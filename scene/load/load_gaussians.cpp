@@ -8,6 +8,7 @@
 #include "scene/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/printable.h"
 
 namespace airlight::scene::load {
@@ -31,6 +32,7 @@ std::string shown(std::string_view text) { return printable(text, 40); }
 
 Gaussian read_row(std::string_view row, const std::string& path, std::size_t line) {
   static constexpr const char* names[] = {"center_x", "center_y", "center_z", "width", "amplitude"};
+  static constexpr Range ranges[] = {coordinate, coordinate, coordinate, length, signed_amount};
   std::array<double, 5> values{};
   std::size_t begin = 0;
   for (int i = 0; i < 5; ++i) {
@@ -39,10 +41,9 @@ Gaussian read_row(std::string_view row, const std::string& path, std::size_t lin
     const std::size_t end = std::min(row.find(',', begin), row.size());
     const std::string_view cell = trimmed(row.substr(begin, end - begin));
     const auto [stop, code] = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
-    const bool number = code == std::errc() && stop == cell.data() + cell.size() && std::isfinite(values[i]);
-    if (!number || (i == 3 && !(values[i] > 0)))
-      fail_at(path, line, begin + 1,
-              fmt::format("{} = {}, expected {}", names[i], shown(cell), i == 3 ? "a number > 0" : "a finite number"));
+    const bool number = code == std::errc() && stop == cell.data() + cell.size();
+    if (!number || !ranges[i].contains(values[i]))
+      fail_at(path, line, begin + 1, fmt::format("{} = {}, expected {}", names[i], shown(cell), ranges[i].words()));
     begin = end + 1;
   }
   if (begin <= row.size()) fail_at(path, line, begin, fmt::format("found more than 5 values, expected {}", header));
@@ -71,7 +72,7 @@ std::vector<Gaussian> read_csv(const std::string& path) {
 
 Gaussian read_gaussian(TableReader reader) {
   reader.allow({"center", "width", "amplitude"});
-  return {reader.vector("center"), reader.number("width", positive), reader.number("amplitude", any_number)};
+  return {reader.vector("center"), reader.number("width", length), reader.number("amplitude", signed_amount)};
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ Gaussian read_gaussian(TableReader reader) {
 GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file"}));
   GaussianSum sum;
-  sum.constant = reader.number("constant", not_negative, 0);
-  sum.cutoff = reader.number("cutoff", {0, infinity, true, false, true}, infinity);
+  sum.constant = reader.number("constant", amount, 0);
+  sum.cutoff = reader.number("cutoff", widths, infinity);
   if (reader.one_of({"gaussians", "file"}) == "file") {
     sum.gaussians = read_csv(find_asset(reader, "file", folder));
   } else {

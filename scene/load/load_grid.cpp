@@ -1,11 +1,10 @@
 // A voxel grid: from an OpenVDB file, or a small one written in the scene file.
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "scene/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/load/transform.h"
 
 namespace airlight::scene::load {
@@ -28,9 +27,9 @@ VoxelGrid read_inline(const TableReader& reader) {
   VoxelGrid grid;
   const auto size = reader.integers("size", 3, 1, 1 << 20);
   grid.size = {int(size[0]), int(size[1]), int(size[2])};
-  grid.voxel_size = reader.number("voxel_size", positive);
+  grid.voxel_size = reader.number("voxel_size", length);
   grid.translation = reader.vector("origin");
-  const std::vector<double> values = reader.numbers("values", {0, std::numeric_limits<float>::max()});
+  const std::vector<double> values = reader.numbers("values", {0, amount.greatest});
   const double expected = double(size[0]) * double(size[1]) * double(size[2]);
   if (double(values.size()) != expected)
     reader.fail("values", fmt::format("values has {} numbers, expected {} = {} x {} x {}, x fastest", values.size(),
@@ -56,6 +55,7 @@ std::shared_ptr<const VoxelGrid> read_grid(TableReader& reader, const std::strin
   grid.translation = outer(grid.translation);
   grid.rotation = outer.rotation * grid.rotation;
   grid.voxel_size *= outer.scale;
+  require_near(reader, from_file ? "file" : "size", grid);
   return std::make_shared<const VoxelGrid>(std::move(grid));
 }
 

@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 
 namespace airlight::scene::load {
 namespace {
 
 PointLight read_point(TableReader reader) {
   reader.allow({"type", "position", "intensity", "radius"});
-  return {reader.vector("position"), reader.color("intensity", not_negative), reader.number("radius", not_negative, 0)};
+  return {reader.vector("position"), reader.color("intensity", amount), reader.number("radius", length_or_zero, 0)};
 }
 
 SpotLight read_spot(TableReader reader) {
@@ -19,7 +20,8 @@ SpotLight read_spot(TableReader reader) {
   } else {
     const Vec3 view = reader.vector("target") - spot.position;
     const double distance = view.stableNorm();
-    if (!(distance > 0)) reader.expected("target", "a point other than the light's position");
+    if (!(distance >= least_length))
+      reader.expected("target", fmt::format("a point {} m or more from the light's position", least_length));
     spot.axis = (view / distance).normalized();
   }
   const Range angle{0, pi};
@@ -27,14 +29,14 @@ SpotLight read_spot(TableReader reader) {
   spot.inner_angle = reader.number("inner_angle", angle, spot.outer_angle);
   if (spot.inner_angle > spot.outer_angle)
     reader.expected("inner_angle", fmt::format("at most outer_angle = {}", spot.outer_angle));
-  spot.intensity = reader.color("intensity", not_negative);
-  spot.radius = reader.number("radius", not_negative, 0);
+  spot.intensity = reader.color("intensity", amount);
+  spot.radius = reader.number("radius", length_or_zero, 0);
   return spot;
 }
 
 DirectionalLight read_directional(TableReader reader) {
   reader.allow({"type", "to_light", "irradiance"});
-  return {reader.direction("to_light"), reader.color("irradiance", not_negative)};
+  return {reader.direction("to_light"), reader.color("irradiance", amount)};
 }
 
 }  // namespace

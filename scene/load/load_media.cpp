@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/load/transform.h"
 
 namespace airlight::scene::load {
@@ -8,7 +11,7 @@ PhaseFunction read_phase(TableReader reader) {
   const std::string type = reader.type({"isotropic", "rayleigh", "hg", "hazy", "murky"});
   if (type == "hg") {
     reader.allow({"type", "g"});
-    return HenyeyGreenstein{reader.number("g", {-1, 1, true, true})};
+    return HenyeyGreenstein{reader.number("g", anisotropy)};
   }
   reader.allow({"type"});
   if (type == "rayleigh") return Rayleigh{};
@@ -25,13 +28,14 @@ Region read_region(TableReader reader) {
   }
   if (type == "sphere") {
     reader.allow({"type", "center", "radius"});
-    return Sphere{reader.vector("center"), reader.number("radius", positive)};
+    return Sphere{reader.vector("center"), reader.number("radius", length)};
   }
   if (type == "slab") {
     reader.allow({"type", "normal", "lo", "hi"});
-    const Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", any_number),
-                    reader.number("hi", any_number)};
-    if (!(slab.lo < slab.hi)) reader.expected("hi", "a number above 'lo'");
+    const Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", coordinate),
+                    reader.number("hi", coordinate)};
+    if (!(slab.hi - slab.lo >= least_length))
+      reader.expected("hi", fmt::format("a number {} m or more above 'lo'", least_length));
     return slab;
   }
   reader.allow({"type"});
@@ -43,7 +47,7 @@ DensityField read_field(const std::string& type, TableReader& reader, const std:
   if (type == "gaussians") return read_gaussian_sum(reader, folder);
   if (type == "grid") return read_grid(reader, folder);
   reader.allow(medium_keys_and({"density"}));
-  return Homogeneous{reader.number("density", not_negative, 1)};
+  return Homogeneous{reader.number("density", amount, 1)};
 }
 
 }  // namespace
@@ -59,7 +63,8 @@ Medium read_medium(TableReader reader, const std::string& folder) {
   Medium medium;
   medium.field = read_field(type, reader, folder);
   medium.name = reader.text("name", "");
-  medium.sigma_t = reader.color("sigma_t", not_negative, Rgb::Ones());
+  medium.sigma_t = reader.color("sigma_t", amount, Rgb::Ones());
+  require_extinction(reader, medium);
   medium.albedo = reader.color("albedo", share, Rgb::Ones());
   if (const auto phase = reader.table("phase")) medium.phase = read_phase(*phase);
   if (const auto region = reader.table("region")) medium.region = read_region(*region);

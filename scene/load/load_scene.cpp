@@ -5,6 +5,7 @@
 #include "scene/load/overrides.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {
@@ -18,7 +19,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   reader.allow({"name", "ambient_in_scatter", "film", "camera", "light", "medium", "surface"});
   Scene scene;
   scene.name = reader.text("name", std::filesystem::path(name).stem().string());
-  scene.ambient_in_scatter = reader.color("ambient_in_scatter", not_negative, Rgb::Zero());
+  scene.ambient_in_scatter = reader.color("ambient_in_scatter", amount, Rgb::Zero());
   if (auto film = reader.table("film")) {
     film->allow({"width", "height"});
     scene.width = int(film->integer("width", 1, 16384, scene.width));
@@ -26,9 +27,16 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   }
   scene.camera = read_camera(reader.required_table("camera"));
   for (const TableReader& light : reader.tables("light")) scene.lights.push_back(read_light(light, folder));
-  for (const TableReader& medium : reader.tables("medium")) scene.media.push_back(read_medium(medium, folder));
+  for (TableReader& medium : reader.tables("medium")) {
+    scene.media.push_back(read_medium(medium, folder));
+    require_resolved(medium, scene, scene.media.back());
+  }
   for (const TableReader& surface : reader.tables("surface")) scene.surfaces.push_back(read_surface(surface, folder));
-  finish(scene);
+  try {
+    finish(scene);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: {}", name, e.what()));
+  }
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include "scene/geometry/round_shapes.h"
 #include "scene/geometry/teapot.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 
 namespace airlight::scene::load {
 namespace {
@@ -15,9 +16,9 @@ TriangleMesh read_displaced_sphere(TableReader& reader) {
   DisplacedSphere sphere;
   sphere.center = reader.vector("center", Vec3(Vec3::Zero()));
   if (reader.one_of({"radius", "radii"}) == "radius") {
-    sphere.radii.setConstant(reader.number("radius", positive));
+    sphere.radii.setConstant(reader.number("radius", length));
   } else {
-    const auto radii = reader.numbers("radii", positive, 3);
+    const auto radii = reader.numbers("radii", length, 3);
     sphere.radii = {radii[0], radii[1], radii[2]};
   }
   const auto size = reader.integers("size", 2, 3, most);
@@ -26,12 +27,12 @@ TriangleMesh read_displaced_sphere(TableReader& reader) {
   for (TableReader wave : reader.tables("waves")) {
     wave.allow({"amplitude", "wave_vector", "phase"});
     sphere.waves.push_back(
-        {wave.number("amplitude", any_number), wave.vector("wave_vector"), wave.number("phase", any_number, 0)});
+        {wave.number("amplitude", coordinate), wave.vector("wave_vector"), wave.number("phase", coordinate, 0)});
   }
   for (TableReader bump : reader.tables("bumps")) {
     bump.allow({"direction", "width", "height"});
     sphere.bumps.push_back(
-        {bump.direction("direction"), bump.number("width", positive), bump.number("height", any_number)});
+        {bump.direction("direction"), bump.number("width", length), bump.number("height", coordinate)});
   }
   return make_displaced_sphere(sphere);
 }
@@ -41,8 +42,8 @@ TriangleMesh read_torus(TableReader& reader) {
   Torus torus;
   torus.center = reader.vector("center", Vec3(Vec3::Zero()));
   torus.axis = reader.direction("axis", Vec3(Vec3::UnitY()));
-  torus.radius = reader.number("radius", positive);
-  torus.tube_radius = reader.number("tube_radius", {0, torus.radius, true, true});
+  torus.radius = reader.number("radius", length);
+  torus.tube_radius = reader.number("tube_radius", {least_length, torus.radius, false, true});
   const auto size = reader.integers("size", 2, 3, most);
   torus.around = int(size[0]);
   torus.across = int(size[1]);
@@ -52,10 +53,10 @@ TriangleMesh read_torus(TableReader& reader) {
 TriangleMesh read_tube(TableReader& reader) {
   reader.allow(surface_keys_and({"path", "radius", "end_radius", "size", "caps", "transform"}));
   Tube tube;
-  for (const Rgb& point : reader.colors("path", any_number)) tube.path.push_back(point.matrix());
+  for (const Rgb& point : reader.colors("path", coordinate)) tube.path.push_back(point.matrix());
   if (tube.path.size() < 2) reader.expected("path", "at least 2 points");
-  tube.radius = reader.number("radius", positive);
-  tube.end_radius = reader.number("end_radius", positive, tube.radius);
+  tube.radius = reader.number("radius", length);
+  tube.end_radius = reader.number("end_radius", length, tube.radius);
   const auto size = reader.integers("size", 2, 2, most);
   if (size[1] < 3) reader.expected("size", "at least 3 vertices around");
   tube.along = int(size[0]);
@@ -69,9 +70,9 @@ TriangleMesh read_prism(TableReader& reader) {
   Prism prism;
   prism.base = reader.vector("base", Vec3(Vec3::Zero()));
   prism.sides = int(reader.integer("sides", 3, most));
-  prism.radius = reader.number("radius", positive);
-  prism.top_radius = reader.number("top_radius", positive, prism.radius);
-  prism.height = reader.number("height", positive);
+  prism.radius = reader.number("radius", length);
+  prism.top_radius = reader.number("top_radius", length, prism.radius);
+  prism.height = reader.number("height", length);
   prism.caps = reader.flag("caps", true);
   return make_prism(prism);
 }
@@ -84,9 +85,9 @@ TriangleMesh read_city(TableReader& reader) {
   city.boxes = int(reader.integer("boxes", 1, 100'000));
   city.columns = int(reader.integer("columns", 1, 10'000));
   city.block = int(reader.integer("block", 1, 10'000, city.block));
-  city.lot = reader.number("lot", positive);
-  city.street = reader.number("street", not_negative);
-  const auto heights = reader.numbers("heights", positive, 2);
+  city.lot = reader.number("lot", length);
+  city.street = reader.number("street", length_or_zero);
+  const auto heights = reader.numbers("heights", length, 2);
   if (!(heights[0] <= heights[1])) reader.expected("heights", "[least, greatest]");
   city.least_height = heights[0];
   city.greatest_height = heights[1];

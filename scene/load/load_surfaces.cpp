@@ -8,6 +8,7 @@
 #include "scene/geometry/shapes.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/load/transform.h"
 
 namespace airlight::scene::load {
@@ -32,7 +33,7 @@ Material read_material(TableReader reader, const std::string& folder) {
   }
   reader.allow({"type", "diffuse", "specular", "exponent"});
   const Phong phong{reader.color("diffuse", share, Phong{}.diffuse), reader.color("specular", share, Phong{}.specular),
-                    reader.number("exponent", not_negative, Phong{}.exponent)};
+                    reader.number("exponent", exponent_range, Phong{}.exponent)};
   // The sum of two decimal fractions that make 1 may exceed 1 by a rounding.
   if (!((phong.diffuse + phong.specular) <= 1 + 1e-12).all())
     reader.fail("specular", fmt::format("diffuse + specular = [{}, {}, {}], expected at most 1: it would create energy",
@@ -42,12 +43,12 @@ Material read_material(TableReader reader, const std::string& folder) {
 }
 
 TriangleMesh transformed(TriangleMesh mesh, const TableReader& reader) {
-  if (!reader.has("transform")) return mesh;
-  const Similarity transform = read_transform(reader, "transform");
-  for (Point3& vertex : mesh.vertices) {
-    vertex = transform(vertex);
-    if (!vertex.allFinite()) reader.fail("transform", "transform sends a vertex to infinity, expected a finite place");
+  const bool moved = reader.has("transform");
+  if (moved) {
+    const Similarity transform = read_transform(reader, "transform");
+    for (Point3& vertex : mesh.vertices) vertex = transform(vertex);
   }
+  require_near(reader, moved ? "transform" : "", mesh);
   return mesh;
 }
 
@@ -73,9 +74,9 @@ std::vector<double> wave_heights(const TableReader& reader, const HeightField& f
   std::vector<double> heights(std::size_t(field.nx) * field.nz, 0.0);
   for (TableReader wave : reader.tables("waves")) {
     wave.allow({"amplitude", "wave_vector", "phase"});
-    const double amplitude = wave.number("amplitude", any_number);
-    const auto k = wave.numbers("wave_vector", any_number, 2);
-    const double phase = wave.number("phase", any_number, 0);
+    const double amplitude = wave.number("amplitude", coordinate);
+    const auto k = wave.numbers("wave_vector", coordinate, 2);
+    const double phase = wave.number("phase", coordinate, 0);
     for (int row = 0; row < field.nz; ++row)
       for (int column = 0; column < field.nx; ++column)
         heights[column + std::size_t(field.nx) * row] +=
@@ -91,11 +92,11 @@ TriangleMesh read_height_field(TableReader& reader) {
   const auto size = reader.integers("size", 2, 2, 4096);
   field.nx = int(size[0]);
   field.nz = int(size[1]);
-  const auto spacing = reader.numbers("spacing", positive, 2);
+  const auto spacing = reader.numbers("spacing", length, 2);
   field.spacing_x = spacing[0];
   field.spacing_z = spacing[1];
   if (reader.one_of({"heights", "waves"}) == "heights") {
-    field.heights = reader.numbers("heights", any_number);
+    field.heights = reader.numbers("heights", coordinate);
     if (field.heights.size() != std::size_t(field.nx) * field.nz)
       reader.fail("heights", fmt::format("heights has {} numbers, expected {} = {} x {}, x fastest",
                                          field.heights.size(), std::size_t(field.nx) * field.nz, field.nx, field.nz));
@@ -111,7 +112,7 @@ Shape read_shape(const std::string& type, TableReader& reader, const std::string
   if (type == "height_field") return read_height_field(reader);
   if (type == "sphere") {
     reader.allow(surface_keys_and({"center", "radius"}));
-    return Sphere{reader.vector("center"), reader.number("radius", positive)};
+    return Sphere{reader.vector("center"), reader.number("radius", length)};
   }
   if (type != "plane") return transformed(read_procedural(type, reader), reader);
   reader.allow(surface_keys_and({"point", "normal"}));

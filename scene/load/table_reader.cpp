@@ -8,6 +8,7 @@
 
 #include "scene/error.h"
 #include "scene/load/overrides.h"
+#include "scene/load/ranges.h"
 #include "scene/printable.h"
 #include "scene/settings.h"
 
@@ -166,15 +167,19 @@ Rgb TableReader::color(const std::string& key, const Range& range, std::optional
 
 Vec3 TableReader::vector(const std::string& key, std::optional<Vec3> fallback) const {
   if (fallback && !has(key)) return *fallback;
+  return vector_in(key, coordinate);
+}
+
+Vec3 TableReader::vector_in(const std::string& key, const Range& range) const {
   const toml::array& array = list(key, "[x, y, z]", 3);
   Vec3 v;
-  for (int i = 0; i < 3; ++i) v[i] = number_in(array[i], fmt::format("{}[{}]", key, i), any_number);
+  for (int i = 0; i < 3; ++i) v[i] = number_in(array[i], fmt::format("{}[{}]", key, i), range);
   return v;
 }
 
 Vec3 TableReader::direction(const std::string& key, std::optional<Vec3> fallback) const {
   if (fallback && !has(key)) return fallback->normalized();
-  const Vec3 v = vector(key);
+  const Vec3 v = vector_in(key, any_number);
   // Scaled first: the squares of very long or very short vectors leave the range of double.
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0)) expected(key, "a direction, not zero");

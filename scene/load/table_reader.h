@@ -40,7 +40,7 @@ class TableReader {
                      std::optional<std::string> fallback = {}) const;
   // A number for all three channels, or [r, g, b].
   Rgb color(const std::string& key, const Range&, std::optional<Rgb> fallback = {}) const;
-  // [x, y, z]
+  // [x, y, z], each a coordinate (ranges.h).
   Vec3 vector(const std::string& key, std::optional<Vec3> fallback = {}) const;
   // [x, y, z] of any length but zero, returned with length 1.
   Vec3 direction(const std::string& key, std::optional<Vec3> fallback = {}) const;
@@ -68,6 +68,7 @@ class TableReader {
   [[noreturn]] void wrong(const toml::node&, const std::string& name, const std::string& expected) const;
   long long integer_in(const toml::node&, const std::string& name, long long least, long long greatest) const;
   double number_in(const toml::node&, const std::string& name, const Range&) const;
+  Vec3 vector_in(const std::string& key, const Range&) const;
 
   const toml::table* table_;
   std::string where_;

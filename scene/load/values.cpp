@@ -48,7 +48,9 @@ std::string written(const toml::node& node) {
 }
 
 bool Range::contains(double x) const {
-  if (!std::isfinite(x)) return infinite && x == infinity && greatest == infinity;
+  if (!std::isfinite(x)) return infinite && x == infinity;
+  if (signs) x = std::abs(x);
+  if (zero && x == 0) return true;
   return (open_least ? x > least : x >= least) && (open_greatest ? x < greatest : x <= greatest);
 }
 
@@ -56,8 +58,9 @@ std::string Range::words() const {
   if (least == -infinity && greatest == infinity) return "a finite number";
   if (greatest == infinity) return fmt::format("a number {} {}", open_least ? ">" : ">=", least);
   if (least == -infinity) return fmt::format("a number {} {}", open_greatest ? "<" : "<=", greatest);
-  return fmt::format("a number in {}{:.6g}, {:.6g}{}", open_least ? '(' : '[', least, greatest,
-                     open_greatest ? ')' : ']');
+  return fmt::format("{}a number {}in {}{:.6g}, {:.6g}{}{}", zero ? "0 or " : "",
+                     signs ? "of either sign, its size " : "", open_least ? '(' : '[', least, greatest,
+                     open_greatest ? ')' : ']', infinite ? ", or inf" : "");
 }
 
 }  // namespace airlight::scene::load

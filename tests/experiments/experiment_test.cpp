@@ -74,6 +74,13 @@ TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[exper
   CHECK(e.methods[2].setting == "32");
   CHECK(e.methods[2].settings == Pairs{{"steps", "32"}});
   CHECK(e.timing.runs == 3);
+  // A method on a swept scene is on all of its values.
+  MethodCase on_one;
+  on_one.scenes = {"one"};
+  CHECK(is_on(on_one, e.scenes[1]));
+  on_one.scenes = {"one 0.5"};
+  CHECK(is_on(on_one, e.scenes[0]));
+  CHECK_FALSE(is_on(on_one, e.scenes[1]));
   CHECK(e.gates.at(0).setting == "32");
   CHECK(e.plots.at(0).name == "rel_l2_against_setting");
   CHECK(read_experiment(folder.path(), "g/e", "paper").timing.runs == 31);
@@ -97,10 +104,61 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "scene = \"one\"", "scene = \"on\"")), Contains("nearest: one"));
   CHECK_THAT(failure(replaced(good, "method = \"marcher\"", "method = \"marchr\"")), Contains("nearest: marcher"));
   CHECK_THAT(failure(replaced(good, "y = \"rel_l2\"", "y = \"rel_l3\"")), Contains("e.toml") && Contains("rel_l3"));
-  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "")), Contains("at_most"));
+  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.1\nat_least = 0")), Contains("found both 'at_most'"));
+  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.0\nmeasured = 0")), Contains("no failure"));
+  CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.1\nmeasured = 0.2")),
+             Contains("e.toml:26:") && Contains("measured = 0.2 fails this gate"));
+  // A gate must have a row and a figure.
+  CHECK_THAT(failure(replaced(good, "setting = 32", "setting = 33")),
+             Contains("e.toml:20:1") && Contains("no row of method 'marcher' with setting 33 on scene 'one'"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nprofiles = [\"paper\"]")),
+             Contains("e.toml:21:1") && Contains("no row of method 'marcher'") && Contains("in profile quick"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nprofiles = [\"paper\"]"), "paper"),
+             Contains("no failure"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\npicture_only = true")),
+             Contains("e.toml:21:1") && Contains("picture_only: it has no rel_l2"));
+  const std::string objections = replaced(replaced(good, "\"bias\"", "\"objections\", \"wrong\""),
+                                          "metric = \"rel_l2\"", "metric = \"objections\"");
+  CHECK_THAT(failure(objections), Contains("e.toml:20:1") && Contains("objections needs noise"));
+  CHECK_THAT(failure(replaced(objections, "deterministic", "path_tracer")), Contains("no failure"));
+  CHECK_THAT(failure(replaced(replaced(objections, "deterministic", "path_tracer"), "metric = \"objections\"",
+                              "metric = \"wrong\"")),
+             Contains("wrong is not defined against a noisy reference"));
+  CHECK_THAT(failure(replaced(good, "metric = \"rel_l2\"", "metric = \"counter.steps\"")), Contains("no failure"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nscenes = [\"on\"]")),
+             Contains("e.toml:12:10") && Contains("nearest: one"));
+  CHECK_THAT(failure(replaced(good, "y = \"rel_l2\"", "y = \"rel_l2\"\nmethods = [\"marchr\"]")),
+             Contains("e.toml:20:") && Contains("nearest: marcher"));
   CHECK_THAT(failure(replaced(good, "[[scene]]", "[scene]")), Contains("[[scene]]"));
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 0")), Contains("runs = 0"));
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 3\nbudget = 0")),
              Contains("e.toml:16:") && Contains("no effect"));
   CHECK_THAT(failure(replaced(good, "[reference]\nrenderer = \"deterministic\"", "")), Contains("no [reference]"));
+}
+
+TEST_CASE("bounds by row come before the gates of the file, and belong to one", "[experiment]") {
+  const TemporaryFolder folder;
+  folder.write("experiments/g/e.toml", good);
+  const std::string header = "scene,method,setting,metric,device,measured,at_least,at_most\n";
+  const auto gates = [&](const std::string& lines, const std::string& profile = "quick") {
+    folder.write("experiments/g/e.bounds.csv", lines);
+    return read_experiment(folder.path(), "g/e", profile).gates;
+  };
+  const auto read = gates(header + "one 0.5,marcher,32,rel_l2,\"a \"\"card\"\", 2\",0.05,0.04,0.075\n");
+  REQUIRE(read.size() == 3);
+  CHECK(read[0].by_row);
+  CHECK(read[0].scene == "one 0.5");
+  CHECK(read[0].device == "a \"card\", 2");
+  CHECK(read[0].at_most == 0.075);
+  CHECK(read[0].why == "measured 0.05");
+  CHECK(read[1].at_least == 0.04);
+  CHECK(read[2].at_most == 0.1);
+  CHECK(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,0.075\n", "paper").size() == 1);
+  CHECK_THROWS_WITH(gates("scene\n"), Contains("e.bounds.csv:1: 'scene', expected scene,method"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,0.1\n"), Contains("e.bounds.csv:2: 5 fields"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,much\n"), Contains("'much', expected a number"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,32,rel_l2,,0.05,,\n"), Contains("neither at_least nor at_most"));
+  CHECK_THROWS_WITH(gates(header + "\"one 0.5,marcher,32,rel_l2,,0.05,,1\n"), Contains("a quote is not closed"));
+  CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,16,rel_l2,,0.05,,1\n"),
+                    Contains("e.bounds.csv:2: no [[gate]] covers one 0.5, marcher 16: rel_l2"));
 }

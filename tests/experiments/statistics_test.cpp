@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -122,6 +123,20 @@ TEST_CASE("a point whose intervals overlap another's does not dominate it", "[st
   CHECK_FALSE(dominates(sure, overlapping));
   CHECK(dominates(sure, beaten));
   CHECK_FALSE(dominates(sure, sure));
+  // Equal ends: no worse; better in one is enough, in none is not.
+  CHECK(dominates(point(1, 1), point(1, 2)));
+  CHECK(dominates(point(1, 1), point(2, 1)));
+  CHECK_FALSE(dominates(point(1, 1), point(1, 1)));
+  CHECK_FALSE(dominates(point(1, 2), point(2, 1)));
+}
+
+// In order of time; equal times by error. Area of two steps under (e^4, e^4): from time e to e^3 a height of 4 - 2,
+// then to e^4 of 4 - 0; what lies beyond the corner counts nothing.
+TEST_CASE("fronts and areas by hand", "[statistics]") {
+  const std::vector<Point> points{point(std::exp(3), 1), point(std::exp(1), std::exp(2)), point(std::exp(3), 2),
+                                  point(std::exp(5), 1e-3), point(std::exp(0.5), std::exp(5))};
+  CHECK(front(points) == std::vector<std::size_t>{4, 1, 0, 3});
+  CHECK(hypervolume(points, std::exp(4), std::exp(4)) == Approx(2 * 2 + 1 * 4).epsilon(1e-12));
 }
 
 // Errors that fall as 1/t and 4/t: at equal error the first is four times as fast, at equal time four times as good.
@@ -151,6 +166,31 @@ TEST_CASE("equal time and equal error between two curves", "[statistics]") {
   CHECK_FALSE(error_ratio({point(0.5, 0.8)}, good));
 }
 
+// Times 1/e and e^-1/2 for the error e from 1 to 0.01: their ratio e^-1/2 goes from 1 to 10, evenly in logarithms, so
+// the geometric mean is sqrt(10) (the arithmetic one over ln e would be 9 / ln 10 = 3.9).
+TEST_CASE("gains are geometric means over what both reach", "[statistics]") {
+  const std::vector<Point> slow{point(1, 1), point(100, 0.01)}, fast{point(1, 1), point(10, 0.01)};
+  const auto gain = speed_up(slow, fast);
+  REQUIRE(gain);
+  CHECK(gain->geometric_mean == Approx(std::sqrt(10)).epsilon(1e-12));
+  CHECK(gain->least == Approx(1).epsilon(1e-12));
+  CHECK(gain->greatest == Approx(10).epsilon(1e-12));
+  CHECK(gain->from == Approx(0.01));
+  CHECK(gain->to == Approx(1));
+  // Errors 1/t and 1/t^2 over the times 1 to 10: ratio t.
+  const auto better = error_ratio(slow, fast);
+  REQUIRE(better);
+  CHECK(better->geometric_mean == Approx(std::sqrt(10)).epsilon(1e-12));
+  CHECK(better->greatest == Approx(10).epsilon(1e-12));
+  CHECK(better->to == Approx(10));
+  // Points that a faster one beats are not on the curve; curves that touch in one error have the ratio there.
+  const auto touching = speed_up({point(2, 1), point(3, 5), point(8, 0.25)}, {point(1, 0.25), point(4, 0.1)});
+  REQUIRE(touching);
+  CHECK(touching->geometric_mean == Approx(8).epsilon(1e-12));
+  CHECK(touching->from == Approx(0.25));
+  CHECK_FALSE(speed_up({point(2, 1)}, {}));
+}
+
 TEST_CASE("two curves without a common error say which one is closer", "[statistics]") {
   const std::vector<Point> far{point(2, 0.5), point(4, 0.1)}, close{point(1, 0.05), point(3, 0.01), point(5, 0)};
   CHECK_FALSE(speed_up(far, close));
@@ -167,6 +207,38 @@ TEST_CASE("two curves without a common error say which one is closer", "[statist
   CHECK_FALSE(apart_in_error({}, far));
   CHECK_FALSE(speed_up_of_exact(far, close));
   CHECK(*speed_up_of_exact({point(8, 0.1), point(20, 0), point(10, 0)}, close) == Approx(2));
+}
+
+// Of a mean the jackknife's variance is s^2 / n. Here 1, 2, 3, 6: mean 3, s^2 = 14/3, s^2 / 4 = 7/6; t(0.975, 3) =
+// 3.182446 (tables).
+TEST_CASE("a jackknife by hand", "[statistics]") {
+  const std::vector<double> without{11.0 / 3, 10.0 / 3, 3, 2};
+  const Estimate e = jackknife(3, without);
+  CHECK(e.value == 3);
+  CHECK(e.high - 3 == Approx(3.182446305 * std::sqrt(7.0 / 6)).epsilon(1e-8));
+  CHECK(3 - e.low == Approx(e.high - 3).epsilon(1e-12));
+  // A second variance that is known exactly, 7/6 too: twice as much, with 3 * 2^2 = 12 degrees (2.178813).
+  CHECK(jackknife(3, without, 7.0 / 6).high - 3 == Approx(2.178812830 * std::sqrt(7.0 / 3)).epsilon(1e-8));
+  // Alone, it is normal.
+  CHECK(jackknife(3, std::vector<double>{3, 3, 3}, 4).high - 3 == Approx(2 * 1.959963985).epsilon(1e-8));
+  CHECK_THROWS(jackknife(3, std::vector<double>{3}));
+  // The square of a mean has the bias s^2 / n: the corrected value of 3^2 is 9 - 7/6.
+  std::vector<double> squares;
+  for (const double x : without) squares.push_back(x * x);
+  CHECK(jackknife_value(9, squares) == Approx(9 - 7.0 / 6).epsilon(1e-12));
+}
+
+// By the definition: 200,000 draws of t. The standard deviation of the rate at 0.95 is 4.9e-4; 2.3e-3 is 4.7 of them.
+TEST_CASE("a detectable shift is found as often as it says", "[statistics]") {
+  CHECK(detectable_shift(2, std::numeric_limits<double>::infinity(), 0.95) == Approx(2 + 1.644853627).epsilon(1e-9));
+  const double threshold = student_quantile(1 - 1e-4 / 6, 15), shift = detectable_shift(threshold, 15, 0.95);
+  CHECK(shift > threshold + student_quantile(0.95, 15));  // the standard error is noisy, too
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::chi_squared_distribution<double> chi_squared(15);
+  int found = 0;
+  for (int i = 0; i < 200000; ++i) found += (normal(random) + shift) / std::sqrt(chi_squared(random) / 15) > threshold;
+  CHECK(std::abs(found / 200000.0 - 0.95) < 2.3e-3);
 }
 
 // 95 % intervals cover the true mean in about 95 % of 2000 repeats. The count outside is binomial: with rate 0.05 its

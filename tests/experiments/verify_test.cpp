@@ -1,11 +1,16 @@
 #include "experiments/verify/verify.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "experiments/verify/check.h"
+#include "experiments/verify/monte_carlo.h"
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
@@ -75,10 +80,43 @@ TEST_CASE("a number out of tolerance is found", "[verify]") {
   CHECK(out.str().find("OUT: a F") != std::string::npos);
 }
 
-TEST_CASE("methods to come are listed and counted", "[verify]") {
+TEST_CASE("methods to come are listed and counted, and compared with nothing they fail", "[verify]") {
   std::ostringstream out;
-  CHECK(verify({vectors + "references.json"}, "fluid", VerifyProfile::quick, out) == 0);
-  CHECK(out.str().find("10 vectors not yet") != std::string::npos);
+  CHECK(verify({vectors + "references.json"}, "fluid", VerifyProfile::quick, out) == 1);
+  CHECK_THAT(out.str(), Catch::Contains("0 vectors, 0 numbers compared: 0 ok, 0 out") &&
+                            Catch::Contains("10 vectors not known yet") &&
+                            Catch::Contains("FAILED: no number was compared"));
+}
+
+TEST_CASE("a file without vectors is no success", "[verify]") {
+  const TemporaryFile empty(fogshop_file("")), right(fogshop_file(good));
+  std::ostringstream out;
+  CHECK(verify({empty.path}, "", VerifyProfile::quick, out) == 1);
+  CHECK_THAT(out.str(), Catch::Contains("FAILED: no number was compared"));
+  // Beside one with numbers: each has a line of its own.
+  std::ostringstream both;
+  CHECK(verify({empty.path, right.path}, "", VerifyProfile::quick, both) == 0);
+  CHECK_THAT(both.str(), Catch::Contains(empty.path + ": 0 vectors, 0 numbers") &&
+                             Catch::Contains(right.path + ": 1 vectors, 1 numbers compared: 1 ok, 0 out") &&
+                             Catch::Contains("all files: 1 vectors, 1 numbers compared: 1 ok, 0 out"));
+}
+
+TEST_CASE("figures per file and kind", "[verify]") {
+  const TemporaryFile two(fogshop_file(good +
+                                       R"(,{"id": "b", "kind": "F", "in": {"u": 0.0, "v": 0.7}, "value": "0.6"},)" +
+                                       R"({"id": "c", "kind": "avg_depth", "in": {"u": 1.0}, "value": "5"})"));
+  std::ostringstream out;
+  std::vector<airlight::experiments::VerifyKind> kinds;
+  CHECK(verify({two.path}, "F", VerifyProfile::quick, out, &kinds) == 1);
+  REQUIRE(kinds.size() == 1);
+  CHECK(kinds[0].kind == "F");
+  CHECK(kinds[0].vectors == 2);
+  CHECK(kinds[0].numbers == 2);
+  CHECK(kinds[0].out == 1);
+  CHECK(kinds[0].worst == "b F");
+  // 0.7 where 0.6 +- 0.6e-12 is expected.
+  CHECK(kinds[0].worst_relative_error == Approx(1.0 / 6).epsilon(1e-9));
+  CHECK(kinds[0].worst_share == Approx(1 / 6e-12).epsilon(1e-6));
 }
 
 TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
@@ -92,6 +130,10 @@ TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a"})")), Contains("'a'") && Contains("missing field 'kind'"));
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "G"})")),
              Contains("unknown kind 'G'") && Contains("nearest: F"));
+  CHECK_THAT(
+      complaint(fogshop_file(R"({"id": "a", "kind": "G"},{"id": "b", "kind": "H"},)" +
+                             std::string(R"({"id": "c", "kind": "F", "in": {"u": 0.0, "v": 0.7}, "value": 1})"))),
+      Contains("'a'") && Contains("2 of 3 vectors are of unknown kinds"));
   CHECK_THAT(complaint(fogshop_file(good + "," + good)), Contains("an id that no other vector has"));
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0.0}, "value": "0.7"})")),
              Contains("'a'.in: missing field 'v'"));
@@ -121,4 +163,80 @@ TEST_CASE("a kind that no file has is refused", "[verify]") {
   std::ostringstream out;
   CHECK_THROWS_AS(verify({vectors + "fogshop.json"}, "airlight_scenes", VerifyProfile::quick, out), Error);
   CHECK_THROWS_AS(verify({vectors + "absent.json"}, "", VerifyProfile::quick, out), Error);
+}
+
+// What |got - expected| may be, at nine tenths and at eleven tenths of it.
+TEST_CASE("tolerances are what they say", "[verify]") {
+  using namespace airlight::experiments::verification;
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(relative("", -20, -20 + sign * 0.9 * 20 * 1e-3, 1e-3).ok());
+    CHECK_FALSE(relative("", -20, -20 + sign * 1.1 * 20 * 1e-3, 1e-3).ok());
+    CHECK(absolute("", 20, 20 + sign * 0.9e-3, 1e-3).ok());
+    CHECK_FALSE(absolute("", 20, 20 + sign * 1.1e-3, 1e-3).ok());
+    // Standard errors 3 and 4 make 5; 2 of them and an accuracy of 1 are 11.
+    CHECK(statistical("", 20, 3, 20 + sign * 10.9, 4, 2, 1).ok());
+    CHECK_FALSE(statistical("", 20, 3, 20 + sign * 11.1, 4, 2, 1).ok());
+  }
+  CHECK(absolute("", 1, 1.5, 0.5).ok());  // the tolerance itself is within
+  CHECK(relative("", 0, 1e-300, 1e-3).ok());
+  CHECK_FALSE(relative("", 0, 1.1e-300, 1e-3).ok());
+  CHECK(relative("", 0, 0.5, 1e-3, 0.5).ok());
+  CHECK(truth("", true).ok());
+  CHECK_FALSE(truth("", false).ok());
+  CHECK(absolute("", infinity, infinity, 0).ok());
+  CHECK_FALSE(absolute("", infinity, -infinity, 1).ok());
+  for (const auto& [expected, got] : {std::pair{std::nan(""), 1.0}, std::pair{1.0, std::nan("")}})
+    CHECK_FALSE(absolute("", expected, got, infinity).ok());
+  // Once in 1.5e5 normal comparisons.
+  CHECK(std::erfc(accept_se / std::sqrt(2.0)) == Approx(1 / 1.5e5).epsilon(0.03));
+}
+
+namespace {
+
+// Every number below, moved by `share` of its tolerance; what is no fraction is a name or a count.
+void move(nlohmann::json& v, double relative, double absolute) {
+  if (v.is_structured())
+    for (auto& item : v) move(item, relative, absolute);
+  else if (v.is_number_float())
+    v = v.get<double>() * (1 + relative) + absolute;
+}
+
+// The vectors of a kind, each as a file of its own, with their expected numbers moved by so many of their tolerances.
+std::vector<std::string> moved(const std::string& kind, double tolerances) {
+  std::ifstream in(vectors + "references.json");
+  nlohmann::json file = nlohmann::json::parse(in);
+  std::vector<std::string> files;
+  for (nlohmann::json v : file["vectors"]) {
+    if (v["kind"] != kind || !v["accuracy"].is_object()) continue;
+    const bool relative = v["accuracy"].contains("rel");
+    const double step = tolerances * v["accuracy"][relative ? "rel" : "abs"].get<double>();
+    move(v["expected"], relative ? step : 0, relative ? 0 : step);
+    files.push_back(nlohmann::json{{"part", "references"}, {"vectors", {v}}}.dump());
+  }
+  return files;
+}
+
+int verdict(const std::string& text) {
+  std::ostringstream out;
+  return verify({TemporaryFile(text).path}, "", VerifyProfile::quick, out);
+}
+
+}  // namespace
+
+// A number that verifies, moved by three times the tolerance that its vector states, is out: tolerances that a reader
+// makes ten times as wide, or its own, would pass.
+TEST_CASE("readers use the tolerance of the vector", "[verify]") {
+  for (const char* kind : {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians",
+                           "optical_depth", "phase_function", "sampling", "statistics"})
+    for (const double tolerances : {3.0, -3.0}) {
+      CAPTURE(kind, tolerances);
+      const std::vector<std::string> right = moved(kind, 0), wrong = moved(kind, tolerances);
+      int compared = 0;
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        if (verdict(right[i]) != 0) continue;  // of a method to come
+        CHECK(verdict(wrong[i]) == 1);
+        ++compared;
+      }
+      CHECK(compared > 0);
+    }
 }

@@ -336,7 +336,7 @@ TEST_CASE("what is no environment is refused", "[environment]") {
   film.add("mean");
   for (const double bad : {-1.0, infinity, std::nan("")}) {
     film.set("mean", 3, 1, Rgb(0, bad, 0));
-    write_exr(path, film);
+    write_exr(path, film, true);
     CHECK_THROWS_WITH(read_environment_map(path), Catch::Contains(path + ": texel (3, 1) holds "));
   }
   film = Film(4, 2);

@@ -79,7 +79,7 @@ TEST_CASE("a film comes back from OpenEXR bit for bit", "[film]") {
   const TemporaryFolder folder;
   const Film film = sample_film();
   const std::string path = folder.file("a.exr");
-  write_exr(path, film);
+  write_exr(path, film, true);
   const Film back = read_exr(path);
   CHECK(back.width == film.width);
   CHECK(back.height == film.height);
@@ -92,7 +92,7 @@ TEST_CASE("a film comes back from OpenEXR bit for bit", "[film]") {
   CHECK(folder.entries() == 1);
 
   // The same film is the same file: results can be compared by checksum.
-  write_exr(folder.file("b.exr"), film);
+  write_exr(folder.file("b.exr"), film, true);
   CHECK(read_bytes(path) == read_bytes(folder.file("b.exr")));
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("a film cut short anywhere is refused", "[film]") {
   const std::string path = folder.file("cut.exr");
   Film film = sample_film();
   film.metadata.erase("long");
-  write_exr(path, film);
+  write_exr(path, film, true);
   const std::string whole = read_bytes(path);
   for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 200) {
     write_bytes(path, whole.substr(0, length));
@@ -179,7 +179,7 @@ TEST_CASE("a damaged film is refused or loads, and does no other harm", "[film]"
   const std::string path = folder.file("damaged.exr");
   Film film = sample_film();
   film.metadata.erase("long");
-  write_exr(path, film);
+  write_exr(path, film, true);
   const std::string whole = read_bytes(path);
   const std::size_t header = whole.find(std::string("screenWindowWidth")) + 34;
   std::mt19937 random(7);
@@ -206,16 +206,18 @@ TEST_CASE("a damaged film is refused or loads, and does no other harm", "[film]"
 TEST_CASE("a write that fails leaves the old file and nothing else", "[film]") {
   const TemporaryFolder folder;
   const Film film = sample_film(200, 200);
-  CHECK_THAT(message_of([&] { write_exr("/dev/full", film); }), Contains("/dev/full: cannot write: No space left"));
+  CHECK_THAT(message_of([&] { write_exr("/dev/full", film, true); }),
+             Contains("/dev/full: cannot write: No space left"));
   CHECK_THAT(message_of([&] { write_png("/dev/full", film); }), Contains("/dev/full: cannot write: No space left"));
   CHECK(std::filesystem::is_character_file("/dev/full"));
-  CHECK_THAT(message_of([&] { write_exr(folder.file("no/such/folder.exr"), film); }), Contains("No such file"));
-  CHECK_THAT(message_of([&] { write_exr(folder.file(""), film); }), Contains("directory"));
-  CHECK_THAT(message_of([&] { write_exr("/proc/airlight.exr", film); }), Contains("/proc/airlight.exr: cannot write"));
+  CHECK_THAT(message_of([&] { write_exr(folder.file("no/such/folder.exr"), film, true); }), Contains("No such file"));
+  CHECK_THAT(message_of([&] { write_exr(folder.file(""), film, true); }), Contains("directory"));
+  CHECK_THAT(message_of([&] { write_exr("/proc/airlight.exr", film, true); }),
+             Contains("/proc/airlight.exr: cannot write"));
 
   // A limit on the file size stops the write half-way, as a full disk does.
   const std::string path = folder.file("film.exr");
-  write_exr(path, film);
+  write_exr(path, film, true);
   const std::string before = read_bytes(path);
   rlimit limit{};
   getrlimit(RLIMIT_FSIZE, &limit);
@@ -223,7 +225,7 @@ TEST_CASE("a write that fails leaves the old file and nothing else", "[film]") {
   small.rlim_cur = 10000;
   const auto previous = signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string exr = message_of([&] { write_exr(path, film); });
+  const std::string exr = message_of([&] { write_exr(path, film, true); });
   const std::string png = message_of([&] { write_png(folder.file("film.png"), film, "mean", -10); });
   setrlimit(RLIMIT_FSIZE, &limit);
   signal(SIGXFSZ, previous);
@@ -237,22 +239,22 @@ TEST_CASE("films that cannot be stored are refused before anything is written", 
   const TemporaryFolder folder;
   const std::string path = folder.file("film.exr");
   Film film(4, 4);
-  CHECK_THROWS_AS(write_exr(path, film), Error);
+  CHECK_THROWS_AS(write_exr(path, film, true), Error);
   film.add("mean");
   film.layers["se"].resize(5);
-  CHECK_THAT(message_of([&] { write_exr(path, film); }), Contains("layer 'se' has 5 values, expected 48"));
+  CHECK_THAT(message_of([&] { write_exr(path, film, true); }), Contains("layer 'se' has 5 values, expected 48"));
   film.layers.erase("se");
   film.add("two\nlines");
-  CHECK_THAT(message_of([&] { write_exr(path, film); }), Contains("cannot be stored"));
+  CHECK_THAT(message_of([&] { write_exr(path, film, true); }), Contains("cannot be stored"));
   CHECK(folder.entries() == 0);
 }
 
 TEST_CASE("a link to a film is followed, not replaced", "[film]") {
   const TemporaryFolder folder;
   const Film film = sample_film();
-  write_exr(folder.file("target.exr"), film);
+  write_exr(folder.file("target.exr"), film, true);
   std::filesystem::create_symlink("target.exr", folder.file("link.exr"));
-  write_exr(folder.file("link.exr"), sample_film(5, 5));
+  write_exr(folder.file("link.exr"), sample_film(5, 5), true);
   CHECK(std::filesystem::is_symlink(folder.file("link.exr")));
   CHECK(read_exr(folder.file("target.exr")).width == 5);
 }

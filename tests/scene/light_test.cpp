@@ -46,6 +46,12 @@ TEST_CASE("a spot light has a full cone, a dark outside and a smooth edge", "[li
   // Halfway in the cosine the smoothstep is 1/2.
   const double middle = std::acos(0.5 * (std::cos(0.3) + std::cos(0.5)));
   CHECK(at_angle(middle) == Approx(1).epsilon(1e-13));
+  // A quarter and three quarters of the way 3/16 - 2/64 = 5/32, and 27/32: no straight line, which has 1/4 and 3/4.
+  const auto at_share = [&](double t) {
+    return at_angle(std::acos(std::cos(0.5) + t * (std::cos(0.3) - std::cos(0.5))));
+  };
+  CHECK(at_share(0.25) == Approx(2 * 5.0 / 32).epsilon(1e-12));
+  CHECK(at_share(0.75) == Approx(2 * 27.0 / 32).epsilon(1e-12));
   double last = 2;
   for (double angle = 0.3; angle <= 0.5; angle += 0.01) {
     CHECK(at_angle(angle) <= last);

@@ -259,3 +259,18 @@ TEST_CASE("ray marcher: what the GPU does not do is said; a render can be stoppe
       CHECK_THROWS_AS(prepared->render(look(), {1, [](double) { return false; }}), scene::Interrupted);
     }
 }
+
+// Counters go into tables: every one of them the same in every run, however busy the machine is.
+TEST_CASE("ray marcher: the GPU's counters are the same in every run", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  for (const auto& [name, scene] : assorted_scenes()) {
+    if (name != "Gaussians") continue;
+    scene::View view = look();
+    view.width = 160, view.height = 120;
+    const gpu::RayMarcherGpu marcher;
+    const auto prepared = marcher.prepare(scene, {marcher.settings(), {{"steps", "32"}}}, {1, {}});
+    const auto first = prepared->render(view, {1, {}}).counters;
+    CHECK(first.at("dispatches") > 5);  // it is divided
+    for (int i = 0; i < 4; ++i) CHECK(prepared->render(view, {1, {}}).counters == first);
+  }
+}

@@ -85,7 +85,7 @@ TEST_CASE("overrides change values before they are read", "[load]") {
   CHECK(scene.camera.position[1] == 1.5);
 
   CHECK(error_of(fog, {{"medium.0.sigma_t", "-1"}}) ==
-        "override medium.0.sigma_t = -1 of fog.toml: medium 0: sigma_t = -1, expected a number >= 0");
+        "override medium.0.sigma_t = -1 of fog.toml: medium 0: sigma_t = -1, expected 0 or a number in [1e-30, 1e+30]");
   CHECK(
       error_of(fog, {{"light.0.type", "spot"}}) ==
       "override light.0.type = spot of fog.toml: Error while parsing value: could not determine value type; expected a "

@@ -1,0 +1,120 @@
+#include "scene/single_precision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::scene {
+namespace {
+
+constexpr double least_size = 1e-4, greatest_place = 1e5;             // [m]
+constexpr double least_extinction = 1e-9, greatest_extinction = 1e9;  // [1/m]
+constexpr double least_light = 1e-9, greatest_light = 1e12;
+constexpr double greatest_g = 0.999, greatest_exponent = 1e4;
+
+class Reasons {
+ public:
+  explicit Reasons(std::string what) : what_(std::move(what)) {}
+
+  void within(const char* of, double value, double least, double greatest, const char* unit) {
+    if (value == 0 || (value >= least && value <= greatest)) return;
+    add(fmt::format("{} of {:.6g}{}, expected {:.6g} to {:.6g}", of, value, unit, least, greatest));
+  }
+  void size(const char* of, double value) { within(of, value, least_size, greatest_place, " m"); }
+  void light(const Rgb& value) {
+    for (const double v : {value.minCoeff(), value.maxCoeff()})
+      within("light", std::abs(v), least_light, greatest_light, "");
+  }
+  void place(const Point3& x) {
+    for (int i = 0; i < 3; ++i)
+      if (std::isfinite(x[i])) within("coordinate", std::abs(x[i]), 0, greatest_place, " m");
+  }
+  void box(const Box& box) {
+    if (box.empty()) return;
+    place(box.lo), place(box.hi);
+    size("side", box.size().minCoeff() == infinity ? 0 : box.size().minCoeff());
+  }
+  void add(const std::string& reason) {
+    if (list_.empty()) list_.push_back(what_ + ": " + reason + " in single precision");
+  }
+  const std::vector<std::string>& list() const { return list_; }  // the first
+
+ private:
+  std::string what_;
+  std::vector<std::string> list_;
+};
+
+void look_at(Reasons& r, const Light& light) {
+  if (const auto* e = std::get_if<EnvironmentLight>(&light)) return r.light(e->scale);
+  if (const auto* d = std::get_if<DirectionalLight>(&light)) return r.light(d->irradiance);
+  const LightBall at = *ball(light);
+  r.place(at.center);
+  r.size("radius", at.radius);
+  std::visit(
+      [&](const auto& l) {
+        if constexpr (requires { l.intensity; }) r.light(l.intensity);
+      },
+      light);
+}
+
+// Its greatest density [-].
+double look_at(Reasons&, const Homogeneous& field) { return field.density; }
+double look_at(Reasons& r, const GaussianSum& sum) {
+  double most = sum.constant;
+  for (const Gaussian& g : sum.gaussians) {
+    r.place(g.center);
+    r.size("width", g.width);
+    most = std::max(most, std::abs(g.amplitude));
+  }
+  return most;
+}
+double look_at(Reasons& r, const std::shared_ptr<const VoxelGrid>& grid) {
+  r.size("voxel", grid->voxel_size);
+  r.box(support(*grid));
+  return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
+}
+
+void look_at(Reasons& r, const Medium& medium) {
+  const double density = std::visit([&](const auto& field) { return look_at(r, field); }, medium.field);
+  for (int c = 0; c < 3; ++c)
+    r.within("extinction", medium.sigma_t[c] * density, least_extinction, greatest_extinction, " 1/m");
+  if (!std::holds_alternative<Unbounded>(medium.region)) r.box(bounding_box(medium.region));
+  if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase))
+    if (std::abs(hg->g) > greatest_g) r.add(fmt::format("g = {}, expected at most {} in size", hg->g, greatest_g));
+}
+
+void look_at(Reasons& r, const Surface& surface) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&surface.shape))
+    for (const Point3& x : mesh->vertices) r.place(x);
+  if (const auto* sphere = std::get_if<Sphere>(&surface.shape))
+    r.place(sphere->center), r.size("radius", sphere->radius);
+  if (const auto* plane = std::get_if<Plane>(&surface.shape)) r.place(plane->point);
+  if (const auto* phong = std::get_if<Phong>(&surface.material))
+    r.within("exponent", phong->exponent, 0, greatest_exponent, "");
+}
+
+template <class List>
+void look_at_all(std::vector<std::string>& reasons, const char* what, const List& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Reasons r(fmt::format("{} {}", what, i));
+    look_at(r, list[i]);
+    reasons.insert(reasons.end(), r.list().begin(), r.list().end());
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> beyond_single_precision(const Scene& scene) {
+  std::vector<std::string> reasons;
+  Reasons camera("camera"), ambient("ambient_in_scatter");
+  camera.place(scene.camera.position);
+  ambient.light(scene.ambient_in_scatter);
+  for (const Reasons* r : {&camera, &ambient}) reasons.insert(reasons.end(), r->list().begin(), r->list().end());
+  look_at_all(reasons, "light", scene.lights);
+  look_at_all(reasons, "medium", scene.media);
+  look_at_all(reasons, "surface", scene.surfaces);
+  return reasons;
+}
+
+}  // namespace airlight::scene

@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""Planted bugs, each of which one named test must find.
+
+mutants.py BUILD [NAME...]            plants each (or those whose name contains one of NAME), builds one object, runs its test
+mutants.py BUILD --list               what there is: name, file and line, test
+mutants.py BUILD --survey FILE --tests A_test.cpp,B_test.cpp [--only FROM-TO] [--skip TEST]
+                                      plants what chance finds in FILE (signs, constants, comparisons, terms), lists survivors
+
+BUILD is a build folder that is up to date. Nothing in the source or in BUILD is changed: the planted source is compiled
+beside it and linked before the libraries. Exit code 0: all were found; 1: some survived, or a test fails without a bug;
+2: one cannot be planted (its line has changed) or does not compile.
+"""
+import argparse
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+from planted import MUTANTS
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+class Cannot(Exception):
+    pass
+
+
+class Builder:
+    def __init__(self, build):
+        self.build = os.path.abspath(build)
+        self.scratch = tempfile.TemporaryDirectory(prefix="airlight_mutants_")
+        with open(os.path.join(self.build, "compile_commands.json")) as f:
+            self.commands = {c["file"]: c for c in json.load(f)}
+        found = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "tests/airlight_tests"], capture_output=True,
+                               text=True, check=True).stdout
+        link = [line for line in found.splitlines() if " -o tests/airlight_tests " in line][-1]
+        self.libraries = link.split(" -o tests/airlight_tests ")[1].split(" && ")[0].split()
+        self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/main.cpp")] or [ROOT])
+        self.root = os.path.dirname(os.path.dirname(self.root)) if self.root.endswith("main.cpp") else self.root
+
+    def compile(self, file, overlay):
+        """The object of a source file, with the files of `overlay` before those of the tree."""
+        c = self.commands[os.path.join(self.root, file)]
+        words = shlex.split(c.get("command") or "")
+        words = [w for i, w in enumerate(words) if w not in ("-MD",) and not
+                 (w in ("-MT", "-MF") or (i and words[i - 1] in ("-MT", "-MF")))]
+        own = os.path.join(overlay, file)
+        object_file = os.path.join(overlay, file.replace("/", "_") + ".o")
+        words[words.index("-o") + 1] = object_file
+        words[words.index("-c") + 1] = own if os.path.exists(own) else c["file"]
+        first = next(i for i, w in enumerate(words) if w.startswith("-I"))
+        words.insert(first, "-I" + overlay)
+        run = subprocess.run(words, cwd=c["directory"], capture_output=True, text=True)
+        if run.returncode:
+            raise Cannot("does not compile:\n" + run.stderr[-2000:])
+        return object_file
+
+    def link(self, objects, tests, program):
+        objects = objects + [os.path.join(self.build, "tests/CMakeFiles/airlight_tests.dir", t + ".o") for t in tests]
+        run = subprocess.run(["c++"] + objects + ["-o", program] + self.libraries, cwd=self.build, capture_output=True,
+                             text=True)
+        if run.returncode:
+            raise Cannot("does not link:\n" + run.stderr[-2000:])
+
+    def passes(self, program, tests):
+        try:
+            return subprocess.run([program, "-w", "NoTests"] + tests, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                  timeout=300).returncode == 0
+        except subprocess.TimeoutExpired:
+            return False
+
+
+def named(test):
+    """As Catch2 takes it: a comma would begin another name."""
+    return test.replace(",", "\\,").replace("[", "\\[")
+
+
+def planted(text, changes):
+    for old, new in changes:
+        if text.count(old) != 1:
+            raise Cannot(f"'{old}' is there {text.count(old)} times, expected once")
+        text = text.replace(old, new)
+    return text
+
+
+def overlay_of(builder, number, file, text):
+    folder = os.path.join(builder.scratch.name, str(number))
+    os.makedirs(os.path.dirname(os.path.join(folder, file)))
+    with open(os.path.join(folder, file), "w") as f:
+        f.write(text)
+    return folder
+
+
+def read(file):
+    with open(os.path.join(ROOT, file)) as f:
+        return f.read()
+
+
+def line_of(m):
+    return read(m.file)[:max(read(m.file).find(m.changes[0][0]), 0)].count("\n") + 1
+
+
+def run(builder, names):
+    wrong = broken = 0
+    sound = {}
+    chosen = [m for m in MUTANTS if not names or any(n in m.name for n in names)]
+    for number, m in enumerate(chosen):
+        where = f"{m.name}: {m.file}:{line_of(m)}: \"{m.test}\""
+        try:
+            program = os.path.join(builder.scratch.name, "tests")
+            if (m.tests, m.test) not in sound:
+                builder.link([], [m.tests], program)
+                sound[m.tests, m.test] = builder.passes(program, [named(m.test)])
+            if not sound[m.tests, m.test]:
+                wrong += 1
+                print(f"FAILS WITHOUT  {where}", flush=True)
+                continue
+            overlay = overlay_of(builder, number, m.file, planted(read(m.file), m.changes))
+            objects = [builder.compile(f, overlay) for f in (m.compiled or [m.file])]
+            builder.link(objects, [m.tests], program)
+            found = not builder.passes(program, [named(m.test)])
+            wrong += not found
+            print(f"{'found   ' if found else 'SURVIVED'}  {where}", flush=True)
+        except Cannot as reason:
+            broken += 1
+            print(f"CANNOT    {where}: {reason}", flush=True)
+    print(f"{len(chosen)} planted, {len(chosen) - wrong - broken} found, {wrong} survived, {broken} could not be planted")
+    return 2 if broken else 1 if wrong else 0
+
+
+# What a line may become. Strings, comments and includes are left alone.
+SWAPS = [(r"<=", "<"), (r">=", ">"), (r"(?<![<\-=])<(?![<=])(?= )", "<="), (r"(?<![>\-=])>(?![>=])(?= )", ">="), (r"==", "!="),
+         (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r"&&", "||"), (r"\|\|", "&&"),
+         (r"\+= ", "-= "), (r"std::max\(", "std::min("), (r"std::min\(", "std::max("), (r"std::abs\(", "("),
+         (r"std::sqrt\(", "("), (r"(?<![\w.])(\d+\.\d+|\d+e-\d+)(?![\w.])", r"(2 * \1)"), (r"(?<![\w.\[])1(?![\w.])", "2"),
+         (r"(?<![\w.\[])0(?![\w.])", "1"), (r"(?<![\w.])2(?![\w.])", "3"), (r"!(?=[\w(])", "")]
+
+
+def candidates(text, lines):
+    for number, line in enumerate(text.split("\n"), 1):
+        if not lines[0] <= number <= lines[1] or re.match(r"\s*(//|#)", line):
+            continue
+        code = re.sub(r'"(\\.|[^"\\])*"', lambda q: "\0" * len(q.group()), line.split(" // ")[0])
+        for pattern, by in SWAPS:
+            for at in re.finditer(pattern, code):
+                changed = code[:at.start()] + at.expand(by) + code[at.end():]
+                out, quoted = "", iter(re.findall(r'"(?:\\.|[^"\\])*"', line))
+                for part in re.split("(\0+)", changed):
+                    out += next(quoted) if part.startswith("\0") else part
+                yield number, line.strip(), out
+        if re.match(r"\s+[\w.\[\]>-]+ (\+=|-=|\*=|=) .*;$", code) or re.match(r"\s+(if|return|continue|\+\+).*;$", code):
+            yield number, line.strip(), "" if "return" not in code else re.sub(r"return .*;", "return {};", code)
+
+
+def survey(builder, file, tests, lines, skip):
+    program = os.path.join(builder.scratch.name, "tests")
+    spec = ["".join("~" + named(s) for s in skip)] if skip else []
+    builder.link([], tests, program)
+    if not builder.passes(program, spec):
+        raise Cannot("the tests fail without a bug")
+    text, counts = read(file), [0, 0, 0]
+    for number, (at, old, new) in enumerate(candidates(text, lines)):
+        all_lines = text.split("\n")
+        all_lines[at - 1] = new
+        try:
+            overlay = overlay_of(builder, "s" + str(number), file, "\n".join(all_lines))
+            builder.link([builder.compile(file, overlay)], tests, program)
+        except Cannot:
+            counts[2] += 1
+            continue
+        if builder.passes(program, spec):
+            counts[1] += 1
+            print(f"SURVIVED {file}:{at}: {old}  ->  {new.strip()}", flush=True)
+        else:
+            counts[0] += 1
+    print(f"{file}: {counts[0]} found, {counts[1]} survived, {counts[2]} do not compile", flush=True)
+    return 1 if counts[1] else 0
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("build")
+    p.add_argument("names", nargs="*")
+    p.add_argument("--list", action="store_true")
+    p.add_argument("--survey")
+    p.add_argument("--tests", default="")
+    p.add_argument("--only", default="1-100000")
+    p.add_argument("--skip", action="append", default=[])
+    a = p.parse_args()
+    if a.list:
+        for m in MUTANTS:
+            print(f"{m.name} -> {m.file}:{line_of(m)} -> {m.tests}: {m.test}")
+        return 0
+    builder = Builder(a.build)
+    if a.survey:
+        first, last = map(int, a.only.split("-"))
+        return survey(builder, a.survey, a.tests.split(","), (first, last), a.skip)
+    return run(builder, a.names)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (Cannot, OSError) as reason:
+        print(f"mutants: {reason}", file=sys.stderr)
+        sys.exit(2)

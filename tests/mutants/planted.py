@@ -1,0 +1,137 @@
+"""The bugs, and the test that finds each."""
+from typing import NamedTuple, Tuple
+
+
+class Mutant(NamedTuple):
+    name: str
+    file: str
+    changes: Tuple[Tuple[str, str], ...]  # text that is there once, and what becomes of it
+    tests: str  # file below tests/
+    test: str
+    compiled: Tuple[str, ...] = ()  # sources that include a changed header; default: the file
+
+
+SILHOUETTE = "methods/shadow_planes/silhouette.cpp", "methods/shadow_planes/silhouette_test.cpp"
+COMPARISONS = "experiments/driver/comparisons.cpp", "experiments/comparisons_test.cpp"
+RUN = "experiments/driver/run.cpp", "experiments/driver_noise_test.cpp"
+METRICS = "experiments/metrics.cpp", "experiments/hand_worked_metrics_test.cpp"
+COUNTED = "experiments/metrics.cpp", "experiments/counted_noise_test.cpp"
+VALUES = "experiments/metric_values.cpp", "experiments/hand_worked_metrics_test.cpp"
+BATCHES = "experiments/batches.cpp", "experiments/hand_worked_metrics_test.cpp"
+EQUALITY = "experiments/equality.cpp", "experiments/equality_test.cpp"
+STATISTICS = "experiments/statistics.cpp", "experiments/statistics_test.cpp"
+FRONT = "experiments/front.cpp", "experiments/statistics_test.cpp"
+CHECK = "experiments/verify/check.cpp", "experiments/verify_test.cpp"
+VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
+
+
+def bug(name, place, old, new, test, compiled=()):
+    changes = ((old, new),) if isinstance(old, str) else tuple(zip(old, new))
+    return Mutant(name, place[0], changes, place[1], test, tuple(compiled))
+
+
+MUTANTS = [
+    # Shadow planes
+    bug("edges of more than two faces count twice", SILHOUETTE, "k < edge.first + edge.count",
+        "k < edge.first + std::min(edge.count, 2)", "shadow planes: edges of many faces count every one"),
+    bug("multiplicity at most two", SILHOUETTE, "from_light[edge.b], sum}", "from_light[edge.b], std::min(sum, 2)}",
+        "shadow planes: edges of many faces count every one"),
+    bug("multiplicity at most two, the other way", SILHOUETTE, "from_light[edge.a], -sum}",
+        "from_light[edge.a], std::min(-sum, 2)}", "shadow planes: edges of many faces count every one"),
+    # Speed-ups
+    bug("rows below the noise floor on curves", COMPARISONS, "error && !below", "error", "rows below the noise floor are on no curve"),
+    bug("noise floor of any metric", COMPARISONS, "m.name == metric && m.below_floor", "m.below_floor",
+        "scenes, methods and metrics are kept apart"),
+    bug("speed-ups of all scenes together", COMPARISONS,
+        "if (row.scene == scene && row.method == method) {\n      const auto time", "if (row.method == method) {\n      const auto time",
+        "scenes, methods and metrics are kept apart"),
+    bug("preparation of the other way round", COMPARISONS,
+        "preparation(outcome, scene, s.method) - preparation(outcome, scene, s.baseline)",
+        "preparation(outcome, scene, s.baseline) - preparation(outcome, scene, s.method)", "how many renders repay a preparation"),
+    bug("renders that repay rounded down", COMPARISONS, "std::ceil(longer / saved)", "std::floor(longer / saved)",
+        "how many renders repay a preparation"),
+    bug("front of all scenes together", COMPARISONS, "row.scene != scene || !time", "!time", "the front is that of each scene"),
+    bug("arithmetic mean of speed-ups", FRONT, ("sum += ratio;", "Gain{std::exp(sum / (steps + 1))"),
+        ("sum += std::exp(ratio);", "Gain{sum / (steps + 1)"), "gains are geometric means over what both reach"),
+    bug("one step too few in the mean", FRONT, "std::exp(sum / (steps + 1))", "std::exp(sum / std::max(1, steps))",
+        "gains are geometric means over what both reach"),
+    bug("a point dominates itself", FRONT, "return no_worse && (p.time.high < q.time.low || p.error.high < q.error.low);",
+        "return no_worse;", "a point whose intervals overlap another's does not dominate it"),
+    bug("dominance by values", FRONT, "const bool no_worse = p.time.high <= q.time.low &&", "const bool no_worse = p.time.value <= q.time.value &&",
+        "a point whose intervals overlap another's does not dominate it"),
+    # Masks
+    bug("pixels that touch a light compared", RUN, "scene::ball_mask(*scene, view)", "std::vector<unsigned char>()",
+        "rows leave out balls and background"),
+    bug("ball mask ignored by metrics", VALUES, "if (!masks.left_out.empty() && masks.left_out[p]) kept_[p] = 0;", "",
+        "what is left out counts nowhere"),
+    bug("ball mask ignored by tests of equality", EQUALITY, "if (left_out.empty() || !left_out[pixel]) index", "index", "one block by hand"),
+    bug("foreground of all pixels", RUN, "(1 - t > 1e-3).any()", "(1 - t >= 0).any()", "rows leave out balls and background"),
+    bug("foreground from 1e-4 in the driver", RUN, "1 - t > 1e-3", "1 - t > 1e-4", "rows leave out balls and background"),
+    bug("foreground from 1e-2 in the driver", RUN, "1 - t > 1e-3", "1 - t > 1e-2", "rows leave out balls and background"),
+    bug("foreground from 2e-3", METRICS, "1 - t[i] > 1e-3", "1 - t[i] > 2e-3", "the foreground begins at 1e-3"),
+    bug("foreground from 5e-4", METRICS, "1 - t[i] > 1e-3", "1 - t[i] > 5e-4", "the foreground begins at 1e-3"),
+    bug("foreground ignored", VALUES, "if (name.foreground && !masks.foreground[p]) kept_[p] = 0;", "",
+        "what is left out counts nowhere"),
+    # Noise
+    bug("count_noise inverted", RUN, "ImageNoise::counted : ImageNoise::removed", "ImageNoise::removed : ImageNoise::counted",
+        "noise of references and images reaches the rows"),
+    bug("noise layers of the reference stripped", RUN, "rendering.film, reference->film, layer",
+        "rendering.film, without_noise_layers(reference->film), layer", "noise of references and images reaches the rows"),
+    bug("noise layers of the image stripped", RUN, "measure(experiment().metrics, rendering.film,",
+        "measure(experiment().metrics, without_noise_layers(rendering.film),", "noise of references and images reaches the rows"),
+    bug("rel_mse from one half", METRICS, "0.5 * (one_way(first, second) + one_way(second, first))", "one_way(first, second)",
+        "rel_mse uses both halves, each above the other"),
+    bug("rel_mse over its own half", METRICS, "one_way(first, second) + one_way(second, first)", "one_way(first, first) + one_way(second, second)",
+        "rel_mse uses both halves, each above the other"),
+    bug("rel_mse keeps the bias of its denominator", METRICS, "jackknife(corrected ? jackknife_value(whole, without) : whole,",
+        "jackknife(whole,", "rel_mse uses both halves, each above the other"),
+    bug("percentiles without their tails", METRICS, "const double tail = removed ? (1 - p) / 2 : 0;", "const double tail = 0;",
+        "percentiles and their tails by hand"),
+    bug("percentiles without noise", METRICS, "const double noise_bound = quantile(noise, 1 - tail);", "const double noise_bound = 0;",
+        "percentiles and their tails by hand"),
+    bug("bias without the image's own noise", COUNTED, "with_interval(v, variance / (reference * reference), false, signed_bias)",
+        "with_interval(v, 0, false, signed_bias)", "counted noise of few samples: intervals from standard errors"),
+    bug("squares without the image's own noise", COUNTED, "  if (!v.only_errors()) return 0;\n", "  if (true) return 0;\n",
+        "counted noise of few samples: intervals from standard errors"),
+    bug("channels of a pixel independent", COUNTED, "of_pixel += error(i);", "of_pixel = std::hypot(of_pixel, error(i));",
+        "counted noise: one pixel by hand"),
+    bug("deleted batches leave their noise", COUNTED, "return plain - excess;", "return plain;",
+        "counted noise of sixteen batches: intervals from the jackknife"),
+    bug("a pixel without contributing sample is exact", BATCHES, "if (errors[i] > 0 &&", "if (errors[i] < 0 &&",
+        "a pixel without a contributing sample is not exact"),
+    bug("three batches are enough", BATCHES, "found.size() < 4", "found.size() < 3", "batches are found by their layer, four or more"),
+    # Statistics
+    bug("jackknife without (n-1)/n", STATISTICS, "(groups - 1) / groups * sum", "sum", "a jackknife by hand"),
+    bug("jackknife with a normal quantile", STATISTICS, "student_quantile(0.975, degrees) * std::sqrt(all)", "normal_quantile(0.975) * std::sqrt(all)",
+        "a jackknife by hand"),
+    bug("jackknife of 90 %", STATISTICS, "student_quantile(0.975, degrees) * std::sqrt(all)", "student_quantile(0.95, degrees) * std::sqrt(all)",
+        "a jackknife by hand"),
+    bug("power of the central t", STATISTICS, "return 0.5 * (low + high);", "return threshold + normal_quantile(power);",
+        "a detectable shift is found as often as it says"),
+    bug("detectable_bias without power", EQUALITY, "detectable_shift(student_quantile(1 - alpha / 6, whole.degrees), whole.degrees, 0.95)",
+        "student_quantile(1 - alpha / 6, whole.degrees)", "detectable_bias is found with probability 0.95"),
+    bug("detectable_bias at half the power", EQUALITY, "whole.degrees, 0.95)", "whole.degrees, 0.5)", "one block by hand"),
+    bug("the lower tail of chi-square forgotten", EQUALITY,
+        "std::min(chi_square_above(chi_square, double(m)), chi_square_below(chi_square, double(m)))",
+        "chi_square_above(chi_square, double(m))", "shared random numbers scatter too little"),
+    bug("alpha not shared", EQUALITY, "normal_quantile(1 - alpha / 6)", "normal_quantile(1 - alpha / 2)", "one block by hand"),
+    bug("skewness of no account", EQUALITY, "if (!e.blocks_in_range) {", "if (false) {", "fireflies are out of the tests' range"),
+    # Lights
+    bug("a linear spot cone", ("scene/light.cpp", "scene/light_test.cpp"), "return s * s * (3 - 2 * s);", "return s;",
+        "a spot light has a full cone, a dark outside and a smooth edge"),
+    # Oracle vectors
+    bug("tolerances ten times as wide", CHECK, "std::abs(got - expected) <= tolerance", "std::abs(got - expected) <= 10 * tolerance",
+        "tolerances are what they say"),
+    bug("relative tolerances ten times as wide", CHECK, "tolerance * std::abs(expected) + floor", "10 * tolerance * std::abs(expected) + floor",
+        "tolerances are what they say"),
+    bug("standard errors added", CHECK, "std::hypot(expected_se, got_se)", "expected_se + got_se", "tolerances are what they say"),
+    bug("a reader's own tolerance", ("experiments/verify/fields.cpp", "experiments/verify_test.cpp"),
+        "{0, s.length})[0], accuracy)", "{0, s.length})[0], 10 * accuracy)", "readers use the tolerance of the vector"),
+    bug("a second reader's own tolerance", ("experiments/verify/single_scattering.cpp", "experiments/verify_test.cpp"),
+        "relative(std::move(what), expected, got.radiance[0], tolerance)", "relative(std::move(what), expected, got.radiance[0], 10 * tolerance)",
+        "readers use the tolerance of the vector"),
+    bug("nothing compared is a success", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.out ? 1 : 0;",
+        "a file without vectors is no success"),
+    bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
+        "a number out of tolerance is found"),
+]

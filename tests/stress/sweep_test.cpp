@@ -1,0 +1,50 @@
+// The table of the extreme scenes: every quantity over all powers of ten, every renderer right or refusing by name.
+#include "tests/stress/sweep.h"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "experiments/renderers.h"
+#include "scene/atomic_file.h"
+
+using namespace airlight;
+using namespace airlight::stress;
+
+namespace {
+
+std::string row(const SweepCase& c, const std::string& renderer, const Tally& t) {
+  if (!t.available) return fmt::format("| {} | {} | {} | | | | |\n", c.quantity, c.scene, renderer);
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", c.quantity, c.scene, renderer, t.right, t.at_loading,
+                     t.by_name, t.wrong);
+}
+
+void run(int step, const std::vector<std::string>& renderers, const char* file) {
+  std::string table =
+      "| quantity | scene | renderer | right | refused at loading | refused by name | wrong "
+      "|\n|---|---|---|---|---|---|---|\n";
+  for (const SweepCase& c : sweep_cases())
+    for (const auto& [renderer, tally] : sweep(c, sweep_values(step), renderers)) {
+      table += row(c, renderer, tally);
+      std::string details;
+      for (const std::string& d : tally.details) details += d + "\n";
+      CAPTURE(c.quantity, c.scene, renderer, details);
+      CHECK(tally.wrong == 0);
+    }
+  if (file) scene::write_file_atomically(file, table);
+}
+
+}  // namespace
+
+TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep]") {
+  run(11, {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes"}, nullptr);
+}
+
+// On demand: AIRLIGHT_SWEEP names the file of the table, a list of renderers in AIRLIGHT_SWEEP_OF replaces all.
+TEST_CASE("stress: the whole sweep", "[.][whole_sweep]") {
+  std::vector<std::string> renderers = experiments::renderer_names();
+  if (const char* one = std::getenv("AIRLIGHT_SWEEP_OF")) renderers = {one};
+  const char* step = std::getenv("AIRLIGHT_SWEEP_STEP");
+  run(step ? std::atoi(step) : 3, renderers, std::getenv("AIRLIGHT_SWEEP"));
+}
