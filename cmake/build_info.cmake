@@ -1,7 +1,7 @@
 # Writes OUT, a header that says from which sources a build was made. Run at every build; OUT is touched only when it changes.
 #   AIRLIGHT_COMMIT        git commit, "+changes" if the work tree differs; "unknown" outside a repository
-#   AIRLIGHT_REFERENCE_ID  content of scene/ and reference/: cached references of other sources are not used
-#   AIRLIGHT_SOURCE_ID     content of all sources of the program: rows of unfinished runs of other sources are not used
+#   AIRLIGHT_REFERENCE_ID  content of scene/, reference/ and CMakeLists.txt: cached references of other sources are not used
+#   AIRLIGHT_SOURCE_ID     content of all sources of the program and of CMakeLists.txt: rows of unfinished runs of other sources are not used
 function(content_id result)
   set(files)
   foreach(folder ${ARGN})
@@ -9,6 +9,7 @@ function(content_id result)
     list(APPEND files ${found})
   endforeach()
   list(SORT files)
+  list(APPEND files "${ROOT}/CMakeLists.txt")  # flags, too, change bits
   set(all "")
   foreach(file ${files})
     file(SHA256 "${file}" hash)

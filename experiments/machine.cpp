@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 namespace airlight::experiments {
@@ -34,6 +35,25 @@ Machine this_machine() {
   double load[1] = {0};
   if (getloadavg(load, 1) == 1) m.load_average = load[0];
   return m;
+}
+
+ProcessorTime processor_time() {
+  ProcessorTime sum;
+  std::error_code failure;
+  for (std::filesystem::directory_iterator task("/proc/self/task", failure), end; !failure && task != end;
+       task.increment(failure)) {
+    double run = 0, waited = 0;  // [ns]
+    if (!(std::ifstream(task->path() / "schedstat") >> run >> waited)) continue;
+    sum.run += 1e-9 * run;
+    sum.waited += 1e-9 * waited;
+  }
+  return sum;
+}
+
+double resident_gib() {
+  double size = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident;
+  return resident * double(sysconf(_SC_PAGE_SIZE)) / (1 << 30);
 }
 
 std::string utc_now() {

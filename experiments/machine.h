@@ -15,6 +15,15 @@ struct Machine {
 };
 Machine this_machine();
 
+// What the threads of this process that live now have used since they began, [s]; zeros where the system does not say.
+struct ProcessorTime {
+  double run = 0;
+  double waited = 0;  // ready to run, with no processor free: other work, or more threads than processors
+};
+ProcessorTime processor_time();
+
+double resident_gib();  // memory that this process occupies
+
 std::string utc_now();  // 2026-01-31T12:00:00Z
 
 }  // namespace airlight::experiments

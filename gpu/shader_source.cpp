@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/load/content_hash.h"
 
 namespace airlight::gpu {
 namespace {
@@ -54,6 +56,28 @@ ShaderSource shader_source(const std::string& file, const std::map<std::string, 
   for (const auto& [name, value] : definitions) source.text += fmt::format("#define {} {}\n", name, value);
   append(file, "", source);
   return source;
+}
+
+std::string foreign_shaders() {
+  const char* folder = std::getenv("AIRLIGHT_SHADERS");
+  if (!folder || !*folder) return {};
+  std::error_code failure;
+  std::map<std::string, std::string> texts;
+  std::filesystem::recursive_directory_iterator file(folder, failure);
+  if (failure) throw Error(fmt::format("{}: {} (AIRLIGHT_SHADERS)", folder, failure.message()));
+  for (; file != std::filesystem::recursive_directory_iterator(); ++file) {
+    if (!file->is_regular_file(failure)) continue;
+    const std::string name = std::filesystem::relative(file->path(), folder).generic_string(),
+                      end = file->path().extension();
+    if (end == ".comp" || end == ".glsl" || end == ".vert" || end == ".frag") texts[name] = text_of(name, "");
+  }
+  if (texts == embedded_shaders()) return {};  // a copy of them
+  scene::load::ContentHash hash;
+  for (const auto& [name, text] : texts) {
+    hash.tag(name);
+    hash.tag(text);
+  }
+  return hash.digits();
 }
 
 std::string with_file_names(const std::string& message, const ShaderSource& source) {

@@ -19,6 +19,10 @@ ShaderSource shader_source(const std::string& file, const std::map<std::string, 
 // A compiler's message with names of files in place of their numbers: "gpu/common/erf.glsl:12: ...".
 std::string with_file_names(const std::string& message, const ShaderSource&);
 
+// Empty for the shaders that were compiled in; else the content of all files of the folder AIRLIGHT_SHADERS, as hex
+// digits: a result that they made is not one of the others. Throws Error if the folder cannot be read.
+std::string foreign_shaders();
+
 // All files that were compiled in, by name; made by cmake/embed_shaders.cmake.
 const std::map<std::string, std::string>& embedded_shaders();
 

@@ -82,10 +82,13 @@ struct ExperimentOptions {
   std::string root, profile = "quick", junit, margins_csv;
   std::vector<std::string> names;
   bool resume = false;
-  bool margins = false;  // gates: how far each is from failing
+  bool gates_only = false;  // experiments without gates are left out
+  bool in_tests = false;    // likewise those without in_tests = true
+  bool margins = false;     // how far each gate is from failing
   int threads = 0;
 };
 int list_experiments(const ExperimentOptions&);
+// All files, scenes and settings are checked before anything is computed; exit code 1 names gates that failed.
 int run_experiments(const ExperimentOptions&);
 int plot_experiments(const ExperimentOptions&);
 // Runs what is not there yet of every experiment that has gates; exit code 1 names those that failed.

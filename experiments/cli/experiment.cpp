@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "experiments/cli/commands.h"
+#include "experiments/driver/check.h"
 #include "experiments/driver/junit.h"
 #include "experiments/driver/margins.h"
 #include "experiments/driver/plots.h"
@@ -27,6 +28,34 @@ std::string gates_text(const std::vector<GateResult>& gates) {
                      counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "");
 }
 
+// All of them, before the first is computed. Only those with gates where these are all that is asked for.
+std::vector<Experiment> read_and_check(const ExperimentOptions& options, const std::filesystem::path& root,
+                                       bool resume) {
+  std::vector<Experiment> experiments;
+  for (const std::string& id : choose_experiments(root, options.names)) {
+    Experiment e = read_experiment(root, id, options.profile);
+    if (options.gates_only && e.gates.empty() && e.kind != "oracles") continue;
+    if (options.in_tests && !e.in_tests) continue;
+    if (options.threads > 0) e.timing.threads = options.threads;
+    experiments.push_back(std::move(e));
+  }
+  for (const Experiment& e : experiments) {
+    try {
+      check_experiment(e, {root, resume, options.threads, false, false});
+    } catch (const Error& error) {
+      if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells
+    }
+  }
+  return experiments;
+}
+
+// 1 if a gate failed, 0 if none did.
+int name_failures(const std::vector<GateResult>& gates) {
+  for (const GateResult& gate : gates)
+    if (!gate.passed && !gate.skipped) fmt::print(stderr, "airlight: gate failed: {}\n", gate.name);
+  return count(gates).failed ? 1 : 0;
+}
+
 }  // namespace
 
 int list_experiments(const ExperimentOptions& options) {
@@ -42,24 +71,25 @@ int list_experiments(const ExperimentOptions& options) {
 int run_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const auto root = project_root(options.root);
-  std::vector<Experiment> experiments;  // all files are read before anything is computed
-  for (const std::string& id : choose_experiments(root, options.names))
-    experiments.push_back(read_experiment(root, id, options.profile));
+  const std::vector<Experiment> experiments = read_and_check(options, root, options.resume);
   std::optional<Error> failure;
+  std::vector<GateResult> gates;
   for (const Experiment& e : experiments) {
     fmt::print("{} ({})\n", e.id, e.profile);
     std::fflush(stdout);
     try {
-      const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true});
+      const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true, true});
       fmt::print("  {} rows in {:.1f} s, {}: results/{}/table.md\n", outcome.rows.size(), outcome.seconds,
                  gates_text(outcome.gates), results_name(e.id, e.profile));
+      gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const Error& error) {
       // The others are worth having.
       say(fmt::format("{}: {}", e.id, error.what()));
       if (!failure || error.exit_code() < failure->exit_code()) failure = error;
     }
   }
-  return failure ? failure->exit_code() : 0;
+  const int code = name_failures(gates);
+  return failure ? failure->exit_code() : code;
 }
 
 int plot_experiments(const ExperimentOptions& options) {
@@ -82,33 +112,27 @@ int plot_experiments(const ExperimentOptions& options) {
 int gates(const ExperimentOptions& options) {
   check_profile(options);
   const auto root = project_root(options.root);
-  std::vector<Experiment> experiments;
-  for (const std::string& id : choose_experiments(root, options.names))
-    if (Experiment e = read_experiment(root, id, options.profile); !e.gates.empty() || e.kind == "oracles")
-      experiments.push_back(e);
   std::vector<GateResult> results;
-  for (const Experiment& e : experiments) {
+  // What an earlier run of this very program finished is not computed again.
+  for (const Experiment& e : read_and_check(options, root, true)) {
+    const std::size_t before = results.size();
     try {
-      // What an earlier run of this very program finished is not computed again.
-      const Outcome outcome = run_experiment(e, {root, true, options.threads, false});
+      const Outcome outcome = run_experiment(e, {root, true, options.threads, false, true});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const Error& error) {
       const bool skipped = dynamic_cast<const NoDevice*>(&error) && !gpu::Context::device_was_chosen();
       results.push_back(
           {e.id, fmt::format("{} {}: {}", e.id, skipped ? "is skipped" : "fails", error.what()), false, skipped});
     }
-    for (std::size_t i = 0; !options.margins && i < results.size(); ++i)
-      if (results[i].name.rfind(e.id + ":", 0) == 0 || results[i].name == e.id)
-        fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
+    for (std::size_t i = before; !options.margins && i < results.size(); ++i)
+      fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
     std::fflush(stdout);
   }
   if (options.margins) fmt::print("{}", margins_text(results));
   if (!options.margins_csv.empty()) scene::write_file_atomically(options.margins_csv, margins_csv(results));
   if (!options.junit.empty()) write_junit(options.junit, results);
   fmt::print("{}\n", gates_text(results));
-  for (const GateResult& g : results)
-    if (!g.passed && !g.skipped) say("gate failed: " + g.name);
-  return count(results).failed ? 1 : 0;
+  return name_failures(results);
 }
 
 }  // namespace airlight::experiments::cli

@@ -206,7 +206,11 @@ int dispatch(int argc, char** argv) {
   c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
   c->add_flag("--margins", experiment_options.margins, "how many times worse each figure could be, the loosest first");
   c->add_option("--margins-csv", experiment_options.margins_csv, "the same as a CSV file");
-  c->final_callback([&] { action = [&] { return gates(experiment_options); }; });
+  c->add_flag("--in-tests", experiment_options.in_tests, "only of experiments with in_tests = true, as scripts/test");
+  c->final_callback([&] {
+    experiment_options.gates_only = true;
+    action = [&] { return gates(experiment_options); };
+  });
 
   ExplainOptions explain_options;
   c = command(app, "explain", "what each renderer would compute or leave out in a scene, and why");

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "experiments/driver/outcome.h"
 #include "scene/error.h"
 #include "scene/read_file.h"
 
@@ -44,7 +43,7 @@ double number(const std::string& text, double fallback, const std::string& where
 // The gate of the experiment's file that covers the line: it says why, and whether there is one at all.
 const GateCase& covering(const Experiment& e, const GateCase& line, const std::string& where) {
   for (const GateCase& gate : e.gates)
-    if (!gate.by_row && gate.metric == line.metric && names(gate, line.scene, line.method, line.setting)) return gate;
+    if (!gate.by_row && gate.metric == line.metric && judges(gate, line.scene, line.method, line.setting)) return gate;
   throw Error(
       fmt::format("{}: no [[gate]] covers {}, {} {}: {}", where, line.scene, line.method, line.setting, line.metric));
 }

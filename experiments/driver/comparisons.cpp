@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/driver/drawn_again.h"
 #include "experiments/front.h"
 #include "experiments/statistics.h"
 
@@ -19,17 +20,35 @@ std::vector<std::string> scene_names(const Outcome& outcome) {
   return scenes;
 }
 
-std::vector<Point> curve(const Outcome& outcome, const std::string& scene, const std::string& method,
-                         const std::string& metric) {
-  std::vector<Point> points;
+Curve curve_rows(const Outcome& outcome, const std::string& scene, const std::string& method,
+                 const std::string& metric) {
+  Curve rows;
   for (const Row& row : outcome.rows)
     if (row.scene == scene && row.method == method) {
       const auto time = quantity(row, "seconds"), error = quantity(row, metric);
       const auto below = std::any_of(row.measures.begin(), row.measures.end(),
                                      [&](const Measure& m) { return m.name == metric && m.below_floor; });
-      if (time && error && !below) points.push_back({*time, *error});
+      if (time && error && !below) rows.push_back(&row);
     }
+  return rows;
+}
+
+std::vector<Point> points_of(const Curve& rows, const std::string& metric) {
+  std::vector<Point> points;
+  for (const Row* row : rows) points.push_back({*quantity(*row, "seconds"), *quantity(*row, metric)});
   return points;
+}
+
+std::string interval_text(const std::optional<Estimate>& e) {
+  return e ? fmt::format("[{:.3g}, {:.3g}]", e->low, e->high) : "not known";
+}
+
+// A gain's geometric mean, for drawing it again.
+Figure mean_of(std::optional<Gain> (*gain)(const std::vector<Point>&, const std::vector<Point>&)) {
+  return [gain](const std::vector<Point>& baseline, const std::vector<Point>& other) {
+    const auto g = gain(baseline, other);
+    return g ? std::optional(g->geometric_mean) : std::nullopt;
+  };
 }
 
 // Median preparation of a method's settings on a scene [s].
@@ -66,27 +85,31 @@ std::string no_common_error(const SpeedUpCase& s, const std::vector<Point>& base
 }  // namespace
 
 TextTable equal_error_and_time(const Outcome& outcome) {
-  TextTable lines{{"scene", "method", "against", "metric", "times faster at equal error", "range", "over errors",
-                   "preparation repaid after renders", "times less error at equal time", "range", "over times"}};
+  TextTable lines{{"scene", "method", "against", "metric", "times faster at equal error", "95 % interval", "range",
+                   "over errors", "preparation repaid after renders", "times less error at equal time", "95 % interval",
+                   "range", "over times"}};
   for (const SpeedUpCase& s : outcome.experiment.speed_ups)
     for (const std::string& scene : scene_names(outcome)) {
-      const auto baseline = curve(outcome, scene, s.baseline, s.metric),
-                 other = curve(outcome, scene, s.method, s.metric);
+      const Curve baseline_rows = curve_rows(outcome, scene, s.baseline, s.metric),
+                  other_rows = curve_rows(outcome, scene, s.method, s.metric);
+      const auto baseline = points_of(baseline_rows, s.metric), other = points_of(other_rows, s.metric);
       if (baseline.empty() || other.empty()) continue;
       std::vector<std::string> line{scene, s.method, s.baseline, s.metric};
       if (const auto faster = speed_up(baseline, other))
         line.insert(line.end(), {fmt::format("{:.3g}", faster->geometric_mean),
+                                 interval_text(drawn_again(baseline_rows, other_rows, s.metric, mean_of(speed_up))),
                                  fmt::format("{:.3g} to {:.3g}", faster->least, faster->greatest),
                                  fmt::format("{:.2g} to {:.2g}", faster->from, faster->to),
                                  break_even(outcome, s, scene, baseline, other, *faster)});
       else
-        line.insert(line.end(), {no_common_error(s, baseline, other), "", "", ""});
+        line.insert(line.end(), {no_common_error(s, baseline, other), "", "", "", ""});
       if (const auto better = error_ratio(baseline, other))
         line.insert(line.end(), {fmt::format("{:.3g}", better->geometric_mean),
+                                 interval_text(drawn_again(baseline_rows, other_rows, s.metric, mean_of(error_ratio))),
                                  fmt::format("{:.3g} to {:.3g}", better->least, better->greatest),
                                  fmt::format("{} to {}", duration(better->from), duration(better->to))});
       else
-        line.insert(line.end(), {"no common time", "", ""});
+        line.insert(line.end(), {"no common time", "", "", ""});
       lines.push_back(line);
     }
   return lines;
@@ -109,6 +132,23 @@ std::vector<bool> on_front(const Outcome& outcome) {
     for (const std::size_t kept : front(points)) marks[index[kept]] = true;
   }
   return marks;
+}
+
+std::string load_warning(const Outcome& outcome) {
+  std::size_t loaded = 0, timed = 0;
+  const Row* worst = nullptr;
+  for (const Row& row : outcome.rows) {
+    if (row.times.empty()) continue;
+    ++timed;
+    if (row.waited > much_waiting) ++loaded;
+    if (!worst || row.waited > worst->waited) worst = &row;
+  }
+  if (loaded == 0) return "";
+  return fmt::format(
+      "Times are disturbed: in {} of {} timed rows threads waited for a processor for more than {:.0f} % of their time "
+      "({}, {}{}: {:.0f} %)",
+      loaded, timed, 100 * much_waiting, worst->scene, worst->method,
+      worst->setting.empty() ? "" : " " + worst->setting, 100 * worst->waited);
 }
 
 std::string duration(double seconds) {

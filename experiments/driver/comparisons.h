@@ -13,8 +13,14 @@ using TextTable = std::vector<std::vector<std::string>>;  // the header first
 std::vector<bool> on_front(const Outcome&);
 
 // A line for each [[speed_up]] and scene: ratios of time over the errors that both reach, after how many renders a
-// longer preparation is repaid (in the middle of those errors), ratios of error over the times that both reach.
+// longer preparation is repaid (in the middle of those errors), ratios of error over the times that both reach; both
+// with the interval that the runs and errors leave them (drawn_again.h).
 TextTable equal_error_and_time(const Outcome&);
+
+// A line where processors were not free for more than a tenth of the threads' time in some row's timed runs; else
+// empty.
+inline constexpr double much_waiting = 0.1;
+std::string load_warning(const Outcome&);
 
 std::string duration(double seconds);  // "12.3 ms"
 

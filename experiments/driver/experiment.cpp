@@ -32,14 +32,15 @@ class Reader {
   Experiment read() {
     TableReader top(toml_, "");
     const bool oracles = toml_["kind"].value_or(std::string()) == "oracles";
-    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "vectors"}
+    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "in_tests", "vectors"}
                       : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "stages",
-                                                 "scene", "method", "reference", "timing", "plot", "gate", "speed_up",
-                                                 "expected", "profile"});
+                                                 "in_tests", "scene", "method", "reference", "timing", "plot", "gate",
+                                                 "speed_up", "expected", "profile"});
     experiment_.kind = top.choice("kind", {"images", "oracles"}, "images");
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
     experiment_.about = top.text("about", "");
+    experiment_.in_tests = top.flag("in_tests", false);
     if (experiment_.kind == "oracles") {
       for (const std::string& file : strings(toml_, "vectors", top)) experiment_.vector_files.push_back(root_ / file);
       return experiment_;
@@ -158,6 +159,7 @@ class Reader {
           cases.back().overrides[key] = fmt::format("{}", value);
           cases.back().parameter = value;
           cases.back().name = fmt::format("{} {:g}", scene.name, value);
+          cases.back().swept_from = scene.name;
         }
       }
       if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());
@@ -177,6 +179,7 @@ class Reader {
       method.picture_only = reader.flag("picture_only", false);
       method.count_noise = reader.flag("count_noise", false);
       method.scenes = strings(*table, "scenes", reader);
+      for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
       std::vector<MethodCase> cases{method};
       if (auto sweep = reader.table("sweep")) {
         sweep->allow({"key", "values"});
@@ -207,6 +210,7 @@ class Reader {
       plot.y_label = reader.text("y_label", "");
       plot.per_scene = reader.flag("per_scene", plot.x != "parameter");
       plot.methods = strings(*table, "methods", reader);
+      for (const std::string& name : plot.methods) known(reader, "methods", name, "method");
       for (const std::string key : {"x", "y"}) {
         const std::string& axis = key == "x" ? plot.x : plot.y;
         const std::vector<std::string> axes = {"seconds", "prepare_seconds", "parameter", "setting"};
@@ -229,6 +233,7 @@ class Reader {
       if (value.rfind("counter.", 0) == 0) return;
       names = experiment_.metrics;
       names.push_back("seconds");
+      names.push_back("prepare_seconds");
       names.push_back("counter.NAME");
     } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
       for (const toml::node& node : *array) {
@@ -243,6 +248,34 @@ class Reader {
     if (std::find(names.begin(), names.end(), value) == names.end())
       reader.expected(key,
                       fmt::format("one of {} (nearest: {})", fmt::join(names, ", "), scene::nearest(value, names)));
+  }
+
+  // A gate must have a row to judge, and each of its rows a figure.
+  void has_figures(const TableReader& reader, const GateCase& gate) const {
+    const auto wrong = [&](const std::string& what) {
+      reader.fail("", fmt::format("{} in profile {}", what, experiment_.profile));
+    };
+    const std::vector<std::string> tests = {"objections", "largest_z", "detectable_bias"};
+    const bool of_time_or_work =
+        gate.metric == "seconds" || gate.metric == "prepare_seconds" || gate.metric.rfind("counter.", 0) == 0;
+    const bool test = std::find(tests.begin(), tests.end(), gate.metric) != tests.end();
+    const bool noisy_reference = experiment_.reference.renderer == "path_tracer";
+    bool found = false;
+    for (const SceneCase& c : experiment_.scenes)
+      for (const MethodCase& m : experiment_.methods) {
+        if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
+        found = true;
+        if (of_time_or_work) continue;
+        if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
+        if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
+        if (test && !noisy_reference && m.renderer != "path_tracer")
+          wrong(fmt::format("{} needs noise, and neither '{}' nor the reference has any", gate.metric, m.name));
+        if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");
+      }
+    if (!found)
+      wrong(fmt::format("there is no row of method '{}'{}{}", gate.method,
+                        gate.setting.empty() ? "" : fmt::format(" with setting {}", gate.setting),
+                        gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene)));
   }
 
   void checks(const TableReader& top) {
@@ -268,7 +301,9 @@ class Reader {
         if (measured > gate.at_most || measured < gate.at_least)
           reader.fail("measured", fmt::format("measured = {:g} fails this gate", measured));
       }
-      if (in_profile(*table, reader) && (bounded || experiment_.profile == "quick")) experiment_.gates.push_back(gate);
+      if (!in_profile(*table, reader) || !(bounded || experiment_.profile == "quick")) continue;
+      has_figures(reader, gate);
+      experiment_.gates.push_back(gate);
     }
     if (experiment_.profile == "quick") add_bounds(experiment_, fs::path(file_).replace_extension(".bounds.csv"));
     for (auto& [table, reader] : lists(top, "speed_up")) {
@@ -306,6 +341,18 @@ class Reader {
 
 Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
   return Reader(root, id, profile).read();
+}
+
+bool is_on(const MethodCase& m, const SceneCase& c) {
+  return m.scenes.empty() || std::any_of(m.scenes.begin(), m.scenes.end(), [&](const std::string& name) {
+           return name == c.name || name == c.swept_from;
+         });
+}
+
+bool judges(const GateCase& gate, const std::string& scene, const std::string& method, const std::string& setting) {
+  if (gate.by_row) return scene == gate.scene && method == gate.method && setting == gate.setting;
+  return (gate.scene.empty() || scene == gate.scene || scene.rfind(gate.scene + " ", 0) == 0) &&
+         (gate.method.empty() || method == gate.method) && (gate.setting.empty() || setting == gate.setting);
 }
 
 std::string results_name(const std::string& id, const std::string& profile) {

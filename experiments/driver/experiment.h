@@ -14,6 +14,7 @@ using Pairs = std::map<std::string, std::string>;
 
 struct SceneCase {
   std::string name;
+  std::string swept_from;  // the name without the sweep's value; empty without a sweep
   std::filesystem::path file;
   Pairs overrides;                  // with those of the profile
   std::optional<double> parameter;  // abscissa of plots over scenes
@@ -29,6 +30,9 @@ struct MethodCase {
   bool picture_only = false;        // rendered and timed, not compared
   std::vector<std::string> scenes;  // empty: all
 };
+
+// Is the method on this scene? A swept scene is called "name value": the name means all of them.
+bool is_on(const MethodCase&, const SceneCase&);
 
 struct ReferenceCase {
   std::string renderer;  // empty: nothing is compared
@@ -59,6 +63,10 @@ struct GateCase {
   std::string device;    // that it was measured on, if not the processor
 };
 
+// Does the gate judge the row of this scene, method and setting? A swept scene is called "name value": a gate on the
+// name means all of them.
+bool judges(const GateCase&, const std::string& scene, const std::string& method, const std::string& setting);
+
 struct SpeedUpCase {
   std::string baseline, method, metric;
 };
@@ -78,7 +86,8 @@ struct Experiment {
   std::string layer = "mean";
   std::vector<std::string> metrics;
   TimingRule timing;
-  bool stages = false;  // a table of the time of every stage
+  bool in_tests = false;  // its gates are judged by scripts/test
+  bool stages = false;    // a table of the time of every stage
   std::vector<PlotCase> plots;
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;
@@ -86,8 +95,9 @@ struct Experiment {
   std::vector<std::filesystem::path> vector_files;  // kind "oracles"
 };
 
-// Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers
-// and names that refer to one another are checked here, scenes when they are loaded.
+// Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,
+// names that refer to one another, and that every gate has a row and a figure to judge, are checked here; scenes by
+// check_experiment.
 Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
 
 // Where a profile's results lie below results/, and its pictures below results/images/: "group/name" for quick,

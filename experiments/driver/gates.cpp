@@ -74,12 +74,6 @@ GateCounts count(const std::vector<GateResult>& gates) {
 
 const char* word(const GateResult& gate) { return gate.skipped ? "skipped" : gate.passed ? "ok" : "FAILED"; }
 
-bool names(const GateCase& gate, const std::string& scene, const std::string& method, const std::string& setting) {
-  if (gate.by_row) return scene == gate.scene && method == gate.method && setting == gate.setting;
-  return (gate.scene.empty() || scene == gate.scene || scene.rfind(gate.scene + " ", 0) == 0) &&
-         (gate.method.empty() || method == gate.method) && (gate.setting.empty() || setting == gate.setting);
-}
-
 std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::vector<GateResult> results;
   std::set<std::pair<const Row*, std::string>> held;   // row and metric have a bound by row,
@@ -87,7 +81,7 @@ std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Ro
   for (const GateCase& gate : experiment.gates) {
     bool any = false;
     for (const Row& row : rows) {
-      if (!names(gate, row.scene, row.method, row.setting)) continue;
+      if (!judges(gate, row.scene, row.method, row.setting)) continue;
       any = true;
       const auto figure = std::make_pair(&row, gate.metric);
       if (gate.by_row) {

@@ -10,19 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/driver/content_key.h"
+#include "experiments/folders.h"
 #include "experiments/json.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
 
 Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
-  std::error_code failure;
-  std::filesystem::create_directories(file.parent_path(), failure);
-  if (failure) throw Error(fmt::format("{}: {}", file.parent_path().string(), failure.message()));
-  if (!resume) {
-    std::filesystem::remove(file, failure);
-    return;
-  }
+  if (!resume) return;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     const std::size_t space = line.find(' ');
@@ -38,12 +33,20 @@ Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
   }
 }
 
+void Journal::begin_anew() {
+  std::error_code failure;
+  std::filesystem::remove(file_, failure);
+  if (failure) throw Error(fmt::format("{}: {}", file_.string(), failure.message()));
+  rows_.clear();
+}
+
 const Row* Journal::find(const std::string& key) const {
   const auto found = rows_.find(key);
   return found == rows_.end() ? nullptr : &found->second;
 }
 
 void Journal::add(const Row& row) {
+  make_folder(file_.parent_path());
   rows_[row.key] = row;
   const std::string text = to_json(row).dump();
   // A torn line before this one must not swallow it: begin on a new line.

@@ -12,13 +12,16 @@ namespace airlight::experiments {
 
 class Journal {
  public:
-  // Reads what is there, or with `resume` false begins anew.
+  // Reads what is there, or with `resume` false nothing. Writes nothing.
   Journal(const std::filesystem::path& file, bool resume);
+
+  // Removes what is there. Throws Error.
+  void begin_anew();
 
   // The row of that key, if it was finished.
   const Row* find(const std::string& key) const;
 
-  // Appends and flushes to the disk. Throws Error.
+  // Appends and flushes to the disk; makes the folder. Throws Error.
   void add(const Row&);
 
  private:

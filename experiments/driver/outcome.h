@@ -47,9 +47,6 @@ struct Outcome {
   double seconds = 0;
 };
 
-// Does the gate name such a row? A swept scene is called "name value": a gate on the name means all of them.
-bool names(const GateCase&, const std::string& scene, const std::string& method, const std::string& setting);
-
 // Each gate against every row that it names: fails if the whole interval lies beyond the bound, if the figure is not
 // defined, and if there is no such row. Skipped if the row is unavailable on this machine. Where a bound by row
 // (bounds.h) was measured on the same device it stands for that of the [[gate]]; a figure without any bound fails.

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/build_info.h"
+#include "experiments/driver/comparisons.h"
 #include "experiments/driver/tables.h"
 #include "experiments/machine.h"
 
@@ -59,7 +60,8 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
               {"memory_gib", machine.memory_gib},
               {"simd", machine.simd},
               {"system", machine.system},
-              {"load_average_at_end", machine.load_average}}}};
+              {"load_average_at_end", machine.load_average},
+              {"load_warning", load_warning(outcome)}}}};
   j["libraries"] = json::object();
   for (const auto& [name, number] : libraries()) j["libraries"][name] = number;
   j["references"] = json::array();
@@ -83,7 +85,10 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
     j["gates"].push_back(
         {{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}, {"skipped", gate.skipped}});
   j["rows"] = json::array();
-  for (const Row& row : outcome.rows) j["rows"].push_back(to_json(row));
+  for (const Row& row : outcome.rows) {
+    j["rows"].push_back(to_json(row));
+    j["rows"].back().erase("times");  // what they show is in the intervals
+  }
   return j.dump(1) + "\n";
 }
 

@@ -11,6 +11,7 @@
 #include "experiments/driver/content_key.h"
 #include "experiments/folders.h"
 #include "experiments/say.h"
+#include "gpu/shader_source.h"
 #include "reference/path_tracer/cache.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -59,8 +60,10 @@ std::string reference_key(const scene::Scene& scene, const scene::Renderer& rend
   // A method may stand as the reference of its twin on the GPU: it depends on more than the folder `reference`.
   bool below_reference = false;
   for (const char* name : {"deterministic", "path_tracer", "ray_marcher"}) below_reference |= renderer.name() == name;
+  const std::string device = renderer.device();
   return content_key({scene.hash, fmt::format("{}x{}", scene.width, scene.height), renderer.name(),
-                      settings.canonical(), below_reference ? reference_id() : source_id()});
+                      settings.canonical(), below_reference ? reference_id() : source_id(), compiler(), device,
+                      device.empty() ? "" : gpu::foreign_shaders()});
 }
 
 Reference reference_for(const fs::path& cache, std::shared_ptr<const scene::Scene> scene,

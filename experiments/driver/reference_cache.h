@@ -1,10 +1,11 @@
 // Reference images, computed once: results/cache/references/<key>.exr with its checksum in <key>.json.
 //
 // The path tracer's samples go through its own cache instead (results/cache/samples): a reference with fewer samples is
-// refined, one with more is used, and one that was interrupted goes on where it was.
+// refined, and one that was interrupted goes on where it was; its samples are always exactly those asked for.
 //
-// The key is the content of scene, renderer, settings and of the sources of scene/ and reference/: another program that
-// computes the same is served, a changed reference is not. A damaged or half-copied file is computed anew.
+// The key is the content of scene, renderer, settings and of the sources of scene/ and reference/, the compiler, and
+// where there is one the device and its shaders: another program that computes the same is served, a changed reference
+// is not. A damaged or half-copied file is computed anew.
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -44,6 +44,9 @@ json to_json(const Row& row) {
             {"seconds", {row.seconds.value, row.seconds.low, row.seconds.high}},
             {"seconds_interval_coverage", row.coverage},
             {"seconds_mad", row.mad},
+            {"times", row.times},
+            {"timed_together", row.group},
+            {"waited", row.waited},
             {"prepare_seconds", row.prepare_seconds},
             {"stages", stages},
             {"device", row.device},
@@ -79,6 +82,9 @@ Row row_from_json(const json& j) {
   row.seconds = {j.at("seconds").at(0), j.at("seconds").at(1), j.at("seconds").at(2)};
   row.coverage = j.at("seconds_interval_coverage");
   row.mad = j.at("seconds_mad");
+  j.at("times").get_to(row.times);
+  text("timed_together", row.group);
+  row.waited = j.at("waited");
   row.prepare_seconds = j.at("prepare_seconds");
   for (const json& s : j.at("stages")) row.stages.emplace_back(s.at("stage"), s.at("seconds"));
   for (const auto& [name, value] : j.at("counters").items()) row.counters[name] = number(value);

@@ -24,6 +24,9 @@ struct Row {
   Estimate seconds{0, 0, 0};  // median wall time of one render, interval by ranks
   double coverage = 0;        // of that interval
   double mad = 0;             // [s], times 1.4826
+  std::vector<double> times;  // [s] of each run; of rows of one `group` in the same rounds
+  std::string group;          // rows that were timed together have the same
+  double waited = 0;          // share of the threads' time in these runs in which no processor was free for them
   double prepare_seconds = 0;
   std::vector<std::pair<std::string, double>> stages;  // [s] of one render, median of the runs
   std::string device;                                  // that computed it, if not the processor

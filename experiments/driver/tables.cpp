@@ -225,6 +225,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   }
   const Machine machine = this_machine();
   out += "## Conditions\n\n";
+  if (const std::string warning = load_warning(outcome); !warning.empty()) out += fmt::format("- **{}.**\n", warning);
   for (const ReferenceInfo& r : outcome.references)
     out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once.\n", r.scene, r.renderer, r.settings,
                        r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds));

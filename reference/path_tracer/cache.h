@@ -1,8 +1,12 @@
-// References kept on disk: one range file per picture, named by the content of scene, view, settings, seed and build.
+// References kept on disk: one range file per picture and number of samples, named by the content of scene, view,
+// settings, seed and build, and by that number.
 //
-// A picture that is there with fewer samples than asked for is refined: only the missing samples are computed, and the
-// bits are those of a render in one go. With more, all of them are used. What is done is written every few seconds,
-// atomically, so that a process killed at any moment loses those seconds and nothing else.
+// A picture never depends on what the folder holds: its samples are exactly those asked for, and its bits, and its
+// counters, those of a render in one go. Where there are fewer samples already (whole blocks of 64), only the missing
+// ones are computed; those of a file that holds more are joined to larger sums and cannot be told apart again, so it is
+// not used. What is done is written every few seconds, atomically, so that a process killed at any moment loses those
+// seconds and nothing else. A picture with a target error stops by what it has computed: it is written when it is
+// whole.
 #pragma once
 #include <memory>
 #include <string>
@@ -21,8 +25,8 @@ struct CachedRendering {
   bool complete = true;
 };
 
-// Where the samples of a picture are kept.
-std::string cache_file(const std::string& folder, const Identity&);
+// Where the samples of a picture are kept, for so many samples and that target error.
+std::string cache_file(const std::string& folder, const Identity&, const Options&);
 
 // Renders options().samples per pixel, or to its target error, through the folder (created if needed). Where progress
 // returns false it keeps and writes what is done; throws Interrupted if there is a pixel without any. A file that

@@ -183,9 +183,8 @@ TEST_CASE("explain and doctor", "[cli]") {
   CHECK_THAT(doctor.out, Contains("Embree 3") && Contains("processor") && Contains("graphics"));
 }
 
-// A path tracer that is stopped keeps its samples: the film says how many, and a render with the same cache goes on to
-// the bits of one that was never stopped.
-TEST_CASE("Ctrl-C keeps the samples of a path tracer, and the cache goes on from there", "[cli]") {
+// A path tracer that is stopped keeps its samples, and the film says how many.
+TEST_CASE("Ctrl-C keeps the samples of a path tracer, and no other picture is made of them", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = scenes + "constant_homogeneous.toml --override film.width=16 --override film.height=12 ";
   const std::string many = "render " + scene + "-m path_tracer --set max_order=1 --cache kept --samples ";
@@ -194,15 +193,13 @@ TEST_CASE("Ctrl-C keeps the samples of a path tracer, and the cache goes on from
   CHECK(stopped.code == 130);
   const auto part = airlight::scene::read_exr(folder.file("a.exr"));
   CHECK(part.metadata.at("complete") == "false");
+  // Fewer samples than there are now: exactly those, and the stopped render loses nothing by it.
   REQUIRE(run(many + "1024 -o b.exr", folder).code == 0);
   REQUIRE(run("render " + scene + "-m path_tracer --set max_order=1 --samples 1024 -o c.exr", folder).code == 0);
-  const auto resumed = airlight::scene::read_exr(folder.file("b.exr")),
+  const auto fewer = airlight::scene::read_exr(folder.file("b.exr")),
              whole = airlight::scene::read_exr(folder.file("c.exr"));
-  // The cache may hold more than 1024 already: then all are used.
-  if (resumed.metadata.at("samples") == "1024")
-    CHECK(resumed.layers == whole.layers);
-  else
-    CHECK(resumed.layers.at("n") > whole.layers.at("n"));
+  CHECK(fewer.metadata.at("samples") == "1024");
+  CHECK(fewer.layers == whole.layers);
 }
 
 TEST_CASE("Ctrl-C stops a render and leaves nothing half-written", "[cli]") {

@@ -131,8 +131,9 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   const Project project;
   const Outcome whole = project.run(false);
   const std::string journal = read_bytes(project.journal().string());
-  // Torn in the middle of the second row.
-  std::ofstream(project.journal(), std::ios::trunc) << journal.substr(0, journal.find('\n', 1) + 300);
+  // First the row that is not supported, then those that were timed in turns. Torn in the middle of the third.
+  const std::size_t torn = journal.find("\n\n", journal.find("\n\n") + 1);
+  std::ofstream(project.journal(), std::ios::trunc) << journal.substr(0, torn + 300);
   const Outcome resumed = project.run(true);
   REQUIRE(resumed.rows.size() == 3);
   CHECK(resumed.rows[0].seconds.value == whole.rows[0].seconds.value);  // kept
@@ -184,15 +185,66 @@ TEST_CASE("a damaged cached reference is computed anew", "[driver]") {
   CHECK(metric(second.rows[0], "rel_l2") == metric(first.rows[0], "rel_l2"));
 }
 
-TEST_CASE("a scene that cannot be read takes nothing from the others", "[driver]") {
-  const Project project;
+namespace {
+
+// Every file below a folder with its bytes.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& file : fs::recursive_directory_iterator(folder))
+    if (file.is_regular_file()) files[file.path().string()] = read_bytes(file.path().string());
+  return files;
+}
+
+std::string with(const std::string& insertion, const std::string& before) {
   std::string text = experiment_file;
-  text.insert(text.find("[[scene]]"), "[[scene]]\nfile = \"scenes/missing.toml\"\n");
-  project.folder.write("experiments/g/e.toml", text);
-  CHECK_THROWS_WITH(project.run(false), Catch::Contains("missing.toml"));
-  const auto record = nlohmann::json::parse(read_bytes((project.folder.path() / "results/g/e/run.json").string()));
-  CHECK(record["rows"].size() == 3);
-  CHECK(record["complete"] == false);
+  return text.insert(text.find(before), insertion);
+}
+
+}  // namespace
+
+// What is wrong lies in the last scene, method or layer: nothing of the first may have been computed by then.
+TEST_CASE("an experiment that is refused writes nothing, and removes nothing", "[driver]") {
+  const Project project;
+  const std::string scene = "[[scene]]\nname = \"two\"\nfile = \"scenes/", before = "[reference]";
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {with(scene + "missing.toml\"\n", before), "missing.toml"},
+      {with(scene + "one.toml\"\noverrides = { \"film.widht\" = 4 }\n", before), "nearest: width"},
+      {with(scene + "one.toml\"\noverrides = { \"light.0.intensity\" = -1 }\n", before), "intensity"},
+      {with("[[method]]\nname = \"odd\"\nrenderer = \"ray_marcher\"\nlayer = \"airlihgt\"\n", "[profile.quick]"),
+       "no layer 'airlihgt'"},
+      {std::string(experiment_file).replace(experiment_file.find("layer = \"airlight\""), 18, "layer = \"airlihgt\""),
+       "no layer 'airlihgt'"},
+      // The samples of `airlight` are not kept by batches: against a path tracer it cannot be judged.
+      {std::string(experiment_file).replace(experiment_file.find("\"deterministic\""), 15, "\"path_tracer\""),
+       "batches"},
+  };
+  for (const bool before_any : {true, false}) {
+    if (!before_any) {
+      project.folder.write("experiments/g/e.toml", experiment_file);
+      project.run(false);
+    }
+    for (const auto& [text, says] : bad) {
+      project.folder.write("experiments/g/e.toml", text);
+      const auto was = contents(project.folder.path());
+      for (const bool resume : {false, true}) {
+        CAPTURE(text, resume);
+        CHECK_THROWS_WITH(project.run(resume), Catch::StartsWith("g/e: ") && Catch::Contains(says));
+        CHECK(contents(project.folder.path()) == was);
+      }
+    }
+    CHECK(fs::exists(project.folder.path() / "results") == !before_any);
+  }
+}
+
+TEST_CASE("a parameter that was edited is that of the kept rows", "[driver]") {
+  const Project project;
+  const auto parameter = [&](const std::string& value) {
+    project.folder.write("experiments/g/e.toml", with("parameter = " + value + "\n", "[reference]"));
+    return project.run(true).rows.at(0);
+  };
+  const Row first = parameter("3"), second = parameter("5");
+  CHECK(second.parameter == 5);
+  CHECK(second.seconds.value == first.seconds.value);  // it was kept
 }
 
 TEST_CASE("gates fail only beyond the interval", "[driver]") {
@@ -289,6 +341,9 @@ TEST_CASE("rows survive their record", "[driver]") {
   row.width = 100;
   row.height = 75;
   row.stages = {{"slices", 0.25}};
+  row.times = {0.5, 1, 2};
+  row.group = "together";
+  row.waited = 0.25;
   row.device = "somewhere";
   row.measures.push_back({"p95", std::nan(""), std::nan(""), std::nan(""), 0, false});
   const Row back = row_from_json(nlohmann::json::parse(to_json(row).dump()));
@@ -316,6 +371,46 @@ TEST_CASE("timed runs follow the rule", "[driver]") {
   const Timing warmed = time_runs({31, 0.02, 60, 0}, 0, [&] { ++count; });
   CHECK(warmed.runs == 31);
   CHECK(count > 31);  // warm-up runs are not counted
+}
+
+// A machine whose speed halves while it is watched, by a clock of its own: run k of all takes 1 + k / 60 s for one
+// piece of work. Sixty runs of two identical jobs: in turns (A B, B A, A B, ...) both have the median 1 + 29.5 / 60 to
+// within one run; one after the other 1 + 14.5 / 60 and 1 + 44.5 / 60, a ratio of 1.40.
+TEST_CASE("what slows the machine slows rows that are timed in turns alike", "[driver]") {
+  double now = 0;
+  int made = 0;
+  std::string order;
+  const auto job = [&](char name) {
+    return TimedJob{0.9, [&, name] {
+                      order += name;
+                      now += 1 + made++ / 60.0;
+                    }};
+  };
+  const TimingRule rule{30, 0, 1e6, 0};
+  const auto timings = time_runs(rule, {job('a'), job('b')}, [&] { return now; });
+  REQUIRE(timings.size() == 2);
+  CHECK(order.substr(0, 6) == "abbaab");
+  CHECK(timings[0].runs == 30);
+  CHECK(timings[0].seconds.value == Approx(1 + 29.5 / 60).margin(0.51 / 60));
+  CHECK(timings[0].seconds.value / timings[1].seconds.value == Approx(1).margin(0.01));
+  CHECK(timings[0].times.size() == 30);
+  now = made = 0;
+  const auto alone = time_runs(rule, {job('a')}, [&] { return now; });
+  const auto after = time_runs(rule, {job('b')}, [&] { return now; });
+  CHECK(after[0].seconds.value / alone[0].seconds.value == Approx((1 + 44.5 / 60) / (1 + 14.5 / 60)));
+}
+
+TEST_CASE("timed in turns, each job has its own budget, and a short one its caches", "[driver]") {
+  double now = 0;
+  int slow = 0, quick = 0;
+  const TimedJob of_two_seconds{2, [&] { now += 2, ++slow; }}, of_a_millisecond{1e-3, [&] { now += 1e-3, ++quick; }};
+  const auto timings = time_runs({31, 0, 9, 0}, {of_two_seconds, of_a_millisecond}, [&] { return now; });
+  // 2 s of the first render and three runs are 8 s: the next would pass 9 s.
+  CHECK(timings[0].runs == 3);
+  CHECK(slow == 3);
+  CHECK(timings[1].runs == 31);
+  CHECK(quick == 62);  // every other one untimed
+  CHECK(timings[1].seconds.value == Approx(1e-3));
 }
 
 TEST_CASE("times of stages are medians of the warm runs", "[driver]") {

@@ -74,6 +74,13 @@ TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[exper
   CHECK(e.methods[2].setting == "32");
   CHECK(e.methods[2].settings == Pairs{{"steps", "32"}});
   CHECK(e.timing.runs == 3);
+  // A method on a swept scene is on all of its values.
+  MethodCase on_one;
+  on_one.scenes = {"one"};
+  CHECK(is_on(on_one, e.scenes[1]));
+  on_one.scenes = {"one 0.5"};
+  CHECK(is_on(on_one, e.scenes[0]));
+  CHECK_FALSE(is_on(on_one, e.scenes[1]));
   CHECK(e.gates.at(0).setting == "32");
   CHECK(e.plots.at(0).name == "rel_l2_against_setting");
   CHECK(read_experiment(folder.path(), "g/e", "paper").timing.runs == 31);
@@ -101,6 +108,27 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.0\nmeasured = 0")), Contains("no failure"));
   CHECK_THAT(failure(replaced(good, "at_most = 0.1", "at_most = 0.1\nmeasured = 0.2")),
              Contains("e.toml:26:") && Contains("measured = 0.2 fails this gate"));
+  // A gate must have a row and a figure.
+  CHECK_THAT(failure(replaced(good, "setting = 32", "setting = 33")),
+             Contains("e.toml:20:1") && Contains("no row of method 'marcher' with setting 33 on scene 'one'"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nprofiles = [\"paper\"]")),
+             Contains("e.toml:21:1") && Contains("no row of method 'marcher'") && Contains("in profile quick"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nprofiles = [\"paper\"]"), "paper"),
+             Contains("no failure"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\npicture_only = true")),
+             Contains("e.toml:21:1") && Contains("picture_only: it has no rel_l2"));
+  const std::string objections = replaced(replaced(good, "\"bias\"", "\"objections\", \"wrong\""),
+                                          "metric = \"rel_l2\"", "metric = \"objections\"");
+  CHECK_THAT(failure(objections), Contains("e.toml:20:1") && Contains("objections needs noise"));
+  CHECK_THAT(failure(replaced(objections, "deterministic", "path_tracer")), Contains("no failure"));
+  CHECK_THAT(failure(replaced(replaced(objections, "deterministic", "path_tracer"), "metric = \"objections\"",
+                              "metric = \"wrong\"")),
+             Contains("wrong is not defined against a noisy reference"));
+  CHECK_THAT(failure(replaced(good, "metric = \"rel_l2\"", "metric = \"counter.steps\"")), Contains("no failure"));
+  CHECK_THAT(failure(replaced(good, "name = \"marcher\"", "name = \"marcher\"\nscenes = [\"on\"]")),
+             Contains("e.toml:12:10") && Contains("nearest: one"));
+  CHECK_THAT(failure(replaced(good, "y = \"rel_l2\"", "y = \"rel_l2\"\nmethods = [\"marchr\"]")),
+             Contains("e.toml:20:") && Contains("nearest: marcher"));
   CHECK_THAT(failure(replaced(good, "[[scene]]", "[scene]")), Contains("[[scene]]"));
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 0")), Contains("runs = 0"));
   CHECK_THAT(failure(replaced(good, "runs = 3", "runs = 3\nbudget = 0")),

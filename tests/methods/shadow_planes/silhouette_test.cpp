@@ -44,11 +44,13 @@ ShadowVolumes shadows_of(const scene::TriangleMesh& mesh, const Point3& light) {
 // changes the number of pages before a point by all of them, however many there are.
 TEST_CASE("shadow planes: edges of many faces count every one", "[shadow_planes]") {
   const Point3 light(5, 0, 0);
-  std::vector<Point3> above;
+  std::vector<Point3> above, mirrored;
   for (int pages = 1; pages <= 6; ++pages) {
     above.push_back({-1, double(pages), 0});
+    mirrored.push_back({1, double(pages), 0});
     CAPTURE(pages);
     CHECK(std::abs(spine(book(above), light)) == pages);
+    CHECK(spine(book(mirrored), -light) == -spine(book(above), light));  // the other way along the edge
     const ShadowVolumes shadows = shadows_of(book(above), light);
     CHECK(shadows.count({-3, 0.5, 0}) == pages);
     CHECK(shadows.count({-3, -0.5, 0}) == 0);

@@ -1,0 +1,95 @@
+#include "experiments/driver/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "experiments/driver/journal.h"
+#include "experiments/driver/pictures.h"
+#include "experiments/driver/plan.h"
+#include "experiments/interrupt.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace {
+
+constexpr int most_pixels = 8;  // a side
+
+// As few samples as show the same layers: those beyond whole blocks decide whether there are equal batches.
+scene::Settings short_settings(const scene::Renderer& renderer, Pairs given, const scene::Settings& whole) {
+  if (renderer.name() == "path_tracer") {
+    const long long samples = whole.integer("samples");
+    if (samples > 128) given["samples"] = std::to_string(64 + samples % 64);
+    given["target_error"] = "0";
+  }
+  return scene::Settings(renderer.settings(), given, renderer.name());
+}
+
+class Trial {
+ public:
+  Trial(const Experiment& e, const PlannedScene& planned)
+      : e_(e), planned_(planned), view_(scene::view_of(*planned.scene)) {
+    view_.width = std::min(view_.width, most_pixels);
+    view_.height = std::min(view_.height, most_pixels);
+    if (planned.reference) reference_ = render(*planned.reference, e.reference.settings, *planned.reference_settings);
+    if (planned.reference) reference_.layer(e.layer);
+  }
+
+  void method(const PlannedRow& p) const {
+    scene::Film film;
+    try {
+      film = render(*p.renderer, p.method->settings, p.settings);
+    } catch (const Unavailable&) {
+      return;  // the row will say so
+    }
+    film.layers[e_.layer] = film.layer(p.method->layer);
+    if (planned_.reference) compare(e_, *p.method, film, reference_, {{}, foreground_of(*planned_.scene, view_)});
+  }
+
+ private:
+  scene::Film render(const scene::Renderer& renderer, const Pairs& given, const scene::Settings& whole) const {
+    check_interrupted();
+    const scene::Execution execution = quiet_execution(e_.timing.threads);
+    const auto prepared = renderer.prepare(planned_.scene, short_settings(renderer, given, whole), execution);
+    return prepared->render(view_, execution).film;
+  }
+
+  const Experiment& e_;
+  const PlannedScene& planned_;
+  scene::View view_;
+  scene::Film reference_;
+};
+
+void check_scene(const Experiment& e, const SceneCase& c, const Journal& finished, std::set<const MethodCase*>& tried) {
+  const PlannedScene planned = plan_scene(e, c);
+  std::vector<const PlannedRow*> open;
+  for (const PlannedRow& p : planned.rows)
+    if (p.refusal.empty() && !finished.find(p.row.key)) open.push_back(&p);
+  if (open.empty()) return;
+  std::optional<Trial> trial;
+  try {
+    trial.emplace(e, planned);
+  } catch (const Unavailable&) {
+    return;
+  }
+  for (const PlannedRow* p : open)
+    if (tried.insert(p->method).second) trial->method(*p);
+}
+
+}  // namespace
+
+void check_experiment(const Experiment& e, const RunOptions& options) {
+  try {
+    for (const auto& file : e.vector_files)
+      if (!std::ifstream(file)) throw Error(fmt::format("{}: cannot be read", file.string()));
+    const Journal finished(journal_file(options.root, e), options.resume);
+    std::set<const MethodCase*> tried;
+    for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", e.id, error.what()), error.exit_code());
+  }
+}
+
+}  // namespace airlight::experiments

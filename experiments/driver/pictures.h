@@ -1,0 +1,27 @@
+// Films of an experiment: compared, and kept for looking at.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/driver/experiment.h"
+#include "experiments/metrics.h"
+#include "scene/film.h"
+
+namespace airlight::experiments {
+
+// Letters, digits, '-' and '.' of a text; '_' for the rest.
+std::string file_name(const std::string& text);
+
+// Powers of two that bring the 99th percentile of the luminance to 0.8.
+double exposure_of(const scene::Film&, const std::string& layer);
+
+// The metrics of a method's film, whose layer it compares is renamed to the reference's.
+std::vector<Measure> compare(const Experiment&, const MethodCase&, const scene::Film&, const scene::Film& reference,
+                             const Masks&);
+
+// images/name.exr, without the layers that say how noisy it is, and .png.
+void keep_picture(const std::filesystem::path& images, const std::string& name, const scene::Film&,
+                  const std::string& layer, double exposure);
+
+}  // namespace airlight::experiments

@@ -1,0 +1,99 @@
+#include "experiments/driver/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/build_info.h"
+#include "experiments/driver/content_key.h"
+#include "experiments/driver/reference_cache.h"
+#include "experiments/interrupt.h"
+#include "experiments/machine.h"
+#include "experiments/renderers.h"
+#include "gpu/shader_source.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace {
+
+// Times are those of a machine and a build; bits, too, may depend on libraries and on the widest instructions.
+std::string program_and_machine() {
+  std::vector<std::string> parts{source_id(), compiler()};
+  for (const auto& [name, number] : libraries()) parts.push_back(name + " " + number);
+  const Machine machine = this_machine();
+  parts.push_back(fmt::format("{}, {}, {} threads", machine.cpu, machine.simd, machine.threads));
+  return content_key(parts);
+}
+
+std::string row_key(const Experiment& e, const MethodCase& m, const scene::Renderer& renderer, const Row& row) {
+  const TimingRule& rule = e.timing;
+  std::vector<std::string> parts{program_and_machine(),
+                                 row.scene_hash,
+                                 row.scene,
+                                 row.method,
+                                 row.setting,
+                                 row.renderer,
+                                 row.settings,
+                                 row.layer,
+                                 row.reference_key,
+                                 e.layer,
+                                 fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
+  parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
+  parts.push_back(fmt::format("{} {}", m.picture_only, m.count_noise));
+  const std::string device = renderer.device();
+  parts.push_back(device);
+  if (!device.empty()) parts.push_back(gpu::foreign_shaders());
+  return content_key(parts);
+}
+
+}  // namespace
+
+PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
+  PlannedScene planned;
+  planned.scene = std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides));
+  const scene::Scene& scene = *planned.scene;
+  std::string reference;
+  if (!e.reference.renderer.empty()) {
+    planned.reference = &find_renderer(e.reference.renderer, "reference");
+    planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
+    const auto reasons = planned.reference->supports(scene, *planned.reference_settings);
+    if (!reasons.empty())
+      throw Error(fmt::format("reference {} cannot render {}: {}", e.reference.renderer, c.name, reasons.front()));
+    reference = reference_key(scene, *planned.reference, *planned.reference_settings);
+  }
+  for (const MethodCase& m : e.methods) {
+    if (!is_on(m, c)) continue;
+    const scene::Renderer& renderer = find_renderer(m.renderer, m.name);
+    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), "", {}};
+    const auto reasons = renderer.supports(scene, p.settings);
+    if (!reasons.empty()) p.refusal = reasons.front();
+    p.row.scene = c.name;
+    p.row.method = m.name;
+    p.row.setting = m.setting;
+    p.row.renderer = m.renderer;
+    p.row.settings = p.settings.canonical();
+    p.row.layer = m.layer;
+    p.row.parameter = c.parameter;
+    p.row.scene_hash = scene.hash;
+    p.row.width = scene.width;
+    p.row.height = scene.height;
+    p.row.reference_key = reference;
+    p.row.key = row_key(e, m, renderer, p.row);
+    planned.rows.push_back(std::move(p));
+  }
+  return planned;
+}
+
+std::vector<unsigned char> foreground_of(const scene::Scene& scene, const scene::View& view) {
+  std::vector<unsigned char> mask(std::size_t(view.width) * std::size_t(view.height), 0);
+  scene::parallel_rows(view.height, quiet_execution(0), [&](int y) {
+    for (int x = 0; x < view.width; ++x) {
+      const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+      const Rgb t = scene::transmittance(scene.media, ray, {0, scene::ray_end(scene, ray).t});
+      mask[std::size_t(y) * std::size_t(view.width) + std::size_t(x)] = (1 - t > 1e-3).any();
+    }
+  });
+  return mask;
+}
+
+}  // namespace airlight::experiments

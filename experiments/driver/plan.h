@@ -1,0 +1,38 @@
+// What an experiment comes down to on one scene, before anything is rendered or written.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/driver/experiment.h"
+#include "experiments/driver/row.h"
+#include "scene/renderer.h"
+
+namespace airlight::experiments {
+
+struct PlannedRow {
+  const MethodCase* method = nullptr;  // of the experiment, which must stay where it is
+  const scene::Renderer* renderer = nullptr;
+  scene::Settings settings;
+  std::string refusal;  // why the renderer cannot render this scene; empty if it can
+  Row row;              // what is known before it is rendered, its key above all
+};
+
+struct PlannedScene {
+  std::shared_ptr<const scene::Scene> scene;
+  const scene::Renderer* reference = nullptr;  // null: nothing is compared
+  std::optional<scene::Settings> reference_settings;
+  std::vector<PlannedRow> rows;  // in the order of the experiment's methods
+};
+
+// Loads the scene. A row's key is the content of all that its figures and times depend on: scene, method, reference,
+// metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the device, and its
+// shaders where they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for a scene or override that
+// is no good and where the reference cannot render the scene.
+PlannedScene plan_scene(const Experiment&, const SceneCase&);
+
+// Pixels of the view whose ray sees more than 1e-3 of the media, from the media themselves.
+std::vector<unsigned char> foreground_of(const scene::Scene&, const scene::View&);
+
+}  // namespace airlight::experiments

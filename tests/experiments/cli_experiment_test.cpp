@@ -1,0 +1,204 @@
+// Experiments through the program: what is refused, what fails, what must not depend on what was computed before.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scene/film.h"
+#include "tests/experiments/run_program.h"
+
+using airlight::read_bytes;
+using airlight::TemporaryFolder;
+using airlight::test::Result;
+using airlight::test::root;
+using airlight::test::run;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const box_of_fog = R"([film]
+width = 16
+height = 8
+[camera]
+position = [0, 0, 4]
+look_at = [0, 0, 0]
+[[light]]
+type = "point"
+position = [1.5, 2, 1]
+intensity = 5
+[[medium]]
+type = "homogeneous"
+sigma_t = 0.5
+region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
+)";
+
+std::string steps_experiment(const std::string& gate) {
+  return R"(title = "Steps"
+layer = "airlight"
+metrics = ["rel_l2"]
+[[scene]]
+file = "scenes/one.toml"
+[reference]
+renderer = "deterministic"
+[[method]]
+name = "marcher"
+renderer = "ray_marcher"
+settings = { steps = 64, kernel = "scalar" }
+[profile.quick]
+budget = 0
+[[gate]]
+method = "marcher"
+metric = "rel_l2"
+)" + gate +
+         "\n";
+}
+
+struct Project : TemporaryFolder {
+  Project() {
+    write("experiments/README.md", "");
+    write("experiments/scenes/one.toml", box_of_fog);
+  }
+  bool has(const std::string& file) const { return fs::exists(path() / file); }
+};
+
+// The columns of the errors alone.
+std::string errors(const Project& project, const std::string& name) {
+  std::istringstream lines(read_bytes(project.file("results/" + name + "/table.csv")));
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 11 && std::getline(cells, cell, ','); ++i) out += cell + ",";
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
+  const Project project;
+  project.write("experiments/g/bad.toml", steps_experiment("at_most = 1e-12"));
+  project.write("experiments/g/good.toml", steps_experiment("at_most = 0.5"));
+  const Result good = run("experiment run g/good --root .", project);
+  CHECK(good.code == 0);
+  CHECK(good.err.empty());
+  const Result both = run("experiment run --root .", project);
+  CHECK(both.code == 1);
+  CHECK(both.err == "airlight: gate failed: g/bad: one, marcher: rel_l2\n");
+  CHECK_THAT(both.out, Contains("0 of 1 gates ok: results/g/bad/table.md"));
+  CHECK(run("experiment run --root . --resume", project).code == 1);  // kept rows are judged, too
+}
+
+TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
+  const Project project;
+  const std::string text = steps_experiment("at_most = 1e-12");
+  project.write("experiments/g/bad.toml", "in_tests = true\n" + text);
+  project.write("experiments/g/slow.toml", text);
+  const Result in_tests = run("gates --root . --in-tests", project);
+  CHECK(in_tests.code == 1);
+  CHECK_THAT(in_tests.out, Contains("g/bad: one") && !Contains("g/slow"));
+  CHECK_THAT(run("gates --root .", project).out, Contains("g/slow: one") && Contains("0 of 2 gates ok"));
+}
+
+// The second experiment's second scene is wrong: the first experiment is not begun.
+TEST_CASE("all experiments are checked before the first is computed", "[cli]") {
+  const Project project;
+  project.write("experiments/g/a.toml", steps_experiment("at_most = 0.5"));
+  std::string text = steps_experiment("at_most = 0.5");
+  text.insert(text.find("[reference]"),
+              "[[scene]]\nname = \"two\"\nfile = \"scenes/one.toml\"\noverrides = { \"film.widht\" = 4 }\n");
+  project.write("experiments/g/b.toml", text);
+  for (const char* command : {"experiment run --root .", "experiment run --root . --resume", "gates --root ."}) {
+    const Result refused = run(command, project);
+    CAPTURE(command, refused.err);
+    CHECK(refused.code == 2);
+    CHECK(refused.out.empty());
+    CHECK(refused.error_lines() == 1);
+    CHECK_THAT(refused.err, Catch::StartsWith("airlight: g/b: ") && Contains("nearest: width"));
+    CHECK_FALSE(project.has("results"));
+  }
+  REQUIRE(run("experiment run g/a --root .", project).code == 0);
+  const std::string table = read_bytes(project.file("results/g/a/table.csv"));
+  const auto reference = fs::last_write_time(project.path() / "results/images/g/a/one/reference.exr");
+  CHECK(run("experiment run --root .", project).code == 2);
+  CHECK(read_bytes(project.file("results/g/a/table.csv")) == table);
+  CHECK(fs::last_write_time(project.path() / "results/images/g/a/one/reference.exr") == reference);
+}
+
+// Sample counts up and down, in one folder whose caches fill, and each in a folder of its own: the same bytes.
+TEST_CASE("pictures and tables do not depend on what the caches hold", "[cli]") {
+  const Project filling;
+  for (const int samples : {256, 64, 192, 1024, 64, 80, 256}) {
+    CAPTURE(samples);
+    const Project fresh;
+    const std::string text = R"(title = "Noise"
+metrics = ["rel_l2"]
+[[scene]]
+file = "scenes/one.toml"
+[reference]
+renderer = "path_tracer"
+settings = { samples = )" + std::to_string(samples) +
+                             R"( }
+[[method]]
+renderer = "ray_marcher"
+settings = { kernel = "scalar" }
+[profile.quick]
+budget = 0
+)";
+    const std::string picture = "render experiments/scenes/one.toml -m path_tracer --cache kept --samples " +
+                                std::to_string(samples) + " --png a.png -o a.exr";
+    for (const Project* project : {&filling, &fresh}) {
+      project->write("experiments/g/e.toml", text);
+      REQUIRE(run("experiment run --root .", *project).code == 0);
+      REQUIRE(run(picture, *project).code == 0);
+    }
+    const auto kept = airlight::scene::read_exr(filling.file("a.exr")),
+               made = airlight::scene::read_exr(fresh.file("a.exr"));
+    CHECK(kept.layers == made.layers);
+    CHECK(kept.metadata.at("samples") == std::to_string(samples));
+    CHECK(read_bytes(filling.file("a.png")) == read_bytes(fresh.file("a.png")));
+    CHECK(airlight::scene::read_exr(filling.file("results/images/g/e/one/reference.exr")).layers ==
+          airlight::scene::read_exr(fresh.file("results/images/g/e/one/reference.exr")).layers);
+    CHECK(errors(filling, "g/e") == errors(fresh, "g/e"));
+    CHECK_THAT(errors(filling, "g/e"), Contains(",mean,"));
+    REQUIRE(run("experiment run --root .", filling).code == 0);  // once more, with everything there
+    CHECK(errors(filling, "g/e") == errors(fresh, "g/e"));
+  }
+}
+
+// The shader that writes the airlight, made half as bright again: a relative error of 0.5.
+TEST_CASE("gates see a shader that was changed by hand", "[cli]") {
+  const Project project;
+  std::string text = steps_experiment("at_most = 1e-3");
+  text.replace(text.find("\"ray_marcher\""), 13, "\"ray_marcher_gpu\"");
+  text.erase(text.find(", kernel = \"scalar\""), 19);
+  project.write("experiments/g/e.toml", text);
+  const Result first = run("gates --root .", project);
+  CAPTURE(first.out, first.err);
+  if (first.out.find("skipped") != std::string::npos) {
+    WARN("test skipped: no device");
+    return;
+  }
+  CHECK(first.code == 0);
+  fs::copy(root + "/gpu", project.path() / "gpu", fs::copy_options::recursive);
+  setenv("AIRLIGHT_SHADERS", (project.path() / "gpu").c_str(), 1);
+  const std::string journal = project.file("results/cache/rows/g/e.quick.jsonl");
+  const std::string rows = read_bytes(journal);
+  CHECK(run("gates --root .", project).out == first.out);
+  CHECK(read_bytes(journal) == rows);  // a copy of the shaders makes the same rows
+  std::string shader = read_bytes(project.file("gpu/ray_marcher/march.comp"));
+  const std::string line = "pixels[place].airlight += airlight;";
+  REQUIRE(shader.find(line) != std::string::npos);
+  shader.replace(shader.find(line), line.size(), "pixels[place].airlight += 1.5 * airlight;");
+  project.write("gpu/ray_marcher/march.comp", shader);
+  const Result changed = run("gates --root .", project);
+  unsetenv("AIRLIGHT_SHADERS");
+  CAPTURE(changed.out);
+  CHECK(changed.code == 1);
+  CHECK_THAT(changed.out, Contains("rel_l2 <= 0.001 fails: 0.5"));
+  CHECK(changed.err == "airlight: gate failed: g/e: one, marcher: rel_l2\n");
+  CHECK(run("gates --root .", project).out == first.out);
+}

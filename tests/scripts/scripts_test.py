@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""scripts/figures and scripts/tighten on a small tree of their own: what they write, and what they object to."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+TABLE = """scene,parameter,method,setting,rel_l2,rel_l2_low,rel_l2_high,seconds,note
+"one, large",,S,8,0.01237,0.01237,0.01237,0.002,
+"one, large",,S,16,0.00031,0.00031,0.00031,0.004,
+two,,S,8,0.5,0.5,0.5,0.003,
+two,,S,16,0.02,0,0.04,0.006,
+two,,"S, GPU",8,,,,,not available on this machine
+"""
+PAGE = """# A page
+
+| what | ours |
+|---|---|
+| error | from 0 with 8, below 0 with
+16, or 0; |
+
+It takes 0 ms, .1 times, and S wins.
+"""
+FIGURES = """[g/e rel_l2]
+from {range([*|S|8])} with 8, below {below([two|S|16])} with 16, or {one, large|S|16;8}
+takes {[two|S|8|seconds] * 1000; 1} ms, {[g/e: one, large|S|8|seconds] / [two|S|16|seconds]; 3} times
+S wins ?? [one, large|S|16] < [one, large|S|8]
+"""
+EXPERIMENT = """title = "a"
+[[gate]]
+method = "S"
+scene = "two"
+setting = 8
+metric = "rel_l2"
+at_least = 0.2
+[[gate]]
+metric = "rel_l2"
+[[gate]]
+metric = "wrong"
+at_most = 0.1
+[[gate]]
+metric = "counter.rays"
+"""
+
+
+def rows(**changed):
+    all_rows = []
+    for scene, setting, value, low, high, wrong in (
+            ("one, large", "8", 0.01237, 0.01237, 0.01237, 0.0), ("one, large", "16", 0.00031, 0.00031, 0.00031, 0.05),
+            ("two", "8", 0.5, 0.5, 0.5, 0.0), ("two", "16", 0.02, 0.0, 0.04, 0.0)):
+        value = changed.get(f"{scene} {setting}", value)
+        errors = [{"metric": "rel_l2", "value": value, "low": min(low, value), "high": max(high, value) if low < high else value},
+                  {"metric": "wrong", "value": wrong, "low": wrong, "high": wrong}]
+        all_rows.append({"scene": scene, "method": "S", "setting": setting, "device": "", "errors": errors, "counters": {"rays": 1000.0}})
+    return {"rows": all_rows}
+
+
+class Tree(unittest.TestCase):
+    def setUp(self):
+        self.root = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.root)
+        for script in ("figures", "tighten"):
+            os.makedirs(f"{self.root}/scripts", exist_ok=True)
+            shutil.copy(f"{SOURCE}/scripts/{script}", f"{self.root}/scripts")
+
+    def write(self, name, text):
+        os.makedirs(os.path.dirname(f"{self.root}/{name}"), exist_ok=True)
+        with open(f"{self.root}/{name}", "w") as stream:
+            stream.write(text)
+
+    def read(self, name):
+        with open(f"{self.root}/{name}") as stream:
+            return stream.read()
+
+    def run_script(self, *command):
+        done = subprocess.run([sys.executable, f"{self.root}/scripts/{command[0]}", *command[1:]], capture_output=True, text=True)
+        return done.returncode, done.stdout + done.stderr
+
+
+class Figures(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("results/g/e/table.csv", TABLE)
+        self.write("methods/PAGE.md", PAGE)
+        self.write("methods/PAGE.figures", FIGURES)
+        self.assertEqual(self.run_script("figures")[0], 0)
+
+    def objects(self, *words):
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 1, text)
+        for word in words:
+            self.assertIn(word, text)
+
+    def test_puts_the_figures_in(self):
+        page = self.read("methods/PAGE.md")
+        self.assertIn("from 0.012 to 0.50 with 8, below < 0.040 with\n16, or 3.1e-4, 0.012; |", page)
+        self.assertIn("takes 3 ms, .333 times", page)
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual((code, text), (0, "5 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
+
+    def test_a_changed_table(self):
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.6,"))
+        self.objects("methods/PAGE.md:5: found 0.012 to 0.50, expected 0.012 to 0.60")
+
+    def test_a_changed_page(self):
+        self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace(".333", ".334"))
+        self.objects("methods/PAGE.md:8: found .334, expected .333")
+
+    def test_words_that_are_no_longer_true(self):
+        self.write("results/g/e/table.csv", TABLE.replace("0.00031", "0.031"))
+        self.objects("'S wins' does not hold")
+
+    def test_words_that_are_gone(self):
+        self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace("S wins", "S is better"))
+        self.objects("methods/PAGE.figures:4: 'S wins' is 0 times in methods/PAGE.md")
+
+    def test_a_row_that_is_gone_and_one_without_figures(self):
+        self.write("methods/PAGE.figures", FIGURES.replace("{one, large|S|16;8}", "{three|S}"))
+        self.objects("PAGE.figures:2: results/g/e/table.csv has no row three|S")
+        self.write("methods/PAGE.figures", FIGURES.replace("{one, large|S|16;8}", "{two|S, GPU}"))
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 0, text)
+        self.assertIn("left as it is", text)
+
+    def test_a_number_that_nothing_gives(self):
+        self.write("methods/PAGE.figures", "!column 2\n" + FIGURES)
+        self.assertEqual(self.run_script("figures", "--check")[0], 0)
+        self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace("|---|---|", "|---|---|\n| more | 12 % |"))
+        self.objects("methods/PAGE.md:5: no line of methods/PAGE.figures covers '12 %'")
+
+
+@unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
+class Tighten(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("experiments/g/e.toml", EXPERIMENT)
+        self.write("results/g/e/run.json", json.dumps(rows()))
+        code, text = self.run_script("tighten")
+        self.assertEqual(code, 0, text)
+
+    def test_bounds(self):
+        self.assertEqual(self.read("experiments/g/e.bounds.csv").split("\n")[1:-1], [
+            "two,S,8,rel_l2,,0.5,0.34,0.75",  # must be reproduced: both ends
+            '"one, large",S,8,rel_l2,,0.0124,,0.018',  # 1.5 times, never rounded up
+            '"one, large",S,16,rel_l2,,0.00031,,0.00058',  # 1.9 times
+            "two,S,16,rel_l2,,0.02,,0.04",  # the end of the interval
+            '"one, large",S,8,wrong,,0,,0', '"one, large",S,16,wrong,,0.05,,0.075', "two,S,8,wrong,,0,,0", "two,S,16,wrong,,0,,0",
+            '"one, large",S,8,counter.rays,,1e+03,990,1010', '"one, large",S,16,counter.rays,,1e+03,990,1010',
+            "two,S,8,counter.rays,,1e+03,990,1010", "two,S,16,counter.rays,,1e+03,990,1010"])
+        self.assertEqual(self.run_script("tighten", "--check"), (0, "12 bounds, 0 faults\n"))
+
+    def objects(self, words):
+        code, text = self.run_script("tighten", "--check")
+        self.assertEqual(code, 1)
+        self.assertIn(words, text)
+
+    def test_a_figure_that_became_better_leaves_a_loose_bound(self):
+        self.write("results/g/e/run.json", json.dumps(rows(**{"one, large 8": 0.005})))
+        self.objects("one, large, S, 8, rel_l2: at_most 0.018, expected 0.0075 (measured 0.005)")
+
+    def test_a_loosened_bound(self):
+        self.write("experiments/g/e.bounds.csv", self.read("experiments/g/e.bounds.csv").replace(",0.018", ",0.03"))
+        self.objects("at_most 0.03, expected 0.018")
+
+    def test_a_row_without_a_bound_and_a_bound_without_a_row(self):
+        self.write("experiments/g/e.bounds.csv", self.read("experiments/g/e.bounds.csv").replace("two,S,16,rel_l2", "two,S,17,rel_l2"))
+        self.objects("no bound for two, S, 16, rel_l2")
+        self.objects("two, S, 17, rel_l2: no gate covers such a row")
+
+    def test_no_bound_beyond_that_of_the_gate(self):
+        self.write("results/g/e/run.json", json.dumps(rows(**{"two 8": 0.1})))
+        code, text = self.run_script("tighten")
+        self.assertEqual(code, 1)
+        self.assertIn("two, S, 8, rel_l2: 0.1 lies beyond the gate's own bound", text)
+        self.assertNotIn("two,S,8,rel_l2", self.read("experiments/g/e.bounds.csv"))
+
+
+if __name__ == "__main__":
+    unittest.main()
