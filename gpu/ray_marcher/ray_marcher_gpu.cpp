@@ -14,6 +14,7 @@
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/light_on_ray.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -95,6 +96,7 @@ void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution
 }
 
 scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& execution) const {
+  require_lights_apart(*plan_.scene, view, 1e-9, "ray_marcher_gpu");
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   std::vector<float>&mean = film.add("mean"), &airlight = film.add("airlight"), &surface = film.add("surface"),
