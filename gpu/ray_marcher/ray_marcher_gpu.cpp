@@ -14,6 +14,7 @@
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/place_error.h"
 
 namespace airlight::gpu {
 namespace {
@@ -168,6 +169,7 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
+  if (const std::string reason = scene::too_thick(scene, 24, 0.01); !reason.empty()) reasons.push_back(reason);
   bool grid = false, negative = false;
   for (const scene::Medium& medium : scene.media) {
     if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
