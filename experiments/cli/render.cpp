@@ -36,6 +36,8 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   metadata.try_emplace("seconds", fmt::format("{:.3f}", seconds));
   scene::write_exr(options.out, film);
   if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure);
+  if (const auto warning = metadata.find("warning"); warning != metadata.end())
+    fmt::print(stderr, "airlight: {}: warning: {}\n", options.scene, warning->second);
 }
 
 }  // namespace

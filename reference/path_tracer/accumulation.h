@@ -46,7 +46,8 @@ void merge_into(Accumulation&, Accumulation other);
 Accumulation merge_range_files(const std::vector<std::string>& paths);
 
 // The picture with all its layers and metadata (spec/references.md, section 5). World and View are those of the
-// samples.
+// samples. `se` is an upper end where next to no samples brought light (certainty.h); metadata "warning" is set where
+// none did. Throws Error, with pixel and layer, for a value that single precision cannot hold.
 scene::Film to_film(const World&, const scene::View&, const Accumulation&);
 
 }  // namespace airlight::path_tracer

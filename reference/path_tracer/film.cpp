@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "reference/path_tracer/accumulation.h"
+#include "reference/path_tracer/certainty.h"
+#include "scene/error.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -61,6 +63,26 @@ std::string unresolved(const World& world, const Accumulation& a) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+// Of all samples of a picture, by magnitude as far as is kept: negative ones are summed only.
+Rgb greatest_sample(const TallyLayout& layout, const std::vector<TallyNode>& tiles) {
+  Rgb greatest = Rgb::Zero();
+  for (const TallyNode& tile : tiles)
+    for (std::size_t at = 0; at < tile.sums.size(); at += layout.doubles())
+      greatest = greatest.max(entry(&tile.sums[at], layout.greatest()))
+                     .max(-entry(&tile.sums[at], layout.negative()) / double(tile.count));
+  return greatest;
+}
+
+void require_finite(const scene::Film& film, const std::string& scene) {
+  for (const auto& [name, values] : film.layers)
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!std::isfinite(values[i]))
+        throw Error(
+            fmt::format("path_tracer: scene '{}', pixel ({}, {}): layer {} is not finite in single precision, "
+                        "expected at most 3.4e38",
+                        scene, i / 3 % std::size_t(film.width), i / 3 / std::size_t(film.width), name));
+}
+
 std::string ranges(const std::vector<TallyNode>& nodes) {
   std::vector<std::string> parts;
   for (std::size_t n = 0; n < nodes.size();) {
@@ -83,11 +105,14 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
   for (const auto& nodes : a.tiles)
     for (const TallyNode& node : nodes) equal_batches = equal_batches && node.count % batch_count == 0;
 
-  bool negative = false;
+  std::vector<TallyNode> folded;
+  for (const auto& nodes : a.tiles) folded.push_back(fold(layout, nodes));
+  const Rgb greatest = greatest_sample(layout, folded);
+  bool negative = false, might = false;
   std::uint64_t least = ~std::uint64_t(0), most = 0;
   Counters columns;
   for (int tile = 0; tile < int(a.tiles.size()); ++tile) {
-    const TallyNode node = fold(layout, a.tiles[tile]);
+    const TallyNode& node = folded[tile];
     least = std::min(least, node.count);
     most = std::max(most, node.count);
     const int x0 = tile % a.tiles_across() * tile_size, y0 = tile / a.tiles_across() * tile_size;
@@ -101,7 +126,14 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
         if (n > 0) sums += layout.doubles();
         const auto set = [&](const std::string& name, const Rgb& value) { film.set(name, x, y, value); };
         set("mean", entry(pixel, layout.mean()) * per_sample);
-        set("se", standard_error(entry(pixel, layout.mean()), entry(pixel, layout.square()), n));
+        const Rgb sum = entry(pixel, layout.mean()), square = entry(pixel, layout.square());
+        const auto may = may_shine(world, view, x, y);
+        Rgb error;
+        for (int c = 0; c < 3; ++c) {
+          error[c] = honest_error(sum[c], square[c], n, greatest[c], may[c]);
+          might = might || may[c];
+        }
+        set("se", error);
         set("max_sample", entry(pixel, layout.greatest()));
         set("airlight", entry(pixel, layout.airlight()) * per_sample);
         set("surface", entry(pixel, layout.surface()) * per_sample);
@@ -124,6 +156,7 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
       }
   }
   if (!negative) film.layers.erase("negative");
+  require_finite(film, world.scene().name);
 
   auto& metadata = film.metadata;
   metadata["renderer"] = "path_tracer";
@@ -137,7 +170,15 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
   metadata["samples"] = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
   if (least == most && !a.tiles.empty()) metadata["sample_ranges"] = ranges(a.tiles.front());
   metadata["seconds"] = fmt::format("{:.3f}", a.seconds);
-  if (const std::string names = unresolved(world, a); !names.empty()) metadata["unresolved"] = names;
+  std::string names = unresolved(world, a);
+  if (might && (greatest == 0).all()) {
+    names = names.empty() ? "mean" : "mean " + names;
+    metadata["warning"] = fmt::format(
+        "path_tracer: none of {} samples per pixel brought light to any pixel, though light may come: the picture's 0 "
+        "is no evidence",
+        metadata["samples"]);
+  }
+  if (!names.empty()) metadata["unresolved"] = names;
   for (const auto& [name, value] : a.counters.named()) metadata[name] = fmt::format("{}", value);
   return film;
 }

@@ -12,6 +12,7 @@ namespace airlight::path_tracer {
 namespace {
 
 constexpr double thickest = 1e4;
+constexpr double most_work = 1e14;  // terms of densities, some 10 ns each: ten days of one processor
 
 bool all_scattered(const scene::Medium& medium, int c) { return medium.sigma_t[c] > 0 && medium.albedo[c] >= 1; }
 
@@ -32,6 +33,24 @@ double thinnest_depth(const scene::Medium& medium, int c) {
     least = std::min(least, scene::density_integral(medium, {middle, d}, {0, infinity}) +
                                 scene::density_integral(medium, {middle, -d}, {0, infinity}));
   return least > 0 ? medium.sigma_t[c] * least : 0;
+}
+
+// Terms of density that a render sums up, to an order of magnitude: one for each Gaussian at each collision. Paths
+// scatter as often as absorption lets them, and no more often than twice the depth in the thinnest direction (the mean
+// chord's theorem: 4 int scattering dV / surface, which is exact for a slab).
+double work(const scene::Scene& scene, const Options& options) {
+  double collisions = 1, terms = 1;
+  for (const scene::Medium& medium : scene.media) {
+    double most = 0;
+    for (int c = 0; c < 3; ++c) {
+      if (!(medium.sigma_t[c] > 0)) continue;
+      const double absorbed = 1 / std::max(1 - medium.albedo[c], 1e-300);
+      most = std::max(most, absorbed < 10 ? absorbed : std::min(absorbed, 2 * thinnest_depth(medium, c)));
+    }
+    collisions += options.max_order >= 0 ? std::min(most, double(options.max_order)) : most;
+    if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field)) terms += double(sum->gaussians.size());
+  }
+  return double(scene.width) * scene.height * double(options.samples) * collisions * terms;
 }
 
 bool reflects_all(const scene::Material& material, int c) {
@@ -96,6 +115,12 @@ std::vector<std::string> refusals(const scene::Scene& scene, const Options& opti
     reasons.push_back(
         "the camera is in a closed room that reflects everything (albedo 1) with a light in it: there is no finite "
         "answer; expected an albedo below 1 or an opening");
+  if (reasons.empty())
+    if (const double needed = work(scene, options); needed > most_work)
+      reasons.push_back(
+          fmt::format("{} x {} pixels, {} samples of each and this medium need {:.1g} evaluations of terms of its "
+                      "density, expected at most {:.0e}: fewer samples, pixels or Gaussians, or a cap (max_order)",
+                      scene.width, scene.height, options.samples, needed, most_work));
   if (!options.column_transmittance)
     for (const scene::Medium& medium : scene.media)
       if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff())

@@ -30,7 +30,7 @@ void combine(const TallyLayout& layout, const double* from, double* into) {
 
 bool add_sample(const TallyLayout& layout, const PathSample& sample, int batch, double* sums) {
   const Rgb total = sample.total();
-  if (!(total.isFinite().all() && sample.truncated.isFinite().all())) return false;
+  if (!((total * total).isFinite().all() && sample.truncated.isFinite().all())) return false;
   add(total, sums, layout.mean());
   add(total * total, sums, layout.square());
   for (int c = 0; c < 3; ++c) {

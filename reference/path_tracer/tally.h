@@ -48,7 +48,7 @@ struct TallyNode {
 };
 
 // Adds one sample to the sums of one pixel; `batch` is the sixteenth of the node it falls into. Returns false if it
-// holds a NaN or an infinity.
+// holds a NaN or an infinity, or its square is one.
 bool add_sample(const TallyLayout&, const PathSample&, int batch, double* sums);
 
 // left + right: siblings, both complete.

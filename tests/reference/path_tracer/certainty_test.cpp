@@ -1,0 +1,111 @@
+// What a picture says where no sample, or next to none, brought light.
+#include "reference/path_tracer/certainty.h"
+
+#include <catch2/catch.hpp>
+
+#include "reference/path_tracer/accumulation.h"
+#include "reference/path_tracer/refusals.h"
+#include "tests/reference/path_tracer/scenes.h"
+
+using namespace airlight;
+using namespace airlight::path_tracer;
+using namespace airlight::path_tracer::test;
+
+namespace {
+
+scene::Film picture(const std::shared_ptr<scene::Scene>& scene, std::uint64_t samples, bool forced = false) {
+  scene::View view;
+  view.camera = scene::look_at(Point3(0, 0, 4), Point3::Zero(), Vec3::UnitY());
+  view.camera.vertical_fov = 0.9;
+  view.width = view.height = 8;
+  Options options;
+  options.samples = samples;
+  options.forced = forced;
+  const World world(scene, options);
+  Accumulation samples_of = empty_accumulation(world, view);
+  render_range(world, view, 0, samples, {}, samples_of);
+  return to_film(world, view, samples_of);
+}
+
+const Box left{{-1, -1, -1}, {0, 1, 1}}, right{{0, -1, -1}, {1, 1, 1}};
+
+}  // namespace
+
+TEST_CASE("a standard error of few contributions is an upper end", "[path_tracer]") {
+  // 100 samples; the greatest of the picture is 5: 3 / 100 * 5.
+  CHECK(honest_error(0, 0, 100, 5, true) == Approx(0.15));
+  CHECK(honest_error(0, 0, 100, 5, false) == 0);
+  // One contribution of 2: mean 0.02, its own estimate sqrt((4 - 4 / 100) / (100 * 99)) = 0.02.
+  CHECK(honest_error(2, 4, 100, 5, true) == Approx(0.15));
+  // With a lesser greatest one the estimate stands, and so it does for 50 of 0.1 each: sqrt((0.5 - 0.25) / 9900).
+  CHECK(honest_error(2, 4, 100, 0.5, true) == Approx(std::sqrt(3.96 / 9900)));
+  CHECK(honest_error(5, 0.5, 100, 5, true) == Approx(std::sqrt(0.25 / 9900)));
+  // All alike: no noise, whatever their number; a single sample says nothing about its error.
+  CHECK(honest_error(6, 18, 2, 5, true) == 0);
+  CHECK(honest_error(3, 9, 1, 5, true) == Approx(15));
+  // Squares that underflow.
+  CHECK(honest_error(1e-200, 0, 100, 5e-200, true) == Approx(0.15e-200));
+}
+
+// A thin medium beside a thick one, analog paths: before, pixels of the thin one had 0 with a standard error of 0.
+TEST_CASE("pixels that no light was found for do not claim certainty", "[path_tracer]") {
+  const scene::Light sun = scene::DirectionalLight{Vec3(0.6, 0.64, 0.48), Rgb(3, 2, 0)};
+  const auto film = picture(scene_of({medium(left, 1e-7, 1), medium(right, 1, 1)}, {sun}), 64);
+  const Rgb thin = film.get("mean", 3, 4), error = film.get("se", 3, 4);
+  float greatest = 0;
+  for (std::size_t i = 0; i < film.pixels(); ++i) greatest = std::max(greatest, film.layer("max_sample")[3 * i]);
+  CHECK(thin[0] == 0);
+  CHECK(error[0] == Approx(3. / 64 * greatest));
+  CHECK(error[1] > 0);
+  CHECK(error[2] == 0);                 // no light in that channel
+  CHECK(film.get("se", 0, 0)[0] == 0);  // the ray meets nothing
+  CHECK(film.metadata.count("warning") == 0);
+}
+
+TEST_CASE("a picture without any light says whether there can be none", "[path_tracer]") {
+  const scene::Light sun = scene::DirectionalLight{};
+  const auto thin = picture(scene_of({medium(left, 1e-9, 1)}, {sun}), 64);
+  CHECK(thin.metadata.at("unresolved").starts_with("mean order.1"));
+  CHECK_THAT(thin.metadata.at("warning"), Catch::Contains("none of 64 samples per pixel brought light"));
+  for (const auto& dark :
+       {scene_of({medium(left, 1e-9, 0)}, {sun}), scene_of({medium(left, 1e-9, 1)}, {}), scene_of({}, {sun})}) {
+    const auto film = picture(dark, 64);
+    CHECK(film.metadata.count("warning") == 0);
+    CHECK(film.metadata.count("unresolved") == 0);
+    for (const float error : film.layer("se")) CHECK(error == 0);
+  }
+  // Forced, the thin medium is no problem.
+  CHECK(picture(scene_of({medium(left, 1e-9, 1)}, {sun}), 64, true).metadata.count("warning") == 0);
+}
+
+// Intensity 1e308 over a distance of 1e-3 leaves the range of double.
+TEST_CASE("a radiance that is not finite names scene, pixel, sample and layer", "[path_tracer]") {
+  auto bright = scene_of({medium(left, 1, 1)}, {scene::PointLight{Point3(-0.2, 0, 1.001), Rgb::Constant(1e308), 0}});
+  bright->name = "too bright";
+  CHECK_THROWS_WITH(picture(bright, 64), Catch::StartsWith("path_tracer: scene 'too bright', pixel (") &&
+                                             Catch::Contains(": layer ") && !Catch::Contains("\n"));
+}
+
+// In double, but not in the single precision of a film.
+TEST_CASE("a picture beyond the range of its film names scene, pixel and layer", "[path_tracer]") {
+  auto bright = scene_of({medium(left, 1, 1)}, {scene::DirectionalLight{Vec3::UnitY(), Rgb::Constant(1e60)}});
+  bright->name = "too bright";
+  CHECK_THROWS_WITH(picture(bright, 64), Catch::StartsWith("path_tracer: scene 'too bright', pixel (") &&
+                                             Catch::Contains("is not finite in single precision"));
+}
+
+TEST_CASE("work without end is refused in one line", "[path_tracer]") {
+  scene::GaussianSum sum;
+  sum.gaussians.assign(20000, {Point3::Zero(), 1, 1e-5});
+  scene::Medium cloud = medium(left, 1, 0.9);
+  cloud.field = sum;
+  Options options;
+  options.samples = 1 << 20;
+  const auto scene = scene_of({cloud}, {scene::DirectionalLight{}});
+  scene->width = 160;
+  scene->height = 120;
+  REQUIRE(refusals(*scene, options).size() == 1);
+  CHECK_THAT(refusals(*scene, options).front(), Catch::Contains("160 x 120 pixels, 1048576 samples"));
+  options.samples = 256;
+  CHECK(refusals(*scene, options).empty());
+}
