@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include "scene/error.h"
 #include "scene/printable.h"
@@ -39,8 +41,19 @@ void check_levels(const std::string& text, const std::string& name) {
 
 nlohmann::json parse_json(const std::string& text, const std::string& name) {
   check_levels(text, name);
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto watch = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    if (event == nlohmann::json::parse_event_t::object_start) keys.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) keys.pop_back();
+    if (event != nlohmann::json::parse_event_t::key) return true;
+    const std::string key = parsed.get<std::string>();
+    if (!keys.back().insert(key).second)
+      throw Error(
+          fmt::format("{}: key '{}' is there twice in an object, expected once", name, scene::printable(key, 100)));
+    return true;
+  };
   try {
-    return nlohmann::json::parse(text);
+    return nlohmann::json::parse(text, watch);
   } catch (const nlohmann::json::exception& e) {
     // "[json.exception.parse_error.101] parse error at line 1, column 5: ...": the number is nobody's business.
     std::string what = e.what();

@@ -11,7 +11,7 @@ inline constexpr std::size_t most_json_bytes = std::size_t(1) << 25;
 // Levels of lists and objects. Printing a value, which messages do, is recursive: 100,000 levels end the stack.
 inline constexpr int most_json_levels = 32;
 
-// Throws Error, one line, with name, line and column: too deep, or not JSON.
+// Throws Error, one line, with the name: too deep, not JSON, or a key that its object has twice.
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
 // The same of a file; throws Error too where it cannot be read or is too long.

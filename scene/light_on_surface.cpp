@@ -80,11 +80,12 @@ void move_lights_off_surfaces(Scene& scene) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const auto own = ball(scene.lights[l]);
     if (!own) continue;
-    const double endless = std::max(finite, (own->center - scene.camera.position).stableNorm());
+    // Of what is seen: a lamp in front of a planet does not lie on it. Places of the whole are rounded to 1e-16 of it.
+    const double seen = (own->center - scene.camera.position).stableNorm();
+    const double there = std::max(finite > 0 ? std::min(finite, seen) : seen, 1e-9 * finite);
     double size = 0;
     normals.clear();
     for (const Surface& surface : scene.surfaces) {
-      const double there = std::holds_alternative<Plane>(surface.shape) ? endless : finite;
       const std::size_t before = normals.size();
       std::visit([&](const auto& shape) { add_normals(shape, own->center, on_surface * there, normals); },
                  surface.shape);

@@ -6,8 +6,8 @@
 // lies in front of all faces that meet there. So it is moved off them, by `beside` of the size, before anything else
 // sees it: far enough to be told apart in single precision too.
 //
-// The size is the diagonal of the box around all finite surfaces; on a plane at least the distance from the light to
-// the camera.
+// The size is the diagonal of the box around all finite surfaces or the distance from the light to the camera,
+// whichever is less, and at least 1e-9 of the former.
 #pragma once
 #include "scene/scene.h"
 

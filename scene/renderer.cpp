@@ -5,12 +5,14 @@
 
 #include <atomic>
 
+#include "scene/threads.h"
+
 namespace airlight::scene {
 
 void parallel_rows(int rows, const Execution& execution, const std::function<void(int)>& body) {
   std::atomic<int> done{0};
   std::atomic<bool> stopped{false};
-  tbb::task_arena arena(execution.threads > 0 ? execution.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(threads_for(execution.threads));
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, rows, 1),

@@ -11,6 +11,7 @@ namespace {
 constexpr double least_size = 1e-4, greatest_place = 1e5;             // [m]
 constexpr double least_extinction = 1e-9, greatest_extinction = 1e9;  // [1/m]
 constexpr double least_light = 1e-9, greatest_light = 1e12;
+constexpr double greatest_depth = 3e4;  // extinction times the largest coordinate: places are rounded to 6e-8 of it
 constexpr double greatest_g = 0.999, greatest_exponent = 1e4;
 
 class Reasons {
@@ -75,10 +76,17 @@ double look_at(Reasons& r, const std::shared_ptr<const VoxelGrid>& grid) {
   return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
 }
 
-void look_at(Reasons& r, const Medium& medium) {
+void look_at(Reasons& r, const Medium& medium, const Point3& camera) {
   const double density = std::visit([&](const auto& field) { return look_at(r, field); }, medium.field);
   for (int c = 0; c < 3; ++c)
     r.within("extinction", medium.sigma_t[c] * density, least_extinction, greatest_extinction, " 1/m");
+  double reach = camera.cwiseAbs().maxCoeff();
+  const Box whole = bounding_box(medium);
+  for (int i = 0; i < 3 && !whole.empty(); ++i)
+    for (const double x : {whole.lo[i], whole.hi[i]})
+      if (std::isfinite(x)) reach = std::max(reach, std::abs(x));
+  r.within("extinction times the largest coordinate", medium.sigma_t.maxCoeff() * density * reach, 0, greatest_depth,
+           "");
   if (!std::holds_alternative<Unbounded>(medium.region)) r.box(bounding_box(medium.region));
   if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase))
     if (std::abs(hg->g) > greatest_g) r.add(fmt::format("g = {}, expected at most {} in size", hg->g, greatest_g));
@@ -112,7 +120,11 @@ std::vector<std::string> beyond_single_precision(const Scene& scene) {
   ambient.light(scene.ambient_in_scatter);
   for (const Reasons* r : {&camera, &ambient}) reasons.insert(reasons.end(), r->list().begin(), r->list().end());
   look_at_all(reasons, "light", scene.lights);
-  look_at_all(reasons, "medium", scene.media);
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    Reasons r(fmt::format("medium {}", i));
+    look_at(r, scene.media[i], scene.camera.position);
+    reasons.insert(reasons.end(), r.list().begin(), r.list().end());
+  }
   look_at_all(reasons, "surface", scene.surfaces);
   return reasons;
 }

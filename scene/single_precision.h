@@ -6,6 +6,8 @@
 //   intensity / d^2                               1e-20 to 1e20
 //   extinction * length * phase * intensity / d^2 1e-34 to 1e34 (phase function 4e-5 to 1.6e5; as mean 1, 12 times
 //   that)
+// Places are rounded to 6e-8 of them: extinction times the largest coordinate of the camera and the medium is 3e4 at
+// most.
 #pragma once
 #include <string>
 #include <vector>

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -45,6 +46,11 @@ void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const s
 
 void require(const std::string& value, const std::string& what) {
   if (value.empty()) throw Error(fmt::format("{} is missing; see --help", what));
+}
+
+void check_exposure(double exposure) {
+  if (!(std::abs(exposure) <= 100))
+    throw Error(fmt::format("--exposure {}: expected a number in [-100, 100]", exposure));
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -115,7 +121,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--out,-o", render_options.out, "OpenEXR file to write");
   c->add_option("--png", render_options.png, "also write an 8-bit preview");
   c->add_option("--exposure", render_options.exposure, "of the preview, in powers of two");
-  c->add_option("--threads", render_options.threads, "0: all");
+  c->add_option("--threads", render_options.threads, "0: all")->check(CLI::Range(0, 4096));
   c->add_option("--samples", render_options.samples, "N, or A..B: a range to be merged (path_tracer)");
   c->add_option("--cache", render_options.cache,
                 "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
@@ -128,6 +134,7 @@ int dispatch(int argc, char** argv) {
       require(render_options.scene, "SCENE");
       require(render_options.method, "--method");
       require(render_options.out, "--out");
+      check_exposure(render_options.exposure);
       return render(render_options);
     };
   });
@@ -175,6 +182,7 @@ int dispatch(int argc, char** argv) {
     action = [&] {
       require(convert_options.in, "IN");
       require(convert_options.out, "OUT");
+      check_exposure(convert_options.exposure);
       return convert(convert_options);
     };
   });
@@ -184,7 +192,7 @@ int dispatch(int argc, char** argv) {
     if (names) e->add_option("NAME", experiment_options.names, "group/name, or a group; none: all");
     e->add_option("--root", experiment_options.root, "the project's folder (default: found from here upwards)");
     e->add_option("--profile", experiment_options.profile, "quick (default) or paper");
-    e->add_option("--threads", experiment_options.threads, "0: all");
+    e->add_option("--threads", experiment_options.threads, "0: all")->check(CLI::Range(0, 4096));
     data_option(e);
   };
   CLI::App* experiment = command(app, "experiment", "tables and plots of the papers");
@@ -230,7 +238,7 @@ int dispatch(int argc, char** argv) {
   RateOptions rate_options;
   c = command(app, "rate", "kernel evaluations per second of fogshop against a bare loop of the same arithmetic");
   c->add_option("SCENE", rate_options.scene, "scene file: point lights, grey fog of Gaussians");
-  c->add_option("--threads", rate_options.threads, "0: all");
+  c->add_option("--threads", rate_options.threads, "0: all")->check(CLI::Range(0, 4096));
   c->add_option("--runs", rate_options.runs, "pictures of each variant, of which the fastest counts (7)");
   c->add_flag("--processor-time", rate_options.processor_time,
               "of one thread, not the wall clock: on a machine that others use");

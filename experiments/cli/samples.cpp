@@ -61,6 +61,9 @@ int merge(const MergeOptions& options) {
   const scene::View view = scene::view_of(*scene);
   const std::string differs = path_tracer::difference(
       samples.identity, path_tracer::identity_of(*scene, view, path_tracer::parse_options(settings)));
+  if (samples.width != view.width || samples.height != view.height)
+    throw Error(fmt::format("{}: found a film of {} x {}, expected {} x {}", options.parts.front(), samples.width,
+                            samples.height, view.width, view.height));
   if (!differs.empty())
     throw Error(fmt::format("{} and {} do not belong together: {}", options.parts.front(), options.scene, differs));
   scene::Film film = path_tracer::to_film(world, view, samples);

@@ -40,8 +40,7 @@ double exposure_of(const scene::Film& film, const std::string& layer) {
 std::vector<Measure> compare(const Experiment& e, const MethodCase& m, const scene::Film& film,
                              const scene::Film& reference, const Masks& masks) {
   if (m.picture_only) return {};
-  return measure(e.metrics, film, reference, e.layer, masks,
-                 m.count_noise ? ImageNoise::counted : ImageNoise::removed);
+  return measure(e.metrics, film, reference, e.layer, masks, m.count_noise ? ImageNoise::counted : ImageNoise::removed);
 }
 
 void keep_picture(const std::filesystem::path& images, const std::string& name, const scene::Film& film,

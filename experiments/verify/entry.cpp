@@ -76,6 +76,19 @@ double Value::number_or_infinite() const {
   return value;
 }
 
+double Value::number_in(double least, double greatest) const {
+  const double value = parsed(*json_);
+  if (!(value >= least && value <= greatest)) complain(fmt::format("a number from {} to {}", least, greatest));
+  return value;
+}
+
+int Value::integer_in(int least, int greatest) const {
+  const double value = parsed(*json_);
+  if (!(value >= least && value <= greatest && value == std::floor(value)))
+    complain(fmt::format("an integer from {} to {}", least, greatest));
+  return int(value);
+}
+
 int Value::integer() const {
   if (!json_->is_number_integer()) complain("an integer");
   const auto value = json_->get<long long>();

@@ -22,7 +22,9 @@ class Value {
 
   double number() const;  // finite
   double number_or_infinite() const;
+  double number_in(double least, double greatest) const;
   int integer() const;
+  int integer_in(int least, int greatest) const;  // also written as a number without fraction
   const std::string& text() const;
   Vec3 vector() const;  // three numbers
   std::vector<double> numbers() const;

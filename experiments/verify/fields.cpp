@@ -67,7 +67,7 @@ Check read_optical_depth(const Value& v) {
     return not_yet("fogmap");
   }
   scene::Medium medium = fog(scene::Unbounded{}, 0.1, 1, scene::Isotropic{});
-  medium.field = modular_grid(in["n"].integer(), in["seed"].integer());
+  medium.field = modular_grid(in["n"].integer_in(1, 256), in["seed"].integer_in(0, 1000000));
   const double tau = expected["tau"].number(), accuracy = v["accuracy"]["abs"].number();
   return {"", [=](VerifyProfile) {
             return Outcome{{absolute("tau", tau, scene::optical_depth({medium}, s.ray, {0, s.length})[0], accuracy)}};

@@ -23,7 +23,7 @@ Check read_npsf(const Value& v) {
 }
 
 Check read_npsf_coefficient(const Value& v) {
-  const int l = int(v["in"]["l"].number());
+  const int l = v["in"]["l"].integer_in(0, 1000);
   const double T = v["in"]["T"].number(), expected = v["value"].number();
   return {"",
           [=](VerifyProfile) { return Outcome{{relative("g", expected, fogshop::npsf_coefficient(l, T), 1e-12)}}; }};

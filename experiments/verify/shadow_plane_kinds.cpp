@@ -42,7 +42,7 @@ double conditioning(double extinction, double T, double h, double x0, double x1)
 Check read_planes_airlight(const Value& v) {
   const Value in = v["input"];
   const double k = in["k_t"].number(), T = in["T"].number(), h = in["h"].number(), x0 = in["x0"].number(),
-               x1 = in["x1"].number_or_infinite(), scale = in["albedo"].number() * in["intensity"].number();
+               x1 = in["x1"].number_or_infinite(), scale = in["albedo"].number_in(0, 1) * in["intensity"].number();
   const PhaseForm phase = phase_of(in);
   const double expected = v["expect"]["log10_L"].number();
   return {"", [=](VerifyProfile) {
@@ -60,7 +60,7 @@ Check read_taylor_coefficients(const Value& v) {
   const Value in = v["input"];
   const PhaseForm phase = phase_of(in);
   const double a = in["a"].number();
-  const int degree = in["degree"].integer();
+  const int degree = in["degree"].integer_in(0, 64);
   const std::vector<double> expected = v["expect"]["c"].numbers();
   if (int(expected.size()) != degree + 1) v["expect"]["c"].complain("as many numbers as the degree and one more");
   return {"", [=](VerifyProfile) {
@@ -78,7 +78,7 @@ Check read_taylor_integral(const Value& v) {
   const Value in = v["input"];
   const PhaseForm phase = phase_of(in);
   const double a = in["a"].number(), theta0 = in["theta0"].number(), theta1 = in["theta1"].number();
-  const int degree = in["degree"].integer();
+  const int degree = in["degree"].integer_in(0, 64);
   const double polynomial = v["expect"]["J_poly"].number(), exact = v["expect"]["J_exact"].number();
   return {"", [=](VerifyProfile) {
             const double got =
@@ -119,7 +119,8 @@ Check read_shadow(const Value& v) {
   for (std::size_t i = 0; i < in["vertices"].size(); ++i) mesh.vertices.push_back(in["vertices"][i].vector());
   for (std::size_t i = 0; i < in["triangles"].size(); ++i) {
     const Value t = in["triangles"][i];
-    mesh.triangles.push_back({t[0].integer(), t[1].integer(), t[2].integer()});
+    const int last = int(mesh.vertices.size()) - 1;
+    mesh.triangles.push_back({t[0].integer_in(0, last), t[1].integer_in(0, last), t[2].integer_in(0, last)});
   }
   const Ray ray = ray_from(in["O"], in["dir"]);
   const Point3 light = in["S"].vector();

@@ -40,7 +40,7 @@ Check read_single_scattering_shape(const Value& v) {
   else
     shape["type"].complain("sphere or box");
   scene::Scene scene;
-  scene.media = {fog(region, in["sigma_t"].number(), in["albedo"].number(),
+  scene.media = {fog(region, in["sigma_t"].number(), in["albedo"].number_in(0, 1),
                      phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)))};
   scene.lights = {light_from(in["light"])};
   const Ray ray = ray_from(in["o"], in["d"]);
@@ -51,7 +51,7 @@ Check read_single_scattering_shape(const Value& v) {
 Check read_single_scattering_gaussians(const Value& v) {
   const Value in = v["input"];
   scene::Scene scene;
-  scene.media = {gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), in["albedo"].number(),
+  scene.media = {gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), in["albedo"].number_in(0, 1),
                               phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)))};
   for (std::size_t i = 0; i < in["lights"].size(); ++i) scene.lights.push_back(light_from(in["lights"][i]));
   const Point3 eye = in["eye"].vector();

@@ -25,7 +25,8 @@ struct Layer {
 
 scene::Medium slab(const Layer& l) { return fog(scene::Slab{Vec3::UnitZ(), 0, l.tau}, 1, l.albedo, l.phase); }
 
-constexpr double margin = 1;  // [m] of vacuum between slab and camera
+constexpr double most_depth = 1e4;  // walks through more take too long
+constexpr double margin = 1;        // [m] of vacuum between slab and camera
 
 // A bright sky on the camera's side (reflection) or on the other one (transmission); the camera sits at z = -margin.
 scene::Scene half_lit(const Layer& l, bool reflection) {
@@ -156,7 +157,8 @@ Check read_slab_table(const Value& v) {
 
 Check read_slab_point(const Value& v) {
   const Value in = v["input"], e = v["expected"];
-  const Layer layer{phase_from(in["phase"], number_or(in, "g", 0)), in["albedo"].number(), in["tau"].number()};
+  const Layer layer{phase_from(in["phase"], number_or(in, "g", 0)), in["albedo"].number_in(0, 1),
+                    in["tau"].number_in(0, most_depth)};
   const double r = e["R"].number(), t = e["T_total"].number();
   const double rd = e["R_diffuse"].number(), td = e["T_diffuse_total"].number();
   const double published_r = e["published_R"].number(), published_t = e["published_T"].number();
@@ -186,7 +188,8 @@ Check read_slab_point(const Value& v) {
 
 Check read_slab_exit_radiance(const Value& v) {
   const Value in = v["input"], e = v["expected"];
-  const Layer layer{phase_from(in["phase"], number_or(in, "g", 0)), in["albedo"].number(), in["tau"].number()};
+  const Layer layer{phase_from(in["phase"], number_or(in, "g", 0)), in["albedo"].number_in(0, 1),
+                    in["tau"].number_in(0, most_depth)};
   const auto reflected = by_cosine(e["L_reflected"]), transmitted = by_cosine(e["L_transmitted"]);
   const double accuracy = v["accuracy"]["abs"].number();
   const std::string id = v["id"].text();
@@ -206,7 +209,8 @@ Check read_slab_exit_radiance(const Value& v) {
 }
 
 Check read_slab_orders(const Value& v) {
-  const Layer layer{scene::Isotropic{}, v["input"]["albedo"].number(), v["input"]["tau"].number()};
+  const Layer layer{scene::Isotropic{}, v["input"]["albedo"].number_in(0, 1),
+                    v["input"]["tau"].number_in(0, most_depth)};
   const std::vector<double> r = v["expected"]["R_order"].numbers(), t = v["expected"]["T_order"].numbers();
   const int orders = int(std::max(r.size(), t.size()));
   if (orders < 1 || orders > path_tracer::most_orders) v["expected"].complain("1 to 12 orders");

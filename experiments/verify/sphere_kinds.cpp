@@ -59,7 +59,7 @@ scene::Region shape_from(const Value& in, const std::string& shape) {
 }  // namespace
 
 Check read_sphere_environment(const Value& v) {
-  const double radius = v["input"]["optical_radius"].number(), albedo = v["input"]["albedo"].number();
+  const double radius = v["input"]["optical_radius"].number_in(0, 1e4), albedo = v["input"]["albedo"].number_in(0, 1);
   const Value e = v["expected"];
   const double centre = e["J_centre"].number(), accuracy = v["accuracy"]["abs"].number();
   std::vector<std::pair<double, double>> chords;
@@ -89,7 +89,7 @@ Check read_sphere_environment(const Value& v) {
 }
 
 Check read_sphere_central_point(const Value& v) {
-  const double radius = v["input"]["optical_radius"].number(), albedo = v["input"]["albedo"].number();
+  const double radius = v["input"]["optical_radius"].number_in(0, 1e4), albedo = v["input"]["albedo"].number_in(0, 1);
   const double accuracy = v["accuracy"]["abs"].number();
   struct Chord {
     double b, first, second, all;
@@ -118,8 +118,9 @@ Check read_sphere_central_point(const Value& v) {
 
 Check read_single_scattering_environment(const Value& v) {
   const Value in = v["input"];
-  const scene::Medium medium = fog(shape_from(in, in["kind"].text()), in["sigma_t"].number(), in["albedo"].number(),
-                                   phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)));
+  const scene::Medium medium =
+      fog(shape_from(in, in["kind"].text()), in["sigma_t"].number_in(0, 1e4), in["albedo"].number_in(0, 1),
+          phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)));
   const Ray ray = ray_from(in["o"], in["d"]);
   const double expected = v["expected"]["L1"].number(), accuracy = v["accuracy"]["abs"].number();
   const std::string id = v["id"].text();
@@ -134,8 +135,8 @@ Check read_single_scattering_environment(const Value& v) {
 // analog walk, one that dies with the probability 1 - albedo at each.
 Check read_multiple_scattering(const Value& v) {
   const Value in = v["input"], e = v["expected"];
-  const scene::Medium medium = fog(shape_from(in, in["shape"].text()), in["sigma_t"].number(), in["albedo"].number(),
-                                   scene::HenyeyGreenstein{in["g"].number()});
+  const scene::Medium medium = fog(shape_from(in, in["shape"].text()), in["sigma_t"].number_in(0, 1e4),
+                                   in["albedo"].number_in(0, 1), scene::HenyeyGreenstein{in["g"].number()});
   const std::string& type = in["light"].text();
   scene::Light light;
   if (type == "environment L=1")

@@ -66,6 +66,7 @@ Check read_sidak(const Value& v, double accuracy) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     rows.push_back(list[i].numbers());
     if (rows.back().size() != 3) list[i].complain("[m, alpha, threshold]");
+    list[i][0].integer_in(1, 1000000000);
   }
   return {"", [=](VerifyProfile) {
             Outcome out;
@@ -83,6 +84,7 @@ Check read_median(const Value& v, double accuracy) {
   for (std::size_t i = 0; i < e["rows"].size(); ++i) {
     rows.push_back(e["rows"][i].numbers());
     if (rows.back().size() != 3) e["rows"][i].complain("[n, lower, upper]");
+    e["rows"][i][0].integer_in(1, 1000000);
   }
   const double middle = e["median"].number(), mad = e["mad"].number(), sigma = e["sigma"].number();
   return {"", [=](VerifyProfile) {

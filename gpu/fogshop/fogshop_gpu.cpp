@@ -14,6 +14,7 @@
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
+#include "scene/light_on_ray.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -123,6 +124,7 @@ std::unique_ptr<Buffer> PreparedFogshopGpu::low_resolution_distances(const View&
 }
 
 scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
+  if (model_.options.source_radius == 0) require_lights_apart(*scene_, view, 1e-9, "fogshop_gpu");
   const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};

@@ -14,6 +14,8 @@
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/light_on_ray.h"
+#include "scene/place_error.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -95,6 +97,7 @@ void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution
 }
 
 scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& execution) const {
+  require_lights_apart(*plan_.scene, view, 1e-9, "ray_marcher_gpu");
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   std::vector<float>&mean = film.add("mean"), &airlight = film.add("airlight"), &surface = film.add("surface"),
@@ -170,6 +173,7 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
+  if (const std::string reason = scene::too_thick(scene, 24, 0.01); !reason.empty()) reasons.push_back(reason);
   bool grid = false, negative = false;
   for (const scene::Medium& medium : scene.media) {
     if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))

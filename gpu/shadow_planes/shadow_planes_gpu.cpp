@@ -13,6 +13,7 @@
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
+#include "scene/light_on_ray.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -160,6 +161,7 @@ double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Exec
 }
 
 scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Execution& execution) const {
+  require_lights_apart(*scene_, view, 1e-9, "shadow_planes_gpu");
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   const std::size_t pixels = result.film.pixels();
   const long dispatches = Program::dispatches(), draws = RasterProgram::draws();

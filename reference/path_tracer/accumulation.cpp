@@ -10,6 +10,7 @@
 
 #include "reference/path_tracer/leaf.h"
 #include "scene/error.h"
+#include "scene/threads.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -109,7 +110,7 @@ bool render_range(const World& world, const scene::View& view, std::uint64_t beg
   std::atomic<std::size_t> done{0};
   std::atomic<bool> stopped{false};
   std::mutex mutex;
-  tbb::task_arena arena(execution.threads > 0 ? execution.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(execution.threads));
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, items.size(), 1),

@@ -58,7 +58,7 @@ class Reader {
     const auto size = word<std::uint64_t>();
     need(size > bytes_.size() ? bytes_.size() : 8 * size);
     std::vector<double> v(size);
-    std::memcpy(v.data(), bytes_.data() + at_, 8 * size);
+    if (size > 0) std::memcpy(v.data(), bytes_.data() + at_, 8 * size);  // data() of nothing may be null
     at_ += 8 * size;
     return v;
   }
@@ -143,8 +143,9 @@ Accumulation read_range_file(const std::string& path) {
       node.index = in.word<std::uint64_t>();
       node.count = in.word<std::uint64_t>();
       node.sums = in.words();
-      if (node.sums.size() != doubles || node.level < leaf_level || node.level > 60)
-        in.fail("a block of samples is malformed");
+      const bool fits = node.level >= leaf_level && node.level <= 50 && node.index >> (62 - node.level) == 0 &&
+                        node.count >= 1 && node.count <= std::uint64_t(1) << node.level;
+      if (node.sums.size() != doubles || !fits) in.fail("a block of samples is malformed");
       insert(a.layout, a.tiles[tile], std::move(node));
     }
   }

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "scene/error.h"
+#include "scene/threads.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -32,7 +33,7 @@ RadianceEstimate run(const World& world, std::uint64_t samples, const scene::Exe
   std::mutex mutex;
   std::atomic<std::size_t> done{0};
   std::atomic<bool> stopped{false};
-  tbb::task_arena arena(execution.threads > 0 ? execution.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(execution.threads));
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, blocks.size(), 1),

@@ -13,6 +13,8 @@
 #include "reference/ray_marcher/stages.h"
 #include "reference/ray_marcher/tile.h"
 #include "scene/error.h"
+#include "scene/light_on_ray.h"
+#include "scene/place_error.h"
 
 namespace airlight::ray_marcher {
 namespace {
@@ -70,6 +72,7 @@ class PreparedMarch final : public scene::Prepared {
   std::vector<scene::StageTime> prepare_times() const override { return {{"prepare", prepare_seconds_}}; }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    require_lights_apart(*plan_.scene, view, 1e-13, "ray_marcher");
     scene::Rendering result;
     result.film = scene::Film(view.width, view.height);
     float *mean = result.film.add("mean").data(), *airlight = result.film.add("airlight").data(),
@@ -145,10 +148,22 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
   const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));
+  if (const std::string reason = scene::too_thick(scene, 53, 0.01); !reason.empty()) reasons.push_back(reason);
   if (light_on_camera(scene))
     reasons.push_back(
         "a point or spot light of radius 0 stands on the camera inside a medium: its airlight is infinite; expected a "
         "distance or a radius");
+  // Its depths are 32-bit floats, and so are the squares of what it steps over: as far as 1 over the extinction.
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    const scene::Medium& m = scene.media[i];
+    const auto* fog = std::get_if<scene::Homogeneous>(&m.field);
+    const double extinction = fog ? m.sigma_t.maxCoeff() * fog->density : 0;
+    if (extinction > 0 && extinction < 1e-12 && std::holds_alternative<scene::Unbounded>(m.region))
+      reasons.push_back(
+          fmt::format("medium {} has no bounds and an extinction of {:.3g} 1/m: expected a region, or 1e-12 "
+                      "1/m or more",
+                      i, extinction));
+  }
   return reasons;
 }
 

@@ -32,7 +32,7 @@ std::string shown(std::string_view text) { return printable(text, 40); }
 
 Gaussian read_row(std::string_view row, const std::string& path, std::size_t line) {
   static constexpr const char* names[] = {"center_x", "center_y", "center_z", "width", "amplitude"};
-  static constexpr Range ranges[] = {coordinate, coordinate, coordinate, length, signed_amount};
+  static constexpr Range ranges[] = {coordinate, coordinate, coordinate, length, either_sign(density_range)};
   std::array<double, 5> values{};
   std::size_t begin = 0;
   for (int i = 0; i < 5; ++i) {
@@ -72,7 +72,8 @@ std::vector<Gaussian> read_csv(const std::string& path) {
 
 Gaussian read_gaussian(TableReader reader) {
   reader.allow({"center", "width", "amplitude"});
-  return {reader.vector("center"), reader.number("width", length), reader.number("amplitude", signed_amount)};
+  return {reader.vector("center"), reader.number("width", length),
+          reader.number("amplitude", either_sign(density_range))};
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ Gaussian read_gaussian(TableReader reader) {
 GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file"}));
   GaussianSum sum;
-  sum.constant = reader.number("constant", amount, 0);
+  sum.constant = reader.number("constant", density_range, 0);
   sum.cutoff = reader.number("cutoff", widths, infinity);
   if (reader.one_of({"gaussians", "file"}) == "file") {
     sum.gaussians = read_csv(find_asset(reader, "file", folder));

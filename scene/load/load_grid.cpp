@@ -29,7 +29,7 @@ VoxelGrid read_inline(const TableReader& reader) {
   grid.size = {int(size[0]), int(size[1]), int(size[2])};
   grid.voxel_size = reader.number("voxel_size", length);
   grid.translation = reader.vector("origin");
-  const std::vector<double> values = reader.numbers("values", {0, amount.greatest});
+  const std::vector<double> values = reader.numbers("values", {0, density_range.greatest});
   const double expected = double(size[0]) * double(size[1]) * double(size[2]);
   if (double(values.size()) != expected)
     reader.fail("values", fmt::format("values has {} numbers, expected {} = {} x {} x {}, x fastest", values.size(),

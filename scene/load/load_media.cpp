@@ -47,7 +47,7 @@ DensityField read_field(const std::string& type, TableReader& reader, const std:
   if (type == "gaussians") return read_gaussian_sum(reader, folder);
   if (type == "grid") return read_grid(reader, folder);
   reader.allow(medium_keys_and({"density"}));
-  return Homogeneous{reader.number("density", amount, 1)};
+  return Homogeneous{reader.number("density", density_range, 1)};
 }
 
 }  // namespace

@@ -26,11 +26,13 @@ inline constexpr double least_length = 1e-9, greatest_length = 1e9;  // [m]
 // Of a metre at the greatest extinction: a mean free path is then 1e5 times the rounding of places a metre away.
 inline constexpr double greatest_depth = 1e11;
 
-inline constexpr Range coordinate{-greatest_length, greatest_length};  // [m]; also angles [rad], wave vectors [1/m]
-inline constexpr Range length{least_length, greatest_length};          // [m]; factors on lengths
-inline constexpr Range length_or_zero = or_zero(length);               // radius of a light, width of a street
-inline constexpr Range amount = or_zero({1e-30, 1e30});                // of light, of density, extinction per density
-inline constexpr Range signed_amount = either_sign(amount);            // amplitudes, harmonics
+inline constexpr Range coordinate =
+    either_sign(or_zero({1e-30, greatest_length}));             // [m]; also angles [rad], wave vectors [1/m]
+inline constexpr Range length{least_length, greatest_length};   // [m]; factors on lengths
+inline constexpr Range length_or_zero = or_zero(length);        // radius of a light, width of a street
+inline constexpr Range amount = or_zero({1e-30, 1e30});         // of light, extinction per density
+inline constexpr Range density_range = or_zero({1e-20, 1e20});  // amplitudes with either sign
+inline constexpr Range signed_amount = either_sign(amount);     // harmonics
 inline constexpr Range extinction_range =
     or_zero({1e-30, greatest_depth});                          // [1/m]: per density, times greatest density
 inline constexpr Range widths{1e-9, 1e9, false, false, true};  // a distance in widths, may be infinite

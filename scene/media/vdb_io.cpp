@@ -66,6 +66,7 @@ std::string checksum(const VoxelGrid& grid) {
 
 // The checksum beside the file, if there is one.
 void check_sidecar(const std::string& path, std::string_view file) {
+  if (std::error_code code; !std::filesystem::is_regular_file(path + ".xxh128", code)) return;
   std::ifstream stream(path + ".xxh128");
   std::string expected;
   if (!stream || !(stream >> expected)) return;

@@ -18,7 +18,7 @@ namespace {
 
 struct Project : TemporaryFolder {
   explicit Project(const std::string& bound) {
-    for (const char* script : {"scripts/build", "scripts/report", "bin/ctest"}) {
+    for (const char* script : {"scripts/build", "scripts/report", "scripts/figures", "bin/ctest"}) {
       write(script, "#!/bin/sh\nexit 0\n");
       fs::permissions(path() / script, fs::perms::owner_all);
     }

@@ -2,6 +2,7 @@
 #include "experiments/driver/comparisons.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace airlight::experiments;
 
@@ -46,7 +47,7 @@ TEST_CASE("speed-ups of two curves by hand", "[comparisons]") {
   CHECK(cell(table, 1, "method") == "fast");
   CHECK(cell(table, 1, "against") == "slow");
   CHECK_THAT(cell(table, 1, "times faster at equal error"), Catch::StartsWith("3.16"));
-  CHECK(table[1][5] == "1 to 10");
+  CHECK(cell(table, 1, "range") == "1 to 10");
   CHECK(cell(table, 1, "over errors") == "0.01 to 1");
   CHECK_THAT(cell(table, 1, "times less error at equal time"), Catch::StartsWith("3.16"));
   CHECK(cell(table, 1, "over times") == "1 s to 10 s");
@@ -79,26 +80,30 @@ TEST_CASE("scenes, methods and metrics are kept apart", "[comparisons]") {
   for (Row& r : rows) r.measures.push_back({"bias", 0.3, 0, 1, 0, true});  // another metric below its floor
   const TextTable table = equal_error_and_time(outcome_of(rows));
   REQUIRE(table.size() == 3);
-  CHECK(table[1][5] == "1 to 10");
+  CHECK(cell(table, 1, "range") == "1 to 10");
   CHECK(cell(table, 2, "scene") == "t");
   CHECK_THAT(cell(table, 2, "times faster at equal error"), Catch::StartsWith("7"));
   CHECK(cell(table, 2, "times less error at equal time") == "no common time");
 }
 
-// In the middle of the errors, at 0.1, the times are 10 and sqrt(10): 6.84 s saved per render. 21 s more of preparation
-// (medians of 2 and 22, and of 0, 1 and 5) are repaid after 20 / 6.84 = 2.92, so 3 renders.
+// Errors from 4 to 0.04. In their middle, at 0.4, the times are 10 and sqrt(10): 6.84 s saved per render. 20 s more of
+// preparation (medians of 5, 0, 1 and of 20, 22) are repaid after 20 / 6.84 = 2.92, so 3 renders.
 TEST_CASE("how many renders repay a preparation", "[comparisons]") {
   std::vector<Row> rows = two_curves;
+  for (Row& r : rows) r.measures[0].value = r.measures[0].low = r.measures[0].high = 4 * r.measures[0].value;
   const auto repaid = [&] {
     return cell(equal_error_and_time(outcome_of(rows)), 1, "preparation repaid after renders");
   };
   CHECK(repaid() == "1");
   rows[0].prepare_seconds = 5;
   rows[1].prepare_seconds = 0;
-  rows.push_back(row("s", "slow", 1000, 2));
+  rows.push_back(row("s", "slow", 1000, 8));
   rows.back().prepare_seconds = 1;
   rows[2].prepare_seconds = 20;
   rows[3].prepare_seconds = 22;
+  rows.push_back(row("s", "fast", 1, 1));  // never rendered
+  rows.back().prepare_seconds = 1000;
+  rows.back().runs = 0;
   CHECK(repaid() == "3");
   // Longer to prepare and slower: never. Slower, and quicker to prepare: never either.
   Outcome swapped = outcome_of(rows);
@@ -106,6 +111,19 @@ TEST_CASE("how many renders repay a preparation", "[comparisons]") {
   CHECK(cell(equal_error_and_time(swapped), 1, "preparation repaid after renders") == "never");
   for (Row& r : swapped.rows) r.prepare_seconds = r.method == "slow" ? 30 : 0;
   CHECK(cell(equal_error_and_time(swapped), 1, "preparation repaid after renders") == "never");
+  // All times a thousandth: the same.
+  for (Row& r : rows) {
+    r.seconds = {r.seconds.value / 1000, r.seconds.low / 1000, r.seconds.high / 1000};
+    r.prepare_seconds /= 1000;
+  }
+  CHECK(repaid() == "3");
+  for (Row& r : rows) r.prepare_seconds = 0;
+  CHECK(repaid() == "1");
+  // Nothing saved: never, unless nothing was spent.
+  rows = {row("s", "slow", 2, 1), row("s", "fast", 2, 1)};
+  CHECK(repaid() == "1");
+  rows[1].prepare_seconds = 0.5;
+  CHECK(repaid() == "never");
 }
 
 // The fastest of `fast` (1 s, 0.05) is closer than all of `slow`, whose closest is (4 s, 0.1): a quarter of its time.
@@ -122,13 +140,15 @@ TEST_CASE("curves without a common error are told apart in words", "[comparisons
 
 // One front per scene: (1, 1), (2, 0.5) and, because the intervals overlap, (3, 0.5 +- 0.2). (4, 2) is beaten twice.
 TEST_CASE("the front is that of each scene", "[comparisons]") {
-  std::vector<Row> rows{row("s", "a", 4, 2), row("s", "a", 1, 1), row("s", "b", 2, 0.5),  row("s", "b", 3, 0.5, 0.2),
-                        row("t", "a", 9, 9), row("s", "c", 0, 0), row("t", "b", 10, 9.5), row("s", "d", 5, 0.6)};
-  rows[5].runs = 0;  // not rendered
-  CHECK(on_front(outcome_of(rows)) == std::vector<bool>{false, true, true, true, true, false, false, false});
+  std::vector<Row> rows{
+      row("s", "a", 1, 1),        row("s", "a", 4, 2),   row("s", "b", 2, 0.5),
+      row("s", "b", 3, 0.5, 0.2), row("t", "a", 9, 9),   row("s", "c", 0, 0),
+      row("t", "b", 10, 9.5),     row("s", "d", 5, 0.6), row("s", "e", 0.1, std::nan(""))};  // rendered, not compared
+  rows[5].runs = 0;                                                                          // not rendered
+  CHECK(on_front(outcome_of(rows)) == std::vector<bool>{true, false, true, true, true, false, false, false, false});
   Outcome none = outcome_of(rows);
   none.experiment.metrics.clear();
-  CHECK(on_front(none) == std::vector<bool>(8, false));
+  CHECK(on_front(none) == std::vector<bool>(9, false));
 }
 
 TEST_CASE("durations choose their unit", "[comparisons]") {

@@ -72,6 +72,26 @@ TEST_CASE("squares of four batches by hand", "[metrics]") {
   CHECK(one("rmse", from_batches({5, 3, 5, 3}), reference).value == near(std::sqrt(19.0 / 6)));
 }
 
+// The image's batches 5, 3, 4, 4: mean 4, and its noise counts. Against 1 the squares are 9, and without one batch
+// (11/3 - 1)^2, (13/3 - 1)^2, 9, 9 less what three batches have more noise than four: variances 1/3, 1/3, 1, 1 times
+// 1/3 - 1/4.
+TEST_CASE("counted noise of four batches by hand", "[metrics]") {
+  const Film image = from_batches({5, 3, 4, 4});
+  const auto counted = [&](const Film& reference) { return one("rmse", image, reference, {}, ImageNoise::counted); };
+  const Estimate e = jackknife(9, std::vector<double>{85.0 / 12, 133.0 / 12, 107.0 / 12, 107.0 / 12});
+  same(counted(constant(1)), {3, std::sqrt(e.low), std::sqrt(e.high)});
+  CHECK(counted(constant(1)).floor == 0);
+  // Against the batches 1, 3, 2, 2: pairs of differences 3, 1, 2, 2; without one (2/3, 5/3, 5/3), (10/3, 7/3, 7/3),
+  // (3, 1, 2) twice, less the same. The floor is the reference's alone.
+  const Estimate both = jackknife(23.0 / 6, std::vector<double>{59.0 / 36, 251.0 / 36, 43.0 / 12, 43.0 / 12});
+  const Measure m = counted(from_batches({1, 3, 2, 2}));
+  CHECK(m.value == near(std::sqrt(both.value)));
+  CHECK(m.high == near(std::sqrt(both.high)));
+  CHECK(m.low == near(std::sqrt(std::max(0.0, both.low))));
+  CHECK(m.floor == near(std::sqrt(1.0 / 6)));
+  CHECK(m.below_floor == (both.low <= 0));
+}
+
 // Image 5, batches 1, 3, 2 | 2, 4, 3: differences 4, 2, 3 | 3, 1, 2 with mean pairs 26/3 | 11/3 and denominators
 // 1.01 * 2^2 | 1.01 * 3^2, each from the other half. One batch less: its half has a single pair and a mean of two.
 TEST_CASE("rel_mse uses both halves, each above the other", "[metrics]") {

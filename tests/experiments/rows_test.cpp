@@ -6,6 +6,7 @@
 
 #include "experiments/driver/journal.h"
 #include "experiments/driver/outcome.h"
+#include "experiments/driver/run.h"
 #include "experiments/driver/timing.h"
 #include "tests/temporary_folder.h"
 
@@ -170,8 +171,13 @@ TEST_CASE("journals forget damaged lines alone", "[driver]") {
   const Journal damaged(file, true);
   CHECK_FALSE(damaged.find("key a"));
   CHECK(damaged.find("key b"));
-  CHECK_FALSE(Journal(file, false).find("key b"));  // begun anew
+  Journal anew(file, false);
+  CHECK_FALSE(anew.find("key b"));
+  anew.begin_anew();
   CHECK_FALSE(Journal(file, true).find("key b"));
+  anew.add(a);
+  CHECK_FALSE(Journal(file, true).find("key b"));
+  CHECK(Journal(file, true).find("key a"));
 }
 
 // Jobs of more than a second are run 5 times; others as often as asked for, within the budget.
@@ -186,6 +192,23 @@ TEST_CASE("how often a job is timed", "[driver]") {
   CHECK(time_runs({31, 0, 0.1, 0}, 0.14, job).runs == 7);
   CHECK(time_runs({31, 0, 0.1, 0}, 0.15, job).runs == 1);
   CHECK(time_runs({31, 0, 0.1, 0}, 0.15, job).seconds.value == 0.15);
+}
+
+// Vectors of a method to come, which nothing can be compared with.
+TEST_CASE("oracles that compare nothing fail a gate", "[driver]") {
+  const airlight::TemporaryFolder folder;
+  folder.write("vectors.json", R"({"part": "references", "vectors": [{"id": "a", "kind": "fluid", "input": {},)"
+                               R"( "expected": {}, "accuracy": {}}]})");
+  Experiment e;
+  e.id = "g/e";
+  e.kind = "oracles";
+  e.profile = "quick";
+  e.vector_files = {folder.path() / "vectors.json"};
+  const Outcome outcome = run_experiment(e, {folder.path(), false, 1, false});
+  REQUIRE(outcome.gates.size() == 1);
+  CHECK_FALSE(outcome.gates[0].passed);
+  CHECK_FALSE(outcome.gates[0].skipped);
+  CHECK_THAT(outcome.gates[0].text, Catch::Contains("no number was compared"));
 }
 
 // Nine values: the median is the fifth, and the second and the eighth cover it with 1 - 2 (1 + 9) / 2^9 = 0.961.

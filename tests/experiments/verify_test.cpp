@@ -145,6 +145,11 @@ TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
                Contains("'a'.value") && Contains("expected a finite number"));
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "in": {"u": 0, "v": NaN}, "value": "1"})")),
              Contains("not JSON"));
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "kind": "F"})")),
+             Contains("key 'kind' is there twice"));
+  // What would run for ever, or reach beyond a list.
+  CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "npsf_coef", "in": {"l": 1e9, "T": 4}, "value": "1"})")),
+             Contains("found number 1000000000.0, expected an integer from 0 to 1000"));
   // Messages print what they found by recursion: 100,000 levels end the stack.
   const std::string deep(100000, '[');
   CHECK_THAT(complaint("{\"format\": 1,\n \"vectors\": " + deep + std::string(deep.size(), ']') + "}"),

@@ -2,7 +2,8 @@
 """Planted bugs, each of which one named test must find.
 
 mutants.py BUILD [NAME...]            plants each (or those whose name contains one of NAME), builds one object, runs its test
-mutants.py BUILD --list               what there is: name, file and line, test
+mutants.py BUILD --list               what there is: name, file and line, test; exit code 2 if one cannot be planted or
+                                      names no test (BUILD is not looked at)
 mutants.py BUILD --survey FILE --tests A_test.cpp,B_test.cpp [--only FROM-TO] [--skip TEST]
                                       plants what chance finds in FILE (signs, constants, comparisons, terms), lists survivors
 
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 
+sys.dont_write_bytecode = True  # beside the sources
 from planted import MUTANTS
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -131,6 +133,20 @@ def run(builder, names):
     return 2 if broken else 1 if wrong else 0
 
 
+def listed():
+    broken = 0
+    for m in MUTANTS:
+        print(f"{m.name} -> {m.file}:{line_of(m)} -> {m.tests}: {m.test}")
+        try:
+            planted(read(m.file), m.changes)
+            if f'TEST_CASE("{m.test}"' not in read("tests/" + m.tests):
+                raise Cannot("there is no such test")
+        except (Cannot, OSError) as reason:
+            broken += 1
+            print(f"CANNOT {m.name}: {reason}")
+    return 2 if broken else 0
+
+
 # What a line may become. Strings, comments and includes are left alone.
 SWAPS = [(r"<=", "<"), (r">=", ">"), (r"(?<![<\-=])<(?![<=])(?= )", "<="), (r"(?<![>\-=])>(?![>=])(?= )", ">="), (r"==", "!="),
          (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r"&&", "||"), (r"\|\|", "&&"),
@@ -191,9 +207,7 @@ def main():
     p.add_argument("--skip", action="append", default=[])
     a = p.parse_args()
     if a.list:
-        for m in MUTANTS:
-            print(f"{m.name} -> {m.file}:{line_of(m)} -> {m.tests}: {m.test}")
-        return 0
+        return listed()
     builder = Builder(a.build)
     if a.survey:
         first, last = map(int, a.only.split("-"))

@@ -14,6 +14,8 @@ class Mutant(NamedTuple):
 SILHOUETTE = "methods/shadow_planes/silhouette.cpp", "methods/shadow_planes/silhouette_test.cpp"
 COMPARISONS = "experiments/driver/comparisons.cpp", "experiments/comparisons_test.cpp"
 RUN = "experiments/driver/run.cpp", "experiments/driver_noise_test.cpp"
+PLAN = "experiments/driver/plan.cpp", "experiments/driver_noise_test.cpp"
+PICTURES = "experiments/driver/pictures.cpp", "experiments/driver_noise_test.cpp"
 METRICS = "experiments/metrics.cpp", "experiments/hand_worked_metrics_test.cpp"
 COUNTED = "experiments/metrics.cpp", "experiments/counted_noise_test.cpp"
 VALUES = "experiments/metric_values.cpp", "experiments/hand_worked_metrics_test.cpp"
@@ -60,25 +62,25 @@ MUTANTS = [
     bug("dominance by values", FRONT, "const bool no_worse = p.time.high <= q.time.low &&", "const bool no_worse = p.time.value <= q.time.value &&",
         "a point whose intervals overlap another's does not dominate it"),
     # Masks
-    bug("pixels that touch a light compared", RUN, "scene::ball_mask(*scene, view)", "std::vector<unsigned char>()",
+    bug("pixels that touch a light compared", RUN, "scene::ball_mask(*planned.scene, view)", "std::vector<unsigned char>()",
         "rows leave out balls and background"),
     bug("ball mask ignored by metrics", VALUES, "if (!masks.left_out.empty() && masks.left_out[p]) kept_[p] = 0;", "",
         "what is left out counts nowhere"),
     bug("ball mask ignored by tests of equality", EQUALITY, "if (left_out.empty() || !left_out[pixel]) index", "index", "one block by hand"),
-    bug("foreground of all pixels", RUN, "(1 - t > 1e-3).any()", "(1 - t >= 0).any()", "rows leave out balls and background"),
-    bug("foreground from 1e-4 in the driver", RUN, "1 - t > 1e-3", "1 - t > 1e-4", "rows leave out balls and background"),
-    bug("foreground from 1e-2 in the driver", RUN, "1 - t > 1e-3", "1 - t > 1e-2", "rows leave out balls and background"),
+    bug("foreground of all pixels", PLAN, "(1 - t > 1e-3).any()", "(1 - t >= 0).any()", "rows leave out balls and background"),
+    bug("foreground from 1e-4 in the driver", PLAN, "1 - t > 1e-3", "1 - t > 1e-4", "rows leave out balls and background"),
+    bug("foreground from 1e-2 in the driver", PLAN, "1 - t > 1e-3", "1 - t > 1e-2", "rows leave out balls and background"),
     bug("foreground from 2e-3", METRICS, "1 - t[i] > 1e-3", "1 - t[i] > 2e-3", "the foreground begins at 1e-3"),
     bug("foreground from 5e-4", METRICS, "1 - t[i] > 1e-3", "1 - t[i] > 5e-4", "the foreground begins at 1e-3"),
     bug("foreground ignored", VALUES, "if (name.foreground && !masks.foreground[p]) kept_[p] = 0;", "",
         "what is left out counts nowhere"),
     # Noise
-    bug("count_noise inverted", RUN, "ImageNoise::counted : ImageNoise::removed", "ImageNoise::removed : ImageNoise::counted",
+    bug("count_noise inverted", PICTURES, "ImageNoise::counted : ImageNoise::removed", "ImageNoise::removed : ImageNoise::counted",
         "noise of references and images reaches the rows"),
-    bug("noise layers of the reference stripped", RUN, "rendering.film, reference->film, layer",
-        "rendering.film, without_noise_layers(reference->film), layer", "noise of references and images reaches the rows"),
-    bug("noise layers of the image stripped", RUN, "measure(experiment().metrics, rendering.film,",
-        "measure(experiment().metrics, without_noise_layers(rendering.film),", "noise of references and images reaches the rows"),
+    bug("noise layers of the reference stripped", PICTURES, "measure(e.metrics, film, reference,",
+        "measure(e.metrics, film, without_noise_layers(reference),", "noise of references and images reaches the rows"),
+    bug("noise layers of the image stripped", PICTURES, "measure(e.metrics, film, reference,",
+        "measure(e.metrics, without_noise_layers(film), reference,", "noise of references and images reaches the rows"),
     bug("rel_mse from one half", METRICS, "0.5 * (one_way(first, second) + one_way(second, first))", "one_way(first, second)",
         "rel_mse uses both halves, each above the other"),
     bug("rel_mse over its own half", METRICS, "one_way(first, second) + one_way(second, first)", "one_way(first, first) + one_way(second, second)",

@@ -126,6 +126,9 @@ class Figures(Tree):
         code, text = self.run_script("figures", "--check")
         self.assertEqual(code, 0, text)
         self.assertIn("left as it is", text)
+        self.write("results/g/e/table.csv", TABLE.replace("not available on this machine", ""))
+        self.objects("no row two|S, GPU with a number")
+        self.assertEqual(self.run_script("figures")[0], 0)  # of a user's own tables there is nothing to put in
 
     def test_a_number_that_nothing_gives(self):
         self.write("methods/PAGE.figures", "!column 2\n" + FIGURES)

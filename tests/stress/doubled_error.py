@@ -3,7 +3,7 @@
 
 doubled_error.py [ROOT] [--profile quick|paper] [--gates]
 
-Reads the gates of experiments/*/*.toml and the rows of results/*/*/run.json, and doubles every error that a gate bounds
+Reads the gates of experiments/*/*.toml, the bounds by row beside them and the rows of results/*/*/run.json, and doubles every error that a gate bounds
 (four times where it is a square); its interval stays as wide as it was, so an error in the noise of its reference is not
 found. Prints for every renderer and variant how many of its rows are gated, how many gates
 would object, and the one nearest to objecting. Exit code 1 if some renderer and variant has no gate that would, 2 for
@@ -11,6 +11,7 @@ files that cannot be read. What an error is compared with is the experiment's re
 difference of the two.
 """
 import argparse
+import csv
 import json
 import math
 import os
@@ -38,9 +39,26 @@ def text_of(value):
 
 
 def belongs(gate, row):
+    if gate.get("by_row"):
+        return all(row[key] == gate[key] for key in ("scene", "method", "setting", "device"))
     scene = gate.get("scene", "")
-    return ((not scene or row["scene"] == scene or row["scene"].startswith(scene + " ")) and row["method"] == gate["method"]
+    return ((not scene or row["scene"] == scene or row["scene"].startswith(scene + " "))
+            and ("method" not in gate or row["method"] == gate["method"])
             and ("setting" not in gate or row["setting"] == text_of(gate["setting"])))
+
+
+def gates_of(experiment, bounds):
+    """Those with a bound, and the lines of the bounds by row, which hold profile quick."""
+    gates = [g for g in experiment.get("gate", []) if "at_most" in g or "at_least" in g]
+    if not os.path.exists(bounds):
+        return gates
+    with open(bounds, newline="") as f:
+        for line in csv.DictReader(f):
+            for end in ("at_least", "at_most"):
+                if line[end]:
+                    gates.append({**{k: line[k] for k in ("scene", "method", "setting", "metric", "device")},
+                                  "by_row": True, end: float(line[end])})
+    return gates
 
 
 def doubled(row, gate):
@@ -84,10 +102,12 @@ def main():
                 continue
             with open(record) as f:
                 rows = [r for r in json.load(f)["rows"] if r["runs"]]
+            quick = os.path.join(folder, group, file[:-5] + ".bounds.csv")
+            gates = gates_of(experiment, quick if a.profile == "quick" else "")
             for row in rows:
                 entry = found.setdefault(variant(row), {"rows": 0, "gated": 0, "objects": [], "nearest": None})
                 entry["rows"] += 1
-                results = [(doubled(row, g), g) for g in experiment.get("gate", []) if belongs(g, row)]
+                results = [(doubled(row, g), g) for g in gates if belongs(g, row)]
                 results = [(r, g) for r, g in results if r]
                 entry["gated"] += bool(results)
                 for (ratio, objects), gate in results:

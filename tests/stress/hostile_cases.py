@@ -52,6 +52,15 @@ def queue_not_files(work, case, write, scene_with, scene):
     case('too long a scene', ['render', write('long.toml', '#' * (1 << 24) + '\n' + scene), *OUT], says='bytes')
 
 
+def queue_numbers(case):
+    for threads in ('-1', '5000', '2147483647', '99999999999'):
+        case(f'threads {threads}', ['render', 'good.toml', *OUT, '--threads', threads], says='--threads')
+    case('more threads than processors', ['render', 'good.toml', *OUT[:2], '-o', 'many.exr', '--threads', '4000'], code=0, other_codes=(0,))
+    for exposure in ('nan', 'inf', '1e300', '-101'):
+        case(f'exposure {exposure}', ['render', 'good.toml', *OUT, '--png', 'never.png', '--exposure', exposure], says='[-100, 100]')
+        case(f'exposure {exposure}, convert', ['convert', 'good.exr', 'never.png', '--exposure', exposure], says='[-100, 100]')
+
+
 def queue_text(case, write, scene_with, scene):
     """What is quoted in a message stays on its line and draws nothing."""
     nasty = 'a\x1b[31m\rb\nc\x07\u202e\u2028'
@@ -77,6 +86,7 @@ def queue_text(case, write, scene_with, scene):
 def queue(work, source, case, write, project, scene_with, scene, experiment):
     queue_nesting(case, write, project, scene, experiment)
     queue_not_files(work, case, write, scene_with, scene)
+    queue_numbers(case)
     queue_text(case, write, scene_with, scene)
     for what, faces in {'faces without area': [(0, 0, 0)] * 4, 'polygons without area': [(0, 1, 0, 1), (2, 2, 2, 2, 2)],
                         'one line': [(0, 1, 1), (0, 0, 1, 1)]}.items():

@@ -136,7 +136,9 @@ std::string beside(double distance) {
 
 // Below a lamp: its top lies at y = -1.
 std::string large_sphere(double radius) {
-  return camera(1) + point_light({}) + homogeneous({}, 0.05, sphere_region(3)) +
+  return "camera = { position = [0, 3, 2], look_at = [0, -1, 0], vertical_fov = 0.4 }\nfilm = { width = 3, height = 3 "
+         "}\n" +
+         point_light({}) + homogeneous({}, 0.05, sphere_region(3)) +
          "[[surface]]\ntype = 'sphere'\ncenter = " + point(0, -1 - radius, 0) + "\nradius = " + number(radius) + "\n";
 }
 

@@ -15,7 +15,9 @@ using namespace airlight::stress;
 namespace {
 
 std::string row(const SweepCase& c, const std::string& renderer, const Tally& t) {
-  if (!t.available) return fmt::format("| {} | {} | {} | | | | |\n", c.quantity, c.scene, renderer);
+  if (!t.available)
+    return fmt::format("| {} | {} | {} | not: {} | | | |\n", c.quantity, c.scene, renderer,
+                       t.details.empty() ? "no such layer" : t.details[0]);
   return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", c.quantity, c.scene, renderer, t.right, t.at_loading,
                      t.by_name, t.wrong);
 }

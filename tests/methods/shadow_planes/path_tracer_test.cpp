@@ -31,7 +31,7 @@ TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
       {"elephant_fog", "512"},
       {"shadow_planes/fig1", "512"},
       {"shadow_planes/fig7", "8192"},
-      {"shadow_planes/fig7_shade", "8192"},
+      {"shadow_planes/fig7_shade", "10240"},
       {"shadow_planes/fig8a", "512"},
       {"shadow_planes/fig8b", "2048"},
       {"shadow_planes/fig8c", "1024"},

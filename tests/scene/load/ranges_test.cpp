@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "scene/error.h"
+#include "scene/film.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
@@ -44,7 +45,7 @@ const std::vector<Key>& keys() {
                       blob = surface + "'displaced_sphere'\nsize = [8, 5]\n";
     std::vector<Key> k = {
         {"ambient_in_scatter = @\n", true},
-        {point + "position = [@, 0, 0]\nintensity = 1", true, true},
+        {point + "position = [@, 0, 0]\nintensity = 1", true},
         {point + "position = [0, 0, 0]\nintensity = @", true},
         {point + "position = [0, 0, 0]\nintensity = [1, @, 1]", true},
         {point + "position = [0, 0, 0]\nintensity = 1\nradius = @", true},
@@ -57,34 +58,34 @@ const std::vector<Key>& keys() {
         {media + "'homogeneous'\nsigma_t = @", true},
         {media + "'homogeneous'\ndensity = @", true},
         {media + "'homogeneous'\nregion = { type = 'sphere', center = [0, 0, 0], radius = @ }"},
-        {media + "'homogeneous'\nregion = { type = 'sphere', center = [0, @, 0], radius = 1 }", true, true},
+        {media + "'homogeneous'\nregion = { type = 'sphere', center = [0, @, 0], radius = 1 }", true},
         {media + "'homogeneous'\nregion = { type = 'box', lo = [0, 0, 0], hi = [1, @, 1] }"},
         {media + "'homogeneous'\nregion = { type = 'slab', lo = 0, hi = @ }"},
         {media + "'homogeneous'\nphase = { type = 'hg', g = @ }", true, true},
         {media + "'gaussians'\ngaussians = []\nconstant = @", true},
         {media + "'gaussians'\ngaussians = []\ncutoff = @"},
-        {media + "'gaussians'\ngaussians = [{ center = [@, 0, 0], width = 1, amplitude = 1 }]", true, true},
+        {media + "'gaussians'\ngaussians = [{ center = [@, 0, 0], width = 1, amplitude = 1 }]", true},
         {media + "'gaussians'\ngaussians = [{ center = [0, 0, 0], width = @, amplitude = 1 }]"},
         {media + "'gaussians'\ngaussians = [{ center = [0, 0, 0], width = 1, amplitude = @ }]", true},
         {inline_grid + "origin = [0, 0, 0]\nvalues = [1]\nvoxel_size = @"},
-        {inline_grid + "origin = [@, 0, 0]\nvalues = [1]\nvoxel_size = 1", true, true},
+        {inline_grid + "origin = [@, 0, 0]\nvalues = [1]\nvoxel_size = 1", true},
         {inline_grid + "origin = [0, 0, 0]\nvalues = [@]\nvoxel_size = 1", true, true},
         {inline_grid + "origin = [0, 0, 0]\nvalues = [1]\nvoxel_size = 1\ntransform = { scale = @ }"},
         {surface + "'sphere'\ncenter = [0, 0, 0]\nradius = @"},
-        {surface + "'plane'\npoint = [0, @, 0]", true, true},
+        {surface + "'plane'\npoint = [0, @, 0]", true},
         {surface + "'box'\nlo = [0, 0, 0]\nhi = [1, 1, @]"},
         {surface + "'box'\nlo = [0, 0, 0]\nhi = [1, 1, 1]\ntransform = { scale = @ }"},
-        {surface + "'box'\nlo = [0, 0, 0]\nhi = [1, 1, 1]\ntransform = { translation = [@, 0, 0] }", true, true},
+        {surface + "'box'\nlo = [0, 0, 0]\nhi = [1, 1, 1]\ntransform = { translation = [@, 0, 0] }", true},
         {surface + "'plane'\npoint = [0, 0, 0]\nmaterial = { type = 'phong', exponent = @ }", true, true},
         {field + "spacing = [1, @]\nheights = [0, 0, 0, 0]"},
-        {field + "spacing = [1, 1]\nheights = [0, @, 0, 0]", true, true},
-        {field + "spacing = [1, 1]\nwaves = [{ amplitude = @, wave_vector = [1, 0] }]", true, true},
+        {field + "spacing = [1, 1]\nheights = [0, @, 0, 0]", true},
+        {field + "spacing = [1, 1]\nwaves = [{ amplitude = @, wave_vector = [1, 0] }]", true},
         {blob + "radius = @"},
         {blob + "radii = [1, 1, @]"},
         {blob + "radius = 1\nbumps = [{ direction = [0, 1, 0], width = @, height = 0.5 }]"},
         {surface + "'torus'\nsize = [8, 8]\nradius = 1\ntube_radius = @"},
         {surface + "'tube'\nsize = [8, 8]\npath = [[0, 0, 0], [1, 0, 0]]\nradius = @"},
-        {surface + "'tube'\nsize = [8, 8]\npath = [[0, 0, 0], [1, @, 0]]\nradius = 1", true, true},
+        {surface + "'tube'\nsize = [8, 8]\npath = [[0, 0, 0], [1, @, 0]]\nradius = 1", true},
         {surface + "'prism'\nsides = 5\nradius = 1\nheight = @"},
         {surface + "'teapot'\nsize = 3\ntransform = { scale = @ }"},
         {surface + "'city'\nboxes = 2\ncolumns = 2\nlot = @\nstreet = 1\nheights = [1, 2]"},
@@ -181,7 +182,7 @@ TEST_CASE("a table of Gaussians has the ranges of the scene file", "[load]") {
     parse_scene(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", "s.toml", folder.path().string());
   };
   CHECK_NOTHROW(load("0,0,0,1,1"));
-  CHECK_THROWS_WITH(load("1e10,0,0,1,1"), Contains("g.csv:2:1: center_x = 1e10, expected a number in"));
+  CHECK_THROWS_WITH(load("1e10,0,0,1,1"), Contains("g.csv:2:1: center_x = 1e10, expected 0 or a number"));
   CHECK_THROWS_WITH(load("0,0,0,1e-10,1"), Contains("g.csv:2:7: width = 1e-10, expected a number in"));
   CHECK_THROWS_WITH(load("0,0,0,1,1e31"), Contains("g.csv:2:9: amplitude = 1e31, expected 0 or a number"));
 }
@@ -196,9 +197,10 @@ TEST_CASE("the documentation states the ranges of the loader", "[load]") {
     return s;
   };
   const auto from_to = [&](const load::Range& r) { return plain(r.least) + " to " + plain(r.greatest); };
-  CHECK_THAT(text, Contains("| *coordinate* | " + from_to(load::coordinate) + " m"));
+  CHECK_THAT(text, Contains("| *coordinate* | 0, or " + from_to(load::coordinate) + " m"));
   CHECK_THAT(text, Contains("| *length* | " + from_to(load::length) + " m"));
   CHECK_THAT(text, Contains("| *amount* | 0, or " + from_to(load::amount)));
+  CHECK_THAT(text, Contains("| *density* | 0, or " + from_to(load::density_range)));
   CHECK_THAT(text, Contains("0 or " + from_to(load::extinction_range) + " per metre"));
   CHECK_THAT(text, Contains("bounds is at most " + plain(load::greatest_depth)));
   CHECK_THAT(text, Contains("`g` from " + from_to(load::anisotropy)));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Mutated input of every kind through the command line. For each: no crash, no sanitizer's report, no 'unexpected failure', an exit code
-from 0 to 3, at most one line on standard error without control characters, at most 20 s and 2 GiB, no temporary file left behind.
+from 0 to 3, at most one line on standard error without control characters, at most 20 s of the processor and 2 GiB, no temporary file left behind.
 
 usage: fuzz.py DRIVER PROGRAM SOURCE_FOLDER [--count N | --seconds S] [--seed S] [--targets A,B] [--jobs N] [--only TARGET:INDEX] [--keep FOLDER]
 
@@ -43,8 +43,8 @@ class Runner:
     def judge(self, result):
         """What is wrong, or nothing."""
         error = result['error'].encode('latin-1')
-        if result['signal'] == 14:
-            return f'hangs ({MOST_SECONDS} s)'
+        if result['signal'] in (14, 24) or (result['signal'] == 9 and result['seconds'] > MOST_SECONDS - 1):
+            return f'hangs ({result["seconds"]:.0f} s)'
         for word in (b'AddressSanitizer', b'runtime error:', b'LeakSanitizer', b'terminate called', b'Assertion'):
             if word in error:
                 return f'{word.decode()}: {error[error.find(word):][:300]!r}'
