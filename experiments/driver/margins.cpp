@@ -41,6 +41,7 @@ double margin(const GateResult& gate) {
   const double measured = gate.measured->value;
   const double above = gate.upper ? gate.bound : measured, below = gate.upper ? measured : gate.bound;
   if (above == 0 && below == 0) return 1;
+  if (above < 0 && below < 0) return below / above;
   if (!(below >= 0) || !(above >= 0)) return nan;
   return above / below;
 }

@@ -9,7 +9,8 @@ namespace airlight::experiments {
 
 // How many times worse the figure could be before the gate objects: bound over measured for at_most, measured over
 // bound for at_least; below 1 a gate fails, unless noise explains it. 1 where both are 0, infinite where only what is
-// divided by is. NaN where there is no figure, or one on the far side of 0 (a negative bias under an upper bound).
+// divided by is. Where both are negative, by their sizes. NaN where there is no figure, or one on the far side of 0 (a
+// negative bias under an upper bound).
 double margin(const GateResult&);
 
 // A line for each gate, the loosest first: ratio, bound, measured with its interval, kind, name; then how many there

@@ -31,6 +31,8 @@ TEST_CASE("the margin of a gate is how many times worse its figure could be", "[
   CHECK(margin(gate("a", true, 0, 0.1)) == 0);
   CHECK(std::isinf(margin(gate("a", true, 0.1, 0))));
   CHECK(std::isnan(margin(gate("bias", true, 0.1, -0.05))));
+  CHECK(margin(gate("bias", true, -0.2, -0.3)) == Approx(1.5));     // at most -0.2: it may shrink by 1.5
+  CHECK(margin(gate("bias", false, -0.05, -0.02)) == Approx(2.5));  // at least -0.05: it may grow by 2.5
   GateResult undefined = gate("a", true, 0.1, 0);
   undefined.measured.reset();
   CHECK(std::isnan(margin(undefined)));
