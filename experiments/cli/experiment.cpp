@@ -52,7 +52,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const s
 // 1 if a gate failed, 0 if none did.
 int name_failures(const std::vector<GateResult>& gates) {
   for (const GateResult& gate : gates)
-    if (!gate.passed && !gate.skipped) fmt::print(stderr, "airlight: gate failed: {}\n", gate.name);
+    if (!gate.passed && !gate.skipped) say("gate failed: " + gate.name);
   return count(gates).failed ? 1 : 0;
 }
 
