@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/path_tracer/sampling.h"
 #include "scene/error.h"
 #include "scene/math/elementary.h"
 
@@ -65,6 +66,18 @@ void track(const TrackedMedium& tracked, const Ray& ray, Interval range, double 
       depth = -elementary::log(uniforms.next());
     }
   });
+}
+
+// Integral of the majorants over the range.
+double majorant_column(const TrackedMedium& tracked, const Ray& ray, Interval range) {
+  if (range.empty()) return 0;
+  if (tracked.homogeneous) return tracked.constant > 0 ? tracked.constant * range.length() : 0;
+  double column = 0;
+  walk(tracked.majorants, tracked.tracking_ray(ray), range, [&](double begin, double end, double majorant) {
+    if (majorant > 0) column += majorant * (end - begin);
+    return false;
+  });
+  return column;
 }
 
 int cells_along(double size, double cell, const Options& options) {
@@ -149,8 +162,10 @@ Media::Media(const std::vector<scene::Medium>& media, const Options& options) {
 }
 
 std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const SampleRandom& random,
-                                    std::uint32_t vertex, int attempt, Counters& counters) const {
+                                    std::uint32_t vertex, int attempt, double some, Counters& counters) const {
   std::optional<Collision> nearest;
+  enum { not_drawn, drawn, past } forced = some < 1 ? not_drawn : past;
+  double ahead = 0;  // majorant depth to the forced collision
   for (std::size_t m = 0; m < tracked_.size(); ++m) {
     const TrackedMedium& tracked = tracked_[m];
     const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
@@ -161,7 +176,20 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
         (attempt == 0 ? 0 : std::uint32_t(attempt - 1) * std::uint32_t(most_media) * retry_blocks);
     Uniforms uniforms(random, vertex, attempt == 0 ? Purpose::flight : Purpose::retry, first,
                       attempt == 0 ? flight_blocks : retry_blocks);
-    const double depth = -elementary::log(uniforms.next());
+    double depth;
+    if (forced == past) {
+      depth = -elementary::log(uniforms.next());
+    } else {
+      if (forced == not_drawn) ahead = truncated_exponential(uniforms.next(), some);
+      forced = drawn;
+      const double column = m + 1 < tracked_.size() ? sigma * majorant_column(tracked, ray, range) : infinity;
+      if (ahead >= column) {
+        ahead -= column;
+        continue;
+      }
+      depth = ahead;
+      forced = past;
+    }
     if (tracked.homogeneous) {
       const double t = range.lo + depth / (sigma * tracked.constant);
       if (t < range.hi) nearest = {t, int(m), tracked.constant};
@@ -175,6 +203,16 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
   }
   if (nearest) ++counters.collisions;
   return nearest;
+}
+
+Rgb Media::majorant_depth(const Ray& ray, double tmax) const {
+  Rgb depth = Rgb::Zero();
+  for (const TrackedMedium& tracked : tracked_) {
+    const double column = majorant_column(tracked, ray, scene::extent(*tracked.medium, ray, {0, tmax}));
+    for (int c = 0; c < 3; ++c)
+      if (tracked.medium->sigma_t[c] > 0 && column > 0) depth[c] += tracked.medium->sigma_t[c] * column;
+  }
+  return depth;
 }
 
 Interval Media::hull(const Ray& ray, double tmax) const {

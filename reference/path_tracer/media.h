@@ -14,8 +14,6 @@
 
 namespace airlight::path_tracer {
 
-inline constexpr int most_tries = 8;
-
 struct TrackedMedium {
   const scene::Medium* medium = nullptr;
   bool homogeneous = false;                // constant density in its region: exact free flights, no majorant
@@ -46,9 +44,12 @@ class Media {
   bool grey() const { return grey_; }                // extinction is the same in all channels, in every medium
 
   // The first collision before tmax under the extinction of channel `hero`, by delta tracking; nothing if there is
-  // none. Other tries, below most_tries, are independent flights.
+  // none. Other attempts, below 8, are independent flights. `some` < 1: given that there is a collision, null
+  // ones counted, which has this probability.
   std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
-                               int attempt, Counters&) const;
+                               int attempt, double some, Counters&) const;
+  // Mean number of collisions on [0, tmax], null ones counted, for each channel's extinction.
+  Rgb majorant_depth(const Ray&, double tmax) const;
   // The part of [0, tmax] from the first to the last point where any medium is met.
   Interval hull(const Ray&, double tmax) const;
   // Optical depth and transmittance over [0, tmax], per channel, by noise-free columns.

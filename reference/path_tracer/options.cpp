@@ -45,7 +45,7 @@ std::vector<scene::SettingSpec> setting_specs() {
       {"first_collision",
        Type::choice,
        "forced",
-       "of camera rays that meet no surface: several tries with the weight of their chance, or one",
+       "forced where the medium is thin or the camera ray meets no surface, or one analog flight",
        0,
        0,
        {"forced", "analog"}},

@@ -21,7 +21,7 @@ struct Options {
   int supergrid_cells = 0;           // per axis; 0: 16, or one cell per 4^3 voxels of a grid
   double majorant_scale = 1;         // multiplies every majorant; below 1 injects a fault
   bool column_transmittance = true;  // noise-free; false: ratio tracking
-  bool forced = true;                // first collisions are forced where a camera ray meets no surface
+  bool forced = true;                // collisions are forced where they are rare; see forcing.h
   enum class Connection { automatic, always, never } connection = Connection::automatic;
   // Which paths count: all; those from the light to a surface to the eye, scattered at most once on the way to the
   // surface and not behind it; of these the scattered ones alone.

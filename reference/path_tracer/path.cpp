@@ -1,21 +1,13 @@
 #include "reference/path_tracer/path.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/surface_sampling.h"
 #include "reference/path_tracer/walk.h"
-#include "scene/error.h"
 
 namespace airlight::path_tracer {
-namespace {
-
-constexpr std::uint32_t longest_path = 1u << 28;
-
-}  // namespace
 
 Rgb Walk::scatter_value(const Vertex& v, const Vec3& out) const {
   if (v.hit) {
@@ -47,7 +39,7 @@ double Walk::connection_pdf(int light, const Ray& ray, Interval hull, double t) 
 bool Walk::survive(double u) {
   const Options& o = world_.options();
   if (m_ + s_ < o.roulette_order) return true;
-  const double q = std::min(o.roulette_cap, throughput_.maxCoeff());
+  const double q = std::min(o.roulette_cap, throughput_.maxCoeff() / scale_);
   if (q >= 1) return true;
   if (!(u < q)) return false;
   throughput_ /= q;
@@ -59,13 +51,13 @@ bool Walk::survive(double u) {
 // connected).
 void Walk::gather(const Vertex& v, const Rgb& analog_pdf) {
   if (!lights_.any()) return;
-  const RandomBlock block = random_.block(vertex_, Purpose::light);
-  const Pick pick = lights_.pick(v.x, block.coarse(3));
+  const RandomBlock numbers = block(Purpose::light);
+  const Pick pick = lights_.pick(v.x, numbers.coarse(3));
   if (pick.light < 0) return;
   if (scene::is_delta(lights_.light(pick.light)))
     gather_delta(v, pick, analog_pdf);
   else
-    gather_environment(v, pick, block.fine(0), block.coarse(2));
+    gather_environment(v, pick, numbers.fine(0), numbers.coarse(2));
 }
 
 void Walk::gather_delta(const Vertex& v, const Pick& pick, const Rgb& analog_pdf) {
@@ -107,9 +99,9 @@ void Walk::gather_environment(const Vertex& v, const Pick& pick, double u1, doub
 }
 
 // Light of one point or spot light scattered once on a ray, at one point drawn with equal angles; `reflections` on the
-// way, that at the start of the ray included.
+// way, that at the start of the ray included. `gain` is of the walk's own collisions on it.
 void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const Pick& pick, double direction_pdf,
-                   bool from_camera, int reflections, double u) {
+                   const Rgb& gain, bool from_camera, int reflections, double u) {
   const scene::Light& light = lights_.light(pick.light);
   const Point3 center = scene::ball(light)->center;
   const Equiangular angles(ray, center, hull);
@@ -145,9 +137,8 @@ void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const P
     if (!(densities[i] > 0)) continue;
     const scene::Medium& medium = *tracked[i].medium;
     const Rgb extinction = medium.sigma_t * densities[i];
-    const double analog = pick_there * walk_pdf *
-                          (exact() ? (density_ * extinction * T * (from_camera ? gain_ : Rgb(Rgb::Ones()))).mean()
-                                   : (density_ * extinction).mean());
+    const double analog =
+        pick_there * walk_pdf * (exact() ? (density_ * extinction * T * gain).mean() : (density_ * extinction).mean());
     sum += extinction * medium.albedo * (scene::phase_value(medium.phase, c) / (pdf + analog));
   }
   sample_.add(m_ + 1, reflections, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
@@ -156,8 +147,8 @@ void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const P
 // The connection from a vertex: a direction half by phase function or reflection, half with density 1/(2 pi^2 sin
 // theta) about the direction to the light, which with equal angles on the ray bounds the contribution.
 void Walk::connect_from(const Vertex& v) {
-  const RandomBlock block = random_.block(vertex_, Purpose::connection);
-  const RandomBlock choice = random_.block(vertex_, Purpose::connection, 1);
+  const RandomBlock numbers = block(Purpose::connection);
+  const RandomBlock choice = block(Purpose::connection, 1);
   const Pick pick = lights_.pick_for_connection(v.x, choice.coarse(0));
   if (pick.light < 0) return;
   const Vec3 offset = scene::ball(lights_.light(pick.light))->center - v.x;
@@ -168,12 +159,12 @@ void Walk::connect_from(const Vertex& v) {
   if (choice.coarse(1) < 0.5) {
     if (v.hit)
       out = sample_reflection(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, choice.coarse(3),
-                              block.fine(0), choice.coarse(2));
+                              numbers.fine(0), choice.coarse(2));
     else
-      out = turned(v.w, scene::sample_phase_cosine(media_.tracked()[v.medium].medium->phase, block.fine(0)),
+      out = turned(v.w, scene::sample_phase_cosine(media_.tracked()[v.medium].medium->phase, numbers.fine(0)),
                    choice.coarse(2));
   } else {
-    const elementary::SinCos theta = elementary::sincos_turns(0.5 * block.fine(0));
+    const elementary::SinCos theta = elementary::sincos_turns(0.5 * numbers.fine(0));
     out = turned(axis, theta.cos, theta.sin, choice.coarse(2));
   }
   const Rgb value = scatter_value(v, out);
@@ -186,7 +177,8 @@ void Walk::connect_from(const Vertex& v) {
   const double sine = (offset - offset.dot(out) * out).norm() / length;
   direction_pdf_ = scatter_pdf(v, out);
   const double direction_pdf = 0.5 * (direction_pdf_ + 1 / (2 * pi * pi * std::min(1.0, sine)));
-  connect(ray, hull, throughput_ * value, pick, direction_pdf, false, s_ + (v.hit != nullptr), block.fine(1));
+  connect(ray, hull, throughput_ * value, pick, direction_pdf, flight_on(ray, end, hull).gain, false,
+          s_ + (v.hit != nullptr), numbers.fine(1));
 }
 
 // The walk left the scene along ray_: environments, weighted against their own sampling at the vertex before.
@@ -198,114 +190,6 @@ void Walk::escape(const Ray& ray) {
     if ((radiance == 0).all()) continue;
     const double pdf = lights_.probability(i, ray.origin) * density;
     sample_.add(m_, s_, throughput_ * radiance * (direction_pdf_ / (direction_pdf_ + pdf)));
-  }
-}
-
-void Walk::run(const CameraRay& camera) {
-  const Options& options = world_.options();
-  const bool grey = media_.grey();
-  const bool connected = lights_.any_connected();
-  const RandomBlock first = random_.block(0, Purpose::camera, 1);
-  if (!grey) hero_ = std::min(2, int(3 * first.coarse(0)));
-  ray_ = camera.ray;
-  scene::RayEnd later;  // of the second segment on
-  const scene::RayEnd* end = &camera.end;
-  hull_ = camera.hull;
-  gain_ = camera.gain;
-  int tries = camera.tries;
-  if (camera.end.t == infinity) sample_.add(0, 0, camera.background);
-
-  if (connected && !hull_.empty() && options.max_order != 0) {
-    const Pick pick = lights_.pick_for_ray(ray_, hull_, first.coarse(1));
-    if (pick.light >= 0)
-      connect(ray_, hull_, throughput_, pick, 1.0, true, 0, random_.block(0, Purpose::connection).fine(0));
-  }
-
-  for (;;) {
-    ++counters_.rays;
-    std::optional<Collision> collision;
-    for (int k = 0; k < tries && !collision && !hull_.empty(); ++k)
-      collision = media_.fly(ray_, end->t, hero_, random_, vertex_, k, counters_);
-    const double t = collision ? collision->t : end->t;
-    // How the segment changes the densities of the channels; needed where they differ, and for weights.
-    Rgb factor = Rgb::Ones();
-    const bool need_T = !grey || (exact() && collision && connected);
-    Rgb T = Rgb::Ones();
-    if (need_T && !hull_.empty()) T = media_.transmittance(ray_, t, counters_);
-    if (collision) {
-      const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
-      factor = T * medium.sigma_t * collision->density;
-      if (grey) throughput_ /= gain_[0];
-    } else {
-      factor = T;
-    }
-    const Rgb arriving = collision ? Rgb(density_ * factor * gain_) : Rgb(density_ * factor);  // unnormalised
-    const double mean = arriving.mean();
-    if (!(mean > 0)) return;  // underflow: optical depths beyond 700
-    if (!grey) {
-      throughput_ *= factor / mean;
-      density_ = arriving / mean;
-    }
-
-    if (!collision) {
-      if (end->on_ball) return;
-      if (!end->hit) {
-        escape(ray_);
-        return;
-      }
-    }
-    if (collision && options.max_order >= 0 && m_ >= options.max_order) {
-      const scene::Medium& medium = *media_.tracked()[collision->medium].medium;
-      sample_.truncated += throughput_ * medium.albedo;
-      return;
-    }
-
-    ++vertex_;
-    if (vertex_ >= longest_path)
-      throw Error("path_tracer: a path has 2^28 vertices; set max_order, or absorb light somewhere");
-    Vertex v;
-    v.w = ray_.direction;
-    if (collision) {
-      v.x = ray_.at(t);
-      v.medium = collision->medium;
-      throughput_ *= media_.tracked()[v.medium].medium->albedo;
-      ++m_;
-      if (!(throughput_.maxCoeff() > 0)) return;
-      gather(v, (vertex_ == 1 ? 1.0 : direction_pdf_) * arriving);
-    } else {
-      v.x = end->hit->position;
-      v.hit = &*end->hit;
-      gather(v, Rgb::Zero());
-    }
-
-    const RandomBlock scatter = random_.block(vertex_, Purpose::scatter);
-    if (!survive(scatter.coarse(3))) return;
-    const bool may_scatter = options.max_order < 0 || m_ < options.max_order;
-    if (connected && may_scatter) connect_from(v);
-
-    Vec3 out;
-    if (v.hit) {
-      const scene::Material& material = world_.scene().surfaces[v.hit->surface].material;
-      out = sample_reflection(material, v.hit->normal, -v.w, random_.block(vertex_, Purpose::scatter, 1).coarse(0),
-                              scatter.fine(0), scatter.coarse(2));
-      const Rgb value = scatter_value(v, out);
-      direction_pdf_ = scatter_pdf(v, out);
-      if (!(direction_pdf_ > 0)) return;
-      throughput_ *= value / direction_pdf_;
-      if (!(throughput_.maxCoeff() > 0)) return;
-      ++s_;
-    } else {
-      const scene::PhaseFunction& phase = media_.tracked()[v.medium].medium->phase;
-      const double c = scene::sample_phase_cosine(phase, scatter.fine(0));
-      out = turned(v.w, c, scatter.coarse(2));
-      direction_pdf_ = scene::phase_value(phase, c);
-    }
-    ray_ = {origin(v, out), out};
-    later = scene::ray_end(world_.scene(), ray_);
-    end = &later;
-    hull_ = media_.hull(ray_, end->t);
-    gain_ = Rgb::Ones();
-    tries = 1;
   }
 }
 

@@ -7,6 +7,8 @@
 // included; the environment with those of the directions alone, which saves an optical depth for every walk that leaves
 // and costs next to no variance (1 % on thin smoke).
 //
+// Where collisions are rare they are forced, and paths split before surfaces: forcing.h.
+//
 // Coloured extinction: the walk follows the extinction of one channel, drawn uniformly; every channel is weighted by
 // the mean of the densities with which the three would have made the path (spectral multiple importance sampling,
 // balance heuristic; Wilkie et al. 2014).

@@ -27,6 +27,22 @@ inline Vec3 turned(const Vec3& w, double c, double turns) {
   return turned(w, c, std::sqrt(std::max(0.0, (1 - c) * (1 + c))), turns);
 }
 
+// e^x - 1 and ln(1 + x) with their relative accuracy near 0 (Kahan's forms).
+inline double expm1(double x) {
+  const double e = elementary::exp(x), difference = e - 1;
+  if (difference == 0) return x;
+  return e < 0.25 ? difference : difference * x / elementary::log(e);
+}
+inline double log1p(double x) {
+  const double sum = 1 + x;
+  return sum == 1 ? x : elementary::log(sum) * x / (sum - 1);
+}
+
+// An exponential variate of mean 1, given that it is below -ln(1 - some), however small that is; for the uniform u.
+inline double truncated_exponential(double u, double some) {
+  return some < 0.25 ? -log1p(-u * some) : -elementary::log(1 - u * some);
+}
+
 // Distances along a ray so that the angles seen from a light are uniform (equiangular sampling: Kulla and Fajardo
 // 2012). The light lies at ray parameter D, h beside the ray. h is from the perpendicular, not from a difference of
 // squares, and the density and the 1/d^2 of the light use the same h and D, so that their product stays smooth.

@@ -15,7 +15,8 @@ struct Vertex {
 };
 
 // One walk; see path.h. `throughput` is what radiance arriving at the current vertex is worth; `density[c]` is how
-// likely channel c would have made the path so far, relative to the mean over the channels.
+// likely channel c would have made the path so far, relative to the mean over the channels. A walk that forces a
+// collision before a surface splits: a copy of it goes on from the collision, itself goes on to the surface.
 class Walk {
  public:
   Walk(const World& world, const SampleRandom& random, PathSample& sample, Counters& counters)
@@ -34,7 +35,7 @@ class Walk {
   // Transmittance of a whole segment, and the one that weights may use (1 where it would be noise).
   Rgb transmittance(const Ray& ray, double t, std::uint32_t branch) {
     if (world_.options().column_transmittance) return media_.transmittance(ray, t, counters_);
-    return media_.ratio_transmittance(ray, t, random_, vertex_, branch, counters_);
+    return media_.ratio_transmittance(ray, t, random_, dimension(), branch, counters_);
   }
   bool exact() const { return world_.options().column_transmittance; }
 
@@ -49,12 +50,32 @@ class Walk {
   void gather(const Vertex&, const Rgb& analog_pdf);
   void gather_delta(const Vertex&, const Pick&, const Rgb& analog_pdf);
   void gather_environment(const Vertex&, const Pick&, double u1, double u2);
-  void connect(const Ray&, Interval hull, const Rgb& throughput, const Pick&, double direction_pdf, bool from_camera,
-               int reflections, double u);
+  void connect(const Ray&, Interval hull, const Rgb& throughput, const Pick&, double direction_pdf, const Rgb& gain,
+               bool from_camera, int reflections, double u);
   void connect_from(const Vertex&);
   void escape(const Ray&);
   void escape_unscattered(const scene::RayEnd&);
   bool survive(double u);
+
+  // The segments of a walk, each ended by a vertex; false: the walk ends there.
+  void follow(const scene::RayEnd&);
+  inline scene::RayEnd aim();
+  Flight flight_on(const Ray&, const scene::RayEnd&, Interval hull) const;
+  std::optional<Collision> fly(double tmax) const;
+  inline bool pass(const scene::RayEnd&);
+  bool pass_forced(const scene::RayEnd&);
+  inline bool collide(const Collision&);
+  inline bool reflect(const scene::RayEnd&);
+  inline Vertex next_vertex();
+  inline bool leave(const Vertex&);
+
+  bool may_scatter() const { return world_.options().max_order < 0 || m_ < world_.options().max_order; }
+  // The random numbers of this vertex; branches of a walk have their own.
+  std::uint32_t dimension() const { return branch_ << branch_shift | vertex_; }
+  RandomBlock block(Purpose purpose, std::uint32_t index = 0) const {
+    return random_.block(dimension(), purpose, index);
+  }
+  static constexpr int branch_shift = 24;
 
   const World& world_;
   const Media& media_;
@@ -65,12 +86,16 @@ class Walk {
 
   Rgb throughput_ = Rgb::Ones();
   Rgb density_ = Rgb::Ones();
+  double scale_ = 1;  // of throughput: what forced collisions alone have made of it
   int hero_ = 0;
-  int m_ = 0, s_ = 0;         // scatterings, reflections so far
-  std::uint32_t vertex_ = 0;  // 0: the eye
-  Ray ray_;                   // current segment
-  Interval hull_;             // where media are on it
-  Rgb gain_ = Rgb::Ones();    // of the densities of a collision on it, where it is forced
+  int m_ = 0, s_ = 0;                // scatterings, reflections so far
+  std::uint32_t vertex_ = 0;         // 0: the eye; below 2^branch_shift
+  std::uint32_t branch_ = 0;         // 0: the walk itself
+  Ray ray_;                          // current segment
+  Interval hull_;                    // where media are on it
+  const Flight* flight_ = &analog_;  // how it is passed: the camera ray's, own_ or analog_
+  Flight own_;
+  static const Flight analog_;
   double direction_pdf_ = 1;  // density with which its direction was drawn [1/sr]; 1 from the eye
 };
 

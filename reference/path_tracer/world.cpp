@@ -5,7 +5,9 @@
 namespace airlight::path_tracer {
 
 World::World(std::shared_ptr<const scene::Scene> scene, const Options& options)
-    : scene_(std::move(scene)), options_(options), media_(scene_->media, options), lights_(*scene_, options) {}
+    : scene_(std::move(scene)), options_(options), media_(scene_->media, options), lights_(*scene_, options) {
+  if (options.forced && options.column_transmittance) boost_ = collision_boost(*scene_);
+}
 
 bool World::visible(const Ray& ray, double tmax, int except) const {
   if (scene_->geometry && scene_->geometry->occluded(ray, tmax)) return false;
@@ -24,33 +26,20 @@ bool World::visible(const Ray& ray, double tmax, int except) const {
 }
 
 CameraRay prepare_camera_ray(const World& world, const Ray& ray, Counters& counters) {
-  CameraRay camera{ray, scene::ray_end(world.scene(), ray), {}, Rgb::Zero()};
+  CameraRay camera{ray, scene::ray_end(world.scene(), ray), {}, Rgb::Zero(), {}};
   camera.hull = world.media().hull(ray, camera.end.t);
-  if (camera.end.hit) return camera;
   const Options& options = world.options();
   const bool sees = camera.end.t == infinity && !world.lights().environments().empty();
-  // Measured: twice as good and more under an environment, whose background is then free of noise and no longer makes
-  // up for collisions that did not happen; not worth the flights in a medium that varies under other lights.
-  const bool forces =
-      options.forced && options.column_transmittance && options.max_order != 0 && (sees || world.media().homogeneous());
-  Rgb depth = Rgb::Zero();
-  if (!camera.hull.empty() && (sees || forces)) depth = world.media().optical_depth(ray, camera.end.t, counters);
-  const Rgb T = world.media().transmittance(depth);
-  if (forces) {
-    // As many as leave 3 % of no collision at all; none where there is no medium.
-    const double mean = T.mean();
-    camera.tries = 0;
-    camera.gain = Rgb::Zero();
-    Rgb power = Rgb::Ones();
-    double missed = 1;
-    while ((depth > 0).any() && camera.tries < most_tries && missed > 0.03) {
-      camera.gain += power;
-      power *= T;
-      missed *= mean;
-      ++camera.tries;
-    }
-  }
+  // Measured: worth it under an environment, whose background is then free of noise and no longer makes up for
+  // collisions that did not happen, and where flights cost next to nothing. Else, and before a surface, which takes a
+  // path more, only in media that hardly any path would meet.
+  const bool worth = camera.end.hit ? world.boost() > 1 : sees || world.media().homogeneous() || world.boost() > 1;
+  const bool forces = options.forced && options.column_transmittance && options.max_order != 0 && worth;
+  if (!camera.hull.empty() && forces)
+    camera.flight = force(world.media(), ray, camera.end.t, camera.end.hit ? world.boost() : infinity, counters);
   if (sees) {
+    const bool known = camera.hull.empty() || camera.flight.forced;
+    const Rgb T = known ? camera.flight.transmittance : world.media().transmittance(ray, camera.end.t, counters);
     Rgb radiance = Rgb::Zero();
     for (const int i : world.lights().environments())
       radiance += scene::radiance(std::get<scene::EnvironmentLight>(world.lights().light(i)), ray.direction);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "reference/path_tracer/counters.h"
+#include "reference/path_tracer/forcing.h"
 #include "reference/path_tracer/lights.h"
 #include "reference/path_tracer/media.h"
 #include "reference/path_tracer/options.h"
@@ -19,6 +20,8 @@ class World {
   const Options& options() const { return options_; }
   const Media& media() const { return media_; }
   const Lights& lights() const { return lights_; }
+  // Of the collisions that follow no other: see collision_boost. 1 where collisions are not forced.
+  double boost() const { return boost_; }
 
   // Is nothing in the way from x to direction w before tmax? Surfaces, and balls of lights but `except`.
   bool visible(const Ray&, double tmax, int except) const;
@@ -28,6 +31,7 @@ class World {
   Options options_;
   Media media_;
   Lights lights_;
+  double boost_ = 1;
 };
 
 // What is the same for every path along one camera ray: computed once for a pixel's centre.
@@ -36,10 +40,7 @@ struct CameraRay {
   scene::RayEnd end;
   Interval hull;   // where media are
   Rgb background;  // radiance seen through the medium, where the ray ends nowhere
-  // A forced first collision: flights are tried until one collides, this many at most. One that does is `gain` times as
-  // likely as with one try, per channel: 1 + T + T^2 + ..., T the transmittance of the whole ray.
-  int tries = 1;
-  Rgb gain = Rgb::Ones();
+  Flight flight;
 };
 CameraRay prepare_camera_ray(const World&, const Ray&, Counters&);
 
