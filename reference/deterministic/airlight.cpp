@@ -299,12 +299,19 @@ Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
     const auto [p, least_depth] = steep.back();
     steep.pop_back();
     const double width = p.hi - p.lo, middle = p.lo + 0.5 * width;
-    const Rgb ends = integrand(p.chart, p.lo + 1e-9 * width).max(integrand(p.chart, p.hi - 1e-9 * width));
-    result.evaluations += 2;
-    const Rgb most = p.value.max(width * ends);
-    // While all nodes so far fell into the dark, the least dark panels are looked into.
-    const bool matters = (total > 0).any() ? (most > 1e-4 * impl.accuracy.relative_tolerance * total).any()
-                                           : least_depth < clearest + 300;
+    // What it can hold at all, by its ends and nodes. While all nodes so far fell into the dark, panels with a bright
+    // end are looked into, and the least dark ones: a panel of another light may be the least dark of all.
+    Rgb most = p.value;
+    bool matters = false;
+    const auto look = [&](double inset) {
+      const Rgb ends = integrand(p.chart, p.lo + inset * width).max(integrand(p.chart, p.hi - inset * width));
+      result.evaluations += 2;
+      most = most.max(width * ends);
+      matters = (total > 0).any() ? (most > 1e-4 * impl.accuracy.relative_tolerance * total).any()
+                                  : (most > 0).any() || least_depth < clearest + 300;
+    };
+    look(1e-9);
+    if (!matters) look(1e-15);  // extinctions from 1e10 on: 1e-9 of a panel is dark too
     if (matters && result.evaluations + 2 * per_panel <= options.max_evaluations) {
       total -= p.value;
       estimate({p.lo, middle, p.chart});

@@ -8,6 +8,7 @@
 #include "reference/deterministic/airlight.h"
 #include "reference/deterministic/surface_light.h"
 #include "scene/error.h"
+#include "scene/place_error.h"
 
 namespace airlight::deterministic {
 namespace {
@@ -150,11 +151,12 @@ class DeterministicRenderer final : public scene::Renderer {
              1e-14,
              0.1,
              {}},
-            {"max_evaluations", SettingSpec::Type::integer, "200000", "of the integrand, per pixel", 15, 1e9, {}}};
+            {"max_evaluations", SettingSpec::Type::integer, "200000", "of the integrand, per pixel", 15, 1e7, {}}};
   }
   std::vector<std::string> supports(const Scene& scene, const scene::Settings&) const override {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
       return {no_finite_answer};
+    if (const std::string reason = scene::too_thick(scene, 53, 0.01); !reason.empty()) return {reason};
     return {};
   }
   std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,

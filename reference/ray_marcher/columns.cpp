@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "reference/ray_marcher/depth.h"
 #include "reference/ray_marcher/samples.h"
 
 namespace airlight::ray_marcher {
@@ -33,8 +34,7 @@ void Columns::march(const Plan& plan, std::size_t n, const Points& points, const
         const Interval t{0, to.distance[i]};
         const double value = plan.options.exact_shadow
                                  ? density_integral(*layer.medium, ray, t)
-                                 : marched_column(layer, ray, t, plan.options.shadow_steps, plan.options.shadow_step,
-                                                  counters.shadow_steps);
+                                 : marched_column(layer, plan.options, ray, t, counters.shadow_steps);
         column[i] = float(std::min(value, double(endless)));
       }
       continue;
@@ -51,15 +51,38 @@ void Columns::march(const Plan& plan, std::size_t n, const Points& points, const
     if (layer.grid) {
       enter(layer.grid->frame);
       clip_rays(layer.grid->lo, layer.grid->hi, n, rays);
+      march_deep(plan, layer, n, points, to, column, counters);
       counters.shadow_steps += grid_columns(*layer.grid, rule, plan.options.skip_empty, n, rays, column.data());
     } else if (layer.gaussians) {
       enter(layer.gaussians->frame);
       clip_rays(layer.gaussians->lo, layer.gaussians->hi, n, rays);
-      if (exact)
+      if (exact) {
         gaussian_integrals(*layer.gaussians, n, rays, column.data());
-      else
-        counters.shadow_steps += gaussian_columns(*layer.gaussians, rule, n, rays, column.data());
+        continue;
+      }
+      march_deep(plan, layer, n, points, to, column, counters);
+      counters.shadow_steps += gaussian_columns(*layer.gaussians, rule, n, rays, column.data());
     }
+  }
+}
+
+// Adds the columns of those rays whose first step is deep, one by one in double, and leaves nothing of them to the
+// kernel.
+void Columns::march_deep(const Plan& plan, const Layer& layer, std::size_t n, const Points& points, const Arrivals& to,
+                         std::vector<float>& column, Counters& counters) {
+  const Options& options = plan.options;
+  const double extinction = layer.thickest;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Interval t{t0_[i], t1_[i]};
+    if (t.empty()) continue;
+    const int count = steps_through(t, options.shadow_steps, options.shadow_step);
+    const double h = t.length() / count;
+    if (!starts_deep(options, layer.most_varied * extinction, h)) continue;
+    const Ray ray{points.at(i), Vec3(to.to_x[i], to.to_y[i], to.to_z[i]).normalized()};
+    if (!starts_deep(options, varied_density(layer, ray.at(t.lo)) * extinction, h)) continue;
+    column[i] =
+        float(std::min(column[i] + deep_column(layer, options, ray, t, count, counters.shadow_steps), double(endless)));
+    t1_[i] = t0_[i];
   }
 }
 

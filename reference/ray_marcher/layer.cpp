@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/ray_marcher/depth.h"
+
 namespace airlight::ray_marcher {
 
 namespace {
@@ -66,7 +68,7 @@ std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
   std::vector<Layer> layers;
   for (const scene::Medium& medium : media) {
     if (!is_visible(medium)) continue;
-    Layer layer{&medium, 0, true, scene::Unbounded{}, nullptr, nullptr, {}, {}};
+    Layer layer{&medium, 0, true, scene::Unbounded{}, nullptr, nullptr, {}, {}, 0, 0};
     set_shape(layer);
     if (const auto* uniform = std::get_if<scene::Homogeneous>(&medium.field)) {
       layer.constant = uniform->density;
@@ -86,8 +88,16 @@ std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
       if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
         layer.grid = make_grid_field(**grid);
     }
+    if (layer.varies) {
+      const Box box = intersect(layer.grid ? support(medium.field) : std::get<Box>(layer.varied), bounding_box(medium));
+      layer.most_varied = box.empty() ? 0 : density_bounds(medium, box).hi - layer.constant;
+    }
     layers.push_back(std::move(layer));
   }
+  double thickest = 0;
+  for (const Layer& layer : layers)
+    if (layer.varies) thickest += layer.medium->sigma_t.maxCoeff();
+  for (Layer& layer : layers) layer.thickest = thickest;
   return layers;
 }
 
@@ -114,13 +124,16 @@ int steps_through(Interval extent, int count, double length) {
   return int(std::clamp(std::ceil(extent.length() / length), 1.0, double(1 << 20)));
 }
 
-double marched_column(const Layer& layer, const Ray& ray, Interval t, int count, double length, long long& steps) {
+double marched_column(const Layer& layer, const Options& options, const Ray& ray, Interval t, long long& steps) {
   const Interval whole = constant_extent(layer, ray, t);
   double column = whole.empty() ? 0 : layer.constant * whole.length();
   const Interval extent = varied_extent(layer, ray, t);
   if (extent.empty()) return column;
-  const int n = steps_through(extent, count, length);
-  const double h = extent.length() / n;
+  const int n = steps_through(extent, options.shadow_steps, options.shadow_step);
+  const double h = extent.length() / n, extinction = layer.thickest;
+  if (starts_deep(options, layer.most_varied * extinction, h) &&
+      starts_deep(options, varied_density(layer, ray.at(extent.lo)) * extinction, h))
+    return column + deep_column(layer, options, ray, extent, n, steps);
   double sum = 0;
   for (int i = 0; i < n; ++i) sum += varied_density(layer, ray.at(extent.lo + (i + 0.5) * h));
   steps += n;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reference/ray_marcher/kernels.h"
+#include "reference/ray_marcher/options.h"
 #include "scene/media/medium.h"
 
 namespace airlight::ray_marcher {
@@ -21,6 +22,10 @@ struct Layer {
   std::shared_ptr<const GaussianField> gaussians;
   LocalShape shape;  // the region for the kernels
   Frame shape_frame;
+  double most_varied = 0;  // [-] upper bound of what varies
+  // Of all layers that vary, per unit of density, in the thickest channel [1/m]: how deep a shadow ray's steps are is
+  // judged by that, so that a medium in two halves is stepped as the whole.
+  double thickest = 0;
 };
 
 // Media that can be seen at all: some extinction, some density.
@@ -37,8 +42,8 @@ double varied_density(const Layer&, const Point3&);
 // Steps of a march through `extent`: `count` of them, or as many of at most `length` if that is positive.
 int steps_through(Interval extent, int count, double length);
 
-// Optical depth per unit sigma_t along the ray [m]: closed form for the constant, midpoint rule with that many steps
-// for the rest. `steps` counts the evaluations. May be infinite if t is.
-double marched_column(const Layer&, const Ray&, Interval t, int count, double length, long long& steps);
+// Optical depth per unit sigma_t along the ray [m]: closed form for the constant, midpoint rule for the rest, its steps
+// divided where they are deep (depth.h). `steps` counts the evaluations. May be infinite if t is.
+double marched_column(const Layer&, const Options&, const Ray&, Interval t, long long& steps);
 
 }  // namespace airlight::ray_marcher

@@ -21,6 +21,10 @@ struct Options {
   double horizon = 16;    // optical depth at which an infinite ray ends
 };
 
+// The optical depth that no step exceeds where light is seen (depth.h): on camera rays, on shadow rays.
+inline double deepest_step(const Options& o) { return o.step > 0 ? 0.25 : o.horizon / o.steps; }
+inline double deepest_shadow_step(const Options& o) { return o.shadow_step > 0 ? 0.5 : o.horizon / o.shadow_steps; }
+
 std::vector<scene::SettingSpec> option_specs();
 
 // Lengths `step` and `shadow_step` are given in voxels of the finest grid; `unit` is that voxel's size [m], or 1.

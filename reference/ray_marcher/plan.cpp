@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/ray_marcher/depth.h"
+#include "scene/place_error.h"
+
 namespace airlight::ray_marcher {
 
 std::vector<scene::DirectionalLight> environment_as_lights(const scene::EnvironmentLight& environment, int count) {
@@ -39,6 +42,8 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   }
   for (const Layer& layer : plan.layers)
     if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
+  // Kernels compute places within media in float.
+  if (scene::place_error(*scene) * 0x1p29 > 2e-3) plan.options.simd = false;
   return plan;
 }
 

@@ -73,6 +73,8 @@ class Columns {
   const std::vector<float>& column(std::size_t layer) const { return columns_[layer]; }
 
  private:
+  void march_deep(const Plan&, const Layer&, std::size_t n, const Points&, const Arrivals&, std::vector<float>& column,
+                  Counters&);
   std::vector<std::vector<float>> columns_;
   std::vector<float> ox_, oy_, oz_, dx_, dy_, dz_, t0_, t1_;
 };

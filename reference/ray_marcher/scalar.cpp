@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/ray_marcher/depth.h"
 #include "scene/background.h"
 
 namespace airlight::ray_marcher {
@@ -51,6 +52,21 @@ scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, cons
           intensity_towards(light, -to_light) * mean_inverse_square(approach(ray, ball->center), step)};
 }
 
+// The same passes with deep steps divided.
+void divide_deep_steps(const Plan& plan, const Ray& ray, std::vector<Pass>& passes, std::vector<Step>& steps) {
+  if (std::none_of(steps.begin(), steps.end(),
+                   [&](const Step& step) { return may_be_deep(plan.layers, plan.options, step); }))
+    return;
+  std::vector<Step> divided;
+  for (Pass& pass : passes) {
+    const std::size_t begin = divided.size();
+    follow_depth(plan, ray, steps.data() + pass.spacing.begin, steps.data() + pass.spacing.end, divided);
+    pass.spacing.begin = begin;
+    pass.spacing.end = divided.size();
+  }
+  steps.swap(divided);
+}
+
 }  // namespace
 
 Rgb transmittance_to_light(const Plan& plan, const Point3& x, const scene::Incident& from, Counters& counters) {
@@ -64,8 +80,7 @@ Rgb transmittance_to_light(const Plan& plan, const Point3& x, const scene::Incid
   for (const Layer& layer : plan.layers) {
     const double column = plan.options.exact_shadow
                               ? density_integral(*layer.medium, ray, {0, from.distance})
-                              : marched_column(layer, ray, {0, from.distance}, plan.options.shadow_steps,
-                                               plan.options.shadow_step, counters.shadow_steps);
+                              : marched_column(layer, plan.options, ray, {0, from.distance}, counters.shadow_steps);
     // An infinite column must not meet a zero coefficient.
     for (int c = 0; c < 3; ++c)
       if (layer.medium->sigma_t[c] > 0) depth[c] += layer.medium->sigma_t[c] * column;
@@ -93,6 +108,7 @@ Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& coun
   std::vector<Step> steps;
   std::vector<Pass> passes;
   add_passes(plan, 0, ray, t_end, passes, steps);
+  divide_deep_steps(plan, ray, passes, steps);
   std::vector<double> densities(plan.layers.size());
   for (std::size_t p = 0; p < passes.size(); ++p) {
     const Spacing& spacing = passes[p].spacing;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/ray_marcher/depth.h"
+
 namespace airlight::ray_marcher {
 namespace {
 
@@ -180,11 +182,13 @@ struct Walk {
 };
 
 // Equal steps through a part, less those in the free space of its grids if it has nothing but grids.
-void step_evenly(const std::vector<Layer>& layers, const Ray& ray, const Part& part, int n, bool skip,
+void step_evenly(const std::vector<Layer>& layers, const Options& options, const Ray& ray, const Part& part, int n,
                  std::vector<Step>& steps) {
   const double h = (part.hi - part.lo) / n;
   static thread_local std::vector<Walk> walks;
   walks.clear();
+  // Where steps may be divided (depth.h), one whose middle is empty may end in what is not.
+  bool skip = options.skip_empty && !may_be_deep(layers, options, {0.5 * (part.lo + part.hi), h, part.inside});
   for (std::size_t k = 0; skip && k < layers.size(); ++k) {
     skip = !in_constant(part.inside, k) && !(in_varied(part.inside, k) && !layers[k].grid);
     if (skip && in_varied(part.inside, k)) walks.emplace_back(*layers[k].grid, ray.at(part.lo), h * ray.direction);
@@ -248,7 +252,7 @@ Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, c
     const int n = options.step > 0 ? steps_through({0, share}, 0, options.step)
                                    : std::max(1, int(std::lround(options.steps * (share / total))));
     if (!p.light && p.rate == 0) {
-      step_evenly(layers, ray, p, n, options.skip_empty, steps);
+      step_evenly(layers, options, ray, p, n, steps);
       continue;
     }
     double from = p.lo;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/ray_marcher/depth.h"
 #include "reference/ray_marcher/samples.h"
 #include "reference/ray_marcher/shapes.h"
 #include "scene/background.h"
@@ -19,6 +20,8 @@ const std::vector<Pixel>& TileMarcher::march(const Plan& plan, const std::vector
   pixels_.assign(rays.size(), Pixel());
   since_ = std::chrono::steady_clock::now();
   lay_steps();
+  divide_deep_steps();
+  place_steps();
   end_of(&Counters::ray_seconds);
   sample_densities();
   weigh_steps();
@@ -47,6 +50,61 @@ void TileMarcher::lay_steps() {
     ends_.push_back(ray_end(*plan_->scene, (*rays_)[r]));
     add_passes(*plan_, r, (*rays_)[r], ends_.back().t, passes_, plain_steps_);
   }
+}
+
+// Where a ray may be too thick for its steps, and is: by kernels at the ends and middles of all such steps, before any
+// of them is divided one by one.
+void TileMarcher::divide_deep_steps() {
+  index_.clear();
+  for (int i = 0; i < int(plain_steps_.size()); ++i)
+    if (may_be_deep(plan_->layers, plan_->options, plain_steps_[i])) index_.push_back(i);
+  if (index_.empty()) return;
+  std::vector<int> ray_of(plain_steps_.size());
+  for (const Pass& pass : passes_)
+    std::fill(ray_of.begin() + pass.spacing.begin, ray_of.begin() + pass.spacing.end, pass.ray);
+  const std::size_t n = index_.size();
+  std::vector<Rgb> greatest(n, Rgb::Zero());
+  Points at;
+  at.resize(n);
+  for (const double place : {-0.5, 0.0, 0.5}) {
+    std::vector<Rgb> here(n, Rgb::Zero());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Step& step = plain_steps_[index_[i]];
+      at.set(i, (*rays_)[ray_of[index_[i]]].at(step.t + place * step.length));
+    }
+    for (std::size_t k = 0; k < plan_->layers.size(); ++k) {
+      const Layer& layer = plan_->layers[k];
+      kept_.clear();
+      for (std::size_t i = 0; i < n; ++i) {
+        const unsigned long long inside = plain_steps_[index_[i]].inside;
+        if (in_constant(inside, k)) here[i] += layer.constant * layer.medium->sigma_t;
+        if (in_varied(inside, k)) kept_.push_back(int(i));
+      }
+      if (kept_.empty()) continue;
+      points_.select(at, kept_);
+      varied_densities(layer, points_, kept_.size());
+      for (std::size_t i = 0; i < kept_.size(); ++i) here[kept_[i]] += double(value_[i]) * layer.medium->sigma_t;
+    }
+    for (std::size_t i = 0; i < n; ++i) greatest[i] = greatest[i].max(here[i]);
+  }
+  std::vector<char> deep(rays_->size(), 0);
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_deep(plan_->options, Rgb::Zero(), greatest[i], plain_steps_[index_[i]].length)) deep[ray_of[index_[i]]] = 1;
+  if (std::none_of(deep.begin(), deep.end(), [](char d) { return d; })) return;
+  divided_.clear();
+  for (Pass& pass : passes_) {
+    const Step *begin = plain_steps_.data() + pass.spacing.begin, *end = plain_steps_.data() + pass.spacing.end;
+    pass.spacing.begin = divided_.size();
+    if (deep[pass.ray])
+      follow_depth(*plan_, (*rays_)[pass.ray], begin, end, divided_);
+    else
+      divided_.insert(divided_.end(), begin, end);
+    pass.spacing.end = divided_.size();
+  }
+  plain_steps_.swap(divided_);
+}
+
+void TileMarcher::place_steps() {
   count_ = plain_steps_.size();
   all_.resize(count_);
   for (const Pass& pass : passes_) {
@@ -74,20 +132,25 @@ void TileMarcher::sample_densities() {
     const std::size_t n = index_.size();
     if (n < count_) points_.select(all_.at, index_);
     const Points& points = n < count_ ? points_ : all_.at;
-    for (auto* v : {&local_[0], &local_[1], &local_[2], &value_}) resize_padded(*v, n);
-    float *x = local_[0].data(), *y = local_[1].data(), *z = local_[2].data();
-    if (layer.grid || layer.gaussians)
-      to_local(layer.grid ? layer.grid->frame : layer.gaussians->frame, n, points.x.data(), points.y.data(),
-               points.z.data(), x, y, z);
-    if (layer.grid)
-      grid_density(*layer.grid, n, x, y, z, value_.data());
-    else if (layer.gaussians)
-      gaussian_density(*layer.gaussians, n, x, y, z, value_.data());
-    else
-      for (std::size_t i = 0; i < n; ++i) value_[i] = float(varied_density(layer, points.at(i)));
+    varied_densities(layer, points, n);
     for (std::size_t i = 0; i < n; ++i) density[index_[i]] += value_[i];
     counters_->steps += n;
   }
+}
+
+// Into value_.
+void TileMarcher::varied_densities(const Layer& layer, const Points& points, std::size_t n) {
+  for (auto* v : {&local_[0], &local_[1], &local_[2], &value_}) resize_padded(*v, n);
+  float *x = local_[0].data(), *y = local_[1].data(), *z = local_[2].data();
+  if (layer.grid || layer.gaussians)
+    to_local(layer.grid ? layer.grid->frame : layer.gaussians->frame, n, points.x.data(), points.y.data(),
+             points.z.data(), x, y, z);
+  if (layer.grid)
+    grid_density(*layer.grid, n, x, y, z, value_.data());
+  else if (layer.gaussians)
+    gaussian_density(*layer.gaussians, n, x, y, z, value_.data());
+  else
+    for (std::size_t i = 0; i < n; ++i) value_[i] = float(varied_density(layer, points.at(i)));
 }
 
 // Optical depths in front of the steps, in double; the weights of the steps; and what is left of them that scatters.

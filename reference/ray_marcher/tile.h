@@ -21,7 +21,10 @@ class TileMarcher {
 
  private:
   void lay_steps();
+  void place_steps();
+  void divide_deep_steps();
   void sample_densities();
+  void varied_densities(const Layer&, const Points&, std::size_t n);
   void weigh_steps();
   void scatter_light(int light);
   void keep_lit(int light);
@@ -39,7 +42,7 @@ class TileMarcher {
   std::vector<Pixel> pixels_;
   std::vector<scene::RayEnd> ends_;
   std::vector<Pass> passes_;
-  std::vector<Step> plain_steps_;
+  std::vector<Step> plain_steps_, divided_;
   std::size_t count_ = 0;                    // of steps
   std::vector<std::vector<float>> density_;  // [layer][step]
   StepArrays all_, steps_, lit_, less_;      // all; those that scatter; those that a light reaches
