@@ -25,7 +25,7 @@ Tolerance tolerance(const std::string& renderer) {
   if (renderer == "deterministic") return {1e-6, 1e-6};
   if (renderer == "shadow_planes") return {1e-6, 1e-4};
   if (renderer == "fogshop") return {1e-5, 0.25};  // approximate; its error is measured elsewhere
-  if (renderer == "ray_marcher") return {1e-3, 0.01};
+  if (renderer == "ray_marcher") return {2e-3, 0.01};
   if (renderer == "path_tracer") return {1e-5, 1e-5};  // beside its standard error
   return {2e-3, renderer == "fogshop_gpu" ? 0.25 : 0.01};
 }
@@ -47,7 +47,7 @@ Picture picture(const std::string& text, const std::string& renderer_name) {
   }
   const scene::Renderer& renderer = experiments::find_renderer(renderer_name, "sweep");
   std::map<std::string, std::string> given;
-  if (renderer_name == "path_tracer") given["samples"] = "64";
+  if (renderer_name == "path_tracer") given["samples"] = "1024";
   const scene::Settings settings(renderer.settings(), given);
   if (const auto reasons = renderer.supports(*scene, settings); !reasons.empty())
     return {Outcome::by_name, reasons.front(), {}};
