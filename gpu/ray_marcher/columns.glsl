@@ -96,6 +96,52 @@ float gaussian_integral(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
+#if GRIDS || GAUSSIANS
+uniform float deepest_shadow_step;
+
+float local_density(int k, vec3 p) {
+#if GRIDS
+  if (layers[k].field == field_grid) return grid_density(k, p);
+#endif
+#if GAUSSIANS
+  if (layers[k].field == field_gaussians) return gaussian_density(k, p);
+#endif
+  return 0;
+}
+
+// reference/ray_marcher/depth.h: is the first step deep, and the column of such a ray.
+bool starts_deep(int k, vec3 o, vec3 d, vec2 t) {
+  float h = (t.y - t.x) / steps_of(t.y - t.x), least = deepest_shadow_step;
+  return layers[k].most_varied * layers[k].thickest * h > least &&
+         local_density(k, o + t.x * d) * layers[k].thickest * h > least;
+}
+float deep_column(int k, vec3 o, vec3 d, vec2 t) {
+  float n = steps_of(t.y - t.x), whole = (t.y - t.x) / n, column = 0, thickest = layers[k].thickest;
+  float i = 0, from = 0, width_ = 1;
+  while (i < n && column * thickest < 750) {
+    ++work;
+    float lo = t.x + (i + from) * whole, h = width_ * whole;
+    float first = local_density(k, o + lo * d), middle = local_density(k, o + (lo + 0.5 * h) * d),
+          last = local_density(k, o + (lo + h) * d);
+    if (column * thickest < 40 && width_ > 1.0 / 16777216 &&
+        max(max(first, middle), last) * thickest * h > deepest_shadow_step) {
+      width_ *= 0.5;
+      continue;
+    }
+    column += (first + 4 * middle + last) / 6 * h;
+    ++shadow_step_count;
+    from += width_;
+    while (from < 1 && fract(from / (2 * width_)) == 0) width_ *= 2;
+    if (from >= 1) {
+      ++i;
+      from = 0;
+      width_ = 1;
+    }
+  }
+  return column;
+}
+#endif
+
 // Of layer k from x over a distance in a unit direction [m].
 float column_of(int k, vec3 x, vec3 direction, float distance_) {
   vec2 t = clip_region(k, x, direction, vec2(0, distance_));
@@ -105,6 +151,9 @@ float column_of(int k, vec3 x, vec3 direction, float distance_) {
   t = clip_field(k, x, direction, t);
   if (!(t.x < t.y)) return column;
   vec3 o = to_local(layers[k].field_frame, x), d = rotate_to_local(layers[k].field_frame, direction);
+#if GRIDS || GAUSSIANS
+  if (exact_shadow == 0 && starts_deep(k, o, d, t)) return column + deep_column(k, o, d, t);
+#endif
 #if GRIDS
   if (layers[k].field == field_grid) return column + grid_column(k, o, d, t);
 #endif

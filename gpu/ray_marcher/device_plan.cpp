@@ -36,6 +36,10 @@ double iterations_at_once(const ray_marcher::Plan& plan) {
     if (!layer.varies) continue;
     const double across = bounding_box(layer.varied).size().norm(), most = double(1 << 20);
     const double steps = o.shadow_step > 0 ? std::min(across / o.shadow_step, most) : o.shadow_steps;
+    // Divided steps (deep_column): 40 / deepest of them on the way into the dark, twice for the halves, and the way
+    // back up.
+    if (!o.exact_shadow && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
+      sum += 4 * 40 / deepest_shadow_step(o) * (layer.gaussians ? 3 * double(layer.gaussians->count) : 1);
     if (!layer.gaussians)
       sum += steps;
     else if (layer.gaussians->any_negative)
@@ -91,6 +95,8 @@ Program& PlanOnDevice::program(const scene::View& view) {
   p.set("shadow_steps", o.shadow_steps);
   p.set("shadow_step", o.shadow_step);
   p.set("horizon", o.horizon);
+  p.set("deepest_step", deepest_step(o));
+  p.set("deepest_shadow_step", deepest_shadow_step(o));
   p.set("darkest", o.early_exit > 0 ? float(-std::log(o.early_exit)) : far_away);
   set_camera(p, view, middle_);
   return p;

@@ -24,7 +24,7 @@ struct MarchedPixel {
   int march, part;
   float step;
   int light;
-  int unused[2];
+  float from, width;
 };
 
 class PlanOnDevice {

@@ -25,7 +25,8 @@ struct Layer {
   int phase;
   float g;  // of Henyey-Greenstein
   int negative;  // some Gaussian is: the sum is clamped at -constant
-  int unused[2];
+  float most_varied;  // upper bound of what varies [-]
+  float thickest;     // of all layers that vary, per unit of density [1/m]
 };
 
 struct Gaussian {

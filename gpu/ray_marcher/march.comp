@@ -22,7 +22,7 @@ struct Pixel {
   int part;
   float step_;
   int light;
-  int unused[2];
+  float from, width_;  // of what is under way of a step, in shares of it
 };
 layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
 layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
@@ -41,6 +41,7 @@ uint own_marches[BALL_WORDS];  // bit l: light l has a march of its own on this 
 // Of the march under way: where it is, its optical depth, whether it was too dark to go on.
 int at_part, at_light;
 float at_step;
+float at_from, at_width;  // within the step: divided where it is deep
 vec3 depth;
 bool ended;
 
@@ -111,6 +112,58 @@ bool march_step(Part part, vec3 origin, vec3 direction, float t, float x, float 
   return true;
 }
 
+// Steps that follow the optical depth: reference/ray_marcher/depth.h.
+uniform float deepest_step;
+const float deepest_seen = 40, least_width = 1.0 / 16777216;
+
+vec3 extinction_at(Part part, vec3 point) {
+  vec3 sum = vec3(0);
+  for (int k = 0; k < LAYERS; ++k) {
+    float density = (part.in_constant >> k & 1u) != 0u ? layers[k].constant : 0;
+    if ((part.in_varied >> k & 1u) != 0u) density += varied_density(k, point);
+    sum += density * layers[k].sigma_t;
+  }
+  return sum;
+}
+bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
+  float least = (whole ? 4 : 1) * deepest_step;
+  for (int c = 0; c < 3; ++c)
+    if (before[c] < deepest_seen && greatest[c] * length_ > least) return true;
+  return false;
+}
+bool may_be_deep(Part part, float length_) {
+  vec3 most = vec3(0);
+  for (int k = 0; k < LAYERS; ++k) {
+    if ((part.in_constant >> k & 1u) != 0u) most += layers[k].constant * layers[k].sigma_t;
+    if ((part.in_varied >> k & 1u) != 0u) most += layers[k].most_varied * layers[k].sigma_t;
+  }
+  return is_deep(vec3(0), most, length_, true);
+}
+
+// A step that may be deep, [t, t + length] behind the light by x, from where it is. False: no budget left.
+bool march_deep_step(Part part, vec3 origin, vec3 direction, float t, float x, float length_, int own) {
+  while (at_from < 1) {
+    if (out_of_budget()) return false;
+    ++work;
+    float lo = at_from * length_, h = at_width * length_, middle = lo + 0.5 * h;
+    vec3 greatest = vec3(0);
+    for (int i = 0; i < 3; ++i)
+      greatest = max(greatest, extinction_at(part, origin + (t + lo + 0.5 * float(i) * h) * direction));
+    if (at_width > least_width && is_deep(depth, greatest, h, at_width == 1)) {
+      at_width *= 0.5;
+      continue;
+    }
+    ended = all_above(depth, darkest);
+    if (ended) return true;
+    if (!march_step(part, origin, direction, t + middle, x + middle, h, own)) return false;
+    at_from += at_width;
+    while (at_from < 1 && fract(at_from / (2 * at_width)) == 0) at_width *= 2;
+  }
+  at_from = 0;
+  at_width = 1;
+  return true;
+}
+
 #if GRIDS
 // From step i of a part on, how many steps lie in the free space of a grid; negative: how many may not. `start` and
 // `delta`: local beginning of the part, and from one step to the next.
@@ -161,7 +214,7 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
     bool even = part.zone == 0 && part.rate == 0;
     float h = (part.hi - part.lo) / n, until = n;
 #if GRIDS
-    bool skips = skip_empty != 0 && even && grids_alone(part);
+    bool skips = skip_empty != 0 && even && grids_alone(part) && !may_be_deep(part, h);
     if (skips) until = at_step;
 #endif
     // Around the light from it, otherwise from the beginning of the part.
@@ -200,6 +253,13 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
       ended = all_above(depth, darkest);
       if (ended) return true;
       float x = part.zone != 0 ? middle : (base - seen.t) + middle;
+      if (may_be_deep(part, length_)) {
+        float half_length = 0.5 * length_;
+        if (!march_deep_step(part, origin, direction, base + middle - half_length, x - half_length, length_, own))
+          return false;
+        if (ended) return true;
+        continue;
+      }
       if (!march_step(part, origin, direction, base + middle, x, length_, own)) return false;
     }
     at_step = 0;
@@ -222,6 +282,8 @@ void main() {
   at_part = pixels[place].part;
   at_step = pixels[place].step_;
   at_light = pixels[place].light;
+  at_from = pixels[place].from;
+  at_width = pixels[place].width_ > 0 ? pixels[place].width_ : 1;
   depth = pixels[place].transmittance;
 
   // A light that grades the ray around itself has a march of its own. The common march, last, serves the transmittance and
@@ -240,7 +302,8 @@ void main() {
     if (!done) break;
     if (!own) break;
     at_part = at_light = 0;
-    at_step = 0;
+    at_step = at_from = 0;
+    at_width = 1;
     depth = vec3(0);
   }
   vec3 result = vec3(depth);
@@ -257,6 +320,8 @@ void main() {
   pixels[place].part = at_part;
   pixels[place].step_ = at_step;
   pixels[place].light = at_light;
+  pixels[place].from = at_from;
+  pixels[place].width_ = at_width;
   pixels[place].airlight += airlight;
   pixels[place].steps += step_count;
   pixels[place].shadow_rays += shadow_ray_count;

@@ -54,6 +54,8 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
     d.sigma_t = float3(Vec3(layer.medium->sigma_t));
     d.albedo = float3(Vec3(layer.medium->albedo));
     d.constant = float(layer.constant);
+    d.most_varied = float(layer.most_varied);
+    d.thickest = float(layer.thickest);
     d.half_size = float3(layer.shape.half);
     d.shape = int(layer.shape.kind);
     d.shape_frame = frame_data(layer.shape_frame, middle);

@@ -31,7 +31,7 @@ struct LayerData {
   int phase;
   float g;
   int negative;
-  int unused[2];
+  float most_varied, thickest;
 };
 static_assert(sizeof(LayerData) == 224);
 

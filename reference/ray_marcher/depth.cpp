@@ -15,7 +15,7 @@ struct Division {
 
   void divide(const Step& step, const Rgb& at_lo, const Rgb& at_hi, int level) {
     const Rgb middle = extinction_at(plan, ray, step.t, step.inside);
-    if (level < most_halvings && is_deep(plan.options, before, at_lo.max(middle).max(at_hi), step.length)) {
+    if (level < most_halvings && is_deep(plan.options, before, at_lo.max(middle).max(at_hi), step.length, level == 0)) {
       const double half = 0.5 * step.length;
       divide({step.t - 0.5 * half, half, step.inside}, at_lo, middle, level + 1);
       divide({step.t + 0.5 * half, half, step.inside}, middle, at_hi, level + 1);
@@ -35,7 +35,7 @@ bool may_be_deep(const std::vector<Layer>& layers, const Options& options, const
     if (in_constant(step.inside, k)) most += layer.constant * layer.medium->sigma_t;
     if (in_varied(step.inside, k)) most += layer.most_varied * layer.medium->sigma_t;
   }
-  return is_deep(options, Rgb::Zero(), most, step.length);
+  return is_deep(options, Rgb::Zero(), most, step.length, true);
 }
 
 Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long inside) {
@@ -49,8 +49,8 @@ Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long
   return sum;
 }
 
-bool is_deep(const Options& options, const Rgb& before, const Rgb& greatest, double length) {
-  return (before < deepest_seen && greatest * length > deepest_step(options)).any();
+bool is_deep(const Options& options, const Rgb& before, const Rgb& greatest, double length, bool whole) {
+  return (before < deepest_seen && greatest * length > (whole ? most_whole : 1) * deepest_step(options)).any();
 }
 
 void follow_depth(const Plan& plan, const Ray& ray, const Step* begin, const Step* end, std::vector<Step>& out) {

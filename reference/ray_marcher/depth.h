@@ -1,17 +1,18 @@
 // Steps that follow the optical depth, where equal ones would be too long for a thick medium.
 //
-// On camera rays no step is deeper than `deepest_step` while less than `deepest_seen` lies before it (exp(-40) of the
-// light is not missed); on shadow rays no step is deeper than `deepest_shadow_step` where the extinction at the ray's
-// beginning makes the first one so. Longer ones are halved, and again, front to back; a step counts as deep by the
-// greatest extinction of its ends and its middle. Both limits are the optical depth `horizon` shared among as many
-// steps as are asked for, so that twice the steps are half as deep: the order of the scheme stays. Where a medium is
-// thin enough everywhere, by bounds, nothing is looked at and nothing changes.
+// On camera rays a step deeper than 4 * `deepest_step` is divided into ones of `deepest_step` at most, while less than
+// `deepest_seen` lies before it (exp(-40) of the light is not missed); on shadow rays no step is deeper than
+// `deepest_shadow_step` where the extinction at the ray's beginning makes the first one so. Longer ones are halved, and
+// again, front to back; a step counts as deep by the greatest extinction of its ends and its middle. Both limits are
+// the optical depth `horizon` shared among as many steps as are asked for, so that twice the steps are half as deep:
+// the order of the scheme stays. Where a medium is thin enough everywhere, by bounds, nothing is looked at and nothing
+// changes.
 #pragma once
 #include "reference/ray_marcher/plan.h"
 
 namespace airlight::ray_marcher {
 
-constexpr double deepest_seen = 40;
+constexpr double deepest_seen = 40, most_whole = 4;
 constexpr int most_halvings = 40;  // of a step; places in double have no more digits
 
 // Could a step be deep, by the bounds of the media there?
@@ -21,14 +22,16 @@ bool may_be_deep(const std::vector<Layer>&, const Options&, const Step&);
 Rgb extinction_at(const Plan&, const Ray&, double t, unsigned long long inside);
 
 // Is it, with `before` in front of it? `greatest`: extinction, of its ends and its middle.
-bool is_deep(const Options&, const Rgb& before, const Rgb& greatest, double length);
+// `whole`: a step as it was laid, which is left alone up to `most_whole` times as deep: equal steps through a smooth
+// medium err less than divided ones.
+bool is_deep(const Options&, const Rgb& before, const Rgb& greatest, double length, bool whole);
 
 // The steps [begin, end) of a ray with the deep ones divided, appended to `out`.
 void follow_depth(const Plan&, const Ray&, const Step* begin, const Step* end, std::vector<Step>& out);
 
 // Is the first step of a shadow ray so deep that its column is to follow the depth?
 inline bool starts_deep(const Options& o, double extinction, double length) {
-  return extinction * length > 0.25 * deepest_shadow_step(o);
+  return extinction * length > deepest_shadow_step(o);
 }
 
 // Integral of the varying density over `extent` of a shadow ray [m] by Simpson's rule, whose values the search for deep

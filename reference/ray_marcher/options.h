@@ -21,9 +21,16 @@ struct Options {
   double horizon = 16;    // optical depth at which an infinite ray ends
 };
 
-// The optical depth that no step exceeds where light is seen (depth.h): on camera rays, on shadow rays.
-inline double deepest_step(const Options& o) { return o.step > 0 ? 0.25 : o.horizon / o.steps; }
-inline double deepest_shadow_step(const Options& o) { return o.shadow_step > 0 ? 0.5 : o.horizon / o.shadow_steps; }
+// The optical depth that no step exceeds where light is seen (depth.h): on camera rays, on shadow rays. A hundredth
+// more than its share, which equal steps of endless fog have exactly: rounding is not to decide about those.
+inline double deepest_step(const Options& o) { return o.step > 0 ? 0.25 : 1.01 * o.horizon / o.steps; }
+inline double deepest_shadow_step(const Options& o) {
+  return o.shadow_step > 0 ? 0.5 : 1.01 * o.horizon / o.shadow_steps;
+}
+
+// Of the airlight at 64 and 32 steps, the defaults: relative L2 distance from the truth in the project's scenes, and in
+// those where surfaces cast shadows, whose edges fall within steps. A test holds some scenes against it.
+constexpr double default_error = 0.015, default_error_with_shadows = 0.06;
 
 std::vector<scene::SettingSpec> option_specs();
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 
+#include "reference/ray_marcher/limits.h"
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/scalar.h"
 #include "reference/ray_marcher/stages.h"
@@ -82,6 +83,9 @@ class PreparedMarch final : public scene::Prepared {
     Counters total;
     std::mutex mutex;
     const double start = now();
+    // Steps of this many are in memory at once, a quarter of a kilobyte each.
+    const auto rays_at_once =
+        std::size_t(std::clamp(double(1 << 18) / steps_per_ray(*plan_.scene, plan_.options), 1.0, 64.0));
     const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
     scene::parallel_rows(columns * rows, execution, [&](int tile) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
@@ -94,8 +98,8 @@ class PreparedMarch final : public scene::Prepared {
         for (int x = x0; x < x1; ++x)
           rays.push_back(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       Counters counters;
-      const std::vector<Pixel> slow = plan_.options.simd ? std::vector<Pixel>() : plain(rays, counters);
-      const std::vector<Pixel>& pixels = plan_.options.simd ? marcher.march(plan_, rays, counters) : slow;
+      const std::vector<Pixel> pixels =
+          plan_.options.simd ? marcher.march_in_parts(plan_, rays, rays_at_once, counters) : plain(rays, counters);
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         const std::size_t at = 3 * ((y0 + i / (x1 - x0)) * view.width + x0 + i % (x1 - x0));
         for (int c = 0; c < 3; ++c) {
@@ -143,8 +147,9 @@ std::string RayMarcher::about() const {
 
 std::vector<scene::SettingSpec> RayMarcher::settings() const { return option_specs(); }
 
-std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings&) const {
-  std::vector<std::string> reasons;
+std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings& settings) const {
+  const double unit = length_unit(scene);
+  std::vector<std::string> reasons = too_much(scene, read_options(settings, unit), unit);
   const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));

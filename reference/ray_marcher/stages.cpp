@@ -16,8 +16,15 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
       std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
   const bool lit = !plan.lights.empty();
   const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
+  const Options &o = plan.options, defaults;
+  const bool as_stated = o.steps == defaults.steps && o.shadow_steps == defaults.shadow_steps && o.step == 0 &&
+                         o.shadow_step == 0 && o.graded && o.early_exit == 0;
   add("camera_rays", true,
-      plan.options.graded ? "one per pixel, and its steps, graded" : "one per pixel, and its steps");
+      std::string("one per pixel, and its steps") + (o.graded ? ", graded" : "") +
+          (as_stated ? fmt::format("; default steps: airlight within {} % (relative L2){}",
+                                   100 * (scene.geometry ? default_error_with_shadows : default_error),
+                                   has_environment(scene) ? " of that of the environment's directions" : "")
+                     : ""));
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
   add("shadows", shadows,

@@ -34,6 +34,18 @@ const std::vector<Pixel>& TileMarcher::march(const Plan& plan, const std::vector
   return pixels_;
 }
 
+std::vector<Pixel> TileMarcher::march_in_parts(const Plan& plan, const std::vector<Ray>& rays, std::size_t at_once,
+                                               Counters& counters) {
+  if (rays.size() <= at_once) return march(plan, rays, counters);
+  std::vector<Pixel> pixels;
+  for (std::size_t begin = 0; begin < rays.size(); begin += at_once) {
+    const std::vector<Ray> part(rays.begin() + begin, rays.begin() + std::min(begin + at_once, rays.size()));
+    march(plan, part, counters);
+    pixels.insert(pixels.end(), pixels_.begin(), pixels_.end());
+  }
+  return pixels;
+}
+
 // Books the time since the last stage ended.
 void TileMarcher::end_of(double Counters::*stage) {
   const auto now = std::chrono::steady_clock::now();
@@ -89,7 +101,8 @@ void TileMarcher::divide_deep_steps() {
   }
   std::vector<char> deep(rays_->size(), 0);
   for (std::size_t i = 0; i < n; ++i)
-    if (is_deep(plan_->options, Rgb::Zero(), greatest[i], plain_steps_[index_[i]].length)) deep[ray_of[index_[i]]] = 1;
+    if (is_deep(plan_->options, Rgb::Zero(), greatest[i], plain_steps_[index_[i]].length, true))
+      deep[ray_of[index_[i]]] = 1;
   if (std::none_of(deep.begin(), deep.end(), [](char d) { return d; })) return;
   divided_.clear();
   for (Pass& pass : passes_) {

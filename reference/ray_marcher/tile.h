@@ -19,6 +19,9 @@ class TileMarcher {
   // Pixels of the rays, in their order. Rays near each other make the kernels more efficient.
   const std::vector<Pixel>& march(const Plan&, const std::vector<Ray>&, Counters&);
 
+  // The same, so many rays at a time: no pixel depends on it.
+  std::vector<Pixel> march_in_parts(const Plan&, const std::vector<Ray>&, std::size_t at_once, Counters&);
+
  private:
   void lay_steps();
   void place_steps();

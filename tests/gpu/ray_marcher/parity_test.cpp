@@ -47,7 +47,7 @@ TEST_CASE("ray marcher: GPU agrees with CPU", "[gpu][ray_marcher]") {
     for (Given given : {Given{}, Given{{"spacing", "uniform"}, {"steps", "40"}, {"empty_space_skipping", "false"}},
                         Given{{"step", "0.31"}, {"shadow_step", "0.23"}, {"early_exit", "0.05"}}}) {
       if (given.count("step") && scene->geometry) continue;  // seconds
-      given.insert({{"shadow_steps", "12"}, {"environment_directions", "8"}});
+      given.insert({{"steps", "64"}, {"shadow_steps", "12"}, {"environment_directions", "8"}});
       const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
       CAPTURE(name, given["spacing"], given["step"]);
       for (const char* layer : {"airlight", "transmittance", "surface"}) {
@@ -273,4 +273,39 @@ TEST_CASE("ray marcher: the GPU's counters are the same in every run", "[gpu][ra
     CHECK(first.at("dispatches") > 5);  // it is divided
     for (int i = 0; i < 4; ++i) CHECK(prepared->render(view, {1, {}}).counters == first);
   }
+}
+
+// Steps follow the optical depth as the CPU's do, as far as single precision knows places; beyond, it says so.
+TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  scene::View view = look();
+  view.width = 8, view.height = 6;
+  for (int kind = 0; kind < 3; ++kind)
+    for (const double extinction : {30.0, 300.0, 3000.0, 1e6}) {
+      scene::DensityField field = scene::Homogeneous{1};
+      if (kind == 1)
+        field = scene::GaussianSum{{{Point3(0, 0, 0), 0.4, 1}, {Point3(0.3, 0.1, 0), 0.2, 2}}, 0, infinity};
+      if (kind == 2) field = make_smoke(12, 0.18, Vec3(-1, -1, -1), Mat3::Identity());
+      const auto scene = make_scene({make_medium(field, scene::Sphere{Point3::Zero(), 1}, Rgb::Constant(extinction),
+                                                 Rgb::Constant(0.9), scene::HenyeyGreenstein{0.3})},
+                                    {scene::DirectionalLight{Vec3(0.4, 0.5, 1).normalized(), Rgb(3, 2, 1)}});
+      scene->camera = view.camera;
+      CAPTURE(kind, extinction);
+      const gpu::RayMarcherGpu marcher;
+      const auto reasons = marcher.supports(*scene, {marcher.settings(), {}});
+      if (extinction > 1e5) {
+        REQUIRE(reasons.size() == 1);
+        CHECK_THAT(reasons[0], Catch::Contains("to 24 binary digits changes its optical depth by"));
+        continue;
+      }
+      REQUIRE(reasons.empty());
+      const Given given{{"steps", "64"}, {"shadow_steps", "32"}};
+      const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
+      // Places in single precision: 1e-2 of an optical depth at most, by what is refused; that changes the light as
+      // much.
+      CHECK(p99(cpu.film, gpu.film, "airlight") < (extinction > 1000 ? 1e-2 : 2e-3));
+      CHECK(gpu.counters.at("steps") == Approx(cpu.counters.at("steps")).epsilon(0.01));
+      if (extinction > 1000) continue;  // there the CPU goes its plain path, in double: other bits decide on what is divided
+      CHECK(gpu.counters.at("shadow_steps") == Approx(cpu.counters.at("shadow_steps")).epsilon(0.05));
+    }
 }

@@ -1,0 +1,36 @@
+// The default's steps keep the error that `airlight explain` states.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "reference/deterministic/airlight.h"
+#include "tests/reference/ray_marcher/march_scenes.h"
+
+using namespace airlight;
+using namespace airlight::ray_marcher;
+
+// Measured at 24 x 24 pixels: plume .006, elephant in fog .007, Gaussians .004, ball .008, shadows .053.
+TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
+  for (const char* name : {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
+                           "crosscheck/grid_coloured_point", "shadow_planes/fig7", "shadow_planes/fog_ball"}) {
+    const auto scene = std::make_shared<const scene::Scene>(
+        scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/") + name + ".toml"));
+    scene::View view = view_of(*scene);
+    view.width = view.height = 24;
+    const deterministic::AirlightIntegrator truth(*scene, {1e-5, 200000});
+    const RayMarcher marcher;
+    const auto prepared = marcher.prepare(scene, {marcher.settings(), {}}, {1, {}});
+    const scene::Film film = prepared->render(view, {1, {}}).film;
+    double difference = 0, size = 0;
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) {
+        const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+        const auto exact = truth(ray, scene::ray_end(*scene, ray).t);
+        difference += (film.get("airlight", x, y) - exact.radiance).square().sum();
+        size += exact.radiance.square().sum();
+      }
+    const double stated = scene->geometry ? default_error_with_shadows : default_error;
+    CAPTURE(name, stated);
+    CHECK(std::sqrt(difference / size) < stated);
+    CHECK_THAT(prepared->stages()[0].reason, Catch::Contains(scene->geometry ? "within 6 %" : "within 1.5 %"));
+  }
+}
