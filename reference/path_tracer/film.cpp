@@ -73,16 +73,6 @@ Rgb greatest_sample(const TallyLayout& layout, const std::vector<TallyNode>& til
   return greatest;
 }
 
-void require_finite(const scene::Film& film, const std::string& scene) {
-  for (const auto& [name, values] : film.layers)
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (!std::isfinite(values[i]))
-        throw Error(
-            fmt::format("path_tracer: scene '{}', pixel ({}, {}): layer {} is not finite in single precision, "
-                        "expected at most 3.4e38",
-                        scene, i / 3 % std::size_t(film.width), i / 3 / std::size_t(film.width), name));
-}
-
 std::string ranges(const std::vector<TallyNode>& nodes) {
   std::vector<std::string> parts;
   for (std::size_t n = 0; n < nodes.size();) {
@@ -156,7 +146,7 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
       }
   }
   if (!negative) film.layers.erase("negative");
-  require_finite(film, world.scene().name);
+  scene::require_finite(film, fmt::format("path_tracer: scene '{}'", world.scene().name));
 
   auto& metadata = film.metadata;
   metadata["renderer"] = "path_tracer";

@@ -305,7 +305,8 @@ TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
       // much.
       CHECK(p99(cpu.film, gpu.film, "airlight") < (extinction > 1000 ? 1e-2 : 2e-3));
       CHECK(gpu.counters.at("steps") == Approx(cpu.counters.at("steps")).epsilon(0.01));
-      if (extinction > 1000) continue;  // there the CPU goes its plain path, in double: other bits decide on what is divided
+      if (extinction > 1000)
+        continue;  // there the CPU goes its plain path, in double: other bits decide on what is divided
       CHECK(gpu.counters.at("shadow_steps") == Approx(cpu.counters.at("shadow_steps")).epsilon(0.05));
     }
 }
