@@ -3,7 +3,9 @@
 // `mean` has layers batch.00, batch.01, ...; another layer L has L.batch.00, ... A film with neither batches nor a
 // standard error is exact. Few samples make no batches: then there is only the standard error of each value, `se` or
 // L.se. A renderer that knows more than its samples (none of them met anything, and yet something may be there) says so
-// by a standard error above 0 where all batches are equal: an upper end of what the value may be off by.
+// by a standard error above 0 where all batches are equal: an upper end of what the value may be off by. For a set of K
+// such values that of one is an upper end of their sum: it comes from 3 in n samples of a pixel, and of K n samples
+// that met nothing at most 3 would have (95 %).
 #pragma once
 #include <span>
 #include <string>

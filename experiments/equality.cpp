@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -57,11 +58,11 @@ Mean mean_over(const Image& image, const std::vector<std::size_t>& index) {
   }
   m.degrees = n - 1;
   if (!unresolved.empty()) {
-    // Nothing tells one value's from another's: they may all be off to the same side.
-    double sum = 0;
-    for (const std::size_t i : index) sum += unresolved[i] / double(index.size());
-    const double scatter = m.variance;
-    m.variance += sum * sum;
+    // Pixels share what was missed (batches.h); channels may all be off to the same side.
+    std::array<double, 3> most{};
+    for (const std::size_t i : index) most[i % 3] = std::max(most[i % 3], double(unresolved[i]));
+    const double missed = (most[0] + most[1] + most[2]) / double(index.size()), scatter = m.variance;
+    m.variance += missed * missed;
     m.degrees *= scatter > 0 ? (m.variance / scatter) * (m.variance / scatter) : infinity;
   }
   return m;

@@ -44,6 +44,7 @@ class Values {
   // What the batches of both cannot show (batches.h).
   bool has_unresolved() const { return !a_unresolved_.empty() || !r_unresolved_.empty(); }
   double unresolved(std::size_t i) const;
+  std::size_t channel(std::size_t i) const { return index_[i] % 3; }
 
   // Greatest less least value of the reference, smoothed over the kept pixels among 3x3.
   double smoothed_range() const;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -104,6 +105,15 @@ double signed_bias(const Values& v, int without) {
 
 std::vector<double> ones(const Values& v) { return std::vector<double>(v.size(), 1.0); }
 
+// Of what is missed in all pixels no more than one of them may miss (batches.h): the greatest of each channel, summed.
+template <class F>
+double shared(const Values& v, F missed) {
+  std::array<double, 3> most{};
+  for (std::size_t i = 0; v.has_unresolved() && i < v.size(); ++i)
+    most[v.channel(i)] = std::max(most[v.channel(i)], missed(i));
+  return most[0] + most[1] + most[2];
+}
+
 // Mean variance of the difference of the two means, times weights; without the image's part if that counts as error.
 double mean_noise(const Values& v, const std::vector<double>& weights) {
   const Group group(0, v.batch_count(), -1);
@@ -112,8 +122,9 @@ double mean_noise(const Values& v, const std::vector<double>& weights) {
     const double variance =
         group.size() == 0 ? 0
                           : group.variance([&](int b) { return v.counted() ? v.r(i, b) : v.d(i, b); }) / group.size();
-    sum += (variance + v.unresolved(i) * v.unresolved(i)) * weights[i];
+    sum += variance * weights[i];
   }
+  sum += shared(v, [&](std::size_t i) { return v.unresolved(i) * v.unresolved(i) * weights[i]; });
   return sum / double(v.size());
 }
 
@@ -144,8 +155,8 @@ double variance_by_errors(const Values& v, const std::vector<double>& weights) {
          (count * count);
 }
 
-// By what the weighted mean of d^2 may be too large and too small where the batches do not show the noise: |d| is off
-// by at most u.
+// By what the weighted mean of d^2 may be too large and too small where the batches do not show the noise: each |d| is
+// off by at most u, and all of a channel together by at most the greatest u.
 struct Slack {
   double below = 0;
   double above = 0;
@@ -153,11 +164,20 @@ struct Slack {
 Slack unresolved_squares(const Values& v, const std::vector<double>& weights) {
   Slack slack;
   if (!v.has_unresolved()) return slack;
+  double each = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const double d = std::abs(v.d(i)), u = v.unresolved(i), sure = std::max(0.0, d - u);
-    slack.below += (d * d - sure * sure) * weights[i] / double(v.size());
-    slack.above += ((d + u) * (d + u) - d * d) * weights[i] / double(v.size());
+    const double d = std::abs(v.d(i)), sure = std::max(0.0, d - v.unresolved(i));
+    each += (d * d - sure * sure) * weights[i];
   }
+  // Falling, d^2 loses at most 2 d a unit; rising, all that was missed in one pixel makes most of it.
+  const double together = shared(v, [&](std::size_t i) { return 2 * std::abs(v.d(i)) * v.unresolved(i) * weights[i]; });
+  slack.below = std::min(each, together) / double(v.size());
+  slack.above = shared(v,
+                       [&](std::size_t i) {
+                         const double d = std::abs(v.d(i)), u = v.unresolved(i);
+                         return ((d + u) * (d + u) - d * d) * weights[i];
+                       }) /
+                double(v.size());
   return slack;
 }
 
@@ -245,13 +265,10 @@ Measure squared_family(const Estimate& e, double floor, bool take_root, bool noi
 }
 
 Measure measure_bias(const Values& v) {
-  double reference = 0, unresolved = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    reference += v.r(i);
-    unresolved += v.unresolved(i);
-  }
+  double reference = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) reference += v.r(i);
   const double variance = v.only_errors() ? sum_variance(v, [&](std::size_t i) { return v.se(i); }) : 0;
-  const double slack = v.has_unresolved() ? unresolved / std::abs(reference) : 0;
+  const double slack = shared(v, [&](std::size_t i) { return v.unresolved(i); }) / std::abs(reference);
   const Estimate e = widened(with_interval(v, variance / (reference * reference), false, signed_bias), {slack, slack});
   // The standard error, back from the interval.
   const double quantile = v.batch_count() ? student_quantile(0.975, v.batch_count() - 1) : normal_quantile(0.975);

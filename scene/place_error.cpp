@@ -18,14 +18,13 @@ double place_error(const Scene& scene) {
   return worst;
 }
 
-std::string too_thick(const Scene& scene, int digits, double most) {
-  const double error = std::ldexp(place_error(scene), 53 - digits);
+std::string too_thick(const Scene& scene, double most) {
+  const double error = place_error(scene);
   if (error <= most) return "";
   return fmt::format(
-      "a medium is so thick that the rounding of places to {} binary digits changes its optical depth by {:.2g}, "
-      "expected "
-      "at most {}: a smaller extinction, or a smaller scene",
-      digits, error, most);
+      "a medium is so thick that the rounding of places changes its optical depth by {:.2g}, expected at most {}: a "
+      "smaller extinction, or a smaller scene",
+      error, most);
 }
 
 }  // namespace airlight::scene

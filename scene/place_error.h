@@ -7,11 +7,11 @@
 namespace airlight::scene {
 
 // What the rounding of places can do to an optical depth: the greatest extinction of a medium with a boundary, times
-// 2^-53 of the lengths in play, its diagonal and its distance from the camera. In single precision 2^29 times that. 0
-// without such a medium.
+// 2^-53 of the lengths in play, its diagonal and its distance from the camera. 0 without such a medium. What single
+// precision can tell is in single_precision.h.
 double place_error(const Scene&);
 
-// In one line: that this is more than `most` where places are rounded to `digits` binary digits. Empty if not.
-std::string too_thick(const Scene&, int digits, double most);
+// In one line: that this is more than `most`. Empty if not.
+std::string too_thick(const Scene&, double most);
 
 }  // namespace airlight::scene

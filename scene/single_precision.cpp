@@ -8,7 +8,7 @@
 namespace airlight::scene {
 namespace {
 
-constexpr double least_size = 1e-4, greatest_place = 1e5;             // [m]
+constexpr double least_size = 1e-4, greatest_place = 1e6;             // [m]
 constexpr double least_extinction = 1e-9, greatest_extinction = 1e9;  // [1/m]
 constexpr double least_light = 1e-9, greatest_light = 1e12;
 constexpr double greatest_depth = 3e4;  // extinction times the largest coordinate: places are rounded to 6e-8 of it

@@ -33,8 +33,10 @@ class Trial {
       : e_(e), planned_(planned), view_(scene::view_of(*planned.scene)) {
     view_.width = std::min(view_.width, most_pixels);
     view_.height = std::min(view_.height, most_pixels);
-    if (planned.reference) reference_ = render(*planned.reference, e.reference.settings, *planned.reference_settings);
-    if (planned.reference) reference_.layer(e.layer);
+    if (!planned.reference) return;
+    reference_ = render(*planned.reference, e.reference.settings, *planned.reference_settings);
+    require_finite(reference_, "reference " + planned.reference->name());
+    reference_.layer(e.layer);
   }
 
   void method(const PlannedRow& p) const {
@@ -44,6 +46,7 @@ class Trial {
     } catch (const Unavailable&) {
       return;  // the row will say so
     }
+    require_finite(film, p.method->name);
     film.layers[e_.layer] = film.layer(p.method->layer);
     if (planned_.reference) compare(e_, *p.method, film, reference_, {{}, foreground_of(*planned_.scene, view_)});
   }
@@ -68,14 +71,15 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
   for (const PlannedRow& p : planned.rows)
     if (p.refusal.empty() && !finished.find(p.row.key)) open.push_back(&p);
   if (open.empty()) return;
-  std::optional<Trial> trial;
   try {
-    trial.emplace(e, planned);
+    const Trial trial(e, planned);
+    for (const PlannedRow* p : open)
+      if (tried.insert(p->method).second) trial.method(*p);
   } catch (const Unavailable&) {
     return;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", c.name, error.what()), error.exit_code());
   }
-  for (const PlannedRow* p : open)
-    if (tried.insert(p->method).second) trial->method(*p);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "scene/background.h"
 #include "scene/error.h"
 #include "scene/light_on_ray.h"
-#include "scene/place_error.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -173,7 +172,6 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
-  if (const std::string reason = scene::too_thick(scene, 24, 0.01); !reason.empty()) reasons.push_back(reason);
   bool grid = false, negative = false;
   for (const scene::Medium& medium : scene.media) {
     if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))

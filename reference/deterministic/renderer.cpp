@@ -156,7 +156,7 @@ class DeterministicRenderer final : public scene::Renderer {
   std::vector<std::string> supports(const Scene& scene, const scene::Settings&) const override {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
       return {no_finite_answer};
-    if (const std::string reason = scene::too_thick(scene, 53, 0.01); !reason.empty()) return {reason};
+    if (const std::string reason = scene::too_thick(scene, 0.01); !reason.empty()) return {reason};
     return {};
   }
   std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,

@@ -1,6 +1,21 @@
 #include "reference/ray_marcher/options.h"
 
+#include <algorithm>
+
+#include "reference/ray_marcher/depth.h"
+
 namespace airlight::ray_marcher {
+
+double stated_error(const scene::Scene& scene) {
+  const double thick = most_whole * Options().horizon;  // through all of a medium, in equal steps
+  const auto divides = [&](const scene::Medium& medium) {
+    const Box box = bounding_box(medium);
+    return !box.empty() && box.size().allFinite() &&
+           medium.sigma_t.maxCoeff() * density_bounds(medium, box).hi * box.size().stableNorm() > thick;
+  };
+  if (scene.geometry) return 0.06;
+  return std::any_of(scene.media.begin(), scene.media.end(), divides) ? 0.04 : 0.015;
+}
 
 std::vector<scene::SettingSpec> option_specs() {
   using Type = scene::SettingSpec::Type;

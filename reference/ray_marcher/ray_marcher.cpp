@@ -153,7 +153,7 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
   const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));
-  if (const std::string reason = scene::too_thick(scene, 53, 0.01); !reason.empty()) reasons.push_back(reason);
+  if (const std::string reason = scene::too_thick(scene, 0.01); !reason.empty()) reasons.push_back(reason);
   if (light_on_camera(scene))
     reasons.push_back(
         "a point or spot light of radius 0 stands on the camera inside a medium: its airlight is infinite; expected a "

@@ -185,13 +185,17 @@ TEST_CASE("blocks without noise", "[equality]") {
   CHECK(differs.differing == 3);
   CHECK(objections(differs, 1e-4) == 1);
   CHECK(sure_objections(differs, 1e-4) == 1);
-  // An upper end of 1e-6 for every pixel there: z is 1, with every pixel off to the same side.
+  // An upper end of 64e-6, shared by the 64 pixels there, which are off by 1e-6 each: z is 1. A sixteenth of it is too
+  // little.
   reference.add("se").assign(384, 0.0f);
-  for (std::size_t i = 0; i < 384; ++i) reference.layers["se"][i] = i / 3 % 16 < 8 ? 1e-6f : 0.01f;
+  for (std::size_t i = 0; i < 384; ++i) reference.layers["se"][i] = i / 3 % 16 < 8 ? 64e-6f : 0.01f;
   const Equality unknown = compare_equal(image, reference, "mean", {}, 1e-4);
   CHECK(unknown.differing == 0);
   CHECK(unknown.blocks == 6);
+  CHECK(unknown.largest_z < 4);
   CHECK(objections(unknown, 1e-4) == 0);
+  for (std::size_t i = 0; i < 384; ++i) reference.layers["se"][i] = i / 3 % 16 < 8 ? 4e-6f : 0.01f;
+  CHECK(objections(compare_equal(image, reference, "mean", {}, 1e-4), 1e-4) > 0);
 }
 
 // An image that is its reference: every z is 0, and no chance makes 36 of them so.

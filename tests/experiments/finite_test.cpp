@@ -50,7 +50,8 @@ TEST_CASE("the command line writes no picture that is not finite", "[cli]") {
     const Result r = run(std::string("render s.toml -o a.exr --png a.png -m ") + method, folder);
     CHECK(r.code == 2);
     CHECK(r.error_lines() == 1);
-    CHECK_THAT(r.err, Contains("a.exr: layer '") && Contains("pixel (1, 1)") && Contains("expected a finite"));
+    CHECK_THAT(r.err, (Contains("a.exr: layer '") || Contains("scene 's': layer '")) && Contains("pixel (1, 1)") &&
+                          Contains("expected a finite"));
     CHECK_FALSE(std::filesystem::exists(folder.path() / "a.exr"));
     CHECK_FALSE(std::filesystem::exists(folder.path() / "a.png"));
   }
@@ -71,11 +72,9 @@ TEST_CASE("an experiment keeps no row and no reference that is not finite", "[dr
                        (reference ? "[reference]\nrenderer = " + name + "[[method]]\nrenderer = 'ray_marcher'\n"
                                   : "[[method]]\nrenderer = " + name));
       const auto experiment = read_experiment(folder.path(), "g/e", "full");
-      CHECK_THROWS_WITH(run_experiment(experiment, {folder.path(), false, 1, false}),
-                        (Contains("/one/") || Contains("one: reference deterministic")) && Contains("layer '") &&
-                            Contains("pixel (1, 1)"));
-      CHECK_FALSE(std::filesystem::exists(folder.path() / "results/g/e/table.csv"));
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "results"))
-        CHECK(entry.path().extension() != ".exr");
+      CHECK_THROWS_WITH(
+          run_experiment(experiment, {folder.path(), false, 1, false}),
+          Contains("g/e: one: ") && Contains(renderer) && Contains("layer '") && Contains("pixel (1, 1)"));
+      CHECK_FALSE(std::filesystem::exists(folder.path() / "results"));
     }
 }

@@ -216,6 +216,10 @@ TEST_CASE("a pixel without a contributing sample is not exact", "[metrics]") {
   CHECK(wide.floor * wide.floor - 0.02 == squared(narrow.floor));
   // Percentiles: 0.2 over 0 + 0.01 * 3.
   CHECK(one("p95", image, reference).floor == near(0.2 / 0.03));
+  // Both pixels without a contribution: of all their samples together 3 may have been missed, not 3 in each.
+  Film alike = from_batches({1, 1, 1, 1, 1, 1}, 2, 1);
+  alike.add("se").assign(6, 0.2f);
+  CHECK(one("bias", image, alike).high - one("bias", image, alike).value == near(3 * 0.2 / 6));
   reference.layers["se"][0] = -1;
   CHECK_THROWS_WITH(one("bias", image, reference), Contains("below 0"));
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "experiments/renderers.h"
+#include "reference/ray_marcher/options.h"
 #include "scene/error.h"
 #include "scene/film.h"
 #include "scene/scene.h"
@@ -21,12 +22,13 @@ using scene::Film;
 struct Tolerance {
   double own, truth;
 };
-Tolerance tolerance(const std::string& renderer) {
+Tolerance tolerance(const std::string& renderer, const scene::Scene& scene) {
   if (renderer == "deterministic") return {1e-6, 1e-6};
   if (renderer == "shadow_planes") return {1e-6, 1e-4};
   if (renderer == "fogshop") return {1e-5, 0.25};  // approximate; its error is measured elsewhere
-  if (renderer == "ray_marcher") return {2e-3, 0.01};
+  if (renderer == "ray_marcher") return {2e-3, ray_marcher::stated_error(scene)};
   if (renderer == "path_tracer") return {1e-5, 1e-5};  // beside its standard error
+  if (renderer == "ray_marcher_gpu") return {2e-3, ray_marcher::stated_error(scene)};
   return {2e-3, renderer == "fogshop_gpu" ? 0.25 : 0.01};
 }
 
@@ -124,7 +126,7 @@ std::map<std::string, Tally> sweep(const SweepCase& c, const std::vector<double>
       tally.details.push_back(base.message);
       continue;
     }
-    const Tolerance of = tolerance(name);
+    const Tolerance of = tolerance(name, scene::parse_scene(c.text(c.base), "sweep", "."));
     if (!base.film.has(c.layer)) {
       tally.available = false;
       continue;

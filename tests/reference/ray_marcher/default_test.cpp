@@ -28,7 +28,8 @@ TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
         difference += (film.get("airlight", x, y) - exact.radiance).square().sum();
         size += exact.radiance.square().sum();
       }
-    const double stated = scene->geometry ? default_error_with_shadows : default_error;
+    const double stated = stated_error(*scene);
+    CHECK(stated == (scene->geometry ? 0.06 : 0.015));
     CAPTURE(name, stated);
     CHECK(std::sqrt(difference / size) < stated);
     CHECK_THAT(prepared->stages()[0].reason, Catch::Contains(scene->geometry ? "within 6 %" : "within 1.5 %"));

@@ -70,7 +70,7 @@ TEST_CASE("ray marcher: media of any thickness", "[ray_marcher]") {
           return error_of(render(scene, view, given).film, *scene, view);
         };
         CAPTURE(kind, extinction, kernel);
-        CHECK(error("64", "32") < 0.04);
+        CHECK(error("64", "32") < stated_error(*scene));
         CHECK(error("128", "64") < (kind == 2 ? 0.03 : 0.01));
       }
     }
