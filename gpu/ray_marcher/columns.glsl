@@ -109,7 +109,8 @@ float local_density(int k, vec3 p) {
   return 0;
 }
 
-// reference/ray_marcher/depth.h: is the first step deep, and the column of such a ray.
+// reference/ray_marcher/depth.h: is the first step deep, and the column of such a ray. Beyond 20 optical depths, 2e-9 of
+// the light, steps are as they come: device_plan.cpp bounds their number.
 bool starts_deep(int k, vec3 o, vec3 d, vec2 t) {
   float h = (t.y - t.x) / steps_of(t.y - t.x), least = deepest_shadow_step;
   return layers[k].most_varied * layers[k].thickest * h > least &&
@@ -123,7 +124,7 @@ float deep_column(int k, vec3 o, vec3 d, vec2 t) {
     float lo = t.x + (i + from) * whole, h = width_ * whole;
     float first = local_density(k, o + lo * d), middle = local_density(k, o + (lo + 0.5 * h) * d),
           last = local_density(k, o + (lo + h) * d);
-    if (column * thickest < 40 && width_ > 1.0 / 16777216 &&
+    if (column * thickest < 20 && width_ > 1.0 / 16777216 &&
         max(max(first, middle), last) * thickest * h > deepest_shadow_step) {
       width_ *= 0.5;
       continue;

@@ -36,10 +36,10 @@ double iterations_at_once(const ray_marcher::Plan& plan) {
     if (!layer.varies) continue;
     const double across = bounding_box(layer.varied).size().norm(), most = double(1 << 20);
     const double steps = o.shadow_step > 0 ? std::min(across / o.shadow_step, most) : o.shadow_steps;
-    // Divided steps (deep_column): 40 / deepest of them on the way into the dark, twice for the halves, and the way
+    // Divided steps (deep_column): 20 / deepest of them on the way into the dark, twice for the halves, and the way
     // back up.
     if (!o.exact_shadow && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
-      sum += 4 * 40 / deepest_shadow_step(o) * (layer.gaussians ? 3 * double(layer.gaussians->count) : 1);
+      sum += 4 * 20 / deepest_shadow_step(o) * (layer.gaussians ? 3 * double(layer.gaussians->count) : 1);
     if (!layer.gaussians)
       sum += steps;
     else if (layer.gaussians->any_negative)

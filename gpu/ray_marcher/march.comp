@@ -126,9 +126,10 @@ vec3 extinction_at(Part part, vec3 point) {
   return sum;
 }
 bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
-  float least = (whole ? 4 : 1) * deepest_step;
-  for (int c = 0; c < 3; ++c)
-    if (before[c] < deepest_seen && greatest[c] * length_ > least) return true;
+  for (int c = 0; c < 3; ++c) {
+    float own = greatest[c] * length_, most = !whole ? 1 : before[c] < 0.5 * own ? 2 : 16;
+    if (before[c] < deepest_seen && own > most * deepest_step) return true;
+  }
   return false;
 }
 bool may_be_deep(Part part, float length_) {
@@ -151,6 +152,7 @@ bool march_deep_step(Part part, vec3 origin, vec3 direction, float t, float x, f
       greatest = max(greatest, extinction_at(part, origin + (t + lo + 0.5 * float(i) * h) * direction));
     if (at_width > least_width && is_deep(depth, greatest, h, at_width == 1)) {
       at_width *= 0.5;
+      moved = true;
       continue;
     }
     ended = all_above(depth, darkest);

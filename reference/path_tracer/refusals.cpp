@@ -47,7 +47,9 @@ double work(const scene::Scene& scene, const Options& options) {
       const double absorbed = 1 / std::max(1 - medium.albedo[c], 1e-300);
       most = std::max(most, absorbed < 10 ? absorbed : std::min(absorbed, 2 * thinnest_depth(medium, c)));
     }
-    collisions += options.max_order >= 0 ? std::min(most, double(options.max_order)) : most;
+    if (options.max_order >= 0) most = std::min(most, double(options.max_order));
+    if (options.paths != Options::Paths::all) most = std::min(most, 1.0);  // they end after one scattering
+    collisions += most;
     if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field)) terms += double(sum->gaussians.size());
   }
   return double(scene.width) * scene.height * double(options.samples) * collisions * terms;

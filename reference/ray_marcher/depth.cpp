@@ -50,7 +50,9 @@ Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long
 }
 
 bool is_deep(const Options& options, const Rgb& before, const Rgb& greatest, double length, bool whole) {
-  return (before < deepest_seen && greatest * length > (whole ? most_whole : 1) * deepest_step(options)).any();
+  const Rgb depth = greatest * length;
+  const Rgb most = whole ? Rgb((before < 0.5 * depth).select(Rgb::Constant(most_whole), most_smooth)) : Rgb::Ones();
+  return (before < deepest_seen && depth > most * deepest_step(options)).any();
 }
 
 void follow_depth(const Plan& plan, const Ray& ray, const Step* begin, const Step* end, std::vector<Step>& out) {
@@ -71,7 +73,7 @@ double deep_column(const Layer& layer, const Options& options, const Ray& ray, I
       const double lo = extent.lo + (i + from) * whole, h = width * whole;
       const double first = varied_density(layer, ray.at(lo)), middle = varied_density(layer, ray.at(lo + 0.5 * h)),
                    last = varied_density(layer, ray.at(lo + h));
-      if (column * extinction < deepest_seen && width > std::ldexp(1.0, -most_halvings) &&
+      if (column * extinction < deepest_shaded && width > std::ldexp(1.0, -most_halvings) &&
           std::max({first, middle, last}) * extinction * h > limit) {
         width *= 0.5;
         continue;

@@ -12,8 +12,9 @@
 
 namespace airlight::ray_marcher {
 
-constexpr double deepest_seen = 40, most_whole = 4;
-constexpr int most_halvings = 40;  // of a step; places in double have no more digits
+constexpr double deepest_seen = 40, most_whole = 2, most_smooth = 16;
+constexpr double deepest_shaded = 20;  // behind more, 2e-9 of the light, a shadow ray's steps are as they come
+constexpr int most_halvings = 40;      // of a step; places in double have no more digits
 
 // Could a step be deep, by the bounds of the media there?
 bool may_be_deep(const std::vector<Layer>&, const Options&, const Step&);
@@ -22,8 +23,9 @@ bool may_be_deep(const std::vector<Layer>&, const Options&, const Step&);
 Rgb extinction_at(const Plan&, const Ray&, double t, unsigned long long inside);
 
 // Is it, with `before` in front of it? `greatest`: extinction, of its ends and its middle.
-// `whole`: a step as it was laid, which is left alone up to `most_whole` times as deep: equal steps through a smooth
-// medium err less than divided ones.
+// `whole`: a step as it was laid, which is left alone up to `most_whole` times as deep, and up to `most_smooth` times
+// where at least half as much lies before it: there the medium has grown over more than a step's length, and
+// equal steps through a smooth medium err less than divided ones.
 bool is_deep(const Options&, const Rgb& before, const Rgb& greatest, double length, bool whole);
 
 // The steps [begin, end) of a ray with the deep ones divided, appended to `out`.

@@ -108,4 +108,9 @@ TEST_CASE("work without end is refused in one line", "[path_tracer]") {
   CHECK_THAT(refusals(*scene, options).front(), Catch::Contains("160 x 120 pixels, 1048576 samples"));
   options.samples = 256;
   CHECK(refusals(*scene, options).empty());
+  // Endless fog that scatters everything: no end of collisions, unless paths end after one.
+  const auto endless = scene_of({medium(scene::Unbounded{}, 1, 1)}, {scene::DirectionalLight{}});
+  CHECK(refusals(*endless, options).size() == 1);
+  options.paths = Options::Paths::scattered_to_surface;
+  CHECK(refusals(*endless, options).empty());
 }

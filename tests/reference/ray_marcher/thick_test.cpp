@@ -54,15 +54,15 @@ double error_of(const scene::Film& film, const scene::Scene& scene, const scene:
 
 }  // namespace
 
-// Steps are left alone up to an optical depth of 1 (64 steps): where the light falls as exp(-2 depth), lit from where
-// it is seen, the midpoint rule errs by 2^2 / 24 = 17 % of such a step's light, of which there are few at the
-// threshold; divided ones are 1/4 deep, 1 %. Columns err by about as much again, and a grid begins with a kink within a
-// step, of order 1. Measured: .032 and .026 at worst. Without steps that follow the depth all light is lost: 0 at 1e6
-// where .005 is right.
+// Steps are left alone up to an optical depth x of 0.5 (64 steps), or behind one that is divided: where the light falls
+// as exp(-2 depth), lit from where it is seen, the midpoint rule errs by 1 - x/sinh(x): 4 % of all light at 0.5, and at
+// most 2 % as the second step, exp(-2x) (1 - x/sinh(x)) at x = 1. Columns err by about as much again, and a grid begins
+// with a kink within a step, of order 1. Without steps that follow the depth all light is lost: 0 at 1e6 where .005 is
+// right.
 TEST_CASE("ray marcher: media of any thickness", "[ray_marcher]") {
   const scene::View view = from_the_front();
   for (int kind = 0; kind < 3; ++kind)
-    for (double extinction = 1; extinction < 2e9; extinction *= 10) {
+    for (double extinction = 1; extinction < 2e9; extinction *= kind == 0 && extinction < 1e3 ? 1.5 : 10) {
       const auto scene = thick(kind, extinction);
       for (const char* kernel : {"auto", "scalar"}) {
         const auto error = [&](const char* steps, const char* shadow_steps) {
@@ -71,7 +71,7 @@ TEST_CASE("ray marcher: media of any thickness", "[ray_marcher]") {
         };
         CAPTURE(kind, extinction, kernel);
         CHECK(error("64", "32") < stated_error(*scene));
-        CHECK(error("128", "64") < (kind == 2 ? 0.03 : 0.01));
+        CHECK(error("128", "64") < (kind == 2 ? 0.03 : 0.02));
       }
     }
 }

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00174508:1.4326]
 set logscale y
 set format y "%g"
-set yrange [6.53985e-05:0.784033]
+set yrange [3.09385e-05:0.818422]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_depth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "npsf 4", \
@@ -30,20 +30,17 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
      data index 12 using 2:5 with linespoints lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "ball 4", \
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     data index 13 using 2:5 with points lc rgb "#000000" pt 10 ps 0.9 notitle, \
      data index 14 using 2:5 with linespoints lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "ball 6", \
      data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle, \
-     data index 15 using 2:5 with points lc rgb "#7F3C8D" pt 10 ps 0.9 notitle, \
      data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "ball 12", \
      data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle, \
-     data index 17 using 2:5 with points lc rgb "#80BA5A" pt 10 ps 0.9 notitle, \
      data index 18 using 2:5 with linespoints lc rgb "#A5AA99" pt 15 ps 0.7 lw 1.6 title "volume 12", \
      data index 18 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#A5AA99" pt 0 lw 0.8 notitle, \
      data index 19 using 2:5 with points lc rgb "#A5AA99" pt 10 ps 0.9 notitle, \
      data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "volume 24", \
      data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 21 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     0.000260512 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     8.52379e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_depth.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "npsf 4", \
@@ -60,17 +57,14 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
      data index 12 using 2:5 with linespoints lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "ball 4", \
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     data index 13 using 2:5 with points lc rgb "#000000" pt 10 ps 0.9 notitle, \
      data index 14 using 2:5 with linespoints lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "ball 6", \
      data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle, \
-     data index 15 using 2:5 with points lc rgb "#7F3C8D" pt 10 ps 0.9 notitle, \
      data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "ball 12", \
      data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle, \
-     data index 17 using 2:5 with points lc rgb "#80BA5A" pt 10 ps 0.9 notitle, \
      data index 18 using 2:5 with linespoints lc rgb "#A5AA99" pt 15 ps 0.7 lw 1.6 title "volume 12", \
      data index 18 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#A5AA99" pt 0 lw 0.8 notitle, \
      data index 19 using 2:5 with points lc rgb "#A5AA99" pt 10 ps 0.9 notitle, \
      data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "volume 24", \
      data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 21 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     0.000260512 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     8.52379e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000269757:0.0111781]
+set xrange [0.000367234:0.0123929]
 set logscale y
 set format y "%g"
 set yrange [6.55806e-05:0.42958]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000203174:0.003641]
+set xrange [0.000208451:0.00508536]
 set logscale y
 set format y "%g"
 set yrange [0.000117423:1.05266]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00052174:0.0208626]
+set xrange [0.000599264:0.0285288]
 set logscale y
 set format y "%g"
 set yrange [6.4664e-05:1.4132]

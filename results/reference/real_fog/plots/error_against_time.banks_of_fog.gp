@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00345771:0.204228]
+set xrange [0.00349853:0.439055]
 set logscale y
 set format y "%g"
 set yrange [0.000382565:1.34553]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00855816:0.133175]
+set xrange [0.0112326:0.181057]
 set logscale y
 set format y "%g"
 set yrange [1.98383e-06:0.179455]
