@@ -49,20 +49,11 @@ void remove_residue(EnvironmentMap& map) {
 }
 
 // Null if there is nothing to prefer.
-std::shared_ptr<const EnvironmentLight::Tables> make_tables(int width, int height, const std::vector<double>& values) {
+std::shared_ptr<const EnvironmentLight::Tables> make_tables(int width, int height, const std::vector<double>& values,
+                                                            const std::vector<float>& rgb = {}) {
   auto tables =
-      std::make_shared<EnvironmentLight::Tables>(EnvironmentLight::Tables{LatLongDensity(width, height, values)});
+      std::make_shared<EnvironmentLight::Tables>(EnvironmentLight::Tables{LatLongDensity(width, height, values, rgb)});
   return tables->density.positive() ? tables : nullptr;
-}
-
-Rgb bilinear(const EnvironmentMap& map, const LatLongCell& cell) {
-  const float* top = &map.rgb[3 * std::size_t(cell.top) * map.width];
-  const float* bottom = &map.rgb[3 * std::size_t(cell.bottom) * map.width];
-  const auto row = [&](const float* texels) {
-    const float *a = texels + 3 * cell.left, *b = texels + 3 * cell.right;
-    return Rgb((1 - cell.x) * Rgb(a[0], a[1], a[2]) + cell.x * Rgb(b[0], b[1], b[2]));
-  };
-  return (1 - cell.y) * row(top) + cell.y * row(bottom);
 }
 
 Vec3 sample_uniform(double u1, double u2) {
@@ -94,7 +85,7 @@ EnvironmentLight make_map_environment(std::shared_ptr<const EnvironmentMap> map,
   std::vector<double> values(map->rgb.size() / 3);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = luminance(scale * Rgb(map->rgb[3 * i], map->rgb[3 * i + 1], map->rgb[3 * i + 2]));
-  light.tables = make_tables(map->width, map->height, values);
+  light.tables = make_tables(map->width, map->height, values, map->rgb);
   light.map = std::move(map);
   return light;
 }
@@ -140,8 +131,9 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& pa
 
 Rgb radiance(const EnvironmentLight& light, const Vec3& w) {
   if (light.map) {
-    const EnvironmentMap& map = *light.map;
-    return light.scale * bilinear(map, find_cell(to_lat_long(light.to_map * w), map.width, map.height));
+    if (!light.tables) return Rgb::Zero();
+    return light.scale *
+           light.tables->density.colour(find_cell(to_lat_long(light.to_map * w), light.map->width, light.map->height));
   }
   if (!light.sh.empty()) return light.scale * evaluate_sh(light.sh, light.to_map * w);
   return light.scale;
@@ -164,7 +156,7 @@ EnvironmentValue evaluate_environment(const EnvironmentLight& light, const Vec3&
   // The density's grid is the map's.
   const Vec3 v = light.to_map * w;
   const LatLongCell cell = find_cell(to_lat_long(v), light.map->width, light.map->height);
-  return {light.scale * bilinear(*light.map, cell),
+  return {light.scale * light.tables->density.colour(cell),
           uniform_share * uniform_pdf + (1 - uniform_share) * light.tables->density.pdf(cell, v[1])};
 }
 

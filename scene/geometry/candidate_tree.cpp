@@ -36,6 +36,12 @@ void candidate(const RTCIntersectFunctionNArguments* args) {
   ray.tfar = tmax < 0 ? -1.0f : std::min(ray.tfar, traversal->limit(tmax));
 }
 
+void candidate_until(const RTCOccludedFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  auto* traversal = static_cast<Traversal*>(args->context);
+  if (traversal->visitor->visit(args->primID) < 0) reinterpret_cast<RTCRay*>(args->ray)->tfar = -infinity;
+}
+
 void require(RTCDevice device, bool good) {
   if (!good) throw Error(fmt::format("Embree failed with code {}", int(rtcGetDeviceError(device))), 3);
 }
@@ -89,6 +95,7 @@ struct CandidateTree::Impl {
         },
         nullptr);
     rtcSetGeometryIntersectFunction(geometry, candidate);
+    rtcSetGeometryOccludedFunction(geometry, candidate_until);
     rtcCommitGeometry(geometry);
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -117,38 +124,54 @@ struct CandidateTree::Impl {
     }
     return range;
   }
+
+  bool begin(const Ray&, double tmax, CandidateVisitor&, Traversal&, RTCRay&) const;
 };
 
 CandidateTree::CandidateTree(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>(boxes)) {}
 CandidateTree::~CandidateTree() = default;
 
-void CandidateTree::visit(const Ray& ray, double tmax, CandidateVisitor& visitor) const {
-  const Interval range = impl_->clip(ray, tmax);
-  if (range.empty()) return;  // also for a ray that is not finite
-  Traversal traversal;
+// The ray as the tree counts, its traversal made ready with it; false where it misses everything.
+bool CandidateTree::Impl::begin(const Ray& ray, double tmax, CandidateVisitor& visitor, Traversal& traversal,
+                                RTCRay& query) const {
+  const Interval range = clip(ray, tmax);
+  if (range.empty()) return false;  // also for a ray that is not finite
   rtcInitIntersectContext(&traversal);
   traversal.visitor = &visitor;
   traversal.start = range.lo;
-  traversal.scale = impl_->scale;
+  traversal.scale = scale;
 
-  const Point3 start = (ray.at(range.lo) - impl_->center) * impl_->scale;
+  const Point3 start = (ray.at(range.lo) - center) * scale;
+  query.org_x = float(start[0]);
+  query.org_y = float(start[1]);
+  query.org_z = float(start[2]);
+  query.dir_x = float(ray.direction[0]);
+  query.dir_y = float(ray.direction[1]);
+  query.dir_z = float(ray.direction[2]);
+  query.tnear = 0;
+  query.tfar = traversal.limit(range.hi);
+  query.time = 0;
+  query.mask = ~0u;
+  query.id = 0;
+  query.flags = 0;
+  return true;
+}
+
+// In both, floats that flush to zero would change nothing (the coordinates are of order one), so the caller's mode
+// stays.
+void CandidateTree::visit(const Ray& ray, double tmax, CandidateVisitor& visitor) const {
+  Traversal traversal;
   RTCRayHit query;
-  query.ray.org_x = float(start[0]);
-  query.ray.org_y = float(start[1]);
-  query.ray.org_z = float(start[2]);
-  query.ray.dir_x = float(ray.direction[0]);
-  query.ray.dir_y = float(ray.direction[1]);
-  query.ray.dir_z = float(ray.direction[2]);
-  query.ray.tnear = 0;
-  query.ray.tfar = traversal.limit(range.hi);
-  query.ray.time = 0;
-  query.ray.mask = ~0u;
-  query.ray.id = 0;
-  query.ray.flags = 0;
+  if (!impl_->begin(ray, tmax, visitor, traversal, query.ray)) return;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  // Floats that flush to zero would change nothing here (the coordinates are of order one), so the caller's mode stays.
   rtcIntersect1(impl_->scene, &traversal, &query);
+}
+
+void CandidateTree::visit_until(const Ray& ray, double tmax, CandidateVisitor& visitor) const {
+  Traversal traversal;
+  RTCRay query;
+  if (impl_->begin(ray, tmax, visitor, traversal, query)) rtcOccluded1(impl_->scene, &traversal, &query);
 }
 
 }  // namespace airlight::scene

@@ -30,6 +30,9 @@ class CandidateTree {
 
   // Visits at least every box that the ray meets in 0 < t < tmax, each at most once, in no order. Thread safe.
   void visit(const Ray&, double tmax, CandidateVisitor&) const;
+  // The same for who ends the visit at the first find: a traversal that does not sort. The visitor's answers count only
+  // where they are negative.
+  void visit_until(const Ray&, double tmax, CandidateVisitor&) const;
 
  private:
   struct Impl;

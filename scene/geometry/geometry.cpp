@@ -15,10 +15,11 @@
 namespace airlight::scene {
 namespace {
 
-// A primitive of the tree: a triangle of a mesh, or a whole sphere.
+// A primitive of the tree: a triangle of a mesh with its vertices beside it, or a whole sphere.
 struct Primitive {
   int surface;
   int triangle;  // -1 for a sphere
+  Point3 a, b, c;
 };
 
 Box box_of(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
@@ -61,17 +62,15 @@ struct Geometry::Impl {
   double magnitude = 0;  // the largest coordinate, which sets the size of an ulp [m]
 
   int cross(const Ray& ray, const ShearedRay& sheared, unsigned index, std::array<Crossing, 2>& crossings) const {
-    const auto& shape = surfaces[primitives[index].surface].shape;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-      const auto& t = mesh->triangles[primitives[index].triangle];
-      return cross_triangle(sheared, mesh->vertices[t[0]], mesh->vertices[t[1]], mesh->vertices[t[2]], crossings[0]);
-    }
-    return cross_sphere(ray, *std::get_if<Sphere>(&shape), crossings);
+    const Primitive& p = primitives[index];
+    if (p.triangle >= 0) return cross_triangle(sheared, p.a, p.b, p.c, crossings[0]);
+    return cross_sphere(ray, *std::get_if<Sphere>(&surfaces[p.surface].shape), crossings);
   }
 
   // Calls found(crossing, surface, primitive) for what lies in (0, tmax), in no order; it returns the new tmax,
   // negative to stop.
-  template <class F>
+  enum class Until { end, found };
+  template <Until until, class F>
   void for_each_crossing(const Ray& ray, double tmax, F found) const {
     for (const int index : planes) {
       Crossing crossing;
@@ -95,7 +94,10 @@ struct Geometry::Impl {
         return tmax;
       }
     } visitor(*this, ray, tmax, found);
-    tree->visit(ray, tmax, visitor);
+    if constexpr (until == Until::found)
+      tree->visit_until(ray, tmax, visitor);
+    else
+      tree->visit(ray, tmax, visitor);
   }
 };
 
@@ -111,9 +113,12 @@ Geometry::Geometry(const std::vector<Surface>& surfaces) : impl_(std::make_uniqu
   for (int s = 0; s < int(surfaces.size()); ++s) {
     const auto& shape = impl_->surfaces[s].shape;
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-      for (const int t : distinct_triangles(*mesh)) add({s, t}, box_of(*mesh, mesh->triangles[t]));
+      for (const int t : distinct_triangles(*mesh)) {
+        const auto& [a, b, c] = mesh->triangles[t];
+        add({s, t, mesh->vertices[a], mesh->vertices[b], mesh->vertices[c]}, box_of(*mesh, mesh->triangles[t]));
+      }
     } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-      add({s, -1}, box_of(*sphere));
+      add({s, -1, {}, {}, {}}, box_of(*sphere));
     } else {
       impl_->planes.push_back(s);
       impl_->magnitude = std::max(impl_->magnitude, std::get<Plane>(shape).point.cwiseAbs().maxCoeff());
@@ -130,7 +135,7 @@ Geometry::~Geometry() = default;
 std::optional<Hit> Geometry::first_hit(const Ray& ray, double tmax) const {
   Crossing nearest;
   int surface = -1, primitive = -1;
-  impl_->for_each_crossing(ray, tmax, [&](const Crossing& crossing, int s, int p) {
+  impl_->for_each_crossing<Impl::Until::end>(ray, tmax, [&](const Crossing& crossing, int s, int p) {
     // Where surfaces coincide the first in the list wins, in whatever order the tree brings them.
     if (std::tie(crossing.t, s, p) < std::tie(nearest.t, surface, primitive)) {
       nearest = crossing;
@@ -146,7 +151,7 @@ std::optional<Hit> Geometry::first_hit(const Ray& ray, double tmax) const {
 
 bool Geometry::occluded(const Ray& ray, double tmax) const {
   bool found = false;
-  impl_->for_each_crossing(ray, tmax, [&](const Crossing&, int, int) {
+  impl_->for_each_crossing<Impl::Until::found>(ray, tmax, [&](const Crossing&, int, int) {
     found = true;
     return -1.0;
   });
@@ -159,7 +164,7 @@ std::vector<Hit> Geometry::all_hits(const Ray& ray, double tmax) const {
     int primitive;
   };
   std::vector<Found> found;
-  impl_->for_each_crossing(ray, tmax, [&](const Crossing& crossing, int s, int p) {
+  impl_->for_each_crossing<Impl::Until::end>(ray, tmax, [&](const Crossing& crossing, int s, int p) {
     const int triangle = p < 0 ? -1 : impl_->primitives[p].triangle;
     found.push_back({{crossing.t, crossing.position, crossing.normal, s, triangle}, p});
     return tmax;
