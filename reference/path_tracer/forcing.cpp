@@ -34,23 +34,27 @@ Box contents(const scene::Scene& scene) {
 Flight force(const Media& media, const Ray& ray, double tmax, double boost, Counters& counters) {
   Flight flight;
   flight.forced = true;
-  const Rgb tentative = media.majorant_depth(ray, tmax);
   const Rgb depth = media.optical_depth(ray, tmax, counters);
+  const Rgb tentative = media.homogeneous() ? depth : media.majorant_depth(ray, tmax);
   flight.transmittance = media.transmittance(depth);
-  Rgb real, wanted;  // probabilities of a collision: of an analog flight, of a forced one
-  for (int c = 0; c < 3; ++c) real[c] = some_collision(depth[c]);
+  // Probabilities of a collision: of an analog flight, of a forced one. In grey media the channels are one.
+  const int channels = media.grey() ? 1 : 3;
+  const auto for_each_channel = [&](Rgb& result, auto of) {
+    for (int c = 0; c < channels; ++c) result[c] = of(c);
+    if (channels == 1) result = Rgb::Constant(result[0]);
+  };
+  Rgb real, wanted;
+  for_each_channel(real, [&](int c) { return some_collision(depth[c]); });
   const bool collides_anyway = real.mean() >= 1 - most_missed;
-  for (int c = 0; c < 3; ++c) {
-    flight.chance[c] = real[c] > 0 ? std::min(1.0, boost * real[c]) : 0;
-    if (!collides_anyway) flight.some[c] = some_collision(tentative[c]);
-    wanted[c] = flight.some[c] > 0 ? std::min(1.0, real[c] / flight.some[c]) : 1;
-  }
+  for_each_channel(flight.chance, [&](int c) { return real[c] > 0 ? std::min(1.0, boost * real[c]) : 0; });
+  if (!collides_anyway) for_each_channel(flight.some, [&](int c) { return some_collision(tentative[c]); });
+  for_each_channel(wanted, [&](int c) { return flight.some[c] > 0 ? std::min(1.0, real[c] / flight.some[c]) : 1; });
   double missed = 1 - wanted.mean();
   for (; flight.tries < most_tries && missed > most_missed; ++flight.tries) missed *= 1 - wanted.mean();
-  for (int c = 0; c < 3; ++c) {
+  for_each_channel(flight.gain, [&](int c) {
     const double success = wanted[c] < 1 ? -expm1(flight.tries * log1p(-wanted[c])) : 1.0;
-    flight.gain[c] = real[c] > 0 ? flight.chance[c] * success / real[c] : 1.0;
-  }
+    return real[c] > 0 ? flight.chance[c] * success / real[c] : 1.0;
+  });
   return flight;
 }
 
