@@ -55,42 +55,42 @@ scene::Scene furnace(const std::vector<scene::Medium>& media, bool white_ball) {
 }
 
 Comparison mean_one(const std::string& name, double expected, const scene::Scene& scene, const Ray& ray,
-                    std::uint64_t samples) {
-  const auto got = Measurement(scene, ray, 1, "furnace " + name).run(fixed(samples));
+                    const Effort& effort) {
+  const auto got = Measurement(scene, ray, 1, "furnace " + name).run(effort);
   // A walk without next-event estimation would have no variance at all: rounding is allowed for.
   return statistical(name, expected, 0, got.total.mean[0], got.total.error[0], accept_se, 1e-9);
 }
 
 Check read_furnace(const Value& v) {
   const double expected = v["expected"]["L"].number();
-  return {
-      "", [=](VerifyProfile profile) {
-        Outcome out;
-        const std::uint64_t samples = profile == VerifyProfile::quick ? 1 << 15 : 1 << 20;
-        const Ray ray{Point3(0.1, -0.2, -3), Vec3(0.05, 0.08, 1).normalized()};
-        std::vector<scene::Medium> all;
-        for (const Fog& f : furnace_media()) {
-          out.comparisons.push_back(mean_one(f.name, expected, furnace({f.medium}, false), ray, samples));
-          if (!std::holds_alternative<scene::Slab>(f.medium.region)) all.push_back(f.medium);
-        }
-        out.comparisons.push_back(mean_one("all at once", expected, furnace(all, false), ray, samples));
-        out.comparisons.push_back(mean_one("all, white ball", expected, furnace(all, true), ray, samples));
-        if (profile == VerifyProfile::paper) {
-          scene::Medium thick = fog(scene::Sphere{Point3::Zero(), 1}, 500, 1, scene::Isotropic{});
-          out.comparisons.push_back(mean_one("optical depth 1000", expected, furnace({thick}, false), ray, 1 << 14));
-        } else {
-          out.left_out = 1;
-          out.left_out_because = "optical depth 1000 is for the paper profile";
-        }
-        return out;
-      }};
+  return {"", [=](VerifyProfile profile) {
+            Outcome out;
+            const Effort effort = fixed(profile == VerifyProfile::quick ? 1 << 15 : 1 << 20, profile);
+            const Ray ray{Point3(0.1, -0.2, -3), Vec3(0.05, 0.08, 1).normalized()};
+            std::vector<scene::Medium> all;
+            for (const Fog& f : furnace_media()) {
+              out.comparisons.push_back(mean_one(f.name, expected, furnace({f.medium}, false), ray, effort));
+              if (!std::holds_alternative<scene::Slab>(f.medium.region)) all.push_back(f.medium);
+            }
+            out.comparisons.push_back(mean_one("all at once", expected, furnace(all, false), ray, effort));
+            out.comparisons.push_back(mean_one("all, white ball", expected, furnace(all, true), ray, effort));
+            if (profile == VerifyProfile::paper) {
+              scene::Medium thick = fog(scene::Sphere{Point3::Zero(), 1}, 500, 1, scene::Isotropic{});
+              out.comparisons.push_back(
+                  mean_one("optical depth 1000", expected, furnace({thick}, false), ray, fixed(1 << 14, profile)));
+            } else {
+              out.left_out = 1;
+              out.left_out_because = "optical depth 1000 is for the paper profile";
+            }
+            return out;
+          }};
 }
 
 // Paths that enter a convex region evenly over its boundary, cosine-weighted, albedo 1: mean collisions. Student's t
 // with 15 degrees of freedom: 6.6 standard errors are as rare as 4.5 of a known one.
 Comparison collisions(const std::string& name, double expected, const scene::Medium& medium, const Detector& entry,
-                      std::uint64_t samples) {
-  const auto got = Measurement(furnace({medium}, false), entry, 1, "collisions " + name).collisions(samples);
+                      const Effort& effort) {
+  const auto got = Measurement(furnace({medium}, false), entry, 1, "collisions " + name).collisions(effort);
   return statistical(name, expected, 0, got.mean[0], got.error[0], 6.6);
 }
 
@@ -140,11 +140,11 @@ Detector cube_entry() {
 
 Check read_collisions(const Value& v) {
   const Value e = v["expected"];
-  const double radius = v["input"]["sphere_optical_radius"].number();
+  const double radius = v["input"]["sphere_optical_radius"].number_in(0, 1e4);
   const double sphere = e["mean_collisions"].number(), per_tau = e["slab_per_unit_tau"].number();
   const double per_edge = e["cube_per_unit_optical_edge"].number();
   return {"", [=](VerifyProfile profile) {
-            const std::uint64_t samples = profile == VerifyProfile::quick ? 1 << 18 : 1 << 23;
+            const Effort effort = fixed(profile == VerifyProfile::quick ? 1 << 18 : 1 << 23, profile);
             const Detector slab = cosine_detector(Point3(0, 0, -1), Vec3::UnitZ());
             const Box cube{Point3::Zero(), Point3::Ones()};
             Outcome out;
@@ -152,14 +152,14 @@ Check read_collisions(const Value& v) {
               return fog(scene::Sphere{Point3::Zero(), 1}, radius, 1, p);
             };
             out.comparisons.push_back(
-                collisions("sphere isotropic", sphere, ball(scene::Isotropic{}), sphere_entry(), samples));
+                collisions("sphere isotropic", sphere, ball(scene::Isotropic{}), sphere_entry(), effort));
             out.comparisons.push_back(
-                collisions("sphere HG 0.8", sphere, ball(scene::HenyeyGreenstein{0.8}), sphere_entry(), samples));
+                collisions("sphere HG 0.8", sphere, ball(scene::HenyeyGreenstein{0.8}), sphere_entry(), effort));
             const scene::Region layer = scene::Slab{Vec3::UnitZ(), 0, 1};
             out.comparisons.push_back(
-                collisions("slab tau 3", 3 * per_tau, fog(layer, 3, 1, scene::Murky{}), slab, samples));
+                collisions("slab tau 3", 3 * per_tau, fog(layer, 3, 1, scene::Murky{}), slab, effort));
             out.comparisons.push_back(
-                collisions("cube edge 4", 4 * per_edge, fog(cube, 4, 1, scene::Rayleigh{}), cube_entry(), samples));
+                collisions("cube edge 4", 4 * per_edge, fog(cube, 4, 1, scene::Rayleigh{}), cube_entry(), effort));
             // The law 4 int sigma dV / S for a field that varies: the grid's tent functions have the volume h^3 each.
             scene::Medium grid = fog(scene::Unbounded{}, 0.5, 1, scene::Hazy{});
             auto field = std::make_shared<scene::VoxelGrid>(*lumpy_grid());
@@ -169,7 +169,7 @@ Check read_collisions(const Value& v) {
             double integral = 0;
             for (const float value : field->values) integral += value * std::pow(field->voxel_size, 3);
             grid.field = std::shared_ptr<const scene::VoxelGrid>(field);
-            out.comparisons.push_back(collisions("cube grid", 4 * 0.5 * integral / 6, grid, cube_entry(), samples));
+            out.comparisons.push_back(collisions("cube grid", 4 * 0.5 * integral / 6, grid, cube_entry(), effort));
             return out;
           }};
 }
@@ -179,7 +179,7 @@ Check read_collisions(const Value& v) {
 Check read_reciprocity(const Value& v) {
   const double expected = v["expected"]["difference"].number();
   return {"", [=](VerifyProfile profile) {
-            const std::uint64_t samples = profile == VerifyProfile::quick ? 1 << 19 : 1 << 23;
+            const Effort effort = fixed(profile == VerifyProfile::quick ? 1 << 19 : 1 << 23, profile);
             Outcome out;
             for (const auto& [name, phase] :
                  {std::pair<const char*, scene::PhaseFunction>{"HG 0.6", scene::HenyeyGreenstein{0.6}},
@@ -190,7 +190,7 @@ Check read_reciprocity(const Value& v) {
                 scene.lights = {scene::DirectionalLight{to_light, Rgb::Ones()}};
                 scene::finish(scene);
                 const std::string run = std::string("reciprocity ") + n + std::to_string(to_light[2]);
-                const auto got = Measurement(scene, Ray{to_eye, -to_eye}, 1, run).run(fixed(samples));
+                const auto got = Measurement(scene, Ray{to_eye, -to_eye}, 1, run).run(effort);
                 return std::pair{got.total.mean[0] / to_light[2], got.total.error[0] / to_light[2]};
               };
               const Vec3 a = Vec3(0.3, 0.1, 0.9).normalized(), b = Vec3(-0.6, 0.7, 0.4).normalized();

@@ -1,10 +1,13 @@
 #include "experiments/verify/monte_carlo.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "experiments/interrupt.h"
+#include "scene/error.h"
 
 namespace airlight::experiments::verification {
 namespace {
@@ -21,9 +24,29 @@ std::uint32_t index_of(const std::string& name) {
   return hash;
 }
 
+// Collisions of a path that begins with the ray, about at most: as many as absorption lets happen, twice the depth in
+// the thinnest direction from outside (the mean chord's theorem), half its square from within (a walk at random).
+double longest_walk(const scene::Scene& scene, const Ray& ray) {
+  double walk = 1;
+  for (const scene::Medium& medium : scene.media) {
+    const Box box = scene::bounding_box(medium);
+    const double sigma = medium.sigma_t.maxCoeff(), albedo = medium.albedo.maxCoeff();
+    if (!(sigma > 0) || box.empty()) continue;
+    const double depth = sigma * scene::density_bounds(medium, box).hi * box.size().minCoeff();
+    const double steps = scene::contains(medium.region, ray.origin) ? 0.5 * depth * depth : 2 * depth;
+    walk += std::min(1 / std::max(1 - albedo, 1e-300), steps);
+  }
+  return walk;
+}
+
 }  // namespace
 
-Effort fixed(std::uint64_t samples) { return {0, samples, samples, infinity}; }
+Effort fixed(std::uint64_t samples, VerifyProfile profile) {
+  Effort effort = aim(0, profile);
+  effort.least = effort.most = samples;
+  effort.collisions = infinity;
+  return effort;
+}
 
 Effort aim(double se, VerifyProfile profile) {
   Effort effort;
@@ -31,6 +54,7 @@ Effort aim(double se, VerifyProfile profile) {
   if (profile == VerifyProfile::paper) {
     effort.most <<= 4;
     effort.collisions *= 100;
+    effort.refused *= 100;
   }
   return effort;
 }
@@ -59,14 +83,25 @@ RadianceEstimate Measurement::trace(std::uint64_t samples, std::uint32_t stream,
                    : path_tracer::radiance(world, ray_, samples, execution, index);
 }
 
-double Measurement::collisions_for(double se) const {
+void Measurement::check(std::uint64_t samples, const Effort& effort) const {
+  const Ray ray = detector_ ? detector_(RandomBlock{philox4x32_10({0, 0, 0, 0}, {0, 0})}) : ray_;
+  const double needed = double(samples) * longest_walk(*scene_, ray);
+  if (!(needed <= effort.refused))
+    throw Error(
+        fmt::format("{} paths may take {:.1g} collisions, expected at most {:.0e}: less depth, or a lower albedo",
+                    samples, needed, effort.refused));
+}
+
+double Measurement::collisions_for(const Effort& effort) const {
+  check(pilot_samples, effort);
   const RadianceEstimate pilot = trace(pilot_samples, 2, 0);
-  const double ratio = pilot.total.error[0] / se;
+  const double ratio = pilot.total.error[0] / effort.se;
   return double(pilot.counters.collisions) * ratio * ratio;
 }
 
 RadianceEstimate Measurement::run(const Effort& effort) const {
   double samples = double(effort.least);
+  check(effort.se > 0 ? pilot_samples : effort.least, effort);
   if (effort.se > 0) {
     const RadianceEstimate pilot = trace(pilot_samples, 2, 0);
     const double ratio = pilot.total.error[0] / effort.se;
@@ -77,11 +112,12 @@ RadianceEstimate Measurement::run(const Effort& effort) const {
   return trace((std::uint64_t(samples) + 1023) / 1024 * 1024, 1, 0);
 }
 
-path_tracer::Estimate Measurement::collisions(std::uint64_t samples) const {
+path_tracer::Estimate Measurement::collisions(const Effort& effort) const {
   constexpr int repeats = 16;
+  check(effort.least, effort);
   double sum = 0, square = 0;
   for (int i = 0; i < repeats; ++i) {
-    const RadianceEstimate got = trace(samples / repeats, 1, std::uint32_t(i), true);
+    const RadianceEstimate got = trace(effort.least / repeats, 1, std::uint32_t(i), true);
     const double mean = double(got.counters.collisions) / double(got.samples);
     sum += mean;
     square += mean * mean;

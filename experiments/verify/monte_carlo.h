@@ -21,9 +21,10 @@ struct Effort {
   std::uint64_t least = 1 << 14;
   std::uint64_t most = std::uint64_t(1) << 24;
   double collisions = 3e7;
+  double refused = 1e8;  // collisions; of what may take more, nothing is begun
 };
-Effort fixed(std::uint64_t samples);
-// The quick profile's limit of collisions, or a hundred times that.
+Effort fixed(std::uint64_t samples, VerifyProfile);
+// The quick profile's limits of collisions, or a hundred times those.
 Effort aim(double se, VerifyProfile);
 
 using Detector = path_tracer::RaySource;
@@ -35,15 +36,18 @@ class Measurement {
   Measurement(const scene::Scene&, Detector, int orders, std::string name);
   Measurement(const scene::Scene&, const Ray&, int orders, std::string name);
 
-  // Collisions that a standard error of `se` takes, foretold by the pilot.
-  double collisions_for(double se) const;
+  // All throw Error, before they begin, where the samples or the pilot may take more collisions than `refused`.
+
+  // Collisions that the effort's standard error takes, foretold by the pilot.
+  double collisions_for(const Effort&) const;
   path_tracer::RadianceEstimate run(const Effort&) const;
 
   // Mean collisions per path and its standard error, from sixteen repeats with their own random numbers. Absorption is
   // played: a path survives a collision with the probability of the albedo.
-  path_tracer::Estimate collisions(std::uint64_t samples) const;
+  path_tracer::Estimate collisions(const Effort&) const;
 
  private:
+  void check(std::uint64_t samples, const Effort&) const;
   path_tracer::RadianceEstimate trace(std::uint64_t samples, std::uint32_t stream, std::uint32_t repeat,
                                       bool analog = false) const;
   std::shared_ptr<const scene::Scene> scene_;

@@ -1,10 +1,16 @@
 // Order (1, 0) from delta lights, by the deterministic reference.
+#include <fmt/format.h>
+
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
 #include "reference/deterministic/airlight.h"
+#include "reference/deterministic/limits.h"
 
 namespace airlight::experiments::verification {
 namespace {
+
+constexpr double sharpest = 1e-13;  // a tenth of it is what the quadrature can meet
+constexpr double most_terms = 1e9;  // ten seconds
 
 // Ten times sharper than the vector's own tolerance, so that the quadrature spends a tenth of it.
 Comparison order_one(std::string what, double expected, const scene::Scene& scene, const Ray& ray, double t_end,
@@ -40,18 +46,20 @@ Check read_single_scattering_shape(const Value& v) {
   else
     shape["type"].complain("sphere or box");
   scene::Scene scene;
-  scene.media = {fog(region, in["sigma_t"].number(), in["albedo"].number_in(0, 1),
+  scene.media = {fog(region, in["sigma_t"].number_in(0, 1e300), in["albedo"].number_in(0, 1),
                      phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)))};
   scene.lights = {light_from(in["light"])};
   const Ray ray = ray_from(in["o"], in["d"]);
-  const double expected = v["expected"]["L1"].number(), accuracy = v["accuracy"]["rel"].number();
+  const double expected = v["expected"]["L1"].number();
+  const double accuracy = v["accuracy"]["rel"].number_in(sharpest, 1);
   return {"", [=](VerifyProfile) { return Outcome{{order_one("L1", expected, scene, ray, infinity, accuracy)}}; }};
 }
 
 Check read_single_scattering_gaussians(const Value& v) {
   const Value in = v["input"];
   scene::Scene scene;
-  scene.media = {gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), in["albedo"].number_in(0, 1),
+  scene.media = {gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number_in(0, 1e300),
+                              in["albedo"].number_in(0, 1),
                               phase_from(in["phase"]["name"], number_or(in["phase"], "g", 0)))};
   for (std::size_t i = 0; i < in["lights"].size(); ++i) scene.lights.push_back(light_from(in["lights"][i]));
   const Point3 eye = in["eye"].vector();
@@ -65,7 +73,12 @@ Check read_single_scattering_gaussians(const Value& v) {
     const Vec3 offset = rays[i]["p"].vector() - eye;
     rows.push_back({{eye, offset.normalized()}, offset.norm(), rays[i]["L1"].number(), rays[i]["T"].number()});
   }
-  const double accuracy = v["accuracy"]["rel"].number();
+  const double accuracy = v["accuracy"]["rel"].number_in(sharpest, 1);
+  if (const double needed = double(rows.size()) * deterministic::terms_of_ray(scene); needed > most_terms)
+    v["input"].complain(
+        fmt::format("at most {:.0e} evaluations of terms of densities, not {:.1g}: fewer rays, lights "
+                    "or Gaussians",
+                    most_terms, needed));
   return {"", [=](VerifyProfile) {
             Outcome out;
             for (std::size_t i = 0; i < rows.size(); ++i) {

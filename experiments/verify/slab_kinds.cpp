@@ -87,7 +87,7 @@ Outcome compare_table(const std::string& id, const std::vector<TableRow>& rows, 
                       VerifyProfile profile) {
   Outcome out;
   const auto add = [&](const TableNumber& n) {
-    const auto got = n.measurement.run(aim(table_se, VerifyProfile::paper)).total;
+    const auto got = n.measurement.run(aim(table_se, profile)).total;
     out.comparisons.push_back(statistical(n.what, n.expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
   };
   if (profile == VerifyProfile::paper) {
@@ -105,7 +105,7 @@ Outcome compare_table(const std::string& id, const std::vector<TableRow>& rows, 
     const std::size_t before = out.comparisons.size();
     for (const bool reflection : {true, false}) {
       const TableNumber n = table_number(id, rows[index], int(k % 4), reflection);
-      if (n.expected > 10 * table_se && n.measurement.collisions_for(table_se) < 1.5e7) add(n);
+      if (n.expected > 10 * table_se && n.measurement.collisions_for(aim(table_se, profile)) < 1.5e7) add(n);
     }
     done += out.comparisons.size() > before;
   }
@@ -145,7 +145,8 @@ Check read_slab_table(const Value& v) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Value r = list[i];
     if (r.size() != columns.size()) r.complain("twelve columns");
-    TableRow row{{phase_from(r[0], r[1].number()), r[2].number(), r[3].number()}, r[0].text(), {}};
+    TableRow row{
+        {phase_from(r[0], r[1].number()), r[2].number_in(0, 1), r[3].number_in(0, most_depth)}, r[0].text(), {}};
     if (r[0].text() == "hg") row.phase += std::to_string(r[1].number()).substr(0, 4);
     for (int c = 0; c < 8; ++c) row.value[c] = r[4 + c].number();
     rows.push_back(row);
@@ -164,10 +165,10 @@ Check read_slab_point(const Value& v) {
   const double published_r = e["published_R"].number(), published_t = e["published_T"].number();
   const double accuracy = v["accuracy"]["abs"].number();
   const std::string id = v["id"].text();
-  return {"", [=](VerifyProfile) {
+  return {"", [=](VerifyProfile profile) {
             Outcome out;
             const auto add = [&](const std::string& what, bool reflection, double mu0, double expected) {
-              const auto got = share(id + what, layer, reflection, mu0).run(aim(table_se, VerifyProfile::paper)).total;
+              const auto got = share(id + what, layer, reflection, mu0).run(aim(table_se, profile)).total;
               out.comparisons.push_back(statistical(what, expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
             };
             add("R", true, 1, r);
@@ -222,7 +223,7 @@ Check read_slab_orders(const Value& v) {
             const std::uint64_t samples = std::uint64_t(1) << (profile == VerifyProfile::quick ? 18 : 22);
             Outcome out;
             const auto add = [&](const char* name, const std::vector<double>& expected, const Detector& detector) {
-              const auto got = Measurement(scene, detector, orders, id + name).run(fixed(samples));
+              const auto got = Measurement(scene, detector, orders, id + name).run(fixed(samples, profile));
               for (std::size_t m = 0; m < expected.size(); ++m)
                 out.comparisons.push_back(statistical(std::string(name) + " order " + std::to_string(m + 1),
                                                       expected[m], 0, pi * got.orders[m + 1].mean[0],
@@ -250,7 +251,7 @@ Check read_half_space(const Value& v) {
   for (const std::string& name : h.fields())
     for (const auto& [mu, value] : by_cosine(h[name])) {
       const nlohmann::json text = name;
-      const double albedo = Value(text, h[name].where()).number();
+      const double albedo = Value(text, h[name].where()).number_in(0, 1);
       numbers.push_back({at("H", mu) + " w " + name, albedo, mu, value, true});
     }
   const double accuracy = v["accuracy"]["abs"].number();

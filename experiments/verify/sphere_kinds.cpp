@@ -27,8 +27,8 @@ scene::Light uniform_sky() { return scene::make_constant_environment(Rgb::Ones()
 // Along a chord of impact b, from outside.
 Ray chord(double b, double radius) { return {Point3(b, 0, -2 * radius), Vec3::UnitZ()}; }
 
-std::uint64_t samples_for(VerifyProfile profile, int quick) {
-  return std::uint64_t(1) << (profile == VerifyProfile::quick ? quick : quick + 5);
+Effort effort_for(VerifyProfile profile, int quick) {
+  return fixed(std::uint64_t(1) << (profile == VerifyProfile::quick ? quick : quick + 5), profile);
 }
 
 Comparison of(const std::string& what, double expected, double expected_se, const path_tracer::Estimate& got,
@@ -50,7 +50,7 @@ std::vector<std::pair<double, Value>> by_number(const Value& v) {
 }
 
 scene::Region shape_from(const Value& in, const std::string& shape) {
-  if (shape == "sphere") return scene::Sphere{Point3::Zero(), number_or(in, "R", 1)};
+  if (shape == "sphere") return scene::Sphere{Point3::Zero(), in.has("R") ? in["R"].number_in(1e-9, 1e9) : 1};
   if (shape != "box") in.complain("a sphere or a box");
   if (!in.has("lo")) return Box{Point3::Zero(), Point3::Ones()};
   return Box{in["lo"].vector(), in["hi"].vector()};
@@ -70,7 +70,7 @@ Check read_sphere_environment(const Value& v) {
   return {
       "", [=](VerifyProfile profile) {
         const scene::Scene scene = one_medium(isotropic_sphere(radius, albedo), uniform_sky());
-        const Effort effort = fixed(samples_for(profile, 17));
+        const Effort effort = effort_for(profile, 17);
         Outcome out;
         out.comparisons.push_back(
             of("J at the centre", centre, 0,
@@ -103,7 +103,7 @@ Check read_sphere_central_point(const Value& v) {
   return {"", [=](VerifyProfile profile) {
             const scene::Scene scene =
                 one_medium(isotropic_sphere(radius, albedo), scene::PointLight{Point3::Zero(), Rgb::Ones(), 0});
-            const Effort effort = fixed(samples_for(profile, 18));
+            const Effort effort = effort_for(profile, 18);
             Outcome out;
             for (const Chord& c : chords) {
               const std::string name = "b " + std::to_string(c.b).substr(0, 4);
@@ -125,8 +125,7 @@ Check read_single_scattering_environment(const Value& v) {
   const double expected = v["expected"]["L1"].number(), accuracy = v["accuracy"]["abs"].number();
   const std::string id = v["id"].text();
   return {"", [=](VerifyProfile profile) {
-            const std::uint64_t samples = samples_for(profile, 19);
-            const auto got = Measurement(one_medium(medium, uniform_sky()), ray, 1, id).run(fixed(samples));
+            const auto got = Measurement(one_medium(medium, uniform_sky()), ray, 1, id).run(effort_for(profile, 19));
             return Outcome{{of("L1", expected, 0, got.orders[1], accuracy)}};
           }};
 }
@@ -135,8 +134,10 @@ Check read_single_scattering_environment(const Value& v) {
 // analog walk, one that dies with the probability 1 - albedo at each.
 Check read_multiple_scattering(const Value& v) {
   const Value in = v["input"], e = v["expected"];
+  const double g = in["g"].number();
+  if (!(g > -1 && g < 1)) in["g"].complain("-1 < g < 1");
   const scene::Medium medium = fog(shape_from(in, in["shape"].text()), in["sigma_t"].number_in(0, 1e4),
-                                   in["albedo"].number_in(0, 1), scene::HenyeyGreenstein{in["g"].number()});
+                                   in["albedo"].number_in(0, 1), scene::HenyeyGreenstein{g});
   const std::string& type = in["light"].text();
   scene::Light light;
   if (type == "environment L=1")
@@ -169,15 +170,15 @@ Check read_multiple_scattering(const Value& v) {
       "", [=](VerifyProfile profile) {
         if (paper_only && profile == VerifyProfile::quick)
           return Outcome{{}, int(numbers.size()) + 1, "for the paper profile"};
-        const std::uint64_t samples = samples_for(profile, 20);
-        const auto got = Measurement(one_medium(medium, light), ray, 4, id).run(fixed(samples));
+        const auto got = Measurement(one_medium(medium, light), ray, 4, id).run(effort_for(profile, 20));
         Outcome out;
         for (const Number& n : numbers)
           out.comparisons.push_back(of(n.name, n.mean, n.error, n.order < 0 ? got.total : got.orders[n.order], 0, 4));
         // The vector does not tell the error of its count: it is ours, scaled by the numbers of histories. Sixteen
         // repeats make a Student's t of 15 degrees: 5.5 standard errors are as rare as 4 of a known one.
-        const auto count = Measurement(one_medium(medium, light), ray, 4, id + "collisions").collisions(samples / 2);
-        const double error = count.error[0] * std::sqrt(double(samples / 2) / histories);
+        const Effort half = effort_for(profile, 19);
+        const auto count = Measurement(one_medium(medium, light), ray, 4, id + "collisions").collisions(half);
+        const double error = count.error[0] * std::sqrt(double(half.least) / histories);
         out.comparisons.push_back(of("analog collisions", collisions, error, count, 0, 5.5));
         return out;
       }};

@@ -58,6 +58,13 @@ std::vector<Work> read_file(const std::string& path) {
   return work;
 }
 
+// What a job refuses is told with the vector's place.
+Outcome computed(const Work& w, const std::string& path, VerifyProfile profile) try {
+  return w.check.job(profile);
+} catch (const Error& e) {
+  throw Error(fmt::format("{}: vector '{}': {}", path, w.id, e.what()), e.exit_code());
+}
+
 double relative_error(const Comparison& c) {
   if (c.expected == c.got) return 0;
   return c.expected == 0 ? infinity : std::abs(c.got - c.expected) / std::abs(c.expected);
@@ -138,7 +145,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
       }
       check_interrupted();
       const auto start = std::chrono::steady_clock::now();
-      const Outcome outcome = w.check.job(profile);
+      const Outcome outcome = computed(w, path, profile);
       line.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       count(line, w.id, outcome);
       for (const Comparison& c : outcome.comparisons) {

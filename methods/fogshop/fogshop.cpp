@@ -185,10 +185,13 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
       (options.variant == Options::Variant::voigt && reasons.empty() && make_fog(scene.media).sum.constant > 0);
   if (sliced && options.extrapolate && options.slices % 2 != 0)
     reasons.push_back(fmt::format("K = {} is odd: extrapolation needs an even number of slices", options.slices));
-  const double side = options.map_directions + 2, entries = side * side * (options.map_edges + 1);
+  const auto points = std::count_if(scene.lights.begin(), scene.lights.end(),
+                                    [](const auto& l) { return std::holds_alternative<scene::PointLight>(l); });
+  const double side = options.map_directions + 2, entries = double(points) * side * side * (options.map_edges + 1);
   if (options.variant != Options::Variant::paper && options.map && entries > 1 << 28)
-    reasons.push_back(fmt::format("map_directions = {} and map_edges = {} ask for light maps of {:.1f} GB, at most 1",
-                                  options.map_directions, options.map_edges, entries * sizeof(float) / 1e9));
+    reasons.push_back(
+        fmt::format("map_directions = {} and map_edges = {} ask for {} light maps of {:.1f} GB in all, at most 1",
+                    options.map_directions, options.map_edges, points, entries * sizeof(float) / 1e9));
   for (const std::string& reason : objections_to_surfaces(scene, options)) reasons.push_back(reason);
   if (reasons.empty()) {
     const Fog fog = make_fog(scene.media);

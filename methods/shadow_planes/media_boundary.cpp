@@ -11,6 +11,8 @@ MediaBoundary::MediaBoundary(const scene::Region& region, int cells) : cells_(ce
   centre_ = sphere ? sphere->center : std::get<Box>(region).center();
   half_ = sphere ? Vec3(Vec3::Constant(sphere->radius)) : Vec3(0.5 * std::get<Box>(region).size());
   const int side = cells + 1;
+  vertices_.reserve(6 * std::size_t(side) * side);
+  triangles_.reserve(12 * std::size_t(cells) * cells);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2, first = face * side * side;
     for (int j = 0; j < side; ++j)

@@ -1,13 +1,18 @@
 #include "methods/shadow_planes/paper_stages.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "methods/shadow_planes/general_origin.h"
+#include "scene/error.h"
 
 namespace airlight::shadow_planes {
 namespace {
+
+constexpr double most_bytes = 1.5e9;
 
 std::array<Vec3, 8> corners(const Box& box) {
   std::array<Vec3, 8> result;
@@ -83,18 +88,29 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options, cons
   const bool vertices = options.evaluation == Options::Evaluation::vertices;
   const Box everywhere{Point3::Constant(-infinity), Point3::Constant(infinity)};
   scene::Stopwatch watch;
-  for (const ShadowVolumes& s : shadows) orders_.emplace_back(s, camera, options.edge_split);
-  for (const scene::Light& light : scene.lights) {
-    const Point3 at = scene::ball(light)->center;
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     std::vector<Part>& of_light = parts_.emplace_back();
     for (const Air& air : airs) {
       Part& part = of_light.emplace_back();
       part.medium = std::get_if<PaperMedium>(&air);
-      if (vertices) part.at_vertices.emplace(air, light, camera.position);
+      if (vertices) part.at_vertices.emplace(air, scene.lights[l], camera.position);
       part.planes_end = vertices && !part.medium && all_end(scene.media);
+      if (l >= shadows.size()) continue;
+      part.left_out.assign(shadows[l].edges().size(), false);
+      for (std::size_t i = 0; i < part.left_out.size() && part.medium; ++i)
+        part.left_out[i] = misses(shadows[l].edges()[i], shadows[l].light(), bounding_box(part.medium->region()));
+      planes_ += options.edge_split * std::size_t(std::count(part.left_out.begin(), part.left_out.end(), false));
+    }
+  }
+  check_memory();
+  for (const ShadowVolumes& s : shadows) orders_.emplace_back(s, camera, options.edge_split);
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const Point3 at = scene::ball(scene.lights[l])->center;
+    const Vec3 to_camera = (camera.position - at).normalized();
+    for (Part& part : parts_[l]) {
       if (!part.medium) continue;
       part.boundary.emplace(part.medium->region(), options.boundary_cells);
-      const Vec3 to_camera = (camera.position - at).normalized();
+      part.triangle_key.reserve(part.boundary->triangles().size());
       for (const auto& t : part.boundary->triangles()) {
         Vec3 middle = Vec3::Zero();
         for (const int v : t) middle += part.boundary->vertices()[v] / 3;
@@ -102,13 +118,6 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options, cons
       }
     }
   }
-  for (std::size_t l = 0; l < shadows.size(); ++l)
-    for (Part& part : parts_[l]) {
-      part.left_out.assign(shadows[l].edges().size(), false);
-      for (std::size_t i = 0; i < part.left_out.size() && part.medium; ++i)
-        part.left_out[i] = misses(shadows[l].edges()[i], shadows[l].light(), bounding_box(part.medium->region()));
-      planes_ += options.edge_split * std::size_t(std::count(part.left_out.begin(), part.left_out.end(), false));
-    }
   seconds_.sort = watch.lap();
   if (!vertices) return;
   for (std::vector<Part>& of_light : parts_)
@@ -126,6 +135,34 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options, cons
                                                   options.edge_split, options.plane_levels),
                                         threads);
   seconds_.planes = watch.lap();
+}
+
+// Of all lights and media together: each mesh alone may pass its own limit.
+void PaperStages::check_memory() const {
+  const double cells = options_.boundary_cells, pieces = options_.edge_split, levels = options_.plane_levels;
+  const bool vertices = options_.evaluation == Options::Evaluation::vertices;
+  double bytes = 0;
+  for (const ShadowVolumes& s : shadows_) bytes += double(s.edges().size()) * pieces * sizeof(double);
+  double on_surfaces = 0;
+  for (const scene::Surface& surface : scene_.surfaces)
+    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&surface.shape))
+      on_surfaces += double(mesh->vertices.size());
+  for (const std::vector<Part>& of_light : parts_)
+    for (const Part& part : of_light) {
+      const double on_boundary = part.medium ? 6 * (cells + 1) * (cells + 1) : 0;
+      const double kept = double(std::count(part.left_out.begin(), part.left_out.end(), false));
+      const double on_planes = vertices ? kept * (pieces + 1) * (levels + 2) : 0;
+      bytes += on_boundary * sizeof(Point3) + on_planes * sizeof(Vertex);
+      if (part.medium) bytes += 12 * cells * cells * (sizeof(std::array<int, 3>) + sizeof(double));
+      if (vertices) bytes += (on_boundary + on_planes + on_surfaces) * sizeof(Rgb);
+    }
+  if (bytes > most_bytes)
+    throw Error(
+        fmt::format("{}: shadow_planes would hold {:.1f} GB for {} lights and {} media with edge_split = {}, "
+                    "plane_levels = {} and boundary_cells = {}, expected at most {} GB: fewer plane_levels, "
+                    "edge_split or boundary_cells",
+                    scene_.name, bytes / 1e9, scene_.lights.size(), scene_.media.size(), options_.edge_split,
+                    options_.plane_levels, options_.boundary_cells, most_bytes / 1e9));
 }
 
 std::size_t PaperStages::vertices() const {

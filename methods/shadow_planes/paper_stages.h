@@ -22,7 +22,8 @@ double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light
 class PaperStages {
  public:
   // What is done once per picture: keys of planes, vertices. `shadows` by light, empty: nothing casts shadows. Keeps
-  // references to all but the camera.
+  // references to all but the camera. Throws Error, naming the scene and the settings, if keys and vertices would take
+  // more than 1.5 GB.
   PaperStages(const scene::Scene&, const Options&, const std::vector<Air>&, const std::vector<ShadowVolumes>& shadows,
               const scene::Camera&, int threads);
 
@@ -46,6 +47,7 @@ class PaperStages {
     std::optional<VertexAirlight> at_vertices;  // else by pixel
   };
   struct Work;
+  void check_memory() const;  // throws Error before more is allocated than anybody has
   void draw_ends(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
   void draw_planes(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
   Rgb to_end(std::size_t light, std::size_t air, const Pixel&, Interval domain, Counts&) const;

@@ -21,6 +21,7 @@ PlaneMesh::PlaneMesh(const ShadowVolumes& shadows, const std::vector<char>& left
   if (count > most_vertices)
     throw Error(fmt::format("shadow planes of {:.0f} vertices, expected at most {}: fewer plane_levels or edge_split",
                             count, most_vertices));
+  vertices_.reserve(std::size_t(count));
   for (std::size_t i = 0; i < shadows.edges().size(); ++i) {
     const SilhouetteEdge& edge = shadows.edges()[i];
     const double near = std::max(0.5 * (edge.a + edge.b).norm(), 1e-6 * far);

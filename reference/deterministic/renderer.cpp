@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "reference/deterministic/airlight.h"
+#include "reference/deterministic/limits.h"
 #include "reference/deterministic/surface_light.h"
 #include "scene/error.h"
 #include "scene/place_error.h"
@@ -157,6 +158,7 @@ class DeterministicRenderer final : public scene::Renderer {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
       return {no_finite_answer};
     if (const std::string reason = scene::too_thick(scene, 0.01); !reason.empty()) return {reason};
+    if (const std::string reason = too_much(scene); !reason.empty()) return {reason};
     return {};
   }
   std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,

@@ -12,7 +12,8 @@ namespace airlight::path_tracer {
 namespace {
 
 constexpr double thickest = 1e4;
-constexpr double most_work = 1e14;  // terms of densities, some 10 ns each: ten days of one processor
+constexpr double most_work = 1e14;      // terms of densities, some 10 ns each: ten days of one processor
+constexpr double most_cells = 1 << 28;  // of majorants: 1 GB
 
 bool all_scattered(const scene::Medium& medium, int c) { return medium.sigma_t[c] > 0 && medium.albedo[c] >= 1; }
 
@@ -53,6 +54,26 @@ double work(const scene::Scene& scene, const Options& options) {
     if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field)) terms += double(sum->gaussians.size());
   }
   return double(scene.width) * scene.height * double(options.samples) * collisions * terms;
+}
+
+// Grids of majorants whose cells the settings count; those of a voxel grid are else fewer than its voxels.
+struct Majorants {
+  int media = 0;
+  double cells = 0;
+  double terms = 0;  // each cell looks at every Gaussian
+};
+Majorants majorants(const scene::Scene& scene, const Options& options) {
+  Majorants all;
+  if (!options.supergrid) return all;
+  const double cells = std::pow(options.supergrid_cells > 0 ? options.supergrid_cells : 16, 3);
+  for (const scene::Medium& medium : scene.media) {
+    const auto* sum = std::get_if<scene::GaussianSum>(&medium.field);
+    if (std::holds_alternative<scene::Homogeneous>(medium.field) || (!sum && options.supergrid_cells == 0)) continue;
+    ++all.media;
+    all.cells += cells;
+    if (sum) all.terms += cells * double(sum->gaussians.size());
+  }
+  return all;
 }
 
 bool reflects_all(const scene::Material& material, int c) {
@@ -123,6 +144,17 @@ std::vector<std::string> refusals(const scene::Scene& scene, const Options& opti
           fmt::format("{} x {} pixels, {} samples of each and this medium need {:.1g} evaluations of terms of its "
                       "density, expected at most {:.0e}: fewer samples, pixels or Gaussians, or a cap (max_order)",
                       scene.width, scene.height, options.samples, needed, most_work));
+  const Majorants grids = majorants(scene, options);
+  if (grids.cells > most_cells)
+    reasons.push_back(fmt::format(
+        "supergrid_cells = {} takes {:.1f} GB of majorants for {} media, expected at most {:.1f}: fewer "
+        "supergrid_cells",
+        options.supergrid_cells, grids.cells * sizeof(float) / 1e9, grids.media, most_cells * sizeof(float) / 1e9));
+  else if (grids.terms > most_work)
+    reasons.push_back(
+        fmt::format("supergrid_cells = {}: majorants of {:.1g} cells need {:.1g} evaluations of terms of densities, "
+                    "expected at most {:.0e}: fewer supergrid_cells or Gaussians",
+                    options.supergrid_cells, grids.cells, grids.terms, most_work));
   if (!options.column_transmittance)
     for (const scene::Medium& medium : scene.media)
       if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff())

@@ -16,7 +16,8 @@ namespace airlight::path_tracer {
 //   - a closed room of albedo 1 with a light in it: no ray in 4096 from the camera leaves it, all surfaces that they
 //     meet and all media reflect everything in one channel, and a light shines inside
 //   - more work than 10^14 terms of densities (ten days of one processor): pixels times samples times collisions times
-//     Gaussians
+//     Gaussians; or that many to bound the Gaussians in the cells of the supergrid
+//   - more than 2^28 cells of supergrids (1 GB)
 //   - coloured extinction with ratio tracking, which needs exact densities
 std::vector<std::string> refusals(const scene::Scene&, const Options&);
 

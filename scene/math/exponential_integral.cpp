@@ -41,8 +41,9 @@ Complex by_continued_fraction(Complex z) {
 }  // namespace
 
 Complex scaled_exponential_integral(Complex z) {
-  // |z| beyond 1e150 would overflow in the norm; there the first term of the fraction is exact.
-  if (std::abs(z.real()) + std::abs(z.imag()) > 1e100) return 1.0 / z;
+  // |z| beyond 1e150 would overflow in the norm; there the first term of the fraction is exact. Of what is no number
+  // the fraction has no depth.
+  if (!(std::abs(z.real()) + std::abs(z.imag()) <= 1e100)) return 1.0 / z;
   return std::norm(z) < 4 ? by_series(z) : by_continued_fraction(z);
 }
 

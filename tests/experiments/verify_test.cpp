@@ -70,6 +70,70 @@ TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify]") 
   }
 }
 
+// Each took minutes to for ever: depths and albedos that lead to endless walks, tolerances that nothing meets.
+TEST_CASE("vectors that would take for ever are refused in one line", "[verify]") {
+  const auto file = [](const std::string& kind, const std::string& id, const std::string& fields) {
+    return R"({"part": "references", "vectors": [{"kind": ")" + kind + R"(", "id": ")" + id + R"(", )" + fields +
+           R"(, "accuracy": {"abs": 1e-9, "rel": 1e-9}}]})";
+  };
+  const auto collisions = Catch::Contains("collisions, expected at most 1e+08");
+  const std::string sphere = R"("expected": {"J_centre": 1, "L": {"0.5": 1}, "orders_b0.5": [1, 1]})";
+  CHECK_THAT(complaint(file("sphere_environment_all_orders", "x",
+                            R"("input": {"optical_radius": 1e4, "albedo": 1}, )" + sphere)),
+             collisions);
+  CHECK_THAT(complaint(file("sphere_central_point", "x", R"("input": {"optical_radius": 1e4, "albedo": 1},
+                            "expected": {"L1_L2_Lall": {"0.5": [1, 1, 1]}})")),
+             collisions);
+  CHECK_THAT(complaint(file("halfspace", "x", R"("input": {}, "expected":
+                            {"albedo_mu1": {}, "albedo_mu0.5": {}, "H": {"0.9999999999": {"0.5": 1}}})")),
+             collisions);
+  CHECK_THAT(complaint(file("halfspace", "x", R"("input": {}, "expected":
+                            {"albedo_mu1": {}, "albedo_mu0.5": {}, "H": {"1e300": {"0.5": 1}}})")),
+             Catch::Contains("expected a number from 0 to 1"));
+  CHECK_THAT(complaint(file("slab_orders", "x", R"("input": {"albedo": 1, "tau": 1e4},
+                            "expected": {"R_order": [1], "T_order": [1]})")),
+             collisions);
+  const std::string columns = R"("input": {"columns": ["phase", "g", "albedo", "tau", "R_mu1", "T_mu1", "R_mu0.5",
+                                 "T_mu0.5", "R_mu0.1", "T_mu0.1", "R_diffuse", "T_diffuse"]}, )";
+  CHECK_THAT(complaint(file("slab_table", "x", columns + R"("expected": {"rows":
+                            [["iso", 0, 1, 1e300, 1, 1, 1, 1, 1, 1, 1, 1]]})")),
+             Catch::Contains("expected a number from 0 to 10000"));
+  CHECK_THAT(complaint(file("single_scattering_environment", "x", R"("expected": {"L1": 1}, "input":
+                            {"kind": "sphere", "sigma_t": 1e4, "albedo": 1, "phase": {"name": "isotropic"},
+                             "o": [0.5, 0, -3], "d": [0, 0, 1]})")),
+             collisions);
+  const std::string light = R"("light": "environment L=1", "o": [0.5, 0, -3], "d": [0, 0, 1])";
+  const std::string expected = R"("expected": {"all": [1, 1], "mean_collisions_analog": 1, "histories": 1000}, )";
+  CHECK_THAT(complaint(file("multiple_scattering_monte_carlo", "x",
+                            expected + R"("input": {"shape": "sphere",
+                            "R": 1e4, "sigma_t": 1, "albedo": 1, "g": 0, )" +
+                                light + "}")),
+             collisions);
+  CHECK_THAT(complaint(file("multiple_scattering_monte_carlo", "x",
+                            expected + R"("input": {"shape": "sphere",
+                            "R": 1, "sigma_t": 1, "albedo": 1, "g": 1, )" +
+                                light + "}")),
+             Catch::Contains("expected -1 < g < 1"));
+  CHECK_THAT(
+      complaint(file("identity", "furnace-collisions", R"("input": {"sphere_optical_radius": 1e4},
+                            "expected": {"mean_collisions": 1, "slab_per_unit_tau": 1, "cube_per_unit_optical_edge": 1})")),
+      Catch::Contains("vector 'furnace-collisions': 262144 paths") && Catch::Contains("collisions, expected at most"));
+  // The quadrature: many Gaussians, lights and rays; and a tolerance that it cannot meet.
+  const auto gaussians = [&](int count, const std::string& accuracy) {
+    std::string text = R"({"part": "references", "vectors": [{"kind": "single_scattering_gaussians", "id": "x",
+        "input": {"b0": 0, "albedo": 1, "phase": {"name": "isotropic"}, "eye": [0, 0, 0], "gaussians": [)";
+    for (int i = 0; i < count; ++i) text += std::string(i ? "," : "") + "[1, 1, [0, 0, 5]]";
+    text += R"(], "lights": [)";
+    for (int i = 0; i < count; ++i)
+      text += std::string(i ? "," : "") + R"({"type": "point", "pos": [0, 2, 5], "I": 1})";
+    text += R"(]}, "expected": {"rays": [)";
+    for (int i = 0; i < count; ++i) text += std::string(i ? "," : "") + R"({"p": [0, 0, 9], "L1": 1, "T": 1})";
+    return text + R"(]}, "accuracy": {"rel": )" + accuracy + "}}]}";
+  };
+  CHECK_THAT(complaint(gaussians(1000, "1e-9")), Catch::Contains("evaluations of terms of densities, not"));
+  CHECK_THAT(complaint(gaussians(1, "1e-300")), Catch::Contains("expected a number from 1e-13 to 1"));
+}
+
 TEST_CASE("a number out of tolerance is found", "[verify]") {
   const TemporaryFile right(fogshop_file(good));
   const TemporaryFile wrong(

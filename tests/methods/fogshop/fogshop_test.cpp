@@ -103,6 +103,10 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
   refused([](Scene& s) { s.camera.kind = scene::Camera::Kind::orthographic; }, "perspective", {{"variant", "paper"}});
   refused([](Scene&) {}, "even", {{"K", "7"}});
   refused([](Scene&) {}, "GB", {{"map_directions", "2048"}, {"map_edges", "4096"}});
+  // Each light has a map of its own.
+  const Pairs large{{"map_directions", "1024"}, {"map_edges", "64"}};
+  CHECK(reasons(scene, large).empty());
+  refused([](Scene& s) { s.lights.resize(16, s.lights[0]); }, "16 light maps of 4.4 GB in all", large);
   refused([](Scene&) {}, "source_radius", {{"homogeneous", "table"}, {"source_radius", "0.1"}});
   // A light at the camera is fine outside the medium, or softened.
   scene.media.clear();

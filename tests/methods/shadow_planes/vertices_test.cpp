@@ -388,6 +388,13 @@ TEST_CASE("shadow planes: at vertices, what there is not and extremes", "[shadow
   const auto scene = two_media();
   CHECK_THROWS_WITH(render(scene, with(by_vertices, {{"edge_split", "4096"}, {"plane_levels", "4096"}})),
                     Catch::Contains("fewer plane_levels"));
+  // What one medium may hold is too much for many, and six lights.
+  const auto many = two_media();
+  many->name = "many";
+  many->lights.resize(6, many->lights[0]);
+  CHECK_THROWS_WITH(render(many, with(by_vertices, {{"bounded", "paper"}, {"boundary_cells", "1024"}})),
+                    Catch::StartsWith("many: shadow_planes would hold 6.7 GB for 6 lights and 2 media") &&
+                        Catch::Contains("boundary_cells = 1024, expected at most 1.5 GB: fewer plane_levels"));
   CHECK(reason(*scene, by_vertices).empty());
   CHECK(reason(*scene, with(by_vertices, {{"shadows", "none"}})).empty());
   CHECK(reason(*scene, {{"evaluation", "vertices"}}) == "evaluation = vertices goes with shadows = stencil or none");

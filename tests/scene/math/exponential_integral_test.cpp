@@ -53,3 +53,10 @@ TEST_CASE("scaled exponential integral far out is 1/z", "[fogshop]") {
   CHECK(value.real() == Approx(0.12e-200).epsilon(1e-15));
   CHECK(value.imag() == Approx(0.16e-200).epsilon(1e-15));
 }
+
+// The depth of the fraction was undefined: found by the fuzzer, with sanitizers.
+TEST_CASE("scaled exponential integral of what is no number is none", "[fogshop]") {
+  const double nan = std::nan("");
+  for (const std::complex<double> z : {std::complex<double>(nan, 1), {1, nan}, {nan, nan}})
+    CHECK(std::isnan(scaled_exponential_integral(z).imag()));
+}

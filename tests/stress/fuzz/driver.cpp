@@ -1,5 +1,6 @@
 // airlight_fuzz: runs many command lines of the program from one process, for fuzz.py: starting the program takes ten
-// times as long as refusing a file. Every command runs in a child of its own, so that a crash ends nothing else.
+// times as long as refusing a file. Commands run in a child, so that a crash ends nothing else; a child serves many of
+// them, since with sanitizers a fork takes as long as a command.
 //
 // Standard input: one command a line, a JSON list of its arguments. Standard output: one line for each,
 //   {"code": N or null, "signal": N or null, "seconds": of the processor, "kib": most memory held,
@@ -7,8 +8,9 @@
 // A command that begins with "seal" is run without that word, once the checksums of the files that a mutation left
 // wrong are made right: of *.samples in the working folder, and of the rows of journals below project/results.
 //
-// usage: airlight_fuzz SECONDS
-// SECONDS of the processor after which a command is killed; by SIGALRM after ten times that on the clock.
+// usage: airlight_fuzz SECONDS [COMMANDS]
+// SECONDS of the processor after which a command is killed; by SIGALRM after ten times that on the clock. COMMANDS that
+// a child serves, by default 64.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -23,6 +25,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -35,23 +38,41 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void run_here(std::vector<std::string> arguments, int errors, unsigned seconds) {
-  const int nothing = open("/dev/null", O_RDWR);
-  dup2(nothing, STDIN_FILENO);
-  dup2(nothing, STDOUT_FILENO);
-  dup2(errors, STDERR_FILENO);
+double seconds_of(const rusage& usage) {
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+rusage used() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage;
+}
+
+json run_here(std::vector<std::string> arguments, unsigned seconds) {
+  // The most memory held begins anew; where the kernel does not let it, it is that of all commands so far.
+  if (const int file = open("/proc/self/clear_refs", O_WRONLY); file >= 0) {
+    [[maybe_unused]] const ssize_t written = write(file, "5", 1);
+    close(file);
+  }
+  const double before = seconds_of(used());
   // Of the processor, which others may use as well; and of the clock, where it waits for what never comes.
-  const rlimit processor{seconds, seconds};
+  const rlimit processor{rlim_t(before) + 1 + seconds, RLIM_INFINITY};
   setrlimit(RLIMIT_CPU, &processor);
   alarm(10 * seconds);
   arguments.insert(arguments.begin(), "airlight");
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const int code = airlight::experiments::cli::run(int(arguments.size()), argv.data());
+  json result;
+  result["code"] = airlight::experiments::cli::run(int(arguments.size()), argv.data());
   std::fflush(stdout);
   std::fflush(stderr);
-  _exit(code);
+  alarm(0);
+  const rusage after = used();
+  result["seconds"] = seconds_of(after) - before;
+  result["kib"] = after.ru_maxrss;
+  return result;
 }
 
 // The first 64 KiB: a sanitizer's report fits, a flood does not.
@@ -94,36 +115,106 @@ void seal() {
       if (file.path().extension() == ".jsonl") seal_journal(file.path());
 }
 
-json run(const std::vector<std::string>& arguments, unsigned seconds) {
-  const int errors = memfd_create("errors", MFD_CLOEXEC);
-  const pid_t child = fork();
-  if (child < 0 || errors < 0) throw std::runtime_error("no child can be started");
-  if (child == 0) run_here(arguments, errors, seconds);
-  int status = 0;
-  rusage usage{};
-  wait4(child, &status, 0, &usage);
-  json result;
-  result["code"] = WIFEXITED(status) ? json(WEXITSTATUS(status)) : json();
-  result["signal"] = WIFSIGNALED(status) ? json(WTERMSIG(status)) : json();
-  const auto seconds_of = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  result["seconds"] = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-  result["kib"] = usage.ru_maxrss;
-  result["error"] = content(errors);
-  close(errors);
-  return result;
-}
+// A process that runs commands until it crashes, or has served its share.
+class Child {
+ public:
+  explicit Child(unsigned seconds) : errors_(memfd_create("errors", MFD_CLOEXEC)) {
+    int to[2], from[2];
+    if (errors_ < 0 || pipe(to) != 0 || pipe(from) != 0) throw std::runtime_error("no child can be started");
+    id_ = fork();
+    if (id_ < 0) throw std::runtime_error("no child can be started");
+    if (id_ == 0) {
+      close(to[1]);
+      close(from[0]);
+      serve(to[0], from[1], seconds);
+    }
+    close(to[0]);
+    close(from[1]);
+    commands_ = fdopen(to[1], "w");
+    results_ = fdopen(from[0], "r");
+  }
+  Child(const Child&) = delete;
+  ~Child() {
+    std::fclose(commands_);
+    std::fclose(results_);
+    if (!ended_) waitpid(id_, nullptr, 0);
+    close(errors_);
+  }
+
+  bool ended() const { return ended_; }
+
+  json run(const std::string& command) {
+    if (ftruncate(errors_, 0) != 0) throw std::runtime_error("the file of errors cannot be emptied");
+    std::fprintf(commands_, "%s\n", command.c_str());
+    std::fflush(commands_);
+    json result;
+    std::string line;
+    for (int c; (c = std::fgetc(results_)) != EOF && c != '\n';) line += char(c);
+    if (!line.empty()) {
+      result = json::parse(line);
+      result["signal"] = nullptr;
+    } else {
+      int status = 0;
+      rusage usage{};
+      wait4(id_, &status, 0, &usage);
+      ended_ = true;
+      result["code"] = WIFEXITED(status) ? json(WEXITSTATUS(status)) : json();
+      result["signal"] = WIFSIGNALED(status) ? json(WTERMSIG(status)) : json();
+      result["seconds"] = seconds_of(usage);
+      result["kib"] = usage.ru_maxrss;
+    }
+    result["error"] = content(errors_);
+    return result;
+  }
+
+ private:
+  [[noreturn]] void serve(int commands, int results, unsigned seconds) {
+    const int nothing = open("/dev/null", O_RDWR);
+    dup2(nothing, STDIN_FILENO);
+    dup2(nothing, STDOUT_FILENO);
+    FILE* in = fdopen(commands, "r");
+    FILE* out = fdopen(results, "w");
+    for (;;) {
+      std::string line;
+      int c;
+      while ((c = std::fgetc(in)) != EOF && c != '\n') line += char(c);
+      if (c == EOF) _exit(0);
+      // The file's place is shared with those before: to the beginning.
+      lseek(errors_, 0, SEEK_SET);
+      dup2(errors_, STDERR_FILENO);
+      const json result = run_here(json::parse(line).get<std::vector<std::string>>(), seconds);
+      std::fprintf(out, "%s\n", result.dump().c_str());
+      std::fflush(out);
+    }
+  }
+
+  int errors_;
+  pid_t id_ = 0;
+  bool ended_ = false;
+  FILE* commands_ = nullptr;
+  FILE* results_ = nullptr;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const unsigned seconds = argc > 1 ? unsigned(std::atoi(argv[1])) : 20;
+  const int share = argc > 2 ? std::atoi(argv[2]) : 64;
+  std::unique_ptr<Child> child;
+  int served = 0;
   for (std::string line; std::getline(std::cin, line);) {
     auto arguments = json::parse(line).get<std::vector<std::string>>();
     if (arguments.front() == "seal") {
       seal();
       arguments.erase(arguments.begin());
     }
-    const auto result = run(arguments, seconds);
+    if (!child || child->ended() || served == share) {
+      child.reset();
+      child = std::make_unique<Child>(seconds);
+      served = 0;
+    }
+    ++served;
+    const auto result = child->run(json(arguments).dump());
     // Standard error need not be UTF-8; that is for the judge to see: bytes become the code points of Latin-1.
     json sent = result;
     std::string latin;

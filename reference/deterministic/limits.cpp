@@ -1,0 +1,72 @@
+#include "reference/deterministic/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::deterministic {
+namespace {
+
+constexpr double nodes = 15;             // of a panel
+constexpr double cuts_of_gaussian = 12;  // along the view, and of its shadow
+constexpr double reach = 6.4;            // widths at which a Gaussian is 1e-18 of its amplitude
+constexpr double clamped_cost = 50;      // of a sum with negative amplitudes, whose zeros are sought
+
+struct Cost {
+  double panels = 1;  // along a view ray, for one light
+  double terms = 1;   // of the density's integral to a light
+};
+
+// Cuts of a ray lie two widths apart where Gaussians are dense, and where they are sparse only those near the ray cut
+// it.
+Cost cost(const scene::GaussianSum& sum, const Box& box) {
+  const double n = double(sum.gaussians.size());
+  if (n == 0 || box.empty()) return {};
+  double inverse = 0, area = 0;
+  bool clamped = false;
+  for (const scene::Gaussian& g : sum.gaussians) {
+    inverse += 1 / g.width;
+    area += pi * reach * reach * g.width * g.width;
+    clamped = clamped || g.amplitude < 0;
+  }
+  const double length = box.size().stableNorm();
+  const double met = n * std::min(1.0, area / n / (length * length / 3));
+  const double panels = std::min(cuts_of_gaussian * met, length * inverse / n / 2);
+  return {1 + (panels > 0 ? panels : 0), clamped ? clamped_cost * n : n};
+}
+
+Cost cost(const scene::Medium& medium) {
+  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
+    return cost(*sum, intersect(scene::support(medium.field), scene::bounding_box(medium.region)));
+  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
+    const double voxels = (*grid)->size.cast<double>().sum();  // met by a ray at most
+    return {voxels / 2, voxels};                               // panels of a shorter rule
+  }
+  return {};
+}
+
+}  // namespace
+
+double terms_of_ray(const scene::Scene& scene) {
+  double panels = 0, terms = 0;
+  for (const scene::Medium& medium : scene.media) {
+    if (!(medium.sigma_t.maxCoeff() > 0)) continue;
+    const Cost c = cost(medium);
+    panels += c.panels;
+    terms += c.terms;
+  }
+  const auto lights = std::count_if(scene.lights.begin(), scene.lights.end(), scene::is_delta);
+  return terms * (1 + nodes * panels * double(lights));
+}
+
+std::string too_much(const scene::Scene& scene) {
+  const double needed = double(scene.width) * scene.height * terms_of_ray(scene);
+  if (!(needed > most_work)) return {};
+  return fmt::format(
+      "{} x {} pixels, {} lights and {} media need {:.1g} evaluations of terms of densities, expected at most {:.0e}: "
+      "fewer pixels, lights or Gaussians",
+      scene.width, scene.height, scene.lights.size(), scene.media.size(), needed, most_work);
+}
+
+}  // namespace airlight::deterministic
