@@ -11,6 +11,7 @@
 #include "gpu/fogshop/surface_shading.h"
 #include "gpu/raster_program.h"
 #include "gpu/timer.h"
+#include "methods/fogshop/domain.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
@@ -69,6 +70,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       }
     }
     times_ = timer.times();
+    doubt_ = fogshop::doubt_of(*scene_, model_.fog, options);
   }
 
   std::vector<scene::Stage> stages() const override;
@@ -88,6 +90,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
   std::unique_ptr<Background> background_;   // the same
+  std::string doubt_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -193,6 +196,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
   timer.stage("read back");
   result.times = timer.times();
+  if (!doubt_.empty()) film.metadata["warning"] = "fogshop_gpu: " + doubt_;
   result.counters["rays"] = double(pixels);
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
   result.counters["draws"] = double(RasterProgram::draws() - draws);

@@ -28,7 +28,9 @@ float light_depth(Light light, vec3 x) {
   vec2 whole = clamp(floor(place), vec2(0), vec2(map_directions));
   vec2 f = place - whole;
   int i = int(whole.x), j = int(whole.y), k = min(int(edge), map_edges - 1);
-  float fe = edge - float(k);
+  // Linear in the distance, not in its root: from edge k to k + 1 the square grows by 2 k + 1.
+  float fe = light.map_near > 0 ? edge - float(k)
+                                : (edge - float(k)) * (edge + float(k)) / float(2 * k + 1);
   return mix(mix(map_texel(light, i, j, k, fe), map_texel(light, i + 1, j, k, fe), f.x),
              mix(map_texel(light, i, j + 1, k, fe), map_texel(light, i + 1, j + 1, k, fe), f.x), f.y);
 }

@@ -4,6 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
 uniform int graded, skip_empty;
+uniform int light_count, balls;  // the first `balls` of the lights are point and spot lights
 #include "ray_marcher/layer.glsl"
 #include "ray_marcher/light.glsl"
 #include "ray_marcher/columns.glsl"
@@ -29,7 +30,6 @@ layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
 layout(std430, binding = 10) buffer Progress { uint unfinished, work_done; };  // pixels; work of all / 256
 uniform int first_tile, tile_columns;  // of this dispatch; of the image
 uniform int first_row;                 // of the pixels in their buffer
-uniform int light_count, balls;        // the first `balls` of the lights are point and spot lights
 uniform int has_distances;
 uniform float darkest;  // a ray ends at that optical depth
 uniform int budget;     // iterations of loops, roughly
@@ -114,7 +114,7 @@ bool march_step(Part part, vec3 origin, vec3 direction, float t, float x, float 
 
 // Steps that follow the optical depth: reference/ray_marcher/depth.h.
 uniform float deepest_step;
-const float deepest_seen = 40, least_width = 1.0 / 16777216;
+const float least_width = 1.0 / 16777216;
 
 vec3 extinction_at(Part part, vec3 point) {
   vec3 sum = vec3(0);
@@ -128,7 +128,7 @@ vec3 extinction_at(Part part, vec3 point) {
 bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
   for (int c = 0; c < 3; ++c) {
     float own = greatest[c] * length_, most = !whole ? 1 : before[c] < 0.5 * own ? 2 : 16;
-    if (before[c] < deepest_seen && own > most * deepest_step) return true;
+    if (before[c] < deepest && own > most * deepest_step) return true;
   }
   return false;
 }

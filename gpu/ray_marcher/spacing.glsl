@@ -68,6 +68,7 @@ void put_part(int i, Part p) {
   part_rate[i] = p.rate, part_zone[i] = p.zone, part_u_lo[i] = p.u_lo, part_u_hi[i] = p.u_hi, part_weight[i] = p.weight;
 }
 
+float deepest;     // reference/ray_marcher/spacing.h
 bvec3 never_ends;  // per channel: the medium behind the last step goes on for ever
 
 float measure(Part p) {
@@ -159,9 +160,19 @@ bool grade_light(Approach light) {
   return met;
 }
 
+// reference/ray_marcher/spacing.h
+float beyond_lamp(Approach lamp, float from, float longer) {
+  float along = lamp.t - from, d = length(vec2(along, lamp.h));
+  float turn = along > 0 ? lamp.h * lamp.h / (d + along) : d - along;
+  return 0.5 * longer * (2 * d + longer) / (turn + longer);
+}
+
+const float deep_lamp = 4;
+
 // The parts of the ray over [0, t_end]; with a light, graded around it, and true if that makes a difference.
 bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approach light) {
   never_ends = bvec3(false);
+  deepest = 40;
   cut_ray(origin, direction, t_end);
   if (part_count == 0) return false;
   int last = part_count - 1;
@@ -170,16 +181,24 @@ bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approac
       if ((part_in_constant[last] >> k & 1u) != 0u)
         for (int c = 0; c < 3; ++c) never_ends[c] = never_ends[c] || layers[k].sigma_t[c] > 0;
     float rate = constant_rate(part_in_constant[last]);
-    part_hi[last] = part_lo[last] + horizon / rate;
-    // From the light on (from its beginning without one) steps grow.
-    if (graded == 0) {
-    } else if (has_light && light.t > part_lo[last]) {
-      if (light.t < part_hi[last]) {
-        split_at(light.t);
-        part_rate[part_count - 1] = rate;
-      }
-    } else {
-      part_rate[last] = rate;
+    float reach = horizon / rate;
+    float growing = has_light ? light.t : part_lo[last];
+    vec3 rates = vec3(0);
+    for (int k = 0; k < LAYERS; ++k)
+      if ((part_in_constant[last] >> k & 1u) != 0u) rates += layers[k].constant * layers[k].sigma_t;
+    float most = max(max(rates.x, rates.y), rates.z);
+    for (int l = has_light ? balls - 1 : 0; l < balls; ++l) {
+      Approach lamp = light;
+      if (!has_light) lamp = approach(lights[l], origin, direction);
+      if (rate * (lamp.t - part_lo[last]) > deep_lamp) growing = max(growing, lamp.t);
+      reach = max(reach, beyond_lamp(lamp, part_lo[last], horizon / rate));
+      deepest = max(deepest, min(40 + most * length(vec2(lamp.t - part_lo[last], lamp.h)), 110));
+    }
+    part_hi[last] = part_lo[last] + reach;
+    // From there on steps grow.
+    if (graded != 0 && growing < part_hi[last]) {
+      if (growing > part_lo[last]) split_at(growing);
+      part_rate[part_count - 1] = rate;
     }
   }
   if (graded == 0) return false;

@@ -78,6 +78,8 @@ void LookUp(const MapLookup& map, const double* start, const double* step, const
     const V i = split(hn::MulAdd(hn::Add(px, one), half, set(0.5)), side - 2, fu);
     const V j = split(hn::MulAdd(hn::Add(py, one), half, set(0.5)), side - 2, fv);
     const V k = split(hn::Mul(set(map.edges), even ? share : hn::Sqrt(share)), map.edges - 1, fe);
+    // Linear in the distance, not in its root: from edge k to k + 1 the square grows by 2 k + 1.
+    if (!even) fe = hn::Div(hn::Mul(fe, hn::Add(hn::Add(k, k), fe)), hn::MulAdd(set(2), k, one));
     // Places are exact in floating point, and multiplied there.
     const V number = hn::MulAdd(j, set(double(row)), hn::MulAdd(i, set(double(stride)), k));
     const VI place = hn::ConvertTo(di, hn::IfThenElseZero(seen, number));

@@ -74,11 +74,13 @@ Rgb RayAirlight::sky(const Line& line) {
   for (int k = 0; k < slices; ++k) t_[k] = range.lo + range.length() * k / slices;
   depths_at(crossings_, t_.data(), int(t_.size()), view_depth_.data(), model_.options.erf);
   evaluations += double(crossings_.count) * (slices + 1);
-  Rgb visible = (-view_depth_[0] * model_.fog.hue).exp();
   for (int k = 0; k < slices; ++k) {
-    const Rgb next = (-view_depth_[k + 1] * model_.fog.hue).exp();
-    sum += model_.sky->at(line.origin + 0.5 * (t_[k] + t_[k + 1]) * line.direction) * (visible - next).max(0.0);
-    visible = next;
+    // Not a difference of transmittances, which leaves nothing of a thin medium.
+    const double depth = std::max(view_depth_[k + 1] - view_depth_[k], 0.0);
+    Rgb light = model_.sky->at(line.origin + 0.5 * (t_[k] + t_[k + 1]) * line.direction);
+    for (int c = 0; c < 3; ++c)
+      light[c] *= std::exp(-view_depth_[k] * model_.fog.hue[c]) * -std::expm1(-depth * model_.fog.hue[c]);
+    sum += light;
   }
   return sum;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "methods/fogshop/domain.h"
 #include "methods/fogshop/radiance_transfer.h"
 
 namespace airlight::fogshop {
@@ -96,6 +97,7 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                            : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
+  if (const std::string doubt = doubt_of(scene, model.fog, o); !doubt.empty()) stage("doubt", true, doubt);
   using Upsample = Options::Upsample;
   stage("low resolution", needs.low_resolution,
         !needs.airlight     ? "there is no medium"

@@ -14,9 +14,12 @@ namespace {
 
 // Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media. So do the transmittances of its four
 // branches (light, and three segments of a connection): 2^16 for each medium.
-// The second and later tries of a first collision have 2^15 each.
-constexpr std::uint32_t flight_blocks = 1u << 18, branch_blocks = 1u << 16, retry_blocks = 1u << 15;
+// The second to eighth tries of a first collision have 2^15 each, later ones 2^11.
+constexpr std::uint32_t flight_blocks = 1u << 18, branch_blocks = 1u << 16, retry_blocks = 1u << 15,
+                        late_blocks = 1u << 11;
 constexpr std::size_t most_media = 64;
+constexpr int retries = 7;
+static_assert((most_attempts - retries - 1) * most_media * late_blocks <= 1 << 24);
 
 // The random numbers of one flight, two from each block of a range.
 class Uniforms {
@@ -42,6 +45,18 @@ class Uniforms {
   RandomBlock block_ = random_.block(vertex_, purpose_, index_);
   int used_ = 0;
 };
+
+// Where the numbers of an attempt lie: the how manieth it is of its purpose, and how many blocks each has.
+struct Tries {
+  Purpose purpose;
+  int number;
+  std::uint32_t blocks;
+};
+Tries tries_of(int attempt) {
+  if (attempt == 0) return {Purpose::flight, 0, flight_blocks};
+  if (attempt <= retries) return {Purpose::retry, attempt - 1, retry_blocks};
+  return {Purpose::late_retry, attempt - retries - 1, late_blocks};
+}
 
 // Calls visit(t, density, majorant) at the collisions that a medium of the majorants' extinction, times sigma, would
 // cause along the range, until it returns true. The first one lies an optical depth of `depth` ahead.
@@ -171,11 +186,10 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
     const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
     const double sigma = tracked.medium->sigma_t[hero];
     if (range.empty() || !(sigma > 0)) continue;
-    const std::uint32_t first =
-        std::uint32_t(m) * (attempt == 0 ? flight_blocks : retry_blocks) +
-        (attempt == 0 ? 0 : std::uint32_t(attempt - 1) * std::uint32_t(most_media) * retry_blocks);
-    Uniforms uniforms(random, vertex, attempt == 0 ? Purpose::flight : Purpose::retry, first,
-                      attempt == 0 ? flight_blocks : retry_blocks);
+    const Tries tries = tries_of(attempt);
+    Uniforms uniforms(random, vertex, tries.purpose,
+                      (std::uint32_t(tries.number) * std::uint32_t(most_media) + std::uint32_t(m)) * tries.blocks,
+                      tries.blocks);
     double depth;
     if (forced == past) {
       depth = -elementary::log(uniforms.next());

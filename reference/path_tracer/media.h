@@ -34,6 +34,8 @@ struct Collision {
   double density;
 };
 
+constexpr int most_attempts = 128;  // of a flight
+
 class Media {
  public:
   Media(const std::vector<scene::Medium>&, const Options&);
@@ -44,8 +46,8 @@ class Media {
   bool grey() const { return grey_; }                // extinction is the same in all channels, in every medium
 
   // The first collision before tmax under the extinction of channel `hero`, by delta tracking; nothing if there is
-  // none. Other attempts, below 8, are independent flights. `some` < 1: given that there is a collision, null
-  // ones counted, which has this probability.
+  // none. Other attempts, below `most_attempts`, are independent flights. `some` < 1: given that there is a collision,
+  // null ones counted, which has this probability.
   std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
                                int attempt, double some, Counters&) const;
   // Mean number of collisions on [0, tmax], null ones counted, for each channel's extinction.

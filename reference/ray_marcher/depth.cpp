@@ -10,12 +10,14 @@ namespace {
 struct Division {
   const Plan& plan;
   const Ray& ray;
+  double deepest;
   std::vector<Step>& out;
   Rgb before = Rgb::Zero();
 
   void divide(const Step& step, const Rgb& at_lo, const Rgb& at_hi, int level) {
     const Rgb middle = extinction_at(plan, ray, step.t, step.inside);
-    if (level < most_halvings && is_deep(plan.options, before, at_lo.max(middle).max(at_hi), step.length, level == 0)) {
+    if (level < most_halvings &&
+        is_deep(plan.options, deepest, before, at_lo.max(middle).max(at_hi), step.length, level == 0)) {
       const double half = 0.5 * step.length;
       divide({step.t - 0.5 * half, half, step.inside}, at_lo, middle, level + 1);
       divide({step.t + 0.5 * half, half, step.inside}, middle, at_hi, level + 1);
@@ -35,7 +37,7 @@ bool may_be_deep(const std::vector<Layer>& layers, const Options& options, const
     if (in_constant(step.inside, k)) most += layer.constant * layer.medium->sigma_t;
     if (in_varied(step.inside, k)) most += layer.most_varied * layer.medium->sigma_t;
   }
-  return is_deep(options, Rgb::Zero(), most, step.length, true);
+  return is_deep(options, infinity, Rgb::Zero(), most, step.length, true);
 }
 
 Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long inside) {
@@ -49,14 +51,16 @@ Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long
   return sum;
 }
 
-bool is_deep(const Options& options, const Rgb& before, const Rgb& greatest, double length, bool whole) {
+bool is_deep(const Options& options, double deepest, const Rgb& before, const Rgb& greatest, double length,
+             bool whole) {
   const Rgb depth = greatest * length;
   const Rgb most = whole ? Rgb((before < 0.5 * depth).select(Rgb::Constant(most_whole), most_smooth)) : Rgb::Ones();
-  return (before < deepest_seen && depth > most * deepest_step(options)).any();
+  return (before < deepest && depth > most * deepest_step(options)).any();
 }
 
-void follow_depth(const Plan& plan, const Ray& ray, const Step* begin, const Step* end, std::vector<Step>& out) {
-  Division division{plan, ray, out};
+void follow_depth(const Plan& plan, const Ray& ray, double deepest, const Step* begin, const Step* end,
+                  std::vector<Step>& out) {
+  Division division{plan, ray, deepest, out};
   for (const Step* step = begin; step != end; ++step) {
     const double lo = step->t - 0.5 * step->length, hi = step->t + 0.5 * step->length;
     division.divide(*step, extinction_at(plan, ray, lo, step->inside), extinction_at(plan, ray, hi, step->inside), 0);

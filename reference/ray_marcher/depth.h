@@ -1,7 +1,7 @@
 // Steps that follow the optical depth, where equal ones would be too long for a thick medium.
 //
 // On camera rays a step deeper than 4 * `deepest_step` is divided into ones of `deepest_step` at most, while less than
-// `deepest_seen` lies before it (exp(-40) of the light is not missed); on shadow rays no step is deeper than
+// Spacing::deepest lies before it (exp(-40) of the light is not missed); on shadow rays no step is deeper than
 // `deepest_shadow_step` where the extinction at the ray's beginning makes the first one so. Longer ones are halved, and
 // again, front to back; a step counts as deep by the greatest extinction of its ends and its middle. Both limits are
 // the optical depth `horizon` shared among as many steps as are asked for, so that twice the steps are half as deep:
@@ -12,7 +12,7 @@
 
 namespace airlight::ray_marcher {
 
-constexpr double deepest_seen = 40, most_whole = 2, most_smooth = 16;
+constexpr double most_whole = 2, most_smooth = 16;
 constexpr double deepest_shaded = 20;  // behind more, 2e-9 of the light, a shadow ray's steps are as they come
 constexpr int most_halvings = 40;      // of a step; places in double have no more digits
 
@@ -22,14 +22,14 @@ bool may_be_deep(const std::vector<Layer>&, const Options&, const Step&);
 // Extinction of a step's media at a ray's parameter [1/m].
 Rgb extinction_at(const Plan&, const Ray&, double t, unsigned long long inside);
 
-// Is it, with `before` in front of it? `greatest`: extinction, of its ends and its middle.
+// Is it, with `before` in front of it, less than `deepest`? `greatest`: extinction, of its ends and its middle.
 // `whole`: a step as it was laid, which is left alone up to `most_whole` times as deep, and up to `most_smooth` times
 // where at least half as much lies before it: there the medium has grown over more than a step's length, and
 // equal steps through a smooth medium err less than divided ones.
-bool is_deep(const Options&, const Rgb& before, const Rgb& greatest, double length, bool whole);
+bool is_deep(const Options&, double deepest, const Rgb& before, const Rgb& greatest, double length, bool whole);
 
-// The steps [begin, end) of a ray with the deep ones divided, appended to `out`.
-void follow_depth(const Plan&, const Ray&, const Step* begin, const Step* end, std::vector<Step>& out);
+// The steps [begin, end) of a ray with the deep ones divided, appended to `out`; `deepest`: of their Spacing.
+void follow_depth(const Plan&, const Ray&, double deepest, const Step* begin, const Step* end, std::vector<Step>& out);
 
 // Is the first step of a shadow ray so deep that its column is to follow the depth?
 inline bool starts_deep(const Options& o, double extinction, double length) {

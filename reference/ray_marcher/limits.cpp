@@ -10,8 +10,9 @@
 namespace airlight::ray_marcher {
 namespace {
 
-// The longest way through a medium, as steps are laid: an endless one ends at the optical depth `horizon`.
-double longest(const scene::Medium& medium, const Options& options) {
+// The longest way through a medium, as steps are laid: an endless one ends at the optical depth `horizon`, or half of
+// that beyond the farthest lamp.
+double longest(const scene::Medium& medium, const scene::Scene& scene, const Options& options) {
   const Box box = bounding_box(medium);
   if (box.empty()) return 0;
   if (box.size().allFinite()) return box.size().stableNorm();
@@ -19,7 +20,11 @@ double longest(const scene::Medium& medium, const Options& options) {
   const double density = density_bounds(medium, {Point3::Zero(), Point3::Zero()}).hi;
   for (const double sigma_t : medium.sigma_t)
     if (sigma_t > 0) least = std::min(least, sigma_t * density);
-  return least > 0 && least < infinity ? options.horizon / least : 0;
+  if (!(least > 0 && least < infinity)) return 0;
+  double farthest = 0;
+  for (const scene::Light& light : scene.lights)
+    if (const auto lamp = ball(light)) farthest = std::max(farthest, (lamp->center - scene.camera.position).norm());
+  return std::max(1.0, 0.5 + farthest * least / options.horizon) * options.horizon / least;
 }
 
 // The longest of the ways through parts that vary.
@@ -45,7 +50,7 @@ double steps_per_ray(const scene::Scene& scene, const Options& options) {
   if (!(options.step > 0)) return options.steps;
   double sum = 0;
   for (const scene::Medium& medium : scene.media)
-    if (is_visible(medium)) sum += 1 + longest(medium, options) / options.step;
+    if (is_visible(medium)) sum += 1 + longest(medium, scene, options) / options.step;
   return std::max(sum, 1.0);
 }
 

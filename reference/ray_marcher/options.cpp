@@ -6,6 +6,23 @@
 
 namespace airlight::ray_marcher {
 
+namespace {
+
+// Of lamps in endless fog: the depth of the deepest, seen from the camera.
+double deepest_lamp(const scene::Scene& scene) {
+  double deepest = 0;
+  for (const scene::Medium& medium : scene.media) {
+    if (!std::holds_alternative<scene::Homogeneous>(medium.field) || bounding_box(medium).size().allFinite()) continue;
+    const double extinction = medium.sigma_t.maxCoeff() * std::get<scene::Homogeneous>(medium.field).density;
+    for (const scene::Light& light : scene.lights)
+      if (const auto lamp = scene::ball(light))
+        deepest = std::max(deepest, extinction * (lamp->center - scene.camera.position).norm());
+  }
+  return deepest;
+}
+
+}  // namespace
+
 double stated_error(const scene::Scene& scene) {
   const double thick = most_whole * Options().horizon;  // through all of a medium, in equal steps
   const auto divides = [&](const scene::Medium& medium) {
@@ -14,7 +31,10 @@ double stated_error(const scene::Scene& scene) {
            medium.sigma_t.maxCoeff() * density_bounds(medium, box).hi * box.size().stableNorm() > thick;
   };
   if (scene.geometry) return 0.06;
-  return std::any_of(scene.media.begin(), scene.media.end(), divides) ? 0.04 : 0.015;
+  const bool divided = std::any_of(scene.media.begin(), scene.media.end(), divides);
+  // On the way to a lamp a step of depth y brings sinh(y/2)/(y/2) times its light.
+  const double y = deepest_lamp(scene) / Options().steps;
+  return std::max(divided ? 0.04 : 0.015, y * y / 20);
 }
 
 std::vector<scene::SettingSpec> option_specs() {

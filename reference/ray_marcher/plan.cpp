@@ -30,6 +30,23 @@ double length_unit(const scene::Scene& scene) {
   return unit == infinity ? 1 : unit;
 }
 
+namespace {
+
+// Is there no light but lamps so deep in the media, seen from the camera, that the whole picture is as dark as that?
+bool only_deep_lamps(const Plan& plan) {
+  constexpr double deep = 60;
+  const Point3& eye = plan.scene->camera.position;
+  return !plan.lights.empty() && std::all_of(plan.lights.begin(), plan.lights.end(), [&](const scene::Light& light) {
+    const auto ball = scene::ball(light);
+    if (!ball || ball->center == eye) return false;
+    const double distance = (ball->center - eye).norm();
+    return scene::optical_depth(plan.scene->media, {eye, (ball->center - eye) / distance}, {0, distance}).minCoeff() >
+           deep;
+  });
+}
+
+}  // namespace
+
 Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
   Plan plan{scene, options, make_layers(scene->media), {}, false};
   for (const scene::Light& light : scene->lights) {
@@ -44,18 +61,25 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
     if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
   // Kernels compute places within media in float.
   if (scene::place_error(*scene) * 0x1p29 > 2e-3) plan.options.simd = false;
+  // And the light of steps, where what is below 1.2e-38 becomes 0.
+  if (only_deep_lamps(plan)) plan.options.simd = false;
   return plan;
 }
 
 void add_passes(const Plan& plan, int ray_number, const Ray& ray, double t_end, std::vector<Pass>& passes,
                 std::vector<Step>& steps) {
-  passes.push_back({ray_number, -1, make_spacing(plan.layers, plan.options, ray, t_end, {}, steps)});
+  static thread_local std::vector<Approach> lamps;
+  lamps.clear();
+  for (const scene::Light& light : plan.lights)
+    if (const auto ball = scene::ball(light); ball && plan.scatters) lamps.push_back(approach(ray, ball->center));
+  passes.push_back({ray_number, -1, make_spacing(plan.layers, plan.options, ray, t_end, lamps, {}, steps)});
   if (!plan.scatters || !plan.options.graded) return;
   for (int i = 0; i < int(plan.lights.size()); ++i) {
     const auto ball = scene::ball(plan.lights[i]);
     if (!ball) continue;
     const std::size_t before = steps.size();
-    const Spacing own = make_spacing(plan.layers, plan.options, ray, t_end, approach(ray, ball->center), steps);
+    const Approach lamp = approach(ray, ball->center);
+    const Spacing own = make_spacing(plan.layers, plan.options, ray, t_end, {&lamp, 1}, lamp, steps);
     if (own.around_light)
       passes.push_back({ray_number, i, own});
     else

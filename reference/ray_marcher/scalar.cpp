@@ -60,7 +60,8 @@ void divide_deep_steps(const Plan& plan, const Ray& ray, std::vector<Pass>& pass
   std::vector<Step> divided;
   for (Pass& pass : passes) {
     const std::size_t begin = divided.size();
-    follow_depth(plan, ray, steps.data() + pass.spacing.begin, steps.data() + pass.spacing.end, divided);
+    follow_depth(plan, ray, pass.spacing.deepest, steps.data() + pass.spacing.begin, steps.data() + pass.spacing.end,
+                 divided);
     pass.spacing.begin = begin;
     pass.spacing.end = divided.size();
   }

@@ -63,6 +63,17 @@ double constant_rate(const std::vector<Layer>& layers, unsigned long long inside
   return least == infinity ? 0 : least;
 }
 
+// Light falls little on the way to a lamp, and steps may not grow there; not worth a change where a lamp is so near.
+constexpr double deep_lamp = 4;
+
+// The same in the most extinct.
+double greatest_rate(const std::vector<Layer>& layers, unsigned long long inside) {
+  Rgb sum = Rgb::Zero();
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    if (in_constant(inside, k)) sum += layers[k].constant * layers[k].medium->sigma_t;
+  return sum.maxCoeff();
+}
+
 bool any_varies(const std::vector<Layer>& layers, unsigned long long inside) {
   for (std::size_t k = 0; k < layers.size(); ++k)
     if (in_varied(inside, k)) return true;
@@ -92,13 +103,13 @@ void cut(const std::vector<Layer>& layers, const Ray& ray, double t_end, std::ve
   }
 }
 
-// The endless part, from the light on (from its beginning without one), gets steps that grow.
-void grade_endless(std::vector<Part>& parts, double rate, const std::optional<Approach>& light) {
+// The endless part gets steps that grow from t on.
+void grade_endless(std::vector<Part>& parts, double rate, double t) {
   Part tail = parts.back();
-  if (light && light->t > tail.lo) {
-    parts.back().hi = std::min(light->t, tail.hi);
-    if (!(light->t < tail.hi)) return;
-    tail.lo = light->t;
+  if (t > tail.lo) {
+    parts.back().hi = std::min(t, tail.hi);
+    if (!(t < tail.hi)) return;
+    tail.lo = t;
     parts.push_back(tail);
   }
   parts.back().rate = rate;
@@ -227,8 +238,14 @@ double mean_inverse_square(const Approach& light, const Step& step) {
   return std::atan2(h * step.length, h * h + (x - half) * (x + half)) / (h * step.length);
 }
 
+double beyond_lamp(const Approach& lamp, double from, double longer) {
+  const double along = lamp.t - from, d = std::hypot(along, lamp.h);
+  const double turn = along > 0 ? lamp.h * lamp.h / (d + along) : d - along;  // d - along
+  return 0.5 * longer * (2 * d + longer) / (turn + longer);
+}
+
 Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, const Ray& ray, double t_end,
-                     const std::optional<Approach>& light, std::vector<Step>& steps) {
+                     std::span<const Approach> lamps, const std::optional<Approach>& light, std::vector<Step>& steps) {
   Spacing spacing;
   spacing.begin = spacing.end = steps.size();
   static thread_local std::vector<Part> parts;
@@ -238,8 +255,17 @@ Spacing make_spacing(const std::vector<Layer>& layers, const Options& options, c
     for (std::size_t k = 0; k < layers.size(); ++k)
       if (in_constant(last.inside, k)) spacing.endless = spacing.endless || layers[k].medium->sigma_t > 0;
     const double rate = constant_rate(layers, last.inside);
-    last.hi = last.lo + options.horizon / rate;
-    if (options.graded) grade_endless(parts, rate, light);
+    double length = options.horizon / rate;
+    const double most = greatest_rate(layers, last.inside);
+    double growing = light ? light->t : last.lo;
+    for (const Approach& lamp : lamps) {
+      if (rate * (lamp.t - last.lo) > deep_lamp) growing = std::max(growing, lamp.t);
+      length = std::max(length, beyond_lamp(lamp, last.lo, options.horizon / rate));
+      spacing.deepest = std::max(spacing.deepest, Spacing().deepest + most * std::hypot(lamp.t - last.lo, lamp.h));
+    }
+    spacing.deepest = std::min(spacing.deepest, 110.0);
+    last.hi = last.lo + length;
+    if (options.graded) grade_endless(parts, rate, growing);
   }
   if (options.graded) {
     limit_constant(layers, parts);

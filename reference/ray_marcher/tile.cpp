@@ -101,7 +101,7 @@ void TileMarcher::divide_deep_steps() {
   }
   std::vector<char> deep(rays_->size(), 0);
   for (std::size_t i = 0; i < n; ++i)
-    if (is_deep(plan_->options, Rgb::Zero(), greatest[i], plain_steps_[index_[i]].length, true))
+    if (is_deep(plan_->options, infinity, Rgb::Zero(), greatest[i], plain_steps_[index_[i]].length, true))
       deep[ray_of[index_[i]]] = 1;
   if (std::none_of(deep.begin(), deep.end(), [](char d) { return d; })) return;
   divided_.clear();
@@ -109,7 +109,7 @@ void TileMarcher::divide_deep_steps() {
     const Step *begin = plain_steps_.data() + pass.spacing.begin, *end = plain_steps_.data() + pass.spacing.end;
     pass.spacing.begin = divided_.size();
     if (deep[pass.ray])
-      follow_depth(*plan_, (*rays_)[pass.ray], begin, end, divided_);
+      follow_depth(*plan_, (*rays_)[pass.ray], pass.spacing.deepest, begin, end, divided_);
     else
       divided_.insert(divided_.end(), begin, end);
     pass.spacing.end = divided_.size();

@@ -46,7 +46,7 @@ struct RandomBlock {
   double coarse(int i) const { return uniform32(words[i]); }                      // i = 0..3
 };
 
-enum class Purpose : std::uint32_t { camera, flight, light, connection, scatter, transmittance, retry };
+enum class Purpose : std::uint32_t { camera, flight, light, connection, scatter, transmittance, retry, late_retry };
 
 // All random numbers of one sample of one pixel.
 class SampleRandom {

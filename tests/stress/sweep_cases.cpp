@@ -38,18 +38,20 @@ std::string sphere_region(double radius) {
   return "{ type = 'sphere', center = [0, 0, 0], radius = " + number(radius) + " }";
 }
 
-std::string surfaces(double l) {
-  return "[[surface]]\ntype = 'box'\nlo = " + point(0.6 * l, 0.8 * l, 0.1 * l) +
-         "\nhi = " + point(0.9 * l, 1.1 * l, 0.4 * l) +
+// The box casts its shadow into the view, or, away from the light, out of it, for what knows no shadows in the air.
+std::string surfaces(double l, bool shadow) {
+  const double x = shadow ? 0 : -2.05, y = shadow ? 0 : -1, z = shadow ? 0 : -1.15;
+  return "[[surface]]\ntype = 'box'\nlo = " + point((0.6 + x) * l, (0.8 + y) * l, (0.1 + z) * l) +
+         "\nhi = " + point((0.9 + x) * l, (1.1 + y) * l, (0.4 + z) * l) +
          "\n[[surface]]\ntype = 'plane'\npoint = " + point(0, -1.5 * l, 0) + "\n";
 }
 
 std::string ball(const Factors& f) {
-  return camera(f.length) + point_light(f) + homogeneous(f, 0.7, sphere_region(f.length)) + surfaces(f.length);
+  return camera(f.length) + point_light(f) + homogeneous(f, 0.7, sphere_region(f.length)) + surfaces(f.length, true);
 }
 
 std::string fog(const Factors& f) {
-  return camera(f.length) + point_light(f) + homogeneous(f, 0.1, "{ type = 'unbounded' }") + surfaces(f.length);
+  return camera(f.length) + point_light(f) + homogeneous(f, 0.1, "{ type = 'unbounded' }") + surfaces(f.length, false);
 }
 
 std::string blobs(const Factors& f) {
@@ -88,10 +90,16 @@ std::string grid(const Factors& f) {
 const std::string pinhole =
     "camera = { position = [0, 0, 4], look_at = [0, 0, 0] }\nfilm = { width = 1, height = 1 }\n";
 
-std::string one_gaussian(double width) {
+std::string one_gaussian(double width, double amplitude = 0.1) {
   return pinhole + point_light({}) +
          medium("gaussians", {},
-                "gaussians = [{ center = [0, 0, 0], width = " + number(width) + ", amplitude = 0.1 }]");
+                "gaussians = [{ center = [0, 0, 0], width = " + number(width) + ", amplitude = " + number(amplitude) +
+                    " }]");
+}
+
+// The lamp is 4.3 m from the camera.
+std::string deep_lamp(double depth) {
+  return camera(1) + point_light({}) + homogeneous({}, depth / 4.3, "{ type = 'unbounded' }");
 }
 
 std::string one_voxel(double size) {
@@ -191,9 +199,33 @@ std::vector<SweepCase> sweep_cases() {
                      return smoke({1, 1, s, 1});
                    },
                    one, 1, 1e12, 1e301, "mean", 1e-3, true});
+  // Between those ends nothing holds but the truth: one density, and one optical depth, thin and thick.
+  std::vector<double> widths;
+  for (int e = -8; e <= 8; ++e) widths.push_back(std::pow(10, 0.5 * e));
+  const auto add_widths = [&](const std::string& quantity, std::function<std::string(double)> text) {
+    cases.push_back({quantity, "gaussian", std::move(text), one, 1, 0, 1e301, "airlight", 0, false, widths});
+  };
+  add_widths("width, one density", [](double s) { return one_gaussian(s); });
+  add_widths("width, depth 0.02", [](double s) { return one_gaussian(s, 0.01 / s); });
+  add_widths("width, depth 1.8", [](double s) { return one_gaussian(s, 1 / s); });
+  add_widths("width, depth 18", [](double s) { return one_gaussian(s, 10 / s); });
+  // A lamp at the depth s of endless fog.
+  cases.push_back({"depth of the lamp",
+                   "fog",
+                   deep_lamp,
+                   one,
+                   1,
+                   0,
+                   1e301,
+                   "airlight",
+                   0,
+                   false,
+                   {0.01, 0.1, 1, 3, 6, 10, 15, 20, 30, 40, 50, 60, 70, 80}});
   // Optical depth in proportion to the size; then a constant density.
-  cases.push_back({"width, narrow", "gaussian", one_gaussian, same, 1e-4, 0, 1e-4, "airlight", 1e-4});
-  cases.push_back({"width, wide", "gaussian", one_gaussian, one, 1e5, 1e5, 1e301, "airlight", 1e-4});
+  cases.push_back(
+      {"width, narrow", "gaussian", [](double s) { return one_gaussian(s); }, same, 1e-4, 0, 1e-4, "airlight", 1e-4});
+  cases.push_back(
+      {"width, wide", "gaussian", [](double s) { return one_gaussian(s); }, one, 1e5, 1e5, 1e301, "airlight", 1e-4});
   cases.push_back({"voxel, small", "voxel", one_voxel, same, 1e-4, 0, 1e-4, "airlight", 1e-4});
   cases.push_back({"voxel, large", "voxel", one_voxel, one, 1e6, 1e6, 1e301, "airlight", 1e-4});
   cases.push_back({"region, thin", "slab", slab, same, 1e-4, 0, 1e-4, "airlight", 1e-3});

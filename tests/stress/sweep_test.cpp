@@ -16,18 +16,31 @@ namespace {
 
 std::string row(const SweepCase& c, const std::string& renderer, const Tally& t) {
   if (!t.available)
-    return fmt::format("| {} | {} | {} | not: {} | | | |\n", c.quantity, c.scene, renderer,
+    return fmt::format("| {} | {} | {} | not: {} | | | | | |\n", c.quantity, c.scene, renderer,
                        t.details.empty() ? "no such layer" : t.details[0]);
-  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", c.quantity, c.scene, renderer, t.right, t.at_loading,
-                     t.by_name, t.wrong);
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", c.quantity, c.scene, renderer, t.right,
+                     t.warned, t.at_loading, t.by_name, t.wrong, t.error < 0 ? "" : fmt::format("{:.2g}", t.error));
+}
+
+// Variants where they differ.
+std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std::string>& renderers) {
+  std::vector<std::string> specs;
+  for (const std::string& name : renderers) {
+    specs.push_back(name);
+    if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
+    if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
+    if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian")
+      for (const char* variant : {"paper", "VS2"}) specs.push_back(name + " variant=" + variant);
+  }
+  return specs;
 }
 
 void run(int step, const std::vector<std::string>& renderers, const char* file) {
   std::string table =
-      "| quantity | scene | renderer | right | refused at loading | refused by name | wrong "
-      "|\n|---|---|---|---|---|---|---|\n";
+      "| quantity | scene | renderer | right | with a warning | refused at loading | refused by name | wrong | error "
+      "|\n|---|---|---|---|---|---|---|---|---|\n";
   for (const SweepCase& c : sweep_cases())
-    for (const auto& [renderer, tally] : sweep(c, sweep_values(step), renderers)) {
+    for (const auto& [renderer, tally] : sweep(c, sweep_values(step), with_variants(c, renderers))) {
       table += row(c, renderer, tally);
       std::string details;
       for (const std::string& d : tally.details) details += d + "\n";

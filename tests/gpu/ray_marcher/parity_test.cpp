@@ -123,6 +123,24 @@ TEST_CASE("ray marcher: pixels that differ from the CPU's lie on silhouettes", "
   }
 }
 
+// Rays go on beyond a lamp that lies deeper than the horizon.
+TEST_CASE("ray marcher: a lamp deep in endless fog on the GPU", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  for (const double depth : {10.0, 30.0, 50.0}) {
+    const auto scene = make_scene(
+        {make_medium(scene::Homogeneous{1}, scene::Unbounded{}, Rgb(0.9, 1, 0.95) * depth / 4, Rgb::Constant(0.9))},
+        {scene::PointLight{Point3(0, 0, 4), Rgb::Ones(), 0}});
+    scene->camera = scene::look_at(Point3::Zero(), Point3(1, 0, 1), Vec3::UnitY());
+    scene::View view = view_of(*scene);
+    view.width = 8, view.height = 6;
+    for (const char* spacing : {"graded", "uniform"}) {
+      CAPTURE(depth, spacing);
+      const Given given{{"spacing", spacing}};
+      CHECK(p99(render(scene, view, given, 1).film, render_gpu(scene, view, given).film, "airlight") < 2e-4);
+    }
+  }
+}
+
 TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
   if (!gpu::test::device()) return;
   for (const auto& [name, scene] : assorted_scenes()) {

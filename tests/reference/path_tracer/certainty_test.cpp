@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/accumulation.h"
 #include "reference/path_tracer/refusals.h"
 #include "tests/reference/path_tracer/scenes.h"
@@ -76,6 +77,51 @@ TEST_CASE("a picture without any light says whether there can be none", "[path_t
   }
   // Forced, the thin medium is no problem.
   CHECK(picture(scene_of({medium(left, 1e-9, 1)}, {sun}), 64, true).metadata.count("warning") == 0);
+}
+
+// Samples of a thin and narrow medium are all alike but for those that miss. Where up to 3 % missed, one picture in six
+// saw none of them in a pixel's 64 samples, and claimed 3 % too much with next to no error: 8 % of all pixels were more
+// than 6 standard errors off, up to 1e5.
+TEST_CASE("a narrow thin medium is no more certain than it should be", "[path_tracer]") {
+  const std::vector<scene::Light> lights[] = {{scene::DirectionalLight{Vec3(0.6, 0.64, 0.48), Rgb::Ones()}},
+                                              {scene::PointLight{Point3(1.5, 2, 0.5), Rgb::Ones(), 0}}};
+  for (const auto& light : lights)
+    for (const double width : {1e-2, 1e-5})
+      for (const double depth : {1e-4, 1e-2}) {
+        scene::Medium cloud = medium(scene::Unbounded{}, 1, 0.9);
+        scene::GaussianSum sum;
+        sum.gaussians = {{Point3::Zero(), width, depth / (std::sqrt(pi) * width)}};
+        cloud.field = sum;
+        const auto scene = scene_of({cloud}, light);
+        scene::View view;
+        view.camera = scene::look_at(Point3(0.1, 0.3, 4), Point3::Zero(), Vec3::UnitY());
+        view.camera.vertical_fov = 1.5 * width;
+        view.width = view.height = 7;
+        scene->camera = view.camera;
+        const scene::Film truth = deterministic::make_renderer()
+                                      ->prepare(scene, {deterministic::make_renderer()->settings(), {}}, {1, {}})
+                                      ->render(view, {1, {}})
+                                      .film;
+        for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+          Options options;
+          options.samples = 64;
+          options.max_order = 1;
+          options.seed = seed;
+          const World world(scene, options);
+          Accumulation samples = empty_accumulation(world, view);
+          render_range(world, view, 0, 64, {1, {}}, samples);
+          const scene::Film film = to_film(world, view, samples);
+          int far = 0;
+          for (int y = 0; y < 7; ++y)
+            for (int x = 0; x < 7; ++x) {
+              const double expected = truth.get("airlight", x, y)[0], found = film.get("mean", x, y)[0];
+              far += std::abs(found - expected) > 6 * film.get("se", x, y)[0] + 1e-6 * expected;
+            }
+          CAPTURE(width, depth, seed);
+          // Of all 7840 estimates: the normal law's 2e-9 is no guide to 64 samples, but none is so far.
+          CHECK(far == 0);
+        }
+      }
 }
 
 // Intensity 1e308 over a distance of 1e-3 leaves the range of double.

@@ -76,6 +76,32 @@ TEST_CASE("ray marcher: media of any thickness", "[ray_marcher]") {
     }
 }
 
+// A lamp deep in endless fog: the picture is as dark as e^-depth, and what the lamp's neighbourhood adds to it is most
+// of it, because of the inverse square. Rays cut 16 depths from the eye missed 15 % of the light 30 depths deep and
+// erred by 0.36; steps that grew from the eye on erred by 0.026 at 8 to 10; steps too long behind 40 made it 1e7 times
+// too bright 100 deep. Beyond 80 pixels have no more digits in single precision.
+TEST_CASE("ray marcher: a lamp at any depth of endless fog", "[ray_marcher]") {
+  scene::View view;
+  view.camera = scene::look_at(Point3::Zero(), Point3(1, 0, 1), Vec3::UnitY());
+  view.width = 9, view.height = 7;
+  for (const double depth : {1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 80.0}) {
+    const auto scene = make_scene({make_medium(scene::Homogeneous{1}, scene::Unbounded{}, Rgb(0.9, 1, 0.95) * depth / 4,
+                                               Rgb::Constant(0.9), scene::HenyeyGreenstein{0.3})},
+                                  {scene::PointLight{Point3(0, 0, 4), Rgb(5, 6, 7), 0}});
+    scene->camera = view.camera;
+    for (const char* kernel : {"auto", "scalar"})
+      for (const char* spacing : {"graded", "uniform"}) {
+        CAPTURE(depth, kernel, spacing);
+        const auto error = [&](const char* steps) {
+          const Given given{{"kernel", kernel}, {"steps", steps}, {"spacing", spacing}};
+          return error_of(render(scene, view, given).film, *scene, view);
+        };
+        CHECK(error("64") < stated_error(*scene));
+        CHECK(error("256") < 0.005);
+      }
+  }
+}
+
 // The closed answer for a ball so thick that its surface is flat: light that scatters once in a half space, albedo *
 // phase * E * mu0 / (mu + mu0); the next term is of the order 1 / extinction, 1e-6. And lights add up: at 1e5 the
 // quadrature once lost one of two, each of which it had right alone.
