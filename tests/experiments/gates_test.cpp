@@ -93,6 +93,30 @@ TEST_CASE("gates find their rows", "[driver]") {
   CHECK(verdict({any}, with_figures) == "FAILED");
 }
 
+TEST_CASE("a gate says what kind of figure it judged, and the figure", "[driver]") {
+  Row r = row("s", "m", "", {0.25, 0.125, 0.5});
+  r.seconds = {5, 4.5, 6};
+  r.counters = {{"rays", 12}};
+  for (const char* name : {"objections", "exact", "spread"}) r.measures.push_back({name, 1, 1, 1, 0, false});
+  r.measures.back().high = 2;
+  const auto judged_on = [&](const std::string& metric) {
+    GateCase g = gate("", "m", "", 100);
+    g.metric = metric;
+    return judged({g}, {r}).at(0);
+  };
+  CHECK(judged_on("seconds").kind == "time");
+  CHECK(judged_on("prepare_seconds").kind == "time");
+  CHECK(judged_on("counter.rays").kind == "counter");
+  CHECK(judged_on("objections").kind == "Monte Carlo");  // whatever its interval
+  CHECK(judged_on("rel_l2").kind == "Monte Carlo");
+  CHECK(judged_on("spread").kind == "Monte Carlo");
+  CHECK(judged_on("exact").kind == "deterministic");
+  r.measures[0].floor = 0.1;  // of the bias, whose interval is a point
+  CHECK(judged_on("bias").kind == "Monte Carlo");
+  CHECK(judged_on("seconds").text == "g/e: s, m: seconds <= 100: 5 [4.5, 6]");
+  CHECK(judged_on("rel_l2").text == "g/e: s, m: rel_l2 <= 100: " + text(r.measures[1]));
+}
+
 TEST_CASE("a bound by row stands for that of the gate, on the device where it was measured", "[driver]") {
   GateCase law = gate("", "", "", 0.1), bound = gate("s", "m", "", 0.02);
   bound.by_row = true;

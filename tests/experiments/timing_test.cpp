@@ -80,6 +80,47 @@ TEST_CASE("timed in turns, each job has its own budget, and a short one its cach
   CHECK(timings[1].seconds.value == Approx(1e-3));
 }
 
+// By a clock of its own. Warm-up ends at its time, the first render included, or where the median of twenty runs has
+// come within 1 % of that before (at first the time of the first render).
+TEST_CASE("how long a job is warmed up", "[driver]") {
+  double now = 0;
+  int made = 0;
+  const auto runs_before_timing = [&](double least_seconds, double first, const std::function<double(int)>& takes) {
+    now = made = 0;
+    const auto timings =
+        time_runs({2, least_seconds, 1e6, 0}, {TimedJob{first, [&] { now += takes(made++); }}}, [&] { return now; });
+    REQUIRE(timings[0].runs == 2);
+    return made - 2;
+  };
+  const auto second = [](int) { return 1.0; };
+  CHECK(runs_before_timing(4, 1, second) == 3);
+  CHECK(runs_before_timing(4.5, 1, second) == 4);
+  CHECK(runs_before_timing(1, 1, second) == 0);
+  CHECK(runs_before_timing(1e6, 1, second) == 20);
+  CHECK(runs_before_timing(1e6, 0.9, second) == 40);
+  const auto after_twenty = [&](double time) {
+    return runs_before_timing(1e6, 5, [time](int run) { return run < 20 ? 1.0 : time; });
+  };
+  CHECK(after_twenty(1.0098) == 40);
+  CHECK(after_twenty(1.0103) == 60);
+  CHECK(after_twenty(0.9903) == 40);
+  CHECK(after_twenty(0.9898) == 60);
+}
+
+TEST_CASE("jobs at the border of short and long", "[driver]") {
+  double now = 0;
+  int at = 0, below = 0;
+  // Beside another, a job of less than 10 ms finds its caches by a run that is not timed.
+  const TimedJob ten_ms{0.01, [&] { now += 0.01, ++at; }}, nine_ms{0.009, [&] { now += 0.009, ++below; }};
+  time_runs({31, 0, 9, 0}, {ten_ms, nine_ms}, [&] { return now; });
+  CHECK(at == 31);
+  CHECK(below == 62);
+  CHECK(time_runs({31, 0, 1e6, 0}, {TimedJob{1, [&] { now += 1; }}}, [&] { return now; })[0].runs == 31);
+  CHECK(time_runs({31, 0, 1e6, 0}, {TimedJob{1.01, [&] { now += 1; }}}, [&] { return now; })[0].runs == 5);
+  // A budget that is reached exactly is not passed: 1 s of the first render and three runs.
+  CHECK(time_runs({31, 0, 4, 0}, {TimedJob{1, [&] { now += 1; }}}, [&] { return now; })[0].runs == 3);
+}
+
 TEST_CASE("times of stages are medians of the warm runs", "[driver]") {
   StageTimes times;
   CHECK(times.medians().empty());
