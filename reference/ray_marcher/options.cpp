@@ -13,7 +13,7 @@ double stated_error(const scene::Scene& scene) {
     return !box.empty() && box.size().allFinite() &&
            medium.sigma_t.maxCoeff() * density_bounds(medium, box).hi * box.size().stableNorm() > thick;
   };
-  if (scene.geometry) return 0.06;
+  if (scene.geometry) return 0.08;
   return std::any_of(scene.media.begin(), scene.media.end(), divides) ? 0.04 : 0.015;
 }
 
