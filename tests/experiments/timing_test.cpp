@@ -99,7 +99,7 @@ TEST_CASE("how long a job is warmed up", "[driver]") {
   CHECK(runs_before_timing(1e6, 1, second) == 20);
   CHECK(runs_before_timing(1e6, 0.9, second) == 40);
   const auto after_twenty = [&](double time) {
-    return runs_before_timing(1e6, 5, [time](int run) { return run < 20 ? 1.0 : time; });
+    return runs_before_timing(1e6, 5, [time](int run) { return run < 20 ? 4.0 : 4 * time; });
   };
   CHECK(after_twenty(1.0098) == 40);
   CHECK(after_twenty(1.0103) == 60);
