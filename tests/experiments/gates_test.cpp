@@ -94,7 +94,7 @@ TEST_CASE("gates find their rows", "[driver]") {
 }
 
 TEST_CASE("a gate says what kind of figure it judged, and the figure", "[driver]") {
-  Row r = row("s", "m", "", {0.25, 0.125, 0.5});
+  Row r = row("s", "m", "8", {0.25, 0.125, 0.5});
   r.seconds = {5, 4.5, 6};
   r.counters = {{"rays", 12}};
   for (const char* name : {"objections", "exact", "spread"}) r.measures.push_back({name, 1, 1, 1, 0, false});
@@ -113,8 +113,11 @@ TEST_CASE("a gate says what kind of figure it judged, and the figure", "[driver]
   CHECK(judged_on("exact").kind == "deterministic");
   r.measures[0].floor = 0.1;  // of the bias, whose interval is a point
   CHECK(judged_on("bias").kind == "Monte Carlo");
-  CHECK(judged_on("seconds").text == "g/e: s, m: seconds <= 100: 5 [4.5, 6]");
-  CHECK(judged_on("rel_l2").text == "g/e: s, m: rel_l2 <= 100: " + text(r.measures[1]));
+  CHECK(judged_on("seconds").text == "g/e: s, m 8: seconds <= 100: 5 [4.5, 6]");
+  const GateResult result = judged_on("rel_l2");
+  CHECK((result.scene == "s" && result.method == "m" && result.setting == "8" && result.metric == "rel_l2"));
+  CHECK((result.upper && result.bound == 100 && result.measured->low == 0.125));
+  CHECK(result.text == "g/e: s, m 8: rel_l2 <= 100: " + text(r.measures[1]));
 }
 
 TEST_CASE("a bound by row stands for that of the gate, on the device where it was measured", "[driver]") {
