@@ -280,7 +280,7 @@ class Reader {
 
   void checks(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "gate")) {
-      reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "measured", "why", "profiles"});
+      reader.allow({"scene", "method", "setting", "metric", "at_most", "at_least", "why", "profiles"});
       GateCase gate;
       gate.scene = reader.text("scene", "");
       gate.method = reader.text("method", "");
@@ -295,12 +295,6 @@ class Reader {
       if (bounded) reader.one_of({"at_most", "at_least"});
       if (reader.has("at_most")) gate.at_most = reader.number("at_most", scene::load::any_number);
       if (reader.has("at_least")) gate.at_least = reader.number("at_least", scene::load::any_number);
-      if (reader.has("measured")) {
-        // For people who read the file; what it is now, `airlight gates --margins` tells.
-        const double measured = reader.number("measured", scene::load::any_number);
-        if (measured > gate.at_most || measured < gate.at_least)
-          reader.fail("measured", fmt::format("measured = {:g} fails this gate", measured));
-      }
       if (!in_profile(*table, reader) || !(bounded || experiment_.profile == "quick")) continue;
       has_figures(reader, gate);
       experiment_.gates.push_back(gate);

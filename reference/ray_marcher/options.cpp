@@ -30,7 +30,7 @@ double stated_error(const scene::Scene& scene) {
     return !box.empty() && box.size().allFinite() &&
            medium.sigma_t.maxCoeff() * density_bounds(medium, box).hi * box.size().stableNorm() > thick;
   };
-  if (scene.geometry) return 0.06;
+  if (scene.geometry) return 0.08;
   const bool divided = std::any_of(scene.media.begin(), scene.media.end(), divides);
   // On the way to a lamp a step of depth y brings sinh(y/2)/(y/2) times its light.
   const double y = deepest_lamp(scene) / Options().steps;

@@ -30,7 +30,7 @@ inline double deepest_shadow_step(const Options& o) {
 }
 
 // Of the airlight at 64 and 32 steps, the defaults: relative L2 distance from the truth. 0.015; 0.04 where a medium is
-// so thick that steps may be divided (depth.h); 0.06 where surfaces cast shadows, whose edges fall within steps; the
+// so thick that steps may be divided (depth.h); 0.08 where surfaces cast shadows, whose edges fall within steps; the
 // square of a step's depth / 20 where a lamp lies deeper than 35 in endless fog. Tests hold scenes of each kind against
 // it.
 double stated_error(const scene::Scene&);

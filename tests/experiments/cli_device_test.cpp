@@ -4,12 +4,11 @@
 #include <filesystem>
 
 #include "tests/experiments/run_program.h"
+#include "tests/experiments/small_project.h"
 
+using namespace airlight::test;
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
-using airlight::test::Result;
-using airlight::test::run;
-using airlight::test::scenes;
 using Catch::Contains;
 
 // A wish that no device fulfils stands for a machine without one.
@@ -31,54 +30,8 @@ TEST_CASE("without a GPU, asking for it is one line and exit code 3, and the res
   unsetenv("AIRLIGHT_GPU");
 }
 
-namespace {
-
-const char* const box_of_fog = R"([film]
-width = 8
-height = 6
-[camera]
-position = [0, 0, 4]
-look_at = [0, 0, 0]
-[[light]]
-type = "point"
-position = [1.5, 2, 1]
-intensity = 5
-[[medium]]
-type = "homogeneous"
-sigma_t = 0.5
-region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
-)";
-
-}  // namespace
-
 TEST_CASE("gates of a machine without a GPU are skipped, unless the device was asked for by name", "[cli]") {
-  const TemporaryFolder folder;
-  folder.write("experiments/README.md", "");
-  folder.write("experiments/g/e.toml", R"(title = "Both backends"
-layer = "airlight"
-metrics = ["rel_l2"]
-[[scene]]
-file = "scenes/one.toml"
-[reference]
-renderer = "deterministic"
-[[method]]
-name = "CPU"
-renderer = "ray_marcher"
-[[method]]
-name = "GPU"
-renderer = "ray_marcher_gpu"
-[profile.quick]
-budget = 0
-[[gate]]
-method = "CPU"
-metric = "rel_l2"
-at_most = 0.1
-[[gate]]
-method = "GPU"
-metric = "rel_l2"
-at_most = 0.1
-)");
-  folder.write("experiments/scenes/one.toml", box_of_fog);
+  const SmallProject folder(box_of_fog(8, 6), both_backends("0.1"));
   setenv("AIRLIGHT_GPU", "none", 1);
   const Result without = run("gates --root . --junit gates.xml", folder);
   CAPTURE(without.out, without.err);
@@ -99,26 +52,7 @@ at_most = 0.1
 
 // What a device computed is kept for that device alone.
 TEST_CASE("rows of a device are not taken for another's", "[cli]") {
-  const TemporaryFolder folder;
-  folder.write("experiments/README.md", "");
-  folder.write("experiments/g/e.toml", R"(title = "GPU"
-layer = "airlight"
-metrics = ["rel_l2"]
-[[scene]]
-file = "scenes/one.toml"
-[reference]
-renderer = "deterministic"
-[[method]]
-name = "GPU"
-renderer = "ray_marcher_gpu"
-[profile.quick]
-budget = 0
-[[gate]]
-method = "GPU"
-metric = "rel_l2"
-at_most = 0.1
-)");
-  folder.write("experiments/scenes/one.toml", box_of_fog);
+  const SmallProject folder(box_of_fog(8, 6), against_quadrature({{"GPU", "ray_marcher_gpu", "0.1"}}));
   const Result first = run("gates --root .", folder);
   CAPTURE(first.out);
   CHECK(first.code == 0);

@@ -7,60 +7,21 @@
 
 #include "scene/film.h"
 #include "tests/experiments/run_program.h"
+#include "tests/experiments/small_project.h"
 
+using namespace airlight::test;
 using airlight::read_bytes;
-using airlight::TemporaryFolder;
-using airlight::test::Result;
-using airlight::test::root;
-using airlight::test::run;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
 
-const char* const box_of_fog = R"([film]
-width = 16
-height = 8
-[camera]
-position = [0, 0, 4]
-look_at = [0, 0, 0]
-[[light]]
-type = "point"
-position = [1.5, 2, 1]
-intensity = 5
-[[medium]]
-type = "homogeneous"
-sigma_t = 0.5
-region = { type = "box", lo = [-1, -1, -1], hi = [1, 1, 1] }
-)";
-
-std::string steps_experiment(const std::string& gate) {
-  return R"(title = "Steps"
-layer = "airlight"
-metrics = ["rel_l2"]
-[[scene]]
-file = "scenes/one.toml"
-[reference]
-renderer = "deterministic"
-[[method]]
-name = "marcher"
-renderer = "ray_marcher"
-settings = { steps = 64, kernel = "scalar" }
-[profile.quick]
-budget = 0
-[[gate]]
-method = "marcher"
-metric = "rel_l2"
-)" + gate +
-         "\n";
+std::string steps_experiment(const std::string& at_most, const std::string& at_top = "") {
+  return against_quadrature({{"marcher", "ray_marcher", at_most, "steps = 64, kernel = \"scalar\""}}, at_top);
 }
 
-struct Project : TemporaryFolder {
-  Project() {
-    write("experiments/README.md", "");
-    write("experiments/scenes/one.toml", box_of_fog);
-  }
-  bool has(const std::string& file) const { return fs::exists(path() / file); }
+struct Project : SmallProject {
+  Project() : SmallProject(box_of_fog(16, 8)) {}
 };
 
 // The columns of the errors alone.
@@ -80,8 +41,8 @@ std::string errors(const Project& project, const std::string& name) {
 
 TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
   const Project project;
-  project.write("experiments/g/bad.toml", steps_experiment("at_most = 1e-12"));
-  project.write("experiments/g/good.toml", steps_experiment("at_most = 0.5"));
+  project.write("experiments/g/bad.toml", steps_experiment("1e-12"));
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
   const Result good = run("experiment run g/good --root .", project);
   CHECK(good.code == 0);
   CHECK(good.err.empty());
@@ -94,9 +55,8 @@ TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
 
 TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   const Project project;
-  const std::string text = steps_experiment("at_most = 1e-12");
-  project.write("experiments/g/bad.toml", "in_tests = true\n" + text);
-  project.write("experiments/g/slow.toml", text);
+  project.write("experiments/g/bad.toml", steps_experiment("1e-12", "in_tests = true\n"));
+  project.write("experiments/g/slow.toml", steps_experiment("1e-12"));
   const Result in_tests = run("gates --root . --in-tests", project);
   CHECK(in_tests.code == 1);
   CHECK_THAT(in_tests.out, Contains("g/bad: one") && !Contains("g/slow"));
@@ -106,8 +66,8 @@ TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
 // The second experiment's second scene is wrong: the first experiment is not begun.
 TEST_CASE("all experiments are checked before the first is computed", "[cli]") {
   const Project project;
-  project.write("experiments/g/a.toml", steps_experiment("at_most = 0.5"));
-  std::string text = steps_experiment("at_most = 0.5");
+  project.write("experiments/g/a.toml", steps_experiment("0.5"));
+  std::string text = steps_experiment("0.5");
   text.insert(text.find("[reference]"),
               "[[scene]]\nname = \"two\"\nfile = \"scenes/one.toml\"\noverrides = { \"film.widht\" = 4 }\n");
   project.write("experiments/g/b.toml", text);
@@ -172,10 +132,7 @@ budget = 0
 // The shader that writes the airlight, made half as bright again: a relative error of 0.5.
 TEST_CASE("gates see a shader that was changed by hand", "[cli]") {
   const Project project;
-  std::string text = steps_experiment("at_most = 1e-3");
-  text.replace(text.find("\"ray_marcher\""), 13, "\"ray_marcher_gpu\"");
-  text.erase(text.find(", kernel = \"scalar\""), 19);
-  project.write("experiments/g/e.toml", text);
+  project.write("experiments/g/e.toml", against_quadrature({{"marcher", "ray_marcher_gpu", "1e-3", "steps = 64"}}));
   const Result first = run("gates --root .", project);
   CAPTURE(first.out, first.err);
   if (first.out.find("skipped") != std::string::npos) {

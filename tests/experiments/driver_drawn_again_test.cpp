@@ -1,4 +1,5 @@
 // Intervals of speed-ups from runs and errors drawn again, and what is said of a loaded machine.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -62,6 +63,61 @@ TEST_CASE("a ratio of errors has the interval that theirs leave it", "[driver]")
   CHECK(ratio->high == Approx(1 + 0.0277).margin(0.003));
 }
 
+namespace {
+
+// What a row's point is drawn as, a thousand times.
+std::vector<Point> drawn(const Row& row) {
+  std::vector<Point> points;
+  const Row one = timed_row(1, "another group");
+  drawn_again({&row}, {&one}, "rel_l2", [&](const auto& x, const auto&) {
+    points.push_back(x[0]);
+    return std::optional(1.0);
+  });
+  REQUIRE(points.size() == 1001);
+  CHECK(points[0].error.value == row.measures[0].value);  // as measured
+  points.erase(points.begin());
+  return points;
+}
+
+template <typename Predicate>
+double share(const std::vector<Point>& points, const Predicate& holds) {
+  return double(std::count_if(points.begin(), points.end(), holds)) / double(points.size());
+}
+
+}  // namespace
+
+// The interval reaches .2 down and .6 up: standard deviations .102 and .306. So 2.5 % lie below 1.8, 25.7 % above 2.2
+// (.653 of the wider one) and 2.5 % above 2.6, to five standard errors.
+TEST_CASE("an error is drawn as lopsided as its interval is, and above 0", "[driver]") {
+  Row row = timed_row(1, "g");
+  row.measures = {{"rel_l2", 2, 1.8, 2.6, 0.1, false}};
+  const auto points = drawn(row);
+  CHECK(share(points, [](const Point& p) { return p.error.value < 1.8; }) == Approx(0.025).margin(0.025));
+  CHECK(share(points, [](const Point& p) { return p.error.value < 2; }) == Approx(0.5).margin(0.08));
+  CHECK(share(points, [](const Point& p) { return p.error.value > 2.2; }) == Approx(0.257).margin(0.07));
+  CHECK(share(points, [](const Point& p) { return p.error.value > 2.6; }) == Approx(0.025).margin(0.025));
+  // A standard deviation of 10.2 downwards: what falls below a thousandth of the value, 42.2 %, is put there.
+  row.measures = {{"rel_l2", 2, -18, 4, 10, false}};
+  const auto wide = drawn(row);
+  CHECK(share(wide, [](const Point& p) { return p.error.value == Approx(0.002); }) == Approx(0.422).margin(0.08));
+  CHECK(share(wide, [](const Point& p) { return p.error.value < 0.00199; }) == 0);
+  row.measures = {{"rel_l2", 2, 2, 2, 0, false}};  // without noise
+  CHECK(share(drawn(row), [](const Point& p) { return p.error.value == 2; }) == 1);
+}
+
+// The median of five draws from five times is one of them. It is the first if three or more draws are:
+// 10 * .2^3 * .8^2 + 5 * .2^4 * .8 + .2^5 = 5.8 %; the middle one by symmetry most often.
+TEST_CASE("a time is the median of as many draws as there were runs", "[driver]") {
+  Row row = timed_row(1, "g");
+  row.times = {1, 2, 4, 8, 16};
+  const auto points = drawn(row);
+  const auto is = [&](double time) { return share(points, [&](const Point& p) { return p.time.value == time; }); };
+  CHECK(is(1) + is(2) + is(4) + is(8) + is(16) == Approx(1));
+  CHECK(is(1) == Approx(0.058).margin(0.037));
+  CHECK(is(16) == Approx(0.058).margin(0.037));
+  CHECK(is(4) > 0.3);
+}
+
 TEST_CASE("without runs to draw from, or a figure in the draws, there is no interval", "[driver]") {
   Row few = timed_row(1, "g");
   few.times.resize(4);
@@ -74,7 +130,7 @@ TEST_CASE("without runs to draw from, or a figure in the draws, there is no inte
 
 TEST_CASE("a loaded machine is named in the conditions", "[driver]") {
   Outcome outcome;
-  for (const double waited : {0.02, 0.3, 0.12}) {
+  for (const double waited : {0.02, 0.3, much_waiting, 0.12}) {
     outcome.rows.push_back(timed_row(1, "g"));
     outcome.rows.back().scene = "s";
     outcome.rows.back().method = waited == 0.3 ? "worst" : "other";
@@ -83,7 +139,7 @@ TEST_CASE("a loaded machine is named in the conditions", "[driver]") {
   Row untimed;
   untimed.waited = 1;
   outcome.rows.push_back(untimed);
-  CHECK_THAT(load_warning(outcome), Catch::Contains("in 2 of 3 timed rows") && Catch::Contains("more than 10 %") &&
+  CHECK_THAT(load_warning(outcome), Catch::Contains("in 2 of 4 timed rows") && Catch::Contains("more than 10 %") &&
                                         Catch::Contains("(s, worst: 30 %)"));
   outcome.rows.resize(1);
   CHECK(load_warning(outcome).empty());

@@ -33,9 +33,18 @@ TEST_CASE("the margin of a gate is how many times worse its figure could be", "[
   CHECK(std::isnan(margin(gate("bias", true, 0.1, -0.05))));
   CHECK(margin(gate("bias", true, -0.2, -0.3)) == Approx(1.5));     // at most -0.2: it may shrink by 1.5
   CHECK(margin(gate("bias", false, -0.05, -0.02)) == Approx(2.5));  // at least -0.05: it may grow by 2.5
+  CHECK(std::isnan(margin(gate("bias", true, 0, -0.1))));
   GateResult undefined = gate("a", true, 0.1, 0);
   undefined.measured.reset();
   CHECK(std::isnan(margin(undefined)));
+}
+
+TEST_CASE("margins are counted up to the end of each class", "[driver]") {
+  std::vector<GateResult> gates{gate("zero", true, 1, 0), gate("bias", true, 1, -1)};
+  for (const double bound : {1.5, 1.51, 3.0, 3.01, 10.0, 10.01, 100.0, 100.1})
+    gates.push_back(gate("a", true, bound, 1));
+  CHECK_THAT(margins_text(gates), Contains("up to 1.5: 1, up to 3: 2, up to 10: 2, up to 100: 2, above 100: 1, above a "
+                                           "measured 0: 1, without a ratio: 1\n"));
 }
 
 TEST_CASE("margins are listed with the loosest first, and counted", "[driver]") {

@@ -5,11 +5,9 @@
 
 #include "experiments/driver/run.h"
 #include "scene/renderer.h"
-#include "tests/temporary_folder.h"
+#include "tests/experiments/small_project.h"
 
 using namespace airlight::experiments;
-using airlight::TemporaryFolder;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -61,18 +59,11 @@ count_noise = true
 budget = 0
 )";
 
-struct NoiseProject {
-  TemporaryFolder folder;
-  NoiseProject(const std::string& scene, const std::string& experiment) {
-    folder.write("experiments/README.md", "");
-    folder.write("experiments/scenes/one.toml", scene);
-    folder.write("experiments/g/e.toml", experiment);
-  }
-  Outcome run() const {
-    return run_experiment(read_experiment(folder.path(), "g/e", "quick"), {folder.path(), false, 1, false});
-  }
+struct NoiseProject : airlight::test::SmallProject {
+  using SmallProject::SmallProject;
+  Outcome run() const { return run_experiment(read_experiment(path(), "g/e", "quick"), {path(), false, 1, false}); }
   airlight::scene::Film picture(const std::string& name) const {
-    return airlight::scene::read_exr((folder.path() / "results/images/g/e/one" / (name + ".exr")).string());
+    return airlight::scene::read_exr(file("results/images/g/e/one/" + name + ".exr"));
   }
 };
 
@@ -137,7 +128,7 @@ TEST_CASE("rows leave out balls and background", "[driver]") {
   REQUIRE(outcome.rows.size() == 1);
   REQUIRE(outcome.rows[0].note.empty());
   const auto image = project.picture("exact"), reference = project.picture("reference");
-  const auto scene = airlight::scene::load_scene(project.folder.file("experiments/scenes/one.toml"));
+  const auto scene = airlight::scene::load_scene(project.file("experiments/scenes/one.toml"));
   const auto balls = airlight::scene::ball_mask(scene, airlight::scene::view_of(scene));
   CHECK(std::count(balls.begin(), balls.end(), 1) > 4);
   // 1 - exp(-0.001 times the chord of the unit sphere): a chord above 1, so within sqrt(3)/2 of the middle. Counted

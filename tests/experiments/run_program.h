@@ -22,12 +22,16 @@ struct Result {
   int error_lines() const { return int(std::count(err.begin(), err.end(), '\n')); }
 };
 
-inline Result run(const std::string& arguments, const TemporaryFolder& folder) {
-  const std::string out = (folder.path() / "stdout").string(), err = (folder.path() / "stderr").string();
-  const int status = std::system(
-      ("cd '" + folder.path().string() + "' && '" + program + "' " + arguments + " >'" + out + "' 2>'" + err + "'")
-          .c_str());
+// A line for the shell, in that folder.
+inline Result run_command(const std::string& command, const TemporaryFolder& folder) {
+  const std::string out = folder.file("stdout"), err = folder.file("stderr");
+  const int status =
+      std::system(("cd '" + folder.path().string() + "' && " + command + " >'" + out + "' 2>'" + err + "'").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), read_bytes(err)};
+}
+
+inline Result run(const std::string& arguments, const TemporaryFolder& folder) {
+  return run_command("'" + program + "' " + arguments, folder);
 }
 
 }  // namespace airlight::test

@@ -96,6 +96,32 @@ def overlay_of(builder, number, file, text):
     return folder
 
 
+def is_script(m):
+    return m.tests.endswith(".py")
+
+
+def passes_sound(builder, m):
+    if is_script(m):
+        return script_passes(m, os.path.join(ROOT, "scripts"))
+    program = os.path.join(builder.scratch.name, "tests")
+    builder.link([], [m.tests], program)
+    return builder.passes(program, [named(m.test)])
+
+
+def passes_planted(builder, m, number):
+    overlay = overlay_of(builder, number, m.file, planted(read(m.file), m.changes))
+    if is_script(m):
+        return script_passes(m, os.path.join(overlay, "scripts"))
+    program = os.path.join(builder.scratch.name, "tests")
+    builder.link([builder.compile(f, overlay) for f in (m.compiled or [m.file])], [m.tests], program)
+    return builder.passes(program, [named(m.test)])
+
+
+def script_passes(m, scripts):
+    return subprocess.run([sys.executable, "tests/" + m.tests, m.test], cwd=ROOT, capture_output=True,
+                          env={**os.environ, "AIRLIGHT_TESTED_SCRIPTS": scripts}).returncode == 0
+
+
 def read(file):
     with open(os.path.join(ROOT, file)) as f:
         return f.read()
@@ -112,18 +138,13 @@ def run(builder, names):
     for number, m in enumerate(chosen):
         where = f"{m.name}: {m.file}:{line_of(m)}: \"{m.test}\""
         try:
-            program = os.path.join(builder.scratch.name, "tests")
             if (m.tests, m.test) not in sound:
-                builder.link([], [m.tests], program)
-                sound[m.tests, m.test] = builder.passes(program, [named(m.test)])
+                sound[m.tests, m.test] = passes_sound(builder, m)
             if not sound[m.tests, m.test]:
                 wrong += 1
                 print(f"FAILS WITHOUT  {where}", flush=True)
                 continue
-            overlay = overlay_of(builder, number, m.file, planted(read(m.file), m.changes))
-            objects = [builder.compile(f, overlay) for f in (m.compiled or [m.file])]
-            builder.link(objects, [m.tests], program)
-            found = not builder.passes(program, [named(m.test)])
+            found = not passes_planted(builder, m, number)
             wrong += not found
             print(f"{'found   ' if found else 'SURVIVED'}  {where}", flush=True)
         except Cannot as reason:
@@ -139,7 +160,8 @@ def listed():
         print(f"{m.name} -> {m.file}:{line_of(m)} -> {m.tests}: {m.test}")
         try:
             planted(read(m.file), m.changes)
-            if f'TEST_CASE("{m.test}"' not in read("tests/" + m.tests):
+            sought = f"def {m.test.split('.')[-1]}(" if is_script(m) else f'TEST_CASE("{m.test}"'
+            if sought not in read("tests/" + m.tests):
                 raise Cannot("there is no such test")
         except (Cannot, OSError) as reason:
             broken += 1

@@ -24,6 +24,14 @@ EQUALITY = "experiments/equality.cpp", "experiments/equality_test.cpp"
 STATISTICS = "experiments/statistics.cpp", "experiments/statistics_test.cpp"
 FRONT = "experiments/front.cpp", "experiments/statistics_test.cpp"
 CHECK = "experiments/verify/check.cpp", "experiments/verify_test.cpp"
+DRAWN_AGAIN = "experiments/driver/drawn_again.cpp", "experiments/driver_drawn_again_test.cpp"
+CONDITIONS = "experiments/driver/comparisons.cpp", "experiments/driver_drawn_again_test.cpp"
+MARGINS = "experiments/driver/margins.cpp", "experiments/driver_margins_test.cpp"
+TIMING = "experiments/driver/timing.cpp", "experiments/timing_test.cpp"
+GATES = "experiments/driver/gates.cpp", "experiments/gates_test.cpp"
+EXPOSURE = "experiments/driver/pictures.cpp", "experiments/pictures_test.cpp"
+TIGHTEN = "scripts/tighten", "scripts/scripts_test.py"
+FIGURES = "scripts/figures", "scripts/scripts_test.py"
 VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
 
 
@@ -61,6 +69,50 @@ MUTANTS = [
         "return no_worse;", "a point whose intervals overlap another's does not dominate it"),
     bug("dominance by values", FRONT, "const bool no_worse = p.time.high <= q.time.low &&", "const bool no_worse = p.time.value <= q.time.value &&",
         "a point whose intervals overlap another's does not dominate it"),
+    bug("a loaded machine from 10 % on, that itself included", CONDITIONS, "row.waited > much_waiting", "row.waited >= much_waiting",
+        "a loaded machine is named in the conditions"),
+    bug("the wrong side of an error's interval", DRAWN_AGAIN, "e.value + z *", "e.value - z *", "an error is drawn as lopsided as its interval is, and above 0"),
+    bug("the lower side up to one standard deviation", DRAWN_AGAIN, "z < 0 ?", "z < 1 ?", "an error is drawn as lopsided as its interval is, and above 0"),
+    bug("least error twice as large", DRAWN_AGAIN, "1e-3 * e.value", "2e-3 * e.value", "an error is drawn as lopsided as its interval is, and above 0"),
+    bug("intervals of one standard deviation", DRAWN_AGAIN, "normal_quantile(0.975)", "normal_quantile(0.84)",
+        "an error is drawn as lopsided as its interval is, and above 0"),
+    bug("one round fewer than there were runs", DRAWN_AGAIN, "std::size_t k = 0; k < row.times", "std::size_t k = 1; k < row.times",
+        "a time is the median of as many draws as there were runs"),
+    # Times
+    bug("warm-up without the first render", TIMING, "double warmed = job_.first;", "double warmed = 0;", "how long a job is warmed up"),
+    bug("warm-up that ends while it gets slower", TIMING, "std::abs(now - last_median)", "(now - last_median)", "how long a job is warmed up"),
+    bug("warm-up that ends at 2 %", TIMING, "0.01 * now", "0.02 * now", "how long a job is warmed up"),
+    bug("warm-up against the first render alone", TIMING, "      last_median = now;\n", "", "how long a job is warmed up"),
+    bug("caches found by jobs of 20 ms too", TIMING, "short_job = 0.01", "short_job = 0.02", "jobs at the border of short and long"),
+    bug("a second is long", TIMING, "job.first > 1 ?", "job.first >= 1 ?", "jobs at the border of short and long"),
+    bug("a budget reached is passed", TIMING, "job_.first <= rule_.budget", "job_.first < rule_.budget", "jobs at the border of short and long"),
+    # Gates
+    bug("exact figures called Monte Carlo", GATES, "m.low < m.high", "m.low <= m.high", "a gate says what kind of figure it judged, and the figure"),
+    bug("noise of another metric", GATES, "m.name == metric && (m.floor", "m.name != metric && (m.floor",
+        "a gate says what kind of figure it judged, and the figure"),
+    bug("margins: one class too low", MARGINS, "ratio <= 3 ", "ratio < 3 ", "margins are counted up to the end of each class"),
+    bug("margins: a bound of 0 on a negative figure", MARGINS, "above < 0 && below < 0", "above <= 0 && below < 0",
+        "the margin of a gate is how many times worse its figure could be"),
+    bug("exposure by the 95 % quantile", EXPOSURE, "0.99 * double", "0.95 * double", "a picture's exposure shows its 99 % quantile as 0.8"),
+    # Bounds by row and the figures of the pages
+    bug("twice the figure", TIGHTEN, "return 1.5 if", "return 2 if", "Tighten.test_bounds"),
+    bug("1e-3 counts as large", TIGHTEN, "x > 1e-3 else", "x >= 1e-3 else", "Tighten.test_the_rule_at_its_ends"),
+    bug("1e-6 counts as middling", TIGHTEN, "x > 1e-6 else", "x >= 1e-6 else", "Tighten.test_the_rule_at_its_ends"),
+    bug("3e-8 counts as rounding", TIGHTEN, "value <= 2e-8", "value <= 3e-8", "Tighten.test_the_rule_at_its_ends"),
+    bug("negative figures held from the wrong side", TIGHTEN, "else value / factor(-value)", "else value * factor(-value)",
+        "Tighten.test_the_rule_at_its_ends"),
+    bug("negative figures held too closely from below", TIGHTEN, "else value * factor(-value)", "else value / factor(-value)",
+        "Tighten.test_the_rule_of_intervals"),
+    bug("intervals cut at their inner side", TIGHTEN, "high if low == high else rounded(high, True)", "high if low == high else rounded(high, False)",
+        "Tighten.test_the_rule_of_intervals"),
+    bug("counters within 2 %", TIGHTEN, "value * 1.01", "value * 1.02", "Tighten.test_the_rule_of_counters_and_laws"),
+    bug("the laxest law", TIGHTEN, "law_most = min(", "law_most = max(", "Tighten.test_the_rule_of_counters_and_laws"),
+    bug("figures that touch a law are beyond it", TIGHTEN, "found[1] > law_most", "found[2] > law_most", "Tighten.test_the_rule_of_counters_and_laws"),
+    bug("bounds of profile paper", TIGHTEN, '"quick" in gate', '"paper" in gate', "Tighten.test_the_rule_of_counters_and_laws"),
+    bug("a bound twice as far", TIGHTEN, "SLACK = 1.1 ", "SLACK = 2.2 ", "Tighten.test_how_far_a_bound_may_be"),
+    bug("shares of the greatest", FIGURES, "Selection([sum(s.values)])", "Selection([max(s.values)])", "Figures.test_functions"),
+    bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
+    bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
     # Masks
     bug("pixels that touch a light compared", RUN, "scene::ball_mask(*planned.scene, view)", "std::vector<unsigned char>()",
         "rows leave out balls and background"),

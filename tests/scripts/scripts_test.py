@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SCRIPTS = os.environ.get("AIRLIGHT_TESTED_SCRIPTS", f"{SOURCE}/scripts")  # tests/mutants plants bugs in copies
 
 TABLE = """scene,parameter,method,setting,rel_l2,rel_l2_low,rel_l2_high,seconds,note
 "one, large",,S,8,0.01237,0.01237,0.01237,0.002,
@@ -66,7 +67,7 @@ class Tree(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.root)
         for script in ("figures", "tighten"):
             os.makedirs(f"{self.root}/scripts", exist_ok=True)
-            shutil.copy(f"{SOURCE}/scripts/{script}", f"{self.root}/scripts")
+            shutil.copy(next(f for f in (f"{SCRIPTS}/{script}", f"{SOURCE}/scripts/{script}") if os.path.exists(f)), f"{self.root}/scripts")
 
     def write(self, name, text):
         os.makedirs(os.path.dirname(f"{self.root}/{name}"), exist_ok=True)
@@ -102,6 +103,19 @@ class Figures(Tree):
         self.assertIn("takes 3 ms, .333 times", page)
         code, text = self.run_script("figures", "--check")
         self.assertEqual((code, text), (0, "5 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
+
+    def test_functions(self):
+        rows = [f"s,,m,{i},{x},{y}" for i, (x, y) in enumerate(((4, 0.5), (1, -0.25), (2, 0.125), (9, -1.0)))]
+        self.write("results/g/f/table.csv", "scene,parameter,method,setting,x,y\n" + "\n".join(rows) + "\n")
+        for expression, expected in {
+                "min([*|m])": "1.0", "max([*|m])": "9.0", "median([*|m])": "3.0", "sum([*|m]); 3": "16.0", "count([*|m])": "4",
+                "shares([*|m]); 3": "25.0, 6.25, 12.5, 56.2", "percent([*|m|*|y]); 3": "50.0, -25.0, 12.5, -100",
+                "above([*|m], 2)": "1.0, 0, 0, 1.0", "signed([*|m|*|y])": "+0.50, -0.25, +0.12, -1.0", "abs([*|m|*|y])": "0.50, 0.25, 0.12, 1.0",
+                "range([*|m] - [*|m|3])": "-8.0 to 0", "1 / [*|m|2]": "0.50", "every([*|m|0], [*|m|3])": "4.0, 9.0"}.items():
+            self.write("methods/PAGE.md", "It is 0.\n")
+            self.write("methods/PAGE.figures", "[g/f x]\nIt is {" + expression + "}.\n")
+            code, text = self.run_script("figures")
+            self.assertEqual((code, self.read("methods/PAGE.md")), (0, f"It is {expected}.\n"), expression + text)
 
     def test_a_changed_table(self):
         self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.6,"))
@@ -174,6 +188,50 @@ class Tighten(Tree):
         self.write("experiments/g/e.bounds.csv", self.read("experiments/g/e.bounds.csv").replace("two,S,16,rel_l2", "two,S,17,rel_l2"))
         self.objects("no bound for two, S, 16, rel_l2")
         self.objects("two, S, 17, rel_l2: no gate covers such a row")
+
+    def bounds_of(self, gate, *figures, counter=1000.0):
+        """{setting: line of the bounds} for rows of settings 0, 1, ... that have these figures (value, low, high)."""
+        self.write("experiments/g/e.toml", gate)
+        self.write("results/g/e/run.json", json.dumps({"rows": [
+            {"scene": "s", "method": "S", "setting": str(i), "device": "", "counters": {"rays": counter},
+             "errors": [{"metric": "bias", "value": v, "low": low, "high": high}]}
+            for i, (v, low, high) in enumerate(f if isinstance(f, tuple) else (f, f, f) for f in figures)]}))
+        self.run_script("tighten")
+        lines = self.read("experiments/g/e.bounds.csv").split("\n")[1:-1]
+        return {int(line.split(",")[2]): ",".join(line.split(",")[5:]) for line in lines}
+
+    def test_the_rule_at_its_ends(self):
+        self.assertEqual(self.bounds_of('[[gate]]\nmetric = "bias"\n', 1e-3, 5e-4, 1e-6, 5e-7, 3e-8, 2e-8, 0.0, -0.03), {
+            0: "0.001,,0.0019", 1: "0.0005,,0.00095",  # 1.9 times
+            2: "1e-06,,3e-06", 3: "5e-07,,1.5e-06", 4: "3e-08,,9e-08",  # 3 times
+            5: "2e-08,,6e-08", 6: "0,,6e-08",  # the rounding of floats
+            7: "-0.03,,-0.02"})  # a bias that must not come closer to 0 than to 1 / 1.5
+
+    def test_the_rule_of_intervals(self):
+        self.assertEqual(self.bounds_of('[[gate]]\nmetric = "bias"\nat_least = -9\n', (0.1, 0.09, 0.11), (0.1, 0.0413, 0.1712),
+                                        (-0.3, -0.32, -0.28), 0.3, -0.3), {
+            0: "0.1,0.067,0.15",  # 0.1 / 1.5, never rounded down
+            1: "0.1,0.041,0.18",  # the ends of the interval, outwards
+            2: "-0.3,-0.45,-0.2", 3: "0.3,0.2,0.45", 4: "-0.3,-0.45,-0.2"})
+
+    def test_the_rule_of_counters_and_laws(self):
+        self.assertEqual(self.bounds_of('[[gate]]\nmetric = "counter.rays"\n', 0.1, counter=150.0), {0: "150,148,152"})
+        laws = ""
+        for side, bound in (("at_most", 0.12), ("at_most", 0.14), ("at_least", 0.07), ("at_least", 0.08)):
+            laws += f'[[gate]]\nmetric = "bias"\n{side} = {bound}\n'
+        self.assertEqual(self.bounds_of(laws, 0.1), {0: "0.1,0.08,0.12"})  # the strictest of each
+        self.assertEqual(self.bounds_of(laws, (0.11, 0.06, 0.13)), {0: "0.11,0.08,0.12"})  # an interval may touch them
+        self.assertEqual(self.bounds_of('[[gate]]\nmetric = "bias"\nprofiles = ["paper"]\n[[gate]]\nsetting = 1\nmetric = "bias"\n', 0.1, 0.2),
+                         {1: "0.2,,0.3"})
+
+    def test_how_far_a_bound_may_be(self):
+        bounds = self.read("experiments/g/e.bounds.csv")
+        for bound, fine in ((0.0197, True), (0.0199, False), (0.001, True)):  # 1.1 times 0.018 is 0.0198
+            self.write("experiments/g/e.bounds.csv", bounds.replace(",0.018", f",{bound}"))
+            self.assertEqual(self.run_script("tighten", "--check")[0] == 0, fine, bound)
+        for bound, fine in ((0.307, True), (0.305, False), (0.5, True)):  # 0.34 less a tenth of itself is 0.306
+            self.write("experiments/g/e.bounds.csv", bounds.replace(",0.34,", f",{bound},"))
+            self.assertEqual(self.run_script("tighten", "--check")[0] == 0, fine, bound)
 
     def test_no_bound_beyond_that_of_the_gate(self):
         self.write("results/g/e/run.json", json.dumps(rows(**{"two 8": 0.1})))

@@ -8,14 +8,16 @@
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
-// Measured at 24 x 24 pixels: plume .006, elephant in fog .007, Gaussians .004, ball .008, shadows .053.
+// At worst 6.8 % where surfaces cast shadows: fig7 and spot, seen by 48 x 48 pixels. results/reference/marcher_default
+// has more.
 TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
-  for (const char* name : {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
-                           "crosscheck/grid_coloured_point", "shadow_planes/fig7", "shadow_planes/fog_ball"}) {
+  for (const char* name :
+       {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
+        "crosscheck/grid_coloured_point", "shadow_planes/fig7", "shadow_planes/spot", "shadow_planes/fog_ball"}) {
     const auto scene = std::make_shared<const scene::Scene>(
         scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/") + name + ".toml"));
     scene::View view = view_of(*scene);
-    view.width = view.height = 24;
+    view.width = view.height = scene->geometry ? 48 : 24;
     const deterministic::AirlightIntegrator truth(*scene, {1e-5, 200000});
     const RayMarcher marcher;
     const auto prepared = marcher.prepare(scene, {marcher.settings(), {}}, {1, {}});
@@ -29,9 +31,9 @@ TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
         size += exact.radiance.square().sum();
       }
     const double stated = stated_error(*scene);
-    CHECK(stated == (scene->geometry ? 0.06 : 0.015));
+    CHECK(stated == (scene->geometry ? 0.08 : 0.015));
     CAPTURE(name, stated);
     CHECK(std::sqrt(difference / size) < stated);
-    CHECK_THAT(prepared->stages()[0].reason, Catch::Contains(scene->geometry ? "within 6 %" : "within 1.5 %"));
+    CHECK_THAT(prepared->stages()[0].reason, Catch::Contains(scene->geometry ? "within 8 %" : "within 1.5 %"));
   }
 }

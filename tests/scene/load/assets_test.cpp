@@ -7,54 +7,37 @@
 #include "scene/data_folder.h"
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
+using test::message;
 namespace fs = std::filesystem;
 
 namespace {
 
 const std::string root = AIRLIGHT_SOURCE_DIR;
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
-
-struct Folder {
-  TemporaryFolder own;
-  fs::path path = own.path();
-};
-
-std::string message(const std::string& text, const std::string& folder) {
-  try {
-    parse_scene(camera + text, "s.toml", folder);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 }  // namespace
 
 TEST_CASE("files are looked for beside the scene, then in the data folder", "[load]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string text = camera + "[[medium]]\ntype = 'gaussians'\nfile = 'data/g.csv'\n";
-  const auto scene = [&] { return parse_scene(text, "s.toml", (folder.path / "scenes").string()); };
+  const auto scene = [&] { return parse_scene(text, "s.toml", (folder.path() / "scenes").string()); };
   const auto write = [&](const std::string& name, int count) {
-    fs::create_directories((folder.path / name).parent_path());
-    std::ofstream stream((folder.path / name).string());
+    fs::create_directories((folder.path() / name).parent_path());
+    std::ofstream stream((folder.path() / name).string());
     stream << "center_x,center_y,center_z,width,amplitude\n";
     for (int i = 0; i < count; ++i) stream << "0,0,0,1,1\n";
   };
   const auto count = [](const Scene& s) { return std::get<GaussianSum>(s.media[0].field).gaussians.size(); };
 
   CHECK_THROWS_WITH(scene(), Catch::Contains("s.toml:6:8") && Catch::Contains("there is n"));
-  CHECK_THROWS_AS(set_data_folder((folder.path / "nowhere").string()), Error);
+  CHECK_THROWS_AS(set_data_folder((folder.path() / "nowhere").string()), Error);
   write("shared/data/g.csv", 2);
-  set_data_folder((folder.path / "shared").string());
+  set_data_folder((folder.path() / "shared").string());
   CHECK(count(scene()) == 2);
   write("scenes/data/g.csv", 3);
   CHECK(count(scene()) == 3);
@@ -64,7 +47,7 @@ TEST_CASE("files are looked for beside the scene, then in the data folder", "[lo
 // Each is told with the place in the scene, the file, and in one line; what precisely is wrong with it is for the tests
 // of its reader.
 TEST_CASE("damaged files are named together with the place that names them", "[load]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const struct {
     const char* name;
     const char* source;
@@ -75,12 +58,12 @@ TEST_CASE("damaged files are named together with the place that names them", "[l
       {"a.off", "oblong.off", "[[surface]]\ntype = 'mesh'\nfile = 'a.off'\n"},
   };
   for (const auto& kind : kinds) {
-    const std::string whole = bytes_of(root + "/experiments/data/" + kind.source);
+    const std::string whole = read_bytes(root + "/experiments/data/" + kind.source);
     REQUIRE(whole.size() > 1000);
-    const std::string path = (folder.path / kind.name).string();
+    const std::string path = (folder.path() / kind.name).string();
     const auto with = [&](const std::string& content) {
       std::ofstream(path, std::ios::binary) << content;
-      return message(kind.text, folder.path.string());
+      return message(camera + kind.text, folder.path().string());
     };
     CAPTURE(kind.name);
     CHECK(with(whole) == "");
@@ -95,13 +78,13 @@ TEST_CASE("damaged files are named together with the place that names them", "[l
     }
     fs::remove(path);
     fs::create_directory(path);
-    CHECK(message(kind.text, folder.path.string()).rfind("s.toml:6:8: ", 0) == 0);
+    CHECK(message(camera + kind.text, folder.path().string()).rfind("s.toml:6:8: ", 0) == 0);
     fs::remove_all(path);
   }
 }
 
 TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string header = "center_x,center_y,center_z,width,amplitude\n";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"", "found an empty file"},
@@ -119,8 +102,9 @@ TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
        ":2:5: center_z = ??, expected 0 or a number of either sign, its size in [1e-30, 1e+09]"},
   };
   for (const auto& [content, expected] : cases) {
-    std::ofstream((folder.path / "g.csv").string(), std::ios::binary) << content;
-    const std::string what = message("[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", folder.path.string());
+    std::ofstream((folder.path() / "g.csv").string(), std::ios::binary) << content;
+    const std::string what =
+        message(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", folder.path().string());
     CAPTURE(content, what);
     CHECK(what.find(expected) != std::string::npos);
     CHECK(what.find("g.csv") != std::string::npos);
@@ -137,11 +121,11 @@ TEST_CASE("a scene file that cannot be read says why", "[load]") {
     }
     return std::string();
   };
-  const Folder folder;
-  const std::string empty = (folder.path / "empty.toml").string();
+  const TemporaryFolder folder;
+  const std::string empty = (folder.path() / "empty.toml").string();
   std::ofstream{empty};
   CHECK(what("/no/such/scene.toml") == "/no/such/scene.toml: no such file");
-  CHECK(what(folder.path.string()) == folder.path.string() + ": found a folder, expected a file");
+  CHECK(what(folder.path().string()) == folder.path().string() + ": found a folder, expected a file");
   CHECK(what(empty) == empty + ": found an empty file");
   // A picture in the place of a scene.
   CHECK(what(std::string(AIRLIGHT_SOURCE_DIR) + "/experiments/data/courtyard.exr").find("expected a text file") !=

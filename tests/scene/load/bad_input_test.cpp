@@ -1,24 +1,14 @@
 // Every mistake a scene file can hold is one line that says where it is, what was found and what was expected.
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
-#include "scene/scene.h"
+#include "tests/scene/load/message.h"
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
+using test::message;
 
 namespace {
-
-// What loading the text says; empty if it loads.
-std::string message(const std::string& text) {
-  try {
-    parse_scene(text, "s.toml", "");
-  } catch (const Error& e) {
-    CHECK(e.exit_code() == 2);
-    return e.what();
-  }
-  return "";
-}
 
 struct Case {
   std::string text;
@@ -40,8 +30,6 @@ void check(const std::vector<Case>& cases, const std::string& before) {
   }
 }
 
-// Three lines: what follows begins on line 4.
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 const std::string homogeneous = camera + "[[medium]]\ntype = 'homogeneous'\n";  // line 6
 const std::string gaussians = camera + "[[medium]]\ntype = 'gaussians'\n";
 const std::string grid = camera + "[[medium]]\ntype = 'grid'\n";

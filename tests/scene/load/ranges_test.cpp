@@ -5,29 +5,18 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
 #include "scene/film.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
+using test::camera;
+using test::message;
 
 namespace {
-
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
-
-// Empty: it loads.
-std::string message(const std::string& text) {
-  try {
-    parse_scene(text, "s.toml", "");
-  } catch (const Error& e) {
-    CHECK(e.exit_code() == 2);
-    return e.what();
-  }
-  return "";
-}
 
 // A table of a scene with @ in place of one number; whether 0 may stand there, and what is small (-: any number may
 // be).

@@ -1,0 +1,25 @@
+// What loading a scene says.
+#pragma once
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "scene/error.h"
+#include "scene/scene.h"
+
+namespace airlight::test {
+
+// Three lines: what follows begins on line 4.
+inline const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+
+// Empty if the text loads. Relative names of its files are those of `folder`.
+inline std::string message(const std::string& text, const std::string& folder = "") {
+  try {
+    scene::parse_scene(text, "s.toml", folder);
+  } catch (const Error& e) {
+    CHECK(e.exit_code() == 2);
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace airlight::test
