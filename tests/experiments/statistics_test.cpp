@@ -205,7 +205,9 @@ TEST_CASE("two curves without a common error say which one is closer", "[statist
   CHECK_FALSE(apart_in_error(close, far)->other_is_closer);
   CHECK_FALSE(apart_in_error(far, far));
   CHECK_FALSE(apart_in_error({}, far));
+  CHECK_FALSE(apart_in_error({point(1, 0.5)}, {point(2, 0.5)}));  // they meet in one error
   CHECK_FALSE(speed_up_of_exact(far, close));
+  CHECK_FALSE(speed_up_of_exact({}, {point(1, 0)}));
   CHECK(*speed_up_of_exact({point(8, 0.1), point(20, 0), point(10, 0)}, close) == Approx(2));
 }
 

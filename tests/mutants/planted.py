@@ -23,7 +23,7 @@ BATCHES = "experiments/batches.cpp", "experiments/hand_worked_metrics_test.cpp"
 EQUALITY = "experiments/equality.cpp", "experiments/equality_test.cpp"
 STATISTICS = "experiments/statistics.cpp", "experiments/statistics_test.cpp"
 FRONT = "experiments/front.cpp", "experiments/statistics_test.cpp"
-CHECK = "experiments/verify/check.cpp", "experiments/verify_test.cpp"
+CHECK = "experiments/verify/check.cpp", "experiments/verify_tolerances_test.cpp"
 DRAWN_AGAIN = "experiments/driver/drawn_again.cpp", "experiments/driver_drawn_again_test.cpp"
 CONDITIONS = "experiments/driver/comparisons.cpp", "experiments/driver_drawn_again_test.cpp"
 MARGINS = "experiments/driver/margins.cpp", "experiments/driver_margins_test.cpp"
@@ -65,6 +65,8 @@ MUTANTS = [
         ("sum += std::exp(ratio);", "Gain{sum / (steps + 1)"), "gains are geometric means over what both reach"),
     bug("one step too few in the mean", FRONT, "std::exp(sum / (steps + 1))", "std::exp(sum / std::max(1, steps))",
         "gains are geometric means over what both reach"),
+    bug("curves that meet in one error lie apart", FRONT, "first.error.value < best", "first.error.value <= best",
+        "two curves without a common error say which one is closer"),
     bug("a point dominates itself", FRONT, "return no_worse && (p.time.high < q.time.low || p.error.high < q.error.low);",
         "return no_worse;", "a point whose intervals overlap another's does not dominate it"),
     bug("dominance by values", FRONT, "const bool no_worse = p.time.high <= q.time.low &&", "const bool no_worse = p.time.value <= q.time.value &&",
@@ -179,11 +181,15 @@ MUTANTS = [
     bug("relative tolerances ten times as wide", CHECK, "tolerance * std::abs(expected) + floor", "10 * tolerance * std::abs(expected) + floor",
         "tolerances are what they say"),
     bug("standard errors added", CHECK, "std::hypot(expected_se, got_se)", "expected_se + got_se", "tolerances are what they say"),
-    bug("a reader's own tolerance", ("experiments/verify/fields.cpp", "experiments/verify_test.cpp"),
+    bug("a reader's own tolerance", ("experiments/verify/fields.cpp", "experiments/verify_tolerances_test.cpp"),
         "{0, s.length})[0], accuracy)", "{0, s.length})[0], 10 * accuracy)", "readers use the tolerance of the vector"),
-    bug("a second reader's own tolerance", ("experiments/verify/single_scattering.cpp", "experiments/verify_test.cpp"),
+    bug("a second reader's own tolerance", ("experiments/verify/single_scattering.cpp", "experiments/verify_tolerances_test.cpp"),
         "relative(std::move(what), expected, got.radiance[0], tolerance)", "relative(std::move(what), expected, got.radiance[0], 10 * tolerance)",
         "readers use the tolerance of the vector"),
+    bug("relative errors with their sign", VERIFY, "infinity : std::abs(c.got - c.expected)", "infinity : (c.got - c.expected)",
+        "the figures of a kind are those of its worst number"),
+    bug("relative to what is expected, sign and all", VERIFY, "/ std::abs(c.expected)", "/ c.expected", "the figures of a kind are those of its worst number"),
+    bug("kinds of all files together", VERIFY, "line.file == file && line.kind", "line.kind", "the figures of a kind are those of its worst number"),
     bug("nothing compared is a success", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.out ? 1 : 0;",
         "a file without vectors is no success"),
     bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
