@@ -70,36 +70,52 @@ Vec3 away_from(const std::vector<Vec3>& normals, double& slope) {
   return best;
 }
 
+// Away from the surfaces that x lies on, by `beside` of the size; zero where it lies on none. `what` begins the error.
+Vec3 shift_off(const Scene& scene, const Point3& x, double tolerance, double size, const std::string& what) {
+  std::vector<Vec3> normals;
+  for (const Surface& surface : scene.surfaces)
+    std::visit([&](const auto& shape) { add_normals(shape, x, tolerance * size, normals); }, surface.shape);
+  if (normals.empty()) return Vec3::Zero();
+  double slope;
+  const Vec3 direction = away_from(normals, slope);
+  if (!(slope >= least_slope))
+    throw Error(
+        fmt::format("{0}: lies on {1} faces of surfaces, and no place beside it is in front of all of them; "
+                    "expected a {2} off the surfaces, or on faces with a common front",
+                    what, normals.size(), what.substr(0, what.find(' '))));
+  return beside * size / slope * direction;
+}
+
+double finite_size(const Scene& scene) {
+  const Box box = scene.geometry->bounds();
+  return box.empty() ? 0 : box.size().stableNorm();
+}
+
 }  // namespace
+
+void move_camera_off_surfaces(Scene& scene) {
+  if (scene.surfaces.empty() || scene.camera.kind != Camera::Kind::perspective) return;
+  double size = finite_size(scene);
+  if (!(size > 0)) {
+    size = infinity;
+    for (const Light& light : scene.lights)
+      if (const auto own = ball(light); own && own->center != scene.camera.position)
+        size = std::min(size, (own->center - scene.camera.position).stableNorm());
+    if (size == infinity) size = std::max(scene.camera.position.stableNorm(), 1e-9);
+  }
+  scene.camera.position += shift_off(scene, scene.camera.position, eye_on_surface, size, "camera");
+}
 
 void move_lights_off_surfaces(Scene& scene) {
   if (scene.surfaces.empty()) return;
-  const Box box = scene.geometry->bounds();
-  const double finite = box.empty() ? 0 : box.size().stableNorm();
-  std::vector<Vec3> normals;
+  const double finite = finite_size(scene);
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const auto own = ball(scene.lights[l]);
     if (!own) continue;
     // Of what is seen: a lamp in front of a planet does not lie on it. Places of the whole are rounded to 1e-16 of it.
     const double seen = (own->center - scene.camera.position).stableNorm();
     const double there = std::max(finite > 0 ? std::min(finite, seen) : seen, 1e-9 * finite);
-    double size = 0;
-    normals.clear();
-    for (const Surface& surface : scene.surfaces) {
-      const std::size_t before = normals.size();
-      std::visit([&](const auto& shape) { add_normals(shape, own->center, on_surface * there, normals); },
-                 surface.shape);
-      if (normals.size() > before) size = std::max(size, there);
-    }
-    if (normals.empty()) continue;
-    double slope;
-    const Vec3 direction = away_from(normals, slope);
-    if (!(slope >= least_slope))
-      throw Error(
-          fmt::format("light {}: lies on {} faces of surfaces, and no place beside it is in front of all of them; "
-                      "expected a light off the surfaces, or on faces with a common front",
-                      l, normals.size()));
-    const Vec3 shift = beside * size / slope * direction;
+    const Vec3 shift = shift_off(scene, own->center, on_surface, there, fmt::format("light {}", l));
     if (auto* point = std::get_if<PointLight>(&scene.lights[l])) point->position += shift;
     if (auto* spot = std::get_if<SpotLight>(&scene.lights[l])) spot->position += shift;
   }

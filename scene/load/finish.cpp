@@ -165,6 +165,7 @@ std::string content_hash(const Scene& scene) {
 
 void finish(Scene& scene) {
   scene.geometry = scene.surfaces.empty() ? nullptr : std::make_shared<const Geometry>(scene.surfaces);
+  move_camera_off_surfaces(scene);
   move_lights_off_surfaces(scene);
   scene.hash = content_hash(scene);
 }
