@@ -15,6 +15,7 @@ void append(std::string& to, const T* values, std::size_t count) {
 long long read_corner_count(TextLines& lines) { return lines.integer("the number of corners", 3, most_corners); }
 
 void PlainMesh::end_vertex() {
+  vertices_ += '\1';
   append(vertices_, place_.data(), 3);
   ++vertex_count_;
 }
@@ -27,10 +28,13 @@ void PlainMesh::end_face() {
   ++face_count_;
 }
 
+// A byte begins every vertex that means nothing: the importer skips line ends after the header, and a coordinate may
+// begin with one.
 std::string PlainMesh::content() && {
   std::string all = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
-      "property float z\nelement face {}\nproperty list uint uint vertex_indices\nend_header\n",
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty uchar confidence\n"
+      "property float x\nproperty float y\nproperty float z\n"
+      "element face {}\nproperty list uint uint vertex_indices\nend_header\n",
       vertex_count_, face_count_);
   all.reserve(all.size() + vertices_.size() + faces_.size());
   all += vertices_;

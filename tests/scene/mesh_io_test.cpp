@@ -1,6 +1,7 @@
 #include "scene/geometry/mesh_io.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <map>
@@ -233,6 +234,26 @@ TEST_CASE("a PLY cube with more in it is a cube", "[geometry][mesh_io]") {
     CHECK(volume(mesh) == Approx(1));
     CHECK(closed(mesh));
   }
+}
+
+// Whatever the first bytes after the header are: blanks, ends of lines, comments.
+TEST_CASE("binary PLY that begins like text", "[geometry][mesh_io]") {
+  const TemporaryFolder folder;
+  for (const bool big : {false, true})
+    for (std::uint32_t byte = 1; byte < 0x7f; ++byte) {
+      std::string bytes = ply_header(big ? "binary_big_endian" : "binary_little_endian", "float");
+      bytes = replaced(replaced(bytes, "vertex 8", "vertex 3"), "face 6", "face 1");
+      const float first = std::bit_cast<float>(byte * 0x01010101u);
+      for (const float x : {first, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) put(bytes, x, big);
+      put(bytes, std::uint8_t(3), big);
+      for (const std::int32_t corner : {0, 1, 2}) put(bytes, corner, big);
+      write_bytes(folder.file("a.ply"), bytes);
+      CAPTURE(byte, big);
+      const TriangleMesh mesh = read_mesh(folder.file("a.ply"));
+      REQUIRE(mesh.vertices.size() == 3);
+      CHECK(mesh.vertices[0] == Point3(first, 0, 0));
+      CHECK(mesh.vertices[2] == Point3(0, 0, 1));
+    }
 }
 
 // On each of these the importer (5.2.5) aborts, writes out of bounds or asks for gigabytes: found by the fuzzer.
