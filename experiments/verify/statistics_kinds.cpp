@@ -46,6 +46,8 @@ Check read_mse(const Value& v, double accuracy) {
 
 Check read_z(const Value& v, double accuracy) {
   const std::vector<double> z = v["input"]["z"].numbers();
+  if (z.empty()) v["input"]["z"].complain("a value at least");
+  for (std::size_t i = 0; i < z.size(); ++i) v["input"]["z"][i].number_in(-1e9, 1e9);
   const Value e = v["expected"];
   const double chi2 = e["chi2"].number(), p = e["p_chi2"].number(), sidak = e["sidak_1e3"].number();
   const double bonferroni = e["bonf_1e3"].number(), largest_p = e["p_max_sidak"].number();
@@ -67,6 +69,7 @@ Check read_sidak(const Value& v, double accuracy) {
     rows.push_back(list[i].numbers());
     if (rows.back().size() != 3) list[i].complain("[m, alpha, threshold]");
     list[i][0].integer_in(1, 1000000000);
+    list[i][1].number_in(1e-300, 0.999);
   }
   return {"", [=](VerifyProfile) {
             Outcome out;

@@ -6,12 +6,15 @@
 namespace airlight::scene {
 
 // Each throws Error: path, line (text formats) or byte (binary PLY), what was found, what was expected. Checked:
-// header, announced counts against what is there, three numbers per vertex, all finite in single precision, at least
-// three corners per face, indices in range.
-void check_off(const std::string& path, const std::string& content);
-void check_ply(const std::string& path, const std::string& content);
-// OBJ: the same, and returns the vertices and faces alone, in absolute indices: on damaged lines of other kinds the
-// importer (5.2.4) is seen to write out of bounds.
+// header, announced counts against what is there, three numbers per vertex, all finite in single precision, three to
+// plain_mesh.h's most_corners per face, indices in range.
+//
+// Returned are the vertices and faces alone: of OBJ as text, in absolute indices; of the others as binary PLY. Of the
+// rest the importer (5.2.5) makes what it likes: it writes out of bounds on damaged lines of OBJ, on lines of 4096
+// bytes of OFF, on elements that a PLY has twice; aborts on PLY elements that it takes for faces; and leaves out OFF
+// faces of ten corners.
+std::string plain_off(const std::string& path, const std::string& content);
 std::string plain_obj(const std::string& path, const std::string& content);
+std::string plain_ply(const std::string& path, const std::string& content);
 
 }  // namespace airlight::scene

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "scene/geometry/mesh_check.h"
+#include "scene/geometry/plain_mesh.h"
 #include "scene/geometry/text_lines.h"
 
 namespace airlight::scene {
@@ -61,7 +62,8 @@ std::string plain_obj(const std::string& path, const std::string& content) {
         ++corners;
       }
       faces += '\n';
-      if (corners < 3) lines.fail(fmt::format("found a face of {} corners, expected at least 3", corners));
+      if (corners < 3 || corners > most_corners)
+        lines.fail(fmt::format("found a face of {} corners, expected 3 to {}", corners, most_corners));
     } else if (std::find(harmless.begin(), harmless.end(), kind) == harmless.end()) {
       lines.fail(
           fmt::format("found '{}', expected v, vt, vn, f, l, p, o, g, s, usemtl or mtllib", TextLines::shown(kind)));

@@ -27,16 +27,16 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-// What the importer is given: the file, once it is known to be whole.
-std::string checked(const std::string& path, const std::string& extension, std::string content) {
-  if (extension == ".obj") return plain_obj(path, content);
-  if (extension == ".off")
-    check_off(path, content);
-  else if (extension == ".ply")
-    check_ply(path, content);
-  else
-    throw Error(fmt::format("{}: found a file named '{}', expected .obj, .ply or .off", path, extension));
-  return content;
+// What the importer is given, once the file is known to be whole, and as which format.
+struct Plain {
+  std::string content;
+  const char* format;
+};
+Plain checked(const std::string& path, const std::string& extension, std::string content) {
+  if (extension == ".obj") return {plain_obj(path, content), "obj"};
+  if (extension == ".off") return {plain_off(path, content), "ply"};
+  if (extension == ".ply") return {plain_ply(path, content), "ply"};
+  throw Error(fmt::format("{}: found a file named '{}', expected .obj, .ply or .off", path, extension));
 }
 
 // What polygons cut into triangles must give.
@@ -80,10 +80,10 @@ void join_vertices(TriangleMesh& mesh) {
 
 TriangleMesh read_mesh(const std::string& path) {
   const std::string extension = lower_extension(path);
-  const std::string content = checked(path, extension, read_whole_file(path, max_bytes));
+  const auto [content, format] = checked(path, extension, read_whole_file(path, max_bytes));
 
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);
+  const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, format);
   const long long expected = scene ? triangles_expected(*scene) : 0;
   if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (!scene) {

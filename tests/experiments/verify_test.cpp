@@ -131,6 +131,22 @@ TEST_CASE("vectors that would take for ever are refused in one line", "[verify]"
   CHECK_THAT(complaint(gaussians(1, "1e-300")), Catch::Contains("expected a number from 1e-13 to 1"));
 }
 
+// Each was an unexpected failure of the library behind it: found by the fuzzer.
+TEST_CASE("statistics of what has none are refused", "[verify]") {
+  const auto file = [](const std::string& fields) {
+    return R"({"part": "references", "vectors": [{"kind": "statistics", "accuracy": {"rel": 1e-9}, )" + fields + "}]}";
+  };
+  for (const char* alpha : {"10", "0", "-1"})
+    CHECK_THAT(complaint(file(R"("id": "stat-sidak", "input": {"rows": ""}, "expected": {"rows": [[300, )" +
+                              std::string(alpha) + ", 5.9]]}")),
+               Catch::Contains("expected a number from 1e-300 to 0.999"));
+  const std::string z =
+      R"(, "expected": {"chi2": 1, "p_chi2": 1, "sidak_1e3": 1, "bonf_1e3": 1, "p_max_sidak": 1}, "id": "stat-z")";
+  CHECK_THAT(complaint(file(R"("input": {"z": []})" + z)), Catch::Contains("expected a value at least"));
+  CHECK_THAT(complaint(file(R"("input": {"z": [1, 1e300]})" + z)),
+             Catch::Contains("expected a number from -1000000000"));
+}
+
 TEST_CASE("a number out of tolerance is found", "[verify]") {
   const TemporaryFile right(fogshop_file(good));
   const TemporaryFile wrong(

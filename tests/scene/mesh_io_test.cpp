@@ -1,6 +1,7 @@
 #include "scene/geometry/mesh_io.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <map>
@@ -207,6 +208,109 @@ TEST_CASE("meshes that are none are refused in one line", "[geometry][mesh_io]")
              Contains("found '2000000000'"));
   CHECK_THAT(message_for("a.ply", replaced(binary_ply_cube(false), "face 6", "face 9999999999999999999")),
              Contains("found '9999"));
+}
+
+// Other elements, properties, types and orders than usual: the mesh stays the same.
+TEST_CASE("a PLY cube with more in it is a cube", "[geometry][mesh_io]") {
+  const TemporaryFolder folder;
+  std::vector<std::string> files;
+  // An element that the importer takes for faces, with lists of what might be corners.
+  std::string other =
+      replaced(ply_cube(), "element face", "element x 2\nproperty list uchar int vertex_indices\nelement face");
+  files.push_back(replaced(other, "4 0 4 6 2", "3 0 0 0\n0\n4 0 4 6 2"));
+  // Faces before vertices.
+  const std::string cube = ply_cube(), end = "end_header\n";
+  const std::size_t vertex = cube.find("element vertex"), face = cube.find("element face"), body = cube.find(end);
+  const std::size_t faces = body + end.size() + lines_of_vertices("").size();
+  files.push_back(cube.substr(0, vertex) + cube.substr(face, body - face) + cube.substr(vertex, face - vertex) + end +
+                  cube.substr(faces) + lines_of_vertices(""));
+  files.push_back(replaced(cube, "vertex_indices", "vertex_index"));
+  for (const std::string& content : files) {
+    CAPTURE(content);
+    write_bytes(folder.file("a.ply"), content);
+    const TriangleMesh mesh = read_mesh(folder.file("a.ply"));
+    CHECK(mesh.vertices.size() == 8);
+    CHECK(mesh.triangles.size() == 12);
+    CHECK(volume(mesh) == Approx(1));
+    CHECK(closed(mesh));
+  }
+}
+
+// Whatever the first bytes after the header are: blanks, ends of lines, comments.
+TEST_CASE("binary PLY that begins like text", "[geometry][mesh_io]") {
+  const TemporaryFolder folder;
+  for (const bool big : {false, true})
+    for (std::uint32_t byte = 1; byte < 0x7f; ++byte) {
+      std::string bytes = ply_header(big ? "binary_big_endian" : "binary_little_endian", "float");
+      bytes = replaced(replaced(bytes, "vertex 8", "vertex 3"), "face 6", "face 1");
+      const float first = std::bit_cast<float>(byte * 0x01010101u);
+      for (const float x : {first, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) put(bytes, x, big);
+      put(bytes, std::uint8_t(3), big);
+      for (const std::int32_t corner : {0, 1, 2}) put(bytes, corner, big);
+      write_bytes(folder.file("a.ply"), bytes);
+      CAPTURE(byte, big);
+      const TriangleMesh mesh = read_mesh(folder.file("a.ply"));
+      REQUIRE(mesh.vertices.size() == 3);
+      CHECK(mesh.vertices[0] == Point3(first, 0, 0));
+      CHECK(mesh.vertices[2] == Point3(0, 0, 1));
+    }
+}
+
+// On each of these the importer (5.2.5) aborts, writes out of bounds or asks for gigabytes: found by the fuzzer.
+TEST_CASE("PLY elements that end the importer are refused", "[geometry][mesh_io]") {
+  const std::string cube = ply_cube();
+  const std::string more = "element vertex 9\nproperty float x\nproperty float y\nproperty float z\n";
+  CHECK_THAT(message_for("a.ply", replaced(cube, "element face", more + "element face")),
+             Contains("found the element 'vertex' twice"));
+  const std::string faces = "element face 9\nproperty list uchar int vertex_indices\n";
+  CHECK_THAT(message_for("a.ply", replaced(cube, "end_header", faces + "end_header")),
+             Contains("found the element 'face' twice"));
+  CHECK_THAT(message_for("a.ply", replaced(cube, "end_header",
+                                           "element tristrips 1\nproperty list int int vertex_indices\nend_header")),
+             Contains("strips of triangles"));
+  CHECK_THAT(message_for("a.ply", replaced(cube, "property float y", "property float x\nproperty float y")),
+             Contains("with twice a property x"));
+  CHECK_THAT(message_for("a.ply", replaced(cube, "end_header", "property list uchar int vertex_index\nend_header")),
+             Contains("with twice a list"));
+  CHECK_THAT(message_for("a.ply", replaced(cube, "uchar int vertex", "uchar float vertex")),
+             Contains("without a list"));
+}
+
+// OFF faces of ten corners were left out by the importer (5.2.5), lines of 4096 bytes ended it.
+TEST_CASE("polygons of many corners", "[geometry][mesh_io]") {
+  const TemporaryFolder folder;
+  for (const int corners : {9, 10, 11, 600, 3000}) {
+    std::string vertices, face = std::to_string(corners), obj = "f";
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * pi * i / corners;
+      vertices += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+      face += " " + std::to_string(i);
+      obj += " " + std::to_string(i + 1);
+    }
+    std::string bare = vertices;
+    bare.erase(std::remove(bare.begin(), bare.end(), 'v'), bare.end());
+    const std::string count = std::to_string(corners);
+    // A triangle more: where a polygon is left out, there is still a mesh.
+    write_bytes(folder.file("a.off"), "OFF\n" + count + " 2 0\n" + bare + face + "\n3 0 1 2\n");
+    write_bytes(folder.file("b.obj"), vertices + obj + "\nf 1 2 3\n");
+    write_bytes(folder.file("c.ply"), "ply\nformat ascii 1.0\nelement vertex " + count +
+                                          "\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+                                          "property list ushort int vertex_indices\nend_header\n" +
+                                          bare + face + "\n3 0 1 2\n");
+    for (const char* name : {"a.off", "b.obj", "c.ply"}) {
+      CAPTURE(name, corners);
+      CHECK(int(read_mesh(folder.file(name)).triangles.size()) == corners - 1);
+    }
+  }
+  std::string many = "20000";
+  for (int i = 0; i < 20000; ++i) many += " 0";
+  CHECK_THAT(message_for("a.off", replaced(off_cube(), "4 0 4 6 2", many)),
+             Contains("found '20000', expected the number of corners from 3 to 10000"));
+  CHECK_THAT(message_for("a.ply", replaced(ply_cube(), "4 0 4 6 2", many)), Contains("from 3 to 10000"));
+  std::string obj = "f";
+  for (int i = 0; i < 20000; ++i) obj += " 1";
+  CHECK_THAT(message_for("a.obj", replaced(obj_cube(), "f 1 5 7 3", obj)),
+             Contains("found a face of 20000 corners, expected 3 to 10000"));
 }
 
 // Cut at every byte. The text formats end in numbers: a cut inside the last of them leaves a whole file with another

@@ -159,11 +159,47 @@ def author(r, box):
     return ['author', 'script.jsonl', '-o', 'authored.toml']
 
 
+SLOW = ('multiple_scattering_monte_carlo', 'slab_table', 'slab_orders', 'slab_exit_radiance', 'slab_point', 'halfspace', 'identity',
+        'sphere_environment_all_orders', 'sphere_central_point', 'single_scattering_environment')
+
+
+def shorter(r, value):
+    """Lists and objects of many entries keep three of them: each entry may be a measurement."""
+    if isinstance(value, dict):
+        return {k: shorter(r, value[k]) for k in (r.sample(sorted(value), 3) if len(value) > 3 and is_number(min(value)) else value)}
+    if isinstance(value, list) and len(value) > 3 and isinstance(value[0], list):
+        return r.sample(value, 3)
+    return value
+
+
+def is_number(name):
+    try:
+        return float(name) == float(name)
+    except ValueError:
+        return False
+
+
+def vectors_costly(r, box):
+    """What is measured by Monte Carlo: whatever the numbers, it ends or is refused."""
+    file = dict(box.vectors[0])
+    vector = r.choice([v for v in file['vectors'] if v['kind'] in SLOW])
+    vector = {k: shorter(r, v) for k, v in vector.items()}
+    for key in r.choice((('input',), ('input',), ('expected',), ('input', 'input'), ('input', 'expected', 'accuracy'))):
+        if key == 'expected' and r.random() < 0.3:  # albedos and cosines are names
+            try:
+                vector[key] = json.loads(mutate.number(r, json.dumps(vector[key])))
+            except json.JSONDecodeError:
+                pass
+        elif vector[key]:
+            vector[key] = mutate.tree(r, vector[key]) or {}
+    file['vectors'] = [vector]
+    box.write('vectors.json', json.dumps(file))
+    return ['verify', 'vectors.json']
+
+
 def vectors(r, box):
     file = dict(r.choice(box.vectors))
-    slow = ('multiple_scattering_monte_carlo', 'slab_table', 'slab_orders', 'slab_exit_radiance', 'slab_point', 'halfspace', 'identity',
-            'sphere_environment_all_orders', 'sphere_central_point', 'single_scattering_environment', 'single_scattering_gaussians')
-    chosen = [v for v in file['vectors'] if v['kind'] not in slow]
+    chosen = [v for v in file['vectors'] if v['kind'] not in SLOW]
     file['vectors'] = r.sample(chosen, r.choice((1, 2, 3)))
     if 'count' in file:
         file['count'] = len(file['vectors'])
@@ -211,6 +247,83 @@ def ply(r, box):
         head = PLY_HEAD.format(kind).encode()
         content = mutate.binary(r, head + body) if r.random() < 0.6 else mutate.text(r, PLY_HEAD.format(kind)) + body
     return mesh_file(r, box, 'ply', content)
+
+
+PLY_TYPES = {'char': 'b', 'uchar': 'B', 'int8': 'b', 'uint8': 'B', 'short': 'h', 'ushort': 'H', 'int': 'i', 'uint': 'I', 'int32': 'i',
+             'uint32': 'I', 'float': 'f', 'double': 'd', 'float32': 'f', 'float64': 'd'}
+
+
+def ply_value(r, kind, least, most):
+    """A whole number from least to most, now and then one beyond, as far as the type holds it."""
+    value = r.randint(least, max(least, most))
+    if r.random() < 0.002:
+        value = r.choice((-1, -2, most + 1, 127, 255, 32767, 65535, 2147483647, 4294967295, -2147483648))
+    code = PLY_TYPES[kind]
+    if code in 'fd':
+        return float(value)
+    bits = 8 * struct.calcsize(code)
+    return max(0, min(value, (1 << bits) - 1)) if code.isupper() else max(-(1 << bits - 1), min(value, (1 << bits - 1) - 1))
+
+
+def ply_number(r):
+    """A coordinate: few different ones, so that points coincide and lie on lines; now and then an extreme one."""
+    if r.random() < 0.003:
+        return r.choice((1e30, -1e30, 3e38, 1e-30, 1e-45, -0.0, float('nan'), float('inf')))
+    return r.choice((0, 0, 0, 1, 1, 2, 0.5, r.random()))
+
+
+def ply_elements(r, box):
+    """PLY whose header and body agree, whatever it announces: elements twice, empty ones, strips, other types, polygons without an area."""
+    kind = r.choice(('ascii', 'binary_little_endian', 'binary_big_endian'))
+    order = '>' if 'big' in kind else '<'
+    whole = [t for t in PLY_TYPES if PLY_TYPES[t] not in 'fd']
+    names = ['vertex', 'face']
+    for _ in range(r.choice((0, 0, 0, 1, 1, 2))):
+        names.insert(r.randrange(len(names) + 1), r.choice(('vertex', 'face', 'face', 'tristrips', 'edge', 'material', 'x', 'Vertex')))
+    if r.random() < 0.05:
+        r.shuffle(names)
+    head, rows, vertices = [f'ply\nformat {kind} 1.0\n'], [], 0
+    for name in names:
+        count = r.choice((0, 1, 2, 3, 4, 5, 5, 5, 8, 30))
+        if name == 'vertex':
+            count = r.choice((1, 3, 4, 5, 5, 5, 9, 300))
+            vertices = count if vertices == 0 else r.choice((vertices, count))
+            properties = [(axis, None, r.choice(('float', 'float', 'double', 'float32', 'int', 'uchar'))) for axis in 'xyz']
+            for _ in range(r.choice((0, 0, 1, 2))):
+                properties.insert(r.randrange(len(properties) + 1), (r.choice(('nx', 'ny', 'nz', 'red', 's', 't', 'u', 'v', 'x', 'other')),
+                                                                     None, r.choice(list(PLY_TYPES))))
+        else:
+            counting = r.choice(whole) if r.random() < 0.97 else 'float'
+            corners = r.choice(('vertex_indices', 'vertex_indices', 'vertex_index', 'vertex_indexes')) if r.random() < 0.98 else 'other'
+            properties = [(corners, counting, r.choice(whole) if r.random() < 0.97 else 'float')]
+            for _ in range(r.choice((0, 0, 0, 1, 2))):
+                properties.insert(r.randrange(2), (r.choice(('flags', 'red', 'texcoord', 'vertex_index', 'material_index')),
+                                                   r.choice((None, r.choice(whole))), r.choice(list(PLY_TYPES))))
+        if r.random() < 0.03:
+            properties.pop(r.randrange(len(properties)))
+        told = count if r.random() < 0.97 else r.choice((0, count + 1, -1, 2 ** 31, 2 ** 32 + count, 10 ** 18))
+        head.append(f'element {name} {told}\n')
+        for n, counting, value in properties:
+            head.append(f'property list {counting} {value} {n}\n' if counting else f'property {value} {n}\n')
+        for _ in range(count):
+            row = []
+            for n, counting, value in properties:
+                if counting is None:
+                    x = ply_number(r)
+                    row.append((value, x if PLY_TYPES[value] in 'fd' else ply_value(r, value, 0, 3)))
+                    continue
+                length = r.choice((3, 3, 3, 3, 4, 4, 5, 6, 7, 20)) if r.random() < 0.995 else r.choice((0, 1, 2, 127, 255, 300))
+                few = r.randint(1, max(1, vertices)) if r.random() < 0.3 else vertices
+                list_of = [ply_value(r, value, 0, few - 1) for _ in range(length)]
+                row += [(counting, ply_value(r, counting, length, length))] + [(value, x) for x in list_of]
+            rows.append(row)
+    head.append('end_header\n')
+    if kind == 'ascii':
+        body = ''.join(' '.join(str(x) for _, x in row) + '\n' for row in rows).encode()
+    else:
+        body = b''.join(struct.pack(order + PLY_TYPES[t], x) for row in rows for t, x in row)
+    content = ''.join(head).encode() + body
+    return mesh_file(r, box, 'ply', content if r.random() < 0.8 else mutate.binary(r, content))
 
 
 def image(r, box):
@@ -281,4 +394,5 @@ def settings(r, box):
     return arguments
 
 
-ALL = {f.__name__: f for f in (scene, experiment, author, vectors, csv, off, obj, ply, image, vdb, brdf, samples, journal, settings)}
+ALL = {f.__name__: f for f in (scene, experiment, author, vectors, csv, off, obj, ply, ply_elements, image, vdb, brdf, samples, journal, settings)}
+COSTLY = {f.__name__: f for f in (vectors_costly,)}  # left out unless they are named
