@@ -48,16 +48,19 @@ Cost cost(const scene::Medium& medium) {
 
 }  // namespace
 
+double terms_of_evaluation(const scene::Scene& scene) {
+  double terms = 0;
+  for (const scene::Medium& medium : scene.media)
+    if (medium.sigma_t.maxCoeff() > 0) terms += cost(medium).terms;
+  return terms;
+}
+
 double terms_of_ray(const scene::Scene& scene) {
-  double panels = 0, terms = 0;
-  for (const scene::Medium& medium : scene.media) {
-    if (!(medium.sigma_t.maxCoeff() > 0)) continue;
-    const Cost c = cost(medium);
-    panels += c.panels;
-    terms += c.terms;
-  }
+  double panels = 0;
+  for (const scene::Medium& medium : scene.media)
+    if (medium.sigma_t.maxCoeff() > 0) panels += cost(medium).panels;
   const auto lights = std::count_if(scene.lights.begin(), scene.lights.end(), scene::is_delta);
-  return terms * (1 + nodes * panels * double(lights));
+  return terms_of_evaluation(scene) * (1 + nodes * panels * double(lights));
 }
 
 std::string too_much(const scene::Scene& scene) {

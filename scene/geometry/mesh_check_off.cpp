@@ -22,7 +22,7 @@ std::string plain_off(const std::string& path, const std::string& content) {
     if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} vertices, expected {}", i, vertices));
     int axis = 0;
     for (const char* what : {"a coordinate x", "a coordinate y", "a coordinate z"})
-      plain.coordinate(axis++, lines.number(what));
+      plain.coordinate(axis++, lines, what);
     plain.end_vertex();
   }
   for (long long i = 0; i < faces; ++i) {

@@ -30,7 +30,7 @@ void check_text(TextLines& lines, const Header& header, PlainMesh& plain) {
       for (const Property& property : element.properties) {
         if (!property.count) {
           if (const int axis = coordinate(element, property); axis >= 0)
-            plain.coordinate(axis, lines.number("a coordinate"));
+            plain.coordinate(axis, lines, "a coordinate");
           else if (lines.word().empty())
             lines.fail(fmt::format("found the end of the line, expected property {}", property.name));
           continue;

@@ -1,6 +1,9 @@
 #include "scene/geometry/plain_mesh.h"
 
+#include <assimp/fast_atof.h>
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace airlight::scene {
 namespace {
@@ -10,9 +13,27 @@ void append(std::string& to, const T* values, std::size_t count) {
   to.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
+// Thrown for more digits than the importer's reading of numbers takes.
+struct TooLong {
+  template <class... Texts>
+  explicit TooLong(Texts&&...) {}
+};
+
 }  // namespace
 
 long long read_corner_count(TextLines& lines) { return lines.integer("the number of corners", 3, most_corners); }
+
+void PlainMesh::coordinate(int axis, TextLines& lines, const char* what) {
+  const double value = lines.number(what);
+  place_[axis] = float(value);
+  try {
+    const std::string word(lines.last_word());
+    float rounded = 0;
+    Assimp::fast_atoreal_move<float, TooLong>(word.c_str(), rounded);
+    if (std::abs(rounded - value) <= 1e-6 * std::abs(value)) place_[axis] = rounded;
+  } catch (const TooLong&) {
+  }
+}
 
 void PlainMesh::end_vertex() {
   vertices_ += '\1';

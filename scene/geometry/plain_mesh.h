@@ -16,6 +16,9 @@ long long read_corner_count(TextLines&);  // of a face, from 3 on
 class PlainMesh {
  public:
   void coordinate(int axis, double value) { place_[axis] = float(value); }
+  // The next word of a text, rounded as the importer rounds it, which is not always to the nearest: references are
+  // cached by the bits of vertices.
+  void coordinate(int axis, TextLines&, const char* what);
   void end_vertex();
   void corner(long long vertex) { corners_.push_back(std::uint32_t(vertex)); }
   void end_face();

@@ -48,7 +48,7 @@ std::string_view TextLines::word() {
 bool TextLines::at_end() const { return words_.find_first_not_of(blanks) == std::string_view::npos; }
 
 double TextLines::number(const char* what) {
-  std::string_view found = word();
+  const std::string_view found = last_ = word();
   if (found.empty()) fail(fmt::format("found the end of the line, expected {}", what));
   const std::string_view digits = found[0] == '+' ? found.substr(1) : found;
   double value = 0;

@@ -16,6 +16,7 @@ class TextLines {
   bool at_end() const;  // no more words in this line
   // The next word as a number. Throws if it is none, or not finite in single precision.
   double number(const char* what);
+  std::string_view last_word() const { return last_; }  // that number() read
   // The next word as an integer in [least, greatest].
   long long integer(const char* what, long long least, long long greatest);
 
@@ -29,7 +30,7 @@ class TextLines {
 
   std::string path_;
   std::string_view rest_;
-  std::string_view words_;
+  std::string_view words_, last_;
   int line_ = 0;
 };
 

@@ -145,6 +145,20 @@ TEST_CASE("the meshes of the experiments are read whole", "[geometry][mesh_io]")
   }
 }
 
+// A vertex of another last bit would be another scene: its references would be computed anew.
+TEST_CASE("text is rounded as it always was", "[geometry][mesh_io]") {
+  CHECK(read_mesh(data_folder + "blobby.off").vertices[12][1] == -0x1.a1e3e6p-14);
+  CHECK(read_mesh(data_folder + "elephant.off").vertices[578][2] == 0x1.6e8636p-15);
+  const TemporaryFolder folder;
+  const std::string digits(400, '0');
+  write_bytes(folder.file("a.off"),
+              "OFF\n3 1 0\n1." + digits + "1 0 0\n0 1000000000000000000000000 0\n0 0 +1.e-4\n3 0 1 2\n");
+  const TriangleMesh mesh = read_mesh(folder.file("a.off"));
+  CHECK(mesh.vertices[0][0] == 1);
+  CHECK(mesh.vertices[1][1] == double(1e24f));
+  CHECK(mesh.vertices[2][2] == Approx(1e-4).epsilon(1e-6));
+}
+
 TEST_CASE("faces of all kinds", "[geometry][mesh_io]") {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.obj");
