@@ -21,9 +21,10 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
                          o.shadow_step == 0 && o.graded && o.early_exit == 0;
   add("camera_rays", true,
       std::string("one per pixel, and its steps") + (o.graded ? ", graded" : "") +
-          (as_stated ? fmt::format("; default steps: airlight within {:.2g} % (relative L2){}", 100 * stated_error(scene),
-                                   has_environment(scene) ? " of that of the environment's directions" : "")
-                     : ""));
+          (as_stated
+               ? fmt::format("; default steps: airlight within {:.2g} % (relative L2){}", 100 * stated_error(scene),
+                             has_environment(scene) ? " of that of the environment's directions" : "")
+               : ""));
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
   add("shadows", shadows,
