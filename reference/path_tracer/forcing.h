@@ -3,9 +3,9 @@
 // A forced flight is one on which tracking meets at least one collision, null ones counted: the first lies at a
 // majorant depth drawn from the exponential cut off at the segment's whole one, after which tracking goes on as always.
 // That takes no transmittance; it is exact for any majorant, and draws the distances of a homogeneous medium without
-// rejection. Where all that it met were null collisions, it is tried again, a few times; in scenes so thin that
-// collisions are boosted, until misses are of no account, or few times where they are common. The end of the segment is
-// then not what is left over when nothing collided, but reached for certain, with the exact transmittance.
+// rejection. Where all that it met were null collisions, it is tried again, a few times; on a thin segment until misses
+// are of no account, or a few times where they are common all the same. The end of the segment is then not what is left
+// over when nothing collided, but reached for certain, with the exact transmittance.
 #pragma once
 #include "reference/path_tracer/counters.h"
 #include "reference/path_tracer/media.h"
