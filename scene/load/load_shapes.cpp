@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 // Procedural shapes of a scene file: their keys, and the mesh that they become.
 #include "scene/error.h"
 #include "scene/geometry/city.h"
@@ -9,7 +11,8 @@
 namespace airlight::scene::load {
 namespace {
 
-constexpr long long most = 4096;  // vertices along one direction
+constexpr long long most = 4096;              // vertices along one direction
+constexpr long long most_vertices = 1 << 21;  // as many as those of a teapot of the greatest size
 
 TriangleMesh read_displaced_sphere(TableReader& reader) {
   reader.allow(surface_keys_and({"center", "radius", "radii", "size", "waves", "bumps", "transform"}));
@@ -21,7 +24,7 @@ TriangleMesh read_displaced_sphere(TableReader& reader) {
     const auto radii = reader.numbers("radii", length, 3);
     sphere.radii = {radii[0], radii[1], radii[2]};
   }
-  const auto size = reader.integers("size", 2, 3, most);
+  const auto size = read_mesh_size(reader, 3);
   sphere.around = int(size[0]);
   sphere.rings = int(size[1]);
   for (TableReader wave : reader.tables("waves")) {
@@ -44,7 +47,7 @@ TriangleMesh read_torus(TableReader& reader) {
   torus.axis = reader.direction("axis", Vec3(Vec3::UnitY()));
   torus.radius = reader.number("radius", length);
   torus.tube_radius = reader.number("tube_radius", {least_length, torus.radius, false, true});
-  const auto size = reader.integers("size", 2, 3, most);
+  const auto size = read_mesh_size(reader, 3);
   torus.around = int(size[0]);
   torus.across = int(size[1]);
   return make_torus(torus);
@@ -57,7 +60,7 @@ TriangleMesh read_tube(TableReader& reader) {
   if (tube.path.size() < 2) reader.expected("path", "at least 2 points");
   tube.radius = reader.number("radius", length);
   tube.end_radius = reader.number("end_radius", length, tube.radius);
-  const auto size = reader.integers("size", 2, 2, most);
+  const auto size = read_mesh_size(reader, 2);
   if (size[1] < 3) reader.expected("size", "at least 3 vertices around");
   tube.along = int(size[0]);
   tube.around = int(size[1]);
@@ -102,6 +105,13 @@ const std::vector<std::string>& procedural_types() {
   return types;
 }
 
+std::vector<long long> read_mesh_size(TableReader& reader, int least) {
+  const auto size = reader.integers("size", 2, least, most);
+  if (size[0] * size[1] > most_vertices)
+    reader.expected("size", fmt::format("at most {} vertices in all", most_vertices));
+  return {size.begin(), size.end()};
+}
+
 TriangleMesh read_procedural(const std::string& type, TableReader& reader) {
   try {
     if (type == "displaced_sphere") return read_displaced_sphere(reader);
@@ -110,7 +120,7 @@ TriangleMesh read_procedural(const std::string& type, TableReader& reader) {
     if (type == "prism") return read_prism(reader);
     if (type == "city") return read_city(reader);
     reader.allow(surface_keys_and({"size", "transform"}));
-    return make_teapot(int(reader.integer("size", 2, 1024)));
+    return make_teapot(int(reader.integer("size", 2, 256)));
   } catch (const Error& e) {
     // What the shape itself complains about does not know where it stands.
     if (std::string(e.what()).find(reader.where()) != std::string::npos) throw;

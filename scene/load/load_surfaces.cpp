@@ -89,7 +89,7 @@ TriangleMesh read_height_field(TableReader& reader) {
   reader.allow(surface_keys_and({"origin", "size", "spacing", "heights", "waves", "transform"}));
   HeightField field;
   field.origin = reader.vector("origin", Vec3(Vec3::Zero()));
-  const auto size = reader.integers("size", 2, 2, 4096);
+  const auto size = read_mesh_size(reader, 2);
   field.nx = int(size[0]);
   field.nz = int(size[1]);
   const auto spacing = reader.numbers("spacing", length, 2);

@@ -23,6 +23,9 @@ std::shared_ptr<const VoxelGrid> read_grid(TableReader&, const std::string& fold
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();
 TriangleMesh read_procedural(const std::string& type, TableReader&);
+// Vertices along and across of a mesh by a rule, `size`: each from `least` to 4096, and no more than 2^21 of them in
+// all, which take 1.1 GB once rays can meet them.
+std::vector<long long> read_mesh_size(TableReader&, int least);
 
 // `keys` and those of every medium, of every surface.
 std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys);

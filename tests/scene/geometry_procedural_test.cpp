@@ -156,6 +156,11 @@ TEST_CASE("procedural shapes of a scene file", "[scene]") {
   };
   refused("type = \"teapott\"", "teapot");
   refused("type = \"teapot\"\nsize = 1", "size = 1");
+  // Gigabytes and minutes, found by the fuzzer: a teapot of 64 million triangles.
+  refused("type = \"teapot\"\nsize = 1000", "expected an integer from 2 to 256");
+  refused("type = \"torus\"\nradius = 2\ntube_radius = 1\nsize = [4096, 4096]", "at most 2097152 vertices in all");
+  refused("type = \"displaced_sphere\"\nradius = 2\nsize = [4096, 513]", "at most 2097152 vertices in all");
+  refused("type = \"height_field\"\nsize = [2048, 1025]\nspacing = [1, 1]\nwaves = []", "at most 2097152 vertices");
   refused("type = \"torus\"\nradius = 2\ntube_radius = 2\nsize = [12, 7]", "tube_radius = 2");
   refused("type = \"tube\"\npath = [[0, 0, 0], [0, 0, 0]]\nradius = 0.5\nsize = [12, 7]", "points apart");
   refused("type = \"tube\"\npath = [[0, 0, 0]]\nradius = 0.5\nsize = [12, 7]", "at least 2 points");
