@@ -127,7 +127,7 @@ vec3 extinction_at(Part part, vec3 point) {
 }
 bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
   for (int c = 0; c < 3; ++c) {
-    float own = greatest[c] * length_, most = !whole ? 1 : before[c] < 0.5 * own ? 2 : 16;
+    float own = greatest[c] * length_, most = whole ? 2 : 1;
     if (before[c] < deepest && own > most * deepest_step) return true;
   }
   return false;

@@ -54,8 +54,7 @@ Rgb extinction_at(const Plan& plan, const Ray& ray, double t, unsigned long long
 bool is_deep(const Options& options, double deepest, const Rgb& before, const Rgb& greatest, double length,
              bool whole) {
   const Rgb depth = greatest * length;
-  const Rgb most = whole ? Rgb((before < 0.5 * depth).select(Rgb::Constant(most_whole), most_smooth)) : Rgb::Ones();
-  return (before < deepest && depth > most * deepest_step(options)).any();
+  return (before < deepest && depth > (whole ? most_whole : 1) * deepest_step(options)).any();
 }
 
 void follow_depth(const Plan& plan, const Ray& ray, double deepest, const Step* begin, const Step* end,

@@ -11,9 +11,9 @@ using namespace airlight::ray_marcher;
 // At worst 6.8 % where surfaces cast shadows: fig7 and spot, seen by 48 x 48 pixels. results/reference/marcher_default
 // has more.
 TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
-  for (const char* name :
-       {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
-        "crosscheck/grid_coloured_point", "shadow_planes/fig7", "shadow_planes/spot", "shadow_planes/fog_ball"}) {
+  for (const char* name : {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
+                           "crosscheck/grid_coloured_point", "shadow_planes/fig7", "shadow_planes/spot",
+                           "shadow_planes/fog_ball", "fogshop/tube"}) {
     const auto scene = std::make_shared<const scene::Scene>(
         scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/") + name + ".toml"));
     scene::View view = view_of(*scene);
