@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000574249:0.00559501]
+set xrange [0.00057211:0.00553094]
 set logscale y
 set format y "%g"
 set yrange [0.000540249:0.241163]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00158445:7.88918]
 set logscale y
 set format y "%g"
-set yrange [5.0608e-05:1.74237]
+set yrange [4.62814e-05:1.7512]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_depth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

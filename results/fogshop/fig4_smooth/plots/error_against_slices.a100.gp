@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [4.29079:74.5783]
 set logscale y
 set format y "%g"
-set yrange [6.61663e-05:0.367137]
+set yrange [5.50967e-05:0.370962]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_slices.a100.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "S", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [4.29079:74.5783]
 set logscale y
 set format y "%g"
-set yrange [0.000132833:0.119173]
+set yrange [8.70962e-05:0.121951]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_slices.a30.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "S", \

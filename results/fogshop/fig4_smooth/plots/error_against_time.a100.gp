@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000367234:0.0123929]
+set xrange [0.000371392:0.0124905]
 set logscale y
 set format y "%g"
-set yrange [6.55806e-05:0.42958]
+set yrange [5.4609e-05:0.434055]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.a100.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

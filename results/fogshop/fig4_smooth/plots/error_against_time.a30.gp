@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000208451:0.00508536]
+set xrange [0.000214892:0.00486323]
 set logscale y
 set format y "%g"
-set yrange [0.000117423:1.05266]
+set yrange [7.69884e-05:1.07811]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.a30.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

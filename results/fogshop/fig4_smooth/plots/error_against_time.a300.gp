@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000599264:0.0285288]
+set xrange [0.000613937:0.0286402]
 set logscale y
 set format y "%g"
-set yrange [6.4664e-05:1.4132]
+set yrange [8.77104e-05:1.38902]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.a300.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000371028:0.0113894]
+set xrange [0.000376174:0.0112679]
 set logscale y
 set format y "%g"
 set yrange [0.000128982:0.184354]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000308379:0.00941973]
+set xrange [0.000336211:0.00929914]
 set logscale y
 set format y "%g"
 set yrange [3.11279e-05:0.0541759]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [6.49802:315.173]
 set logscale y
 set format y "%g"
-set yrange [0.000382565:1.34553]
+set yrange [0.000382566:1.34551]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_steps.banks_of_fog.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \

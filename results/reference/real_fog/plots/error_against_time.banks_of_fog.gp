@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00349853:0.439055]
+set xrange [0.00387494:0.469034]
 set logscale y
 set format y "%g"
-set yrange [0.000382565:1.34553]
+set yrange [0.000382566:1.34551]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.banks_of_fog.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \

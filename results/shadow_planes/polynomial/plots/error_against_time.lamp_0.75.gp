@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000516987:0.0967578]
+set xrange [0.000513363:0.114141]
 set logscale y
 set format y "%g"
-set yrange [9.84428e-06:1.47151]
+set yrange [9.48822e-06:1.47458]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.lamp_0.75.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polynomial", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00205031:0.225488]
+set xrange [0.00201067:0.280725]
 set logscale y
 set format y "%g"
-set yrange [7.33575e-07:0.018333]
+set yrange [7.33573e-07:0.0183341]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.boxes_1.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "counted", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00271571:0.246469]
+set xrange [0.00266557:0.268275]
 set logscale y
 set format y "%g"
-set yrange [1.90506e-06:0.0433487]
+set yrange [1.90506e-06:0.0433514]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.boxes_8.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "counted", \
