@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <fstream>
+#include <map>
 #include <optional>
 
 #include "experiments/driver/check.h"
@@ -31,6 +33,11 @@ constexpr std::size_t most_held = 16;
 constexpr double most_held_gib = 2;
 
 double since(double start) { return steady_seconds() - start; }
+
+bool is_text_of(const fs::path& file, const std::string& text) {
+  std::ifstream in(file, std::ios::binary);
+  return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
+}
 
 // A row that is prepared and compared, and waits for its timed runs.
 struct Held {
@@ -244,6 +251,7 @@ class Run {
 
   void finish(const Row& row, std::optional<Row>& place) {
     journal_.add(row);
+    made_rows_ = true;
     place = row;
     say(row, "done");
   }
@@ -263,16 +271,21 @@ class Run {
     const fs::path folder = results_ / name_;
     make_folder(folder);
     const auto plots = draw_plots(outcome_, folder);
-    const auto put = [&](const char* name, const std::string& text) {
+    std::map<std::string, std::string> files{{"table.csv", table_csv(outcome_)},
+                                             {"summary.csv", summary_csv(outcome_)},
+                                             {"table.md", table_markdown(outcome_, plots)}};
+    if (experiment().stages) files["stages.csv"] = stages_csv(outcome_);
+    if (!experiment().expected.empty()) files["expected.csv"] = expected_csv(outcome_);
+    if (!experiment().speed_ups.empty()) files["speed_up.csv"] = speed_up_csv(outcome_);
+    bool changed = made_rows_;
+    for (const auto& [name, text] : files) {
+      if (is_text_of(folder / name, text)) continue;
       scene::write_file_atomically((folder / name).string(), text);
-    };
-    put("table.csv", table_csv(outcome_));
-    put("summary.csv", summary_csv(outcome_));
-    if (experiment().stages) put("stages.csv", stages_csv(outcome_));
-    if (!experiment().expected.empty()) put("expected.csv", expected_csv(outcome_));
-    if (!experiment().speed_ups.empty()) put("speed_up.csv", speed_up_csv(outcome_));
-    put("table.md", table_markdown(outcome_, plots));
-    put("run.json", run_record(outcome_, plots));
+      changed = true;
+    }
+    // The record tells of the run that made the tables.
+    if (changed || !fs::exists(folder / "run.json"))
+      scene::write_file_atomically((folder / "run.json").string(), run_record(outcome_, plots));
   }
 
   RunOptions options_;
@@ -280,6 +293,7 @@ class Run {
   std::string name_;  // of the folder with the results, and of that with the pictures
   Journal journal_;
   Outcome outcome_;
+  bool made_rows_ = false;  // not all of them were kept
 };
 
 }  // namespace

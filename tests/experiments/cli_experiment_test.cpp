@@ -63,6 +63,22 @@ TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   CHECK_THAT(run("gates --root .", project).out, Contains("g/slow: one") && Contains("0 of 2 gates ok"));
 }
 
+// Gates and runs that find all their rows leave the record of the run that made them, with its date and duration.
+TEST_CASE("a record tells of the run that made its rows", "[cli]") {
+  const Project project;
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
+  REQUIRE(run("experiment run --root .", project).code == 0);
+  const auto record = [&] { return read_bytes(project.file("results/g/good/run.json")); };
+  const std::string first = record();
+  CHECK(run("gates --root .", project).code == 0);
+  CHECK(run("experiment run --root . --resume", project).code == 0);
+  CHECK(record() == first);
+  // A gate that is moved is another table.
+  project.write("experiments/g/good.toml", steps_experiment("0.4"));
+  CHECK(run("gates --root .", project).code == 0);
+  CHECK(record() != first);
+}
+
 // The second experiment's second scene is wrong: the first experiment is not begun.
 TEST_CASE("all experiments are checked before the first is computed", "[cli]") {
   const Project project;
