@@ -1,8 +1,7 @@
 // What methods and references have in common: supports, prepare, render.
 //
 // `prepare` decides what this scene needs and leaves the rest out; each stage is recorded as kept or left out with the
-// reason
-// (`airlight explain` prints it). What is left out costs nothing: no call, no dispatch, no entry in the times.
+// reason (`airlight explain` prints it). What is left out costs nothing: no call, no dispatch, no entry in the times.
 #pragma once
 #include <functional>
 #include <map>

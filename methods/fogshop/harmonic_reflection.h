@@ -11,8 +11,8 @@
 namespace airlight::fogshop {
 
 // B_pv: coefficients of brdf(in, to_view) max(0, normal . in) as a function of `in`. `normal` is on the viewer's side;
-// zero if to_view is below the horizon. Lambert in closed form; others by
-// quadrature over the hemisphere, 512 directions and for Phong exponents above 50 in proportion to the exponent.
+// zero if to_view is below the horizon. Lambert in closed form; others by quadrature over the hemisphere, 512 directions
+// and for Phong exponents above 50 in proportion to the exponent.
 std::vector<Rgb> reflectance_harmonics(const scene::Material&, const Vec3& normal, const Vec3& to_view, int order);
 
 // Radiance towards the viewer [W/m^2/sr]: the inner product of `reflectance` (B_pv, or its product with a visibility,
