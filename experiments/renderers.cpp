@@ -1,8 +1,6 @@
 #include "experiments/renderers.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include "experiments/find_component.h"
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
@@ -11,7 +9,6 @@
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
-#include "scene/error.h"
 
 namespace airlight::experiments {
 
@@ -31,6 +28,12 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
   return renderers;
 }
 
+bool is_reference(const scene::Renderer& renderer) {
+  for (const char* name : {"deterministic", "path_tracer", "ray_marcher"})
+    if (renderer.name() == name) return true;
+  return false;
+}
+
 std::vector<std::string> renderer_names() {
   std::vector<std::string> names;
   for (const auto& renderer : all_renderers()) names.push_back(renderer->name());
@@ -38,11 +41,7 @@ std::vector<std::string> renderer_names() {
 }
 
 const scene::Renderer& find_renderer(const std::string& name, const std::string& where) {
-  for (const auto& renderer : all_renderers())
-    if (renderer->name() == name) return *renderer;
-  const auto names = renderer_names();
-  throw Error(fmt::format("{}: unknown renderer '{}', expected one of {} (nearest: {})", where, name,
-                          fmt::join(names, ", "), scene::nearest(name, names)));
+  return find_component(all_renderers(), "renderer", name, where);
 }
 
 }  // namespace airlight::experiments

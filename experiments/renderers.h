@@ -12,6 +12,9 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers();
 
 std::vector<std::string> renderer_names();
 
+// Of the folder reference/, built from scene/ and reference/ alone.
+bool is_reference(const scene::Renderer&);
+
 // Throws Error, beginning with `where`, that names the nearest renderer.
 const scene::Renderer& find_renderer(const std::string& name, const std::string& where);
 

@@ -25,6 +25,13 @@ std::string light_name(const Light& light) {
   return names[light.index()];
 }
 
+Light moved(const Light& light, const Vec3& by) {
+  Light result = light;
+  if (auto* point = std::get_if<PointLight>(&result)) point->position += by;
+  if (auto* spot = std::get_if<SpotLight>(&result)) spot->position += by;
+  return result;
+}
+
 std::optional<LightBall> ball(const Light& light) {
   if (const auto* point = std::get_if<PointLight>(&light)) return LightBall{point->position, point->radius};
   if (const auto* spot = std::get_if<SpotLight>(&light)) return LightBall{spot->position, spot->radius};

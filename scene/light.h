@@ -58,6 +58,9 @@ struct LightBall {
 };
 std::optional<LightBall> ball(const Light&);
 
+// A point or spot light somewhere else; the others as they are.
+Light moved(const Light&, const Vec3& by);
+
 // Intensity of a point or spot light towards a unit direction from it [W/sr].
 Rgb intensity_towards(const Light&, const Vec3& from_light);
 

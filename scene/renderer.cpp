@@ -1,5 +1,6 @@
 #include "scene/renderer.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -8,6 +9,19 @@
 #include "scene/threads.h"
 
 namespace airlight::scene {
+
+void Renderer::require_support(const Scene& scene, const Settings& settings) const {
+  const std::vector<std::string> reasons = supports(scene, settings);
+  if (!reasons.empty())
+    throw NotSupported(fmt::format("{}: {} cannot render this: {}", scene.name, name(), reasons.front()),
+                       reasons.front());
+}
+
+std::unique_ptr<Prepared> Renderer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+                                            const Execution& execution) const {
+  require_support(*scene, settings);
+  return prepare_supported(std::move(scene), settings, execution);
+}
 
 void parallel_rows(int rows, const Execution& execution, const std::function<void(int)>& body) {
   std::atomic<int> done{0};

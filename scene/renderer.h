@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "scene/component.h"
+#include "scene/error.h"
 #include "scene/film.h"
 #include "scene/scene.h"
-#include "scene/settings.h"
 
 namespace airlight::scene {
+class ContentStore;
 
 // What is looked at. Resolution is the view's, so that one Prepared serves several.
 struct View {
@@ -25,10 +27,11 @@ inline View view_of(const Scene& scene) { return {scene.camera, scene.width, sce
 
 // How to run: threads (0: as many as the machine has), and a callback with the fraction done in [0, 1], called from any
 // thread, that returns false to stop; a stopped render throws Interrupted, or keeps what it has where the renderer says
-// so.
+// so. With a store, what is dear to make is looked for there first, and kept.
 struct Execution {
   int threads = 0;
   std::function<bool(double fraction)> progress;
+  const ContentStore* store = nullptr;
 };
 
 struct Interrupted : std::runtime_error {
@@ -58,21 +61,34 @@ class Prepared {
   virtual std::vector<Stage> stages() const = 0;
   virtual std::vector<StageTime> prepare_times() const { return {}; }
   virtual Rendering render(const View&, const Execution&) const = 0;
+  // Becomes the preparation of the next frame, a scene that differs in its lights alone, and keeps what still holds. Wall
+  // clock per stage; nothing if it cannot, and is unchanged: then the next frame is prepared anew.
+  virtual std::optional<std::vector<StageTime>> next(std::shared_ptr<const Scene>, const Execution&) { return {}; }
 };
 
-class Renderer {
+// What Renderer::prepare throws where supports() objects.
+class NotSupported : public Error {
  public:
-  virtual ~Renderer() = default;
-  virtual std::string name() const = 0;   // as in --method: "fogshop", "ray_marcher", "path_tracer"
-  virtual std::string about() const = 0;  // one line, with the source
-  // On what it computes beside the processor, in one line; empty for the processor alone. Where it is missing, the line
-  // says so.
-  virtual std::string device() const { return ""; }
-  virtual std::vector<SettingSpec> settings() const = 0;
+  NotSupported(const std::string& line, std::string reason) : Error(line), reason(std::move(reason)) {}
+  std::string reason;  // the first of them
+};
+
+class Renderer : public Component {
+ public:
+  // True: its film is the mean of numbered samples (settings `samples` and `target_error`), with a standard error. Ranges
+  // of them can be computed apart, and an Execution's store keeps them.
+  virtual bool monte_carlo() const { return false; }
   // Empty: it can render the scene. Else the reasons why not, one line each.
   virtual std::vector<std::string> supports(const Scene&, const Settings&) const = 0;
-  // The scene is shared because a Prepared may outlive the caller's copy. Throws Error if supports() objects.
-  virtual std::unique_ptr<Prepared> prepare(std::shared_ptr<const Scene>, const Settings&, const Execution&) const = 0;
+  // Throws NotSupported if supports() objects.
+  void require_support(const Scene&, const Settings&) const;
+  // Asks supports() once. The scene is shared because a Prepared may outlive the caller's copy. Throws NotSupported.
+  std::unique_ptr<Prepared> prepare(std::shared_ptr<const Scene>, const Settings&, const Execution&) const;
+
+ private:
+  // Of a scene that supports() has nothing against.
+  virtual std::unique_ptr<Prepared> prepare_supported(std::shared_ptr<const Scene>, const Settings&,
+                                                      const Execution&) const = 0;
 };
 
 // Runs body(row) for every row of [0, rows) on all threads, reports progress, throws Interrupted if asked to stop,

@@ -14,7 +14,7 @@ struct SettingSpec {
   std::string doc;       // one line, with unit
   double least = 0;      // inclusive range of integer and real
   double greatest = 1e300;
-  std::vector<std::string> choices;  // of a choice
+  std::vector<std::string> choices = {};  // of a choice
 };
 
 // Values for all specs of one renderer.

@@ -53,23 +53,6 @@ struct ExplainOptions {
 };
 int explain(const ExplainOptions&);
 
-struct RateOptions {
-  std::string scene, out;  // out: folder for a record, none if empty
-  Pairs settings, overrides;
-  int threads = 0, runs = 7;
-  bool processor_time = false;  // of one thread, not the wall clock: on a machine that others use
-};
-// How close fogshop comes to the machine: kernel evaluations per second in whole pictures against a bare loop of the
-// same arithmetic, for its variants `paper` and `S`, or the one that is set.
-int rate(const RateOptions&);
-
-struct EvaluatorsOptions {
-  std::string root;
-  int cases = 20000, runs = 15;
-};
-// Errors and times of the evaluators of shadow planes, into results/shadow_planes/evaluators/.
-int evaluators(const EvaluatorsOptions&);
-
 struct AuthorOptions {
   std::string script, out;
 };

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdlib>
 
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
 #include "experiments/machine.h"
+#include "experiments/probes.h"
 #include "experiments/renderers.h"
 #include "gpu/context.h"
 #include "scene/error.h"
@@ -44,6 +46,10 @@ int doctor() {
   const bool gnuplot = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
   fmt::print("  plots      {}\n", gnuplot ? "gnuplot" : "none: gnuplot is not installed (tables only)");
   for (const auto& renderer : all_renderers()) fmt::print("  renderer   {}: {}\n", renderer->name(), renderer->about());
+  for (const auto& probe : all_probes()) {
+    fmt::print("  probe      {}: {}\n", probe->name(), probe->about());
+    fmt::print("             figures {}\n", fmt::join(probe->figures(), ", "));
+  }
   return 0;
 }
 

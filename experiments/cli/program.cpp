@@ -110,8 +110,7 @@ int dispatch(int argc, char** argv) {
                   "works (default: the variable AIRLIGHT_GPU; airlight doctor lists them)")
         ->type_name("WHICH");
   };
-  app.footer(
-      "Commands that may use a GPU (render, experiment run, gates, explain, evaluators, doctor) take --gpu WHICH.");
+  app.footer("Commands that may use a GPU (render, experiment run, gates, explain, doctor) take --gpu WHICH.");
   app.allow_extras();
 
   RenderOptions render_options;
@@ -234,32 +233,6 @@ int dispatch(int argc, char** argv) {
       return explain(explain_options);
     };
   });
-
-  RateOptions rate_options;
-  c = command(app, "rate", "kernel evaluations per second of fogshop against a bare loop of the same arithmetic");
-  c->add_option("SCENE", rate_options.scene, "scene file: point lights, grey fog of Gaussians");
-  c->add_option("--threads", rate_options.threads, "0: all")->check(CLI::Range(0, 4096));
-  c->add_option("--runs", rate_options.runs, "pictures of each variant, of which the fastest counts (7)");
-  c->add_flag("--processor-time", rate_options.processor_time,
-              "of one thread, not the wall clock: on a machine that others use");
-  c->add_option("--out,-o", rate_options.out, "folder for a record: rate.csv, table.md, run.json");
-  add_pairs(c, "--set", rate_options.settings, "a setting of fogshop");
-  add_pairs(c, "--override", rate_options.overrides, "a value of the scene file, e.g. film.width=320");
-  data_option(c);
-  c->final_callback([&] {
-    action = [&] {
-      require(rate_options.scene, "SCENE");
-      return rate(rate_options);
-    };
-  });
-
-  EvaluatorsOptions evaluators_options;
-  c = command(app, "evaluators", "errors and times of shadow planes' evaluators: map of stability, tables, plots");
-  c->add_option("--root", evaluators_options.root, "the project's folder (default: found from here upwards)");
-  c->add_option("--cases", evaluators_options.cases, "random lit parts of each table (20000)");
-  c->add_option("--runs", evaluators_options.runs, "of every evaluator, of which the fastest counts (15)");
-  gpu_option(c);
-  c->final_callback([&] { action = [&] { return evaluators(evaluators_options); }; });
 
   AuthorOptions author_options;
   c = command(app, "author", "make fog of Gaussians by a script: paint, erase, copy, emit, airbrush");

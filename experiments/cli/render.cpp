@@ -11,7 +11,7 @@
 #include "experiments/progress.h"
 #include "experiments/renderers.h"
 #include "experiments/say.h"
-#include "reference/path_tracer/cache.h"
+#include "scene/content_store.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::cli {
@@ -48,30 +48,27 @@ int render(const RenderOptions& options) {
   Pairs given = options.settings;
   if (range) given["samples"] = std::to_string(range->end - range->begin);
   const bool part = range && range->explicit_range;
-  if (part && renderer.name() != "path_tracer")
+  if (part && !renderer.monte_carlo())
     throw Error(fmt::format("--samples {}: only path_tracer computes ranges of samples", options.samples));
-  if (!options.cache.empty() && (part || renderer.name() != "path_tracer"))
+  if (!options.cache.empty() && (part || !renderer.monte_carlo()))
     throw Error("--cache: only for path_tracer, and without a range of samples");
   const scene::Settings settings(renderer.settings(), given, options.method);
   require_folder(options.out);
   if (!options.png.empty()) require_folder(options.png);
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
-  const auto reasons = renderer.supports(*scene, settings);
-  if (!reasons.empty())
-    throw Error(fmt::format("{} cannot render {}: {}", options.method, options.scene, reasons.front()));
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));
-  const scene::Execution execution = progress.execution(options.threads);
+  const scene::ContentStore store(options.cache, say);
+  scene::Execution execution = progress.execution(options.threads);
+  if (!options.cache.empty()) execution.store = &store;
   const auto start = std::chrono::steady_clock::now();
   scene::Film film;
-  if (part)
+  if (part) {
+    renderer.require_support(*scene, settings);
     film = render_samples(scene, settings, *range, execution, options.out + ".samples");
-  else if (!options.cache.empty()) {
-    auto kept = path_tracer::render_cached(scene, settings, scene::view_of(*scene), options.cache, execution);
-    for (const std::string& note : kept.notes) say(note);
-    film = std::move(kept.film);
-  } else
+  } else {
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write(options, renderer, *scene, settings, seconds, film);
   check_interrupted();

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include "experiments/driver/journal.h"
+#include "experiments/driver/numbers.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
 #include "experiments/interrupt.h"
@@ -19,7 +19,7 @@ constexpr int most_pixels = 8;  // a side
 
 // As few samples as show the same layers: those beyond whole blocks decide whether there are equal batches.
 scene::Settings short_settings(const scene::Renderer& renderer, Pairs given, const scene::Settings& whole) {
-  if (renderer.name() == "path_tracer") {
+  if (renderer.monte_carlo()) {
     const long long samples = whole.integer("samples");
     if (samples > 128) given["samples"] = std::to_string(64 + samples % 64);
     given["target_error"] = "0";
@@ -45,6 +45,8 @@ class Trial {
       film = render(*p.renderer, p.method->settings, p.settings);
     } catch (const Unavailable&) {
       return;  // the row will say so
+    } catch (const scene::NotSupported&) {
+      return;
     }
     require_finite(film, p.method->name);
     film.layers[e_.layer] = film.layer(p.method->layer);
@@ -69,7 +71,7 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
   const PlannedScene planned = plan_scene(e, c);
   std::vector<const PlannedRow*> open;
   for (const PlannedRow& p : planned.rows)
-    if (p.refusal.empty() && !finished.find(p.row.key)) open.push_back(&p);
+    if (!finished.find(p.row.key)) open.push_back(&p);
   if (open.empty()) return;
   try {
     const Trial trial(e, planned);
@@ -86,8 +88,10 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
 
 void check_experiment(const Experiment& e, const RunOptions& options) {
   try {
-    for (const auto& file : e.vector_files)
-      if (!std::ifstream(file)) throw Error(fmt::format("{}: cannot be read", file.string()));
+    if (e.kind == "numbers") {
+      for (const SceneCase& c : e.scenes) input_key(c);
+      return;
+    }
     const Journal finished(journal_file(options.root, e), options.resume);
     std::set<const MethodCase*> tried;
     for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);

@@ -8,6 +8,7 @@
 #include "experiments/driver/bounds.h"
 #include "experiments/driver/toml_values.h"
 #include "experiments/metrics.h"
+#include "experiments/probes.h"
 #include "experiments/renderers.h"
 #include "scene/error.h"
 #include "scene/load/parse_toml.h"
@@ -31,29 +32,29 @@ class Reader {
 
   Experiment read() {
     TableReader top(toml_, "");
-    const bool oracles = toml_["kind"].value_or(std::string()) == "oracles";
-    top.allow(oracles ? std::vector<std::string>{"kind", "title", "paper", "about", "in_tests", "vectors"}
-                      : std::vector<std::string>{"kind", "title", "paper", "about", "layer", "metrics", "stages",
-                                                 "in_tests", "scene", "method", "reference", "timing", "plot", "gate",
-                                                 "speed_up", "expected", "profile"});
-    experiment_.kind = top.choice("kind", {"images", "oracles"}, "images");
+    numbers_ = toml_["kind"].value_or(std::string()) == "numbers";
+    std::vector<std::string> keys{"kind",   "title", "paper", "about",    "metrics",  "in_tests", "scene",
+                                  "method", "plot",  "gate",  "speed_up", "expected", "profile",  "timing"};
+    if (!numbers_) keys.insert(keys.end(), {"layer", "stages", "reference"});
+    top.allow(keys);
+    experiment_.kind = top.choice("kind", {"images", "numbers"}, "images");
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
     experiment_.about = top.text("about", "");
     experiment_.in_tests = top.flag("in_tests", false);
-    if (experiment_.kind == "oracles") {
-      for (const std::string& file : strings(toml_, "vectors", top)) experiment_.vector_files.push_back(root_ / file);
-      return experiment_;
+    if (!numbers_) {
+      experiment_.layer = top.text("layer", "mean");
+      experiment_.stages = top.flag("stages", false);
     }
-    experiment_.layer = top.text("layer", "mean");
-    experiment_.stages = top.flag("stages", false);
     experiment_.metrics = strings(toml_, "metrics", top);
-    for (const std::string& metric : experiment_.metrics) check_metric_name(metric, position("metrics"));
+    if (!numbers_)
+      for (const std::string& metric : experiment_.metrics) check_metric_name(metric, position("metrics"));
     Pairs overrides, reference_settings;
     profile(top, overrides, reference_settings);
-    reference(top, reference_settings);
+    if (!numbers_) reference(top, reference_settings);
     scenes(top, overrides);
     methods(top);
+    if (numbers_) figures();
     plots(top);
     checks(top);
     return experiment_;
@@ -116,14 +117,33 @@ class Reader {
     }
   }
 
-  void check_renderer(const TableReader& reader, const std::string& name, const Pairs& given) const {
-    const scene::Renderer* renderer = nullptr;
+  // What makes the rows: its key in the file, and the thing itself.
+  const char* component_key() const { return numbers_ ? "probe" : "renderer"; }
+  const scene::Component& find_component(const std::string& name, const std::string& where) const {
+    if (numbers_) return find_probe(name, where);
+    return find_renderer(name, where);
+  }
+
+  void check_component(const TableReader& reader, const std::string& name, const Pairs& given) const {
+    const scene::Component* component = nullptr;
     try {
-      renderer = &find_renderer(name, reader.where());
-      scene::Settings(renderer->settings(), given, reader.where() + ": settings");
+      component = &find_component(name, reader.where());
+      scene::Settings(component->settings(), given, reader.where() + ": settings");
     } catch (const Error& error) {
-      reader.fail(renderer ? "settings" : "renderer", std::string(error.what()).substr(reader.where().size() + 2));
+      reader.fail(component ? "settings" : component_key(),
+                  std::string(error.what()).substr(reader.where().size() + 2));
     }
+  }
+
+  // Each metric is a figure of some probe.
+  void figures() const {
+    std::vector<std::string> known;
+    for (const MethodCase& m : experiment_.methods)
+      for (const std::string& figure : find_probe(m.renderer, m.name).figures()) known.push_back(figure);
+    for (const std::string& metric : experiment_.metrics)
+      if (std::find(known.begin(), known.end(), metric) == known.end())
+        throw Error(fmt::format("{}: unknown figure '{}' (nearest: {})", position("metrics"), metric,
+                                scene::nearest(metric, known)));
   }
 
   void reference(const TableReader& top, const Pairs& finer) {
@@ -136,7 +156,7 @@ class Reader {
     experiment_.reference.renderer = reader->text("renderer");
     experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
     for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
-    check_renderer(*reader, experiment_.reference.renderer, experiment_.reference.settings);
+    check_component(*reader, experiment_.reference.renderer, experiment_.reference.settings);
   }
 
   void scenes(const TableReader& top, const Pairs& of_profile) {
@@ -160,24 +180,30 @@ class Reader {
           cases.back().parameter = value;
           cases.back().name = fmt::format("{} {:g}", scene.name, value);
           cases.back().swept_from = scene.name;
+          cases.back().is_frame = key.ends_with(".frame");
         }
       }
       if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());
     }
+    if (numbers_ && !top.has("scene")) experiment_.scenes.emplace_back();
     if (experiment_.scenes.empty()) top.fail("", "there is no [[scene]] in this profile");
   }
 
   void methods(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "method")) {
-      reader.allow(
-          {"name", "renderer", "settings", "sweep", "layer", "picture_only", "count_noise", "profiles", "scenes"});
+      std::vector<std::string> keys{"name", component_key(), "settings", "sweep", "profiles", "scenes"};
+      if (!numbers_) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving_lights"});
+      reader.allow(keys);
       MethodCase method;
-      method.renderer = reader.text("renderer");
+      method.renderer = reader.text(component_key());
       method.name = reader.text("name", method.renderer);
       method.settings = settings(*table, "settings", reader);
-      method.layer = reader.text("layer", experiment_.layer);
-      method.picture_only = reader.flag("picture_only", false);
-      method.count_noise = reader.flag("count_noise", false);
+      if (!numbers_) {
+        method.layer = reader.text("layer", experiment_.layer);
+        method.picture_only = reader.flag("picture_only", false);
+        method.count_noise = reader.flag("count_noise", false);
+        method.moving_lights = reader.flag("moving_lights", false);
+      }
       method.scenes = strings(*table, "scenes", reader);
       for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
       std::vector<MethodCase> cases{method};
@@ -193,15 +219,23 @@ class Reader {
           cases.back().settings[key] = cases.back().setting;
         }
       }
-      for (const MethodCase& c : cases) check_renderer(reader, c.renderer, c.settings);
+      for (const MethodCase& c : cases) check_component(reader, c.renderer, c.settings);
       if (in_profile(*table, reader)) experiment_.methods.insert(experiment_.methods.end(), cases.begin(), cases.end());
     }
   }
 
   void plots(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "plot")) {
-      reader.allow({"name", "title", "x", "y", "x_label", "y_label", "per_scene", "methods"});
       PlotCase plot;
+      if (table->contains("map")) {
+        reader.allow({"name", "title", "map"});
+        plot.map = reader.flag("map", true);
+        plot.name = reader.text("name", "map");
+        plot.title = reader.text("title", "");
+        experiment_.plots.push_back(plot);
+        continue;
+      }
+      reader.allow({"name", "title", "x", "y", "x_label", "y_label", "per_scene", "methods"});
       plot.x = reader.text("x");
       plot.y = reader.text("y");
       plot.name = reader.text("name", plot.y + "_against_" + plot.x);
@@ -238,7 +272,7 @@ class Reader {
     } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
       for (const toml::node& node : *array) {
         const toml::table& table = *node.as_table();
-        const std::string source = list == "scene" ? "file" : "renderer";
+        const std::string source = list == "scene" ? "file" : component_key();
         const std::string fallback = table[source].value_or(std::string());
         names.push_back(table["name"].value_or(list == "scene" ? fs::path(fallback).stem().string() : fallback));
       }
@@ -259,16 +293,19 @@ class Reader {
     const bool of_time_or_work =
         gate.metric == "seconds" || gate.metric == "prepare_seconds" || gate.metric.rfind("counter.", 0) == 0;
     const bool test = std::find(tests.begin(), tests.end(), gate.metric) != tests.end();
-    const bool noisy_reference = experiment_.reference.renderer == "path_tracer";
+    const auto noisy = [](const std::string& name) {
+      return !name.empty() && find_renderer(name, "gate").monte_carlo();
+    };
+    const bool noisy_reference = noisy(experiment_.reference.renderer);
     bool found = false;
     for (const SceneCase& c : experiment_.scenes)
       for (const MethodCase& m : experiment_.methods) {
         if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
         found = true;
-        if (of_time_or_work) continue;
+        if (of_time_or_work || numbers_) continue;
         if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
         if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
-        if (test && !noisy_reference && m.renderer != "path_tracer")
+        if (test && !noisy_reference && !noisy(m.renderer))
           wrong(fmt::format("{} needs noise, and neither '{}' nor the reference has any", gate.metric, m.name));
         if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");
       }
@@ -313,11 +350,10 @@ class Reader {
       e.what = reader.text("what");
       e.paper = reader.text("paper");
       if (reader.has("method")) {
-        e.scene = reader.text("scene");
+        if (!numbers_ || reader.has("scene")) known(reader, "scene", e.scene = reader.text("scene"), "scene");
         e.method = reader.text("method");
         e.metric = reader.text("metric");
         if (reader.has("setting")) e.setting = plain(*table->get("setting"));
-        known(reader, "scene", e.scene, "scene");
         known(reader, "method", e.method, "method");
         known(reader, "metric", e.metric, "metric");
       }
@@ -326,6 +362,7 @@ class Reader {
   }
 
   fs::path root_;
+  bool numbers_ = false;  // kind
   std::string file_;
   toml::table toml_;
   Experiment experiment_;

@@ -12,22 +12,24 @@ namespace airlight::experiments {
 
 using Pairs = std::map<std::string, std::string>;
 
-struct SceneCase {
+struct SceneCase {  // kind "numbers": the input of a probe; all empty where there is none
   std::string name;
   std::string swept_from;  // the name without the sweep's value; empty without a sweep
   std::filesystem::path file;
   Pairs overrides;                  // with those of the profile
   std::optional<double> parameter;  // abscissa of plots over scenes
+  bool is_frame = false;            // of a sequence: swept is the `frame` of a medium
 };
 
 struct MethodCase {
   std::string name;
-  std::string renderer;
+  std::string renderer;  // or the probe
   Pairs settings;
   std::string setting;              // the swept setting's value, as text; empty without a sweep
   std::string layer;                // compared with the reference's layer
   bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
   bool picture_only = false;        // rendered and timed, not compared
+  bool moving_lights = false;       // each timed run is the next frame, whose lights have moved, and its render
   std::vector<std::string> scenes;  // empty: all
 };
 
@@ -50,6 +52,7 @@ struct PlotCase {
   std::string name, title, x, y, x_label, y_label;  // x: "seconds", "prepare_seconds", "parameter", "setting",
                                                     // "counter.NAME"; y: those or a metric
   bool per_scene = true;
+  bool map = false;                  // not curves: the maps of the rows, side by side
   std::vector<std::string> methods;  // empty: all
 };
 
@@ -78,7 +81,7 @@ struct ExpectedCase {
 struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
-  std::string kind;     // "images" or "oracles"
+  std::string kind;     // "images" or "numbers"
   std::string profile;  // "quick" or "paper"
   std::vector<SceneCase> scenes;
   std::vector<MethodCase> methods;
@@ -92,7 +95,6 @@ struct Experiment {
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;
   std::vector<ExpectedCase> expected;
-  std::vector<std::filesystem::path> vector_files;  // kind "oracles"
 };
 
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,

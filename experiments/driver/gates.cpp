@@ -15,6 +15,11 @@ std::string figure(const Row& row, const std::string& metric) {
   return row.note.empty() ? "undefined" : row.note;
 }
 
+std::string name_of(const Experiment& experiment, const GateCase& gate, const Row& row) {
+  return fmt::format("{}: {}{}{}: {}", experiment.id, row.scene.empty() ? "" : row.scene + ", ", row.method,
+                     row.setting.empty() ? "" : " " + row.setting, gate.metric);
+}
+
 std::string kind_of(const Row& row, const std::string& metric) {
   if (metric == "seconds" || metric == "prepare_seconds") return "time";
   if (metric.rfind("counter.", 0) == 0) return "counter";
@@ -41,8 +46,7 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
   result.measured = e;
   result.skipped = row.unavailable;
   result.passed = e && (upper ? e->low <= bound : e->high >= bound);
-  result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
-                            row.setting.empty() ? "" : " " + row.setting, gate.metric);
+  result.name = name_of(experiment, gate, row);
   result.text = fmt::format("{} {} {:g}{} {}", result.name, upper ? "<=" : ">=", bound,
                             result.skipped  ? " is skipped:"
                             : result.passed ? ":"
@@ -55,8 +59,7 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
 // A figure that a gate covers and that nothing bounds: new, or measured on another device.
 GateResult unbounded(const Experiment& experiment, const GateCase& gate, const Row& row, bool other_device) {
   GateResult result;
-  result.name = fmt::format("{}: {}, {}{}: {}", experiment.id, row.scene, row.method,
-                            row.setting.empty() ? "" : " " + row.setting, gate.metric);
+  result.name = name_of(experiment, gate, row);
   result.skipped = other_device;
   result.text = result.name + (other_device ? " is skipped: its bound was measured on another device: "
                                             : " fails: it has no bound; scripts/tighten gives it one: ");

@@ -9,9 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "experiments/driver/content_key.h"
 #include "experiments/folders.h"
 #include "experiments/json.h"
+#include "scene/content_key.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "experiments/build_info.h"
-#include "experiments/driver/content_key.h"
 #include "experiments/driver/reference_cache.h"
 #include "experiments/interrupt.h"
 #include "experiments/machine.h"
 #include "experiments/renderers.h"
 #include "gpu/shader_source.h"
+#include "scene/content_key.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
@@ -25,7 +25,9 @@ std::string program_and_machine() {
   return content_key(parts);
 }
 
-std::string row_key(const Experiment& e, const MethodCase& m, const scene::Renderer& renderer, const Row& row) {
+}  // namespace
+
+std::string row_key(const Experiment& e, const MethodCase& m, const scene::Component& component, const Row& row) {
   const TimingRule& rule = e.timing;
   std::vector<std::string> parts{program_and_machine(),
                                  row.scene_hash,
@@ -39,14 +41,12 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Rende
                                  e.layer,
                                  fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
-  parts.push_back(fmt::format("{} {}", m.picture_only, m.count_noise));
-  const std::string device = renderer.device();
+  parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving_lights));
+  const std::string device = component.device();
   parts.push_back(device);
   if (!device.empty()) parts.push_back(gpu::foreign_shaders());
   return content_key(parts);
 }
-
-}  // namespace
 
 PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
   PlannedScene planned;
@@ -56,17 +56,12 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
   if (!e.reference.renderer.empty()) {
     planned.reference = &find_renderer(e.reference.renderer, "reference");
     planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
-    const auto reasons = planned.reference->supports(scene, *planned.reference_settings);
-    if (!reasons.empty())
-      throw Error(fmt::format("reference {} cannot render {}: {}", e.reference.renderer, c.name, reasons.front()));
     reference = reference_key(scene, *planned.reference, *planned.reference_settings);
   }
   for (const MethodCase& m : e.methods) {
     if (!is_on(m, c)) continue;
     const scene::Renderer& renderer = find_renderer(m.renderer, m.name);
-    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), "", {}};
-    const auto reasons = renderer.supports(scene, p.settings);
-    if (!reasons.empty()) p.refusal = reasons.front();
+    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), {}};
     p.row.scene = c.name;
     p.row.method = m.name;
     p.row.setting = m.setting;

@@ -15,8 +15,7 @@ struct PlannedRow {
   const MethodCase* method = nullptr;  // of the experiment, which must stay where it is
   const scene::Renderer* renderer = nullptr;
   scene::Settings settings;
-  std::string refusal;  // why the renderer cannot render this scene; empty if it can
-  Row row;              // what is known before it is rendered, its key above all
+  Row row;  // what is known before it is rendered, its key above all
 };
 
 struct PlannedScene {
@@ -29,8 +28,11 @@ struct PlannedScene {
 // Loads the scene. A row's key is the content of all that its figures and times depend on: scene, method, reference,
 // metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the device, and its
 // shaders where they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for a scene or override that
-// is no good and where the reference cannot render the scene.
+// is no good.
 PlannedScene plan_scene(const Experiment&, const SceneCase&);
+
+// Of a row whose names, settings and hashes are known.
+std::string row_key(const Experiment&, const MethodCase&, const scene::Component&, const Row&);
 
 // Pixels of the view whose ray sees more than 1e-3 of the media, from the media themselves.
 std::vector<unsigned char> foreground_of(const scene::Scene&, const scene::View&);

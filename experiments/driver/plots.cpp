@@ -64,7 +64,7 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     if (!(point.bound ? point.y.high > 0 : point.y.value > 0)) continue;
     std::string name = row.method;
     if (plot.x == "parameter" && !row.setting.empty()) name += " " + row.setting;
-    if (scene.empty() && plot.x != "parameter") name += ", " + row.scene;
+    if (scene.empty() && plot.x != "parameter" && !row.scene.empty()) name += ", " + row.scene;
     auto curve =
         std::find_if(drawing.curves.begin(), drawing.curves.end(), [&](const Curve& c) { return c.name == name; });
     if (curve == drawing.curves.end()) curve = drawing.curves.insert(curve, {name, {}});
@@ -194,6 +194,12 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
   std::vector<std::string> scripts;
   fs::remove_all(plots);
   for (const PlotCase& plot : outcome.experiment.plots) {
+    if (plot.map) {
+      if (!write_map_plot(outcome.rows, plot, plots)) continue;
+      scripts.push_back(plot.name + ".gp");
+      drawn.push_back({"plots/" + plot.name + ".svg", plot.title});
+      continue;
+    }
     std::vector<std::string> scenes;
     if (plot.per_scene) {
       for (const Row& row : outcome.rows)

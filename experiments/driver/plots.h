@@ -16,4 +16,7 @@ std::vector<PlotFile> draw_plots(const Outcome&, const std::filesystem::path& fo
 void run_gnuplot(const std::filesystem::path& folder, const std::vector<std::string>& scripts);
 bool has_gnuplot();
 
+// The maps of these rows (row.map), side by side: data and script NAME.csv, NAME.gp in the folder. False without any.
+bool write_map_plot(const std::vector<Row>&, const PlotCase&, const std::filesystem::path& folder);
+
 }  // namespace airlight::experiments

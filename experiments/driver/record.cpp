@@ -9,28 +9,31 @@ namespace airlight::experiments {
 using nlohmann::json;
 namespace {
 
-// Pictures of one scene: the reference, then the last setting of every method.
+// Pictures of one scene: the reference, then the last setting of every method; of a frame with its sequence.
 json pictures(const Outcome& outcome) {
-  const std::string up = "../../images/";
+  const auto entry = [&](const std::string& label, const std::string& image, const std::string& layer,
+                         double exposure) {
+    return json{{"label", label}, {"file", "../../images/" + image + ".exr"}, {"layer", layer}, {"exposure", exposure}};
+  };
   json groups = json::array();
-  for (const ReferenceInfo& reference : outcome.references) {
+  for (const SceneCase& scene : outcome.experiment.scenes) {
     json list = json::array();
-    list.push_back({{"label", "reference: " + reference.renderer},
-                    {"file", up + reference.image + ".exr"},
-                    {"layer", outcome.experiment.layer},
-                    {"exposure", reference.exposure}});
+    for (const ReferenceInfo& reference : outcome.references)
+      if (reference.scene == scene.name)
+        list.push_back(
+            entry("reference: " + reference.renderer, reference.image, outcome.experiment.layer, reference.exposure));
     for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
       const Row& row = outcome.rows[i];
-      if (row.scene != reference.scene || row.image.empty()) continue;
+      if (row.scene != scene.name || row.image.empty()) continue;
       const bool last = i + 1 == outcome.rows.size() || outcome.rows[i + 1].scene != row.scene ||
                         outcome.rows[i + 1].method != row.method;
       if (last)
-        list.push_back({{"label", row.setting.empty() ? row.method : row.method + " " + row.setting},
-                        {"file", up + row.image + ".exr"},
-                        {"layer", row.layer},
-                        {"exposure", row.exposure}});
+        list.push_back(entry(row.setting.empty() ? row.method : row.method + " " + row.setting, row.image, row.layer,
+                             row.exposure));
     }
-    groups.push_back({{"title", reference.scene}, {"pictures", list}});
+    if (list.empty()) continue;
+    groups.push_back({{"title", scene.name}, {"pictures", list}});
+    if (scene.is_frame) groups.back().update({{"sequence", scene.swept_from}, {"frame", *scene.parameter}});
   }
   return groups;
 }
@@ -88,6 +91,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   for (const Row& row : outcome.rows) {
     j["rows"].push_back(to_json(row));
     j["rows"].back().erase("times");  // what they show is in the intervals
+    j["rows"].back().erase("map");    // drawn, with its numbers beside the plot
   }
   return j.dump(1) + "\n";
 }

@@ -1,13 +1,11 @@
-// Reference images, computed once: results/cache/references/<key>.exr with its checksum in <key>.json.
-//
-// The path tracer's samples go through its own cache instead (results/cache/samples): a reference with fewer samples is
-// refined, and one that was interrupted goes on where it was; its samples are always exactly those asked for.
+// Reference images, computed once: references/<key>.exr in the store (results/cache). Samples of a Monte Carlo renderer
+// are kept as well (results/cache/samples): a reference with fewer samples is refined, and one that was interrupted goes
+// on where it was; its samples are always exactly those asked for.
 //
 // The key is the content of scene, renderer, settings and of the sources of scene/ and reference/, the compiler, and
 // where there is one the device and its shaders: another program that computes the same is served, a changed reference
 // is not. A damaged or half-copied file is computed anew.
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -18,14 +16,14 @@ namespace airlight::experiments {
 struct Reference {
   scene::Film film;
   std::string key;
-  double seconds = 0;  // that it took when it was computed
+  double seconds = 0;  // that it took when it was computed, all its samples
   bool cached = false;
 };
 
 std::string reference_key(const scene::Scene&, const scene::Renderer&, const scene::Settings&);
 
-// `cache` is results/cache. Throws Error if the renderer cannot render the scene, Interrupted if stopped.
-Reference reference_for(const std::filesystem::path& cache, std::shared_ptr<const scene::Scene>, const scene::Renderer&,
-                        const scene::Settings&, const scene::Execution&);
+// Through the store of the execution. Throws NotSupported, Interrupted if stopped.
+Reference reference_for(std::shared_ptr<const scene::Scene>, const scene::Renderer&, const scene::Settings&,
+                        const scene::Execution&);
 
 }  // namespace airlight::experiments

@@ -14,6 +14,18 @@ double number(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
+json to_json(const FigureMap& map) {
+  const auto axis = [](const FigureMap::Axis& a) { return json{{"label", a.label}, {"values", a.values}}; };
+  return {{"label", map.label}, {"x", axis(map.x)}, {"y", axis(map.y)}, {"values", map.values}, {"lines", map.lines}};
+}
+
+FigureMap map_from_json(const json& j) {
+  const auto axis = [](const json& a) { return FigureMap::Axis{a.at("label"), a.at("values")}; };
+  FigureMap map{j.at("label"), axis(j.at("x")), axis(j.at("y")), {}, j.at("lines")};
+  for (const json& value : j.at("values")) map.values.push_back(number(value));
+  return map;
+}
+
 }  // namespace
 
 json to_json(const Row& row) {
@@ -54,6 +66,7 @@ json to_json(const Row& row) {
             {"image", row.image},
             {"exposure", row.exposure}};
   if (row.parameter) j["parameter"] = *row.parameter;
+  if (row.map) j["map"] = to_json(*row.map);
   return j;
 }
 
@@ -90,14 +103,14 @@ Row row_from_json(const json& j) {
   for (const auto& [name, value] : j.at("counters").items()) row.counters[name] = number(value);
   row.exposure = number(j.at("exposure"));
   if (j.contains("parameter")) row.parameter = j.at("parameter").get<double>();
+  if (j.contains("map")) row.map = map_from_json(j.at("map"));
   return row;
 }
 
 std::optional<Estimate> quantity(const Row& row, const std::string& name) {
   const auto plain = [](double x) { return Estimate{x, x, x}; };
-  if (row.runs == 0) return std::nullopt;
-  if (name == "seconds") return row.seconds;
-  if (name == "prepare_seconds") return plain(row.prepare_seconds);
+  if (name == "seconds") return row.runs ? std::optional(row.seconds) : std::nullopt;
+  if (name == "prepare_seconds") return row.runs ? std::optional(plain(row.prepare_seconds)) : std::nullopt;
   if (name == "parameter") return row.parameter ? std::optional(plain(*row.parameter)) : std::nullopt;
   if (name == "setting") {
     double value = 0;

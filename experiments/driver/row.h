@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/metrics.h"
+#include "experiments/probe.h"
 #include "experiments/statistics.h"
 
 namespace airlight::experiments {
@@ -31,7 +32,8 @@ struct Row {
   std::vector<std::pair<std::string, double>> stages;  // [s] of one render, median of the runs
   std::string device;                                  // that computed it, if not the processor
   std::map<std::string, double> counters;
-  std::string image;  // file below results/images, without extension
+  std::string image;  // file below results/images, without extension; empty: it has no picture
+  std::optional<FigureMap> map;
   double exposure = 0;
 };
 

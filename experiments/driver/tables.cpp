@@ -54,13 +54,18 @@ std::vector<Cells> summary(const Outcome& outcome) {
   const bool setting = any(outcome, [](const Row& r) { return !r.setting.empty(); });
   const bool note = any(outcome, [](const Row& r) { return !r.note.empty(); });
   const bool device = any(outcome, [](const Row& r) { return !r.device.empty(); });
-  Cells head{"scene"};
+  const bool scene = any(outcome, [](const Row& r) { return !r.scene.empty(); });
+  const bool timed = any(outcome, [](const Row& r) { return r.runs > 0; });
+  Cells head;
+  if (scene) head.push_back("scene");
   if (parameter) head.push_back("parameter");
   head.push_back("method");
   if (setting) head.push_back("setting");
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
-  head.insert(head.end(), {"time of one render", "prepared once in"});
-  const bool compared = !outcome.experiment.metrics.empty();
+  const bool images = outcome.experiment.kind == "images";
+  if (timed) head.push_back(images ? "time of one render" : "time of one");
+  if (timed && images) head.push_back("prepared once in");
+  const bool compared = timed && !outcome.experiment.metrics.empty();
   const std::vector<bool> best = on_front(outcome);
   if (compared) head.push_back("front");
   if (device) head.push_back("device");
@@ -68,7 +73,8 @@ std::vector<Cells> summary(const Outcome& outcome) {
   std::vector<Cells> lines{head};
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     const Row& row = outcome.rows[i];
-    Cells line{row.scene};
+    Cells line;
+    if (scene) line.push_back(row.scene);
     if (parameter) line.push_back(row.parameter ? fmt::format("{:g}", *row.parameter) : "");
     line.push_back(row.method);
     if (setting) line.push_back(row.setting);
@@ -77,8 +83,8 @@ std::vector<Cells> summary(const Outcome& outcome) {
           std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& m) { return m.name == metric; });
       line.push_back(found == row.measures.end() ? "" : text(*found));
     }
-    line.push_back(time_text(row));
-    line.push_back(row.runs ? duration(row.prepare_seconds) : "");
+    if (timed) line.push_back(time_text(row));
+    if (timed && images) line.push_back(row.runs ? duration(row.prepare_seconds) : "");
     if (compared) line.push_back(best[i] ? "yes" : "");
     if (device) line.push_back(device_text(row));
     if (note) line.push_back(row.note);
@@ -191,24 +197,25 @@ std::string table_csv(const Outcome& outcome) {
 
 std::string summary_csv(const Outcome& outcome) { return csv(summary(outcome)); }
 
-std::string stages_csv(const Outcome& outcome) { return outcome.experiment.stages ? csv(stage_table(outcome)) : ""; }
-
-std::string expected_csv(const Outcome& outcome) {
-  return outcome.experiment.expected.empty() ? "" : csv(expected(outcome));
+std::map<std::string, std::string> table_files(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+  const Experiment& e = outcome.experiment;
+  std::map<std::string, std::string> files{{"table.csv", table_csv(outcome)},
+                                           {"summary.csv", summary_csv(outcome)},
+                                           {"table.md", table_markdown(outcome, plots)}};
+  if (e.stages) files["stages.csv"] = csv(stage_table(outcome));
+  if (!e.expected.empty()) files["expected.csv"] = csv(expected(outcome));
+  if (!e.speed_ups.empty()) files["speed_up.csv"] = csv(equal_error_and_time(outcome));
+  return files;
 }
 
-std::string speed_up_csv(const Outcome& outcome) {
-  return outcome.experiment.speed_ups.empty() ? "" : csv(equal_error_and_time(outcome));
-}
-
-std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots, const std::string& table) {
+std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots) {
   const Experiment& e = outcome.experiment;
   std::string out = fmt::format("# {}\n\n", e.title);
   if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
   if (!e.about.empty()) out += e.about + "\n\n";
   if (!outcome.complete)
     out += "This run is not complete: it was interrupted, or a scene failed. Rows are missing.\n\n";
-  out += (table.empty() ? markdown(summary(outcome)) : table) + "\n";
+  out += markdown(summary(outcome)) + "\n";
   if (e.stages)
     out += "## Stages\n\nOf one render, median of the runs; a blank is a stage that the row does not have.\n\n" +
            markdown(stage_table(outcome)) + "\n";
@@ -233,13 +240,16 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   for (const Row& row : outcome.rows)
     if (!row.device.empty()) devices.insert(row.device);
   for (const std::string& device : devices) out += fmt::format("- Device: {}.\n", device);
-  out += fmt::format(
-      "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
-      "precomputation apart. front: no other row of the scene is both faster and closer in the first metric, beyond "
-      "the "
-      "intervals.\n- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n",
-      e.profile, machine.cpu, e.timing.threads ? e.timing.threads : machine.threads, machine.threads, version(),
-      commit());
+  if (e.kind == "images")
+    out +=
+        "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
+        "precomputation apart.\n";
+  else
+    out += "- Figures with [95 % interval by ranks] where they are medians of several runs.\n";
+  if (any(outcome, [](const Row& r) { return r.runs > 0; }))
+    out += "- front: no other row of the scene is both faster and closer in the first metric, beyond the intervals.\n";
+  out += fmt::format("- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n", e.profile, machine.cpu,
+                     e.timing.threads ? e.timing.threads : machine.threads, machine.threads, version(), commit());
   return out;
 }
 

@@ -1,7 +1,7 @@
 // What a run leaves in results/<group>/<name>/: table.csv (all figures), summary.csv and table.md (for people),
 // run.json (the record). Written whole or not at all. experiments/README.md describes them.
 #pragma once
-#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,11 +16,10 @@ struct PlotFile {
 
 std::string table_csv(const Outcome&);
 std::string summary_csv(const Outcome&);
-std::string stages_csv(const Outcome&);    // time of every stage; empty without `stages`
-std::string expected_csv(const Outcome&);  // printed and measured; empty without [[expected]]
-std::string speed_up_csv(const Outcome&);  // empty without [[speed_up]]
-// `table` replaces the table of rows if it is not empty.
-std::string table_markdown(const Outcome&, const std::vector<PlotFile>&, const std::string& table = "");
+std::string table_markdown(const Outcome&, const std::vector<PlotFile>&);
+// All of them by name, with stages.csv (time of every stage), expected.csv (printed and measured), speed_up.csv where the
+// experiment asks for them.
+std::map<std::string, std::string> table_files(const Outcome&, const std::vector<PlotFile>&);
 std::string run_record(const Outcome&, const std::vector<PlotFile>&);
 
 // A field of a CSV file, quoted where it must be.

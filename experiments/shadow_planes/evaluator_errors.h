@@ -1,58 +1,54 @@
 // Where the evaluators of the airlight integral hold: the paper's polynomial and the mapped rule against 128 nodes in
-// double precision, over extinction and distance, over angles, and against time.
+// double precision, over extinction and distance, over angles, over a picture, and against time.
 #pragma once
 #include <array>
-#include <string>
 #include <vector>
 
 #include "gpu/context.h"
 
 namespace airlight::experiments::shadow_planes {
 
+struct Evaluator {
+  enum class Form {
+    polynomial,   // of theta, over the lit part alone
+    differences,  // of Gamma from the eye, as in section 4.2
+    rule,         // mapped Gauss-Legendre
+  };
+  Form form = Form::polynomial;
+  int terms = 4;        // degree or nodes
+  bool single = false;  // precision
+};
+
+// Of relative errors.
+struct Spread {
+  double median = 0, p99 = 0, greatest = 0;
+};
+
 // The map: the light's foot point lies 5 m from the eye; lit are 1 to 2, 4 to 6 and 8 to 9 m: before, around and behind
-// it.
+// it. Extinction 1e-6 to 1e4 [1/m], h 1e-6 to 1e3 [m], both rounded to single precision.
 inline constexpr double map_foot = 5;
 inline const std::array<std::array<double, 2>, 3> map_parts = {{{1, 1}, {4, 2}, {8, 1}}};  // begin, length
-
-const std::vector<std::string>& map_evaluators();  // titles of MapCell::error
-
-struct MapCell {
-  double extinction, h;  // rounded to single precision
-  std::vector<double>
-      error;         // greatest relative error of the parts that are normal numbers of the precision; NaN: none
-  double own_error;  // of the reference: 128 nodes against 256
-};
-MapCell map_cell(double extinction, double h);
-// Extinction 1e-6 to 1e4 [1/m], h 1e-6 to 1e3 [m], `per_decade` cells each; h fastest.
-std::vector<MapCell> stability_map(int per_decade);
+// Greatest relative error of the parts that are normal numbers of the precision; NaN: none is.
+double map_error(const Evaluator&, double extinction, double h);
+// Of the reference: 128 nodes against 256.
+double map_reference_error(double extinction, double h);
 
 // Relative error of the polynomial's integral about theta = 0 over random angles in [-reach, reach], a log-uniform, in
 // double precision: section 3 of the method's specification.
-struct AngleRow {
-  double reach, a_low, a_high;
-  struct Error {
-    double median, p99;
-  };
-  std::vector<Error> error;  // by `angle_degrees`
-};
-inline constexpr std::array<int, 5> angle_degrees = {2, 4, 6, 8, 12};
-std::vector<AngleRow> errors_over_angles(int cases);
+Spread errors_over_angles(int degree, double reach, double a_low, double a_high, int cases);
 
-// Endless rays over 0 to 90 degrees from the light: rms error over mean radiance, by `angle_degrees`.
-struct ImageRow {
-  double optical_distance;  // of the light
-  std::vector<double> error;
-};
-std::vector<ImageRow> errors_over_image(int rays);
+// Endless rays over 0 to 90 degrees from a light at that optical distance: rms error over mean radiance.
+double error_over_image(int degree, double optical_distance, int rays);
 
-// Error and time of one evaluation on lit parts in fog that the light is 0.1 to 3 optical lengths away in.
-struct TimedRow {
-  std::string evaluator, precision;
-  int setting;  // degree or nodes
-  double median, p99, greatest;
-  double nanoseconds;  // of one thread of the processor, or of the whole device; the best of several runs
+// One evaluation on lit parts in fog that the light is 0.1 to 3 optical lengths away in: its errors, and its time in each
+// run [s].
+struct Timed {
+  Spread errors;
+  std::vector<double> seconds;
 };
-// `device` null: on the processor alone.
-std::vector<TimedRow> errors_and_times(int cases, int runs, gpu::Context* device);
+// Of one thread of the processor, its own time.
+Timed errors_and_times(const Evaluator&, int cases, int runs);
+// Of the whole device, in single precision; `differences` not.
+Timed errors_and_times(gpu::Context&, const Evaluator&, int cases, int runs);
 
 }  // namespace airlight::experiments::shadow_planes

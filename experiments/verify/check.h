@@ -47,6 +47,7 @@ using Reader = std::function<Check(const Value&)>;
 // The reader of a kind in a file of that family ("references", "fogshop", ...), or an empty one for an unknown kind.
 Reader find_reader(const std::string& family, const std::string& kind);
 std::vector<std::string> known_kinds(const std::string& family);
+std::vector<std::string> known_kinds();  // of all families, each once
 
 // The family from what the file says of itself; throws Error if nothing known.
 std::string family_of(const Value& file);

@@ -1,5 +1,6 @@
 // Which file says what of itself, and which reader serves which kind of it.
 #include <map>
+#include <set>
 
 #include "experiments/verify/readers.h"
 
@@ -192,6 +193,13 @@ std::vector<std::string> known_kinds(const std::string& family) {
   std::vector<std::string> names;
   for (const auto& [kind, reader] : families().at(family)) names.push_back(kind);
   return names;
+}
+
+std::vector<std::string> known_kinds() {
+  std::set<std::string> names;
+  for (const auto& [family, kinds] : families())
+    for (const auto& [kind, reader] : kinds) names.insert(kind);
+  return {names.begin(), names.end()};
 }
 
 }  // namespace airlight::experiments::verification

@@ -96,7 +96,6 @@ class PreparedFogshopGpu final : public scene::Prepared {
 
 std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
   auto stages = fogshop::describe_stages(*scene_, model_);
-  stages.insert(stages.begin(), {"device", true, context_.description()});
   const bool maps = needs_.surfaces && casts_shadows(*scene_, model_);
   const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
                               : model_.lights.empty()  ? "no point light shines"
@@ -234,12 +233,9 @@ std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::S
   return reasons;
 }
 
-std::unique_ptr<scene::Prepared> FogshopGpu::prepare(std::shared_ptr<const Scene> scene,
-                                                     const scene::Settings& settings,
-                                                     const Execution& execution) const {
-  const std::vector<std::string> reasons = supports(*scene, settings);
-  if (!reasons.empty())
-    throw Error(fmt::format("{}: fogshop_gpu cannot render this: {}", scene->name, reasons.front()));
+std::unique_ptr<scene::Prepared> FogshopGpu::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                               const scene::Settings& settings,
+                                                               const Execution& execution) const {
   return std::make_unique<PreparedFogshopGpu>(std::move(scene), fogshop::read_options(settings),
                                               int(settings.integer("light_distance_side")), execution);
 }

@@ -13,8 +13,10 @@ class FogshopGpu final : public scene::Renderer {
   std::vector<scene::SettingSpec> settings() const override;
   // Does not need a GPU; prepare does, and throws Unavailable without one.
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
-  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
-                                           const scene::Execution&) const override;
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
 };
 
 }  // namespace airlight::gpu

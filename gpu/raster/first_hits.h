@@ -21,6 +21,7 @@ class FirstHits {
   FirstHits(Context&, const scene::Scene&, bool with_balls = true);
 
   const SurfacesOnDevice& surfaces() const { return surfaces_; }
+  bool move_balls(const scene::Scene& scene) { return surfaces_.move_balls(scene); }
 
   // Draws the view. The image is valid until the next call.
   const HitImage& draw(const scene::View&);

@@ -1,5 +1,6 @@
 #include "gpu/raster/surfaces_on_device.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace airlight::gpu {
@@ -9,7 +10,7 @@ struct SurfacesOnDevice::Arrays {
   std::vector<std::array<int, 4>> triangles;  // three vertices, surface
   std::vector<Solid> solids;
   std::vector<Run> runs;
-  Box bounds;
+  Box bounds, bounds_without_balls;
 
   void add(bool mesh, int first, int count) {
     if (count == 0) return;
@@ -32,6 +33,17 @@ struct SurfacesOnDevice::Arrays {
   }
 };
 
+namespace {
+
+std::vector<scene::LightBall> balls_of(const scene::Scene& scene) {
+  std::vector<scene::LightBall> balls;
+  for (const scene::Light& light : scene.lights)
+    if (const auto ball = scene::ball(light); ball && ball->radius > 0) balls.push_back(*ball);
+  return balls;
+}
+
+}  // namespace
+
 SurfacesOnDevice::Arrays SurfacesOnDevice::arrays(const scene::Scene& scene, bool with_balls) {
   Arrays arrays;
   for (int s = 0; s < int(scene.surfaces.size()); ++s) {
@@ -45,11 +57,27 @@ SurfacesOnDevice::Arrays SurfacesOnDevice::arrays(const scene::Scene& scene, boo
       arrays.add(plane.point, 0, plane.normal, 0, s);
     }
   }
+  arrays.bounds_without_balls = arrays.bounds;
   if (with_balls)
-    for (const scene::Light& light : scene.lights)
-      if (const auto ball = scene::ball(light); ball && ball->radius > 0)
-        arrays.add(ball->center, ball->radius, Vec3::Zero(), 2, -2);
+    for (const scene::LightBall& ball : balls_of(scene)) arrays.add(ball.center, ball.radius, Vec3::Zero(), 2, -2);
   return arrays;
+}
+
+bool SurfacesOnDevice::move_balls(const scene::Scene& scene) {
+  const std::vector<scene::LightBall> balls = balls_of(scene);
+  const auto is_ball = [](const Solid& solid) { return solid.kind == 2; };
+  const auto first = std::find_if(solids_.begin(), solids_.end(), is_ball);  // they are the last ones
+  if (balls.size() != std::size_t(solids_.end() - first)) return false;
+  if (balls.empty()) return true;
+  bounds_ = bounds_without_balls_;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const Point3& p = balls[i].center;
+    const double radius = balls[i].radius;
+    first[i] = {{p[0], p[1], p[2]}, radius, {0, 0, 0}, 2, -2};
+    bounds_ = unite(bounds_, {p.array() - radius, p.array() + radius});
+  }
+  solid_buffer_.upload(solids_);
+  return true;
 }
 
 SurfacesOnDevice::SurfacesOnDevice(Context& context, const scene::Scene& scene, bool with_balls)
@@ -61,6 +89,7 @@ SurfacesOnDevice::SurfacesOnDevice(Context& context, const Arrays& arrays)
       triangle_count_(int(arrays.triangles.size())),
       vertex_count_(int(arrays.vertices.size() / 3)),
       bounds_(arrays.bounds),
+      bounds_without_balls_(arrays.bounds_without_balls),
       vertices_(context, "vertices", arrays.vertices),
       triangles_(context, "triangles", arrays.triangles),
       solid_buffer_(context, "solids", arrays.solids) {}

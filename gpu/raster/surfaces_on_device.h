@@ -22,6 +22,9 @@ class SurfacesOnDevice {
   // 128 MiB). Balls are left out where `with_balls` is false: no light casts the shadow of a ball.
   SurfacesOnDevice(Context&, const scene::Scene&, bool with_balls);
 
+  // The balls of the same lights, moved. False where they are not as many as before: then nothing is changed.
+  bool move_balls(const scene::Scene&);
+
   // Binds 10 (vertices), 11 (triangles), 12 (solids).
   void bind() const;
 
@@ -46,7 +49,7 @@ class SurfacesOnDevice {
   std::vector<Run> runs_;
   std::vector<Solid> solids_;
   int triangle_count_, vertex_count_;
-  Box bounds_;
+  Box bounds_, bounds_without_balls_;
   Buffer vertices_, triangles_, solid_buffer_;
 };
 

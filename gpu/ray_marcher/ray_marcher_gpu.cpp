@@ -64,8 +64,7 @@ class PreparedMarchGpu final : public scene::Prepared {
 std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   std::vector<scene::Stage> stages = describe_stages(plan_);
   const std::string grids = device_ ? device_->grids().description() : "";
-  stages.insert(stages.begin(), {{"device", true, context_.description()},
-                                 {"distances", bool(first_hits_),
+  stages.insert(stages.begin(), {{"distances", bool(first_hits_),
                                   first_hits_ ? "where camera rays end, by a raster pass" : "nothing ends a ray"},
                                  {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
   return stages;
@@ -186,10 +185,9 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   return reasons;
 }
 
-std::unique_ptr<scene::Prepared> RayMarcherGpu::prepare(std::shared_ptr<const Scene> scene,
-                                                        const scene::Settings& settings, const Execution&) const {
-  const std::vector<std::string> reasons = supports(*scene, settings);
-  if (!reasons.empty()) throw Error(fmt::format("ray_marcher_gpu: {}", reasons.front()));
+std::unique_ptr<scene::Prepared> RayMarcherGpu::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                                  const scene::Settings& settings,
+                                                                  const Execution&) const {
   const ray_marcher::Options options = ray_marcher::read_options(settings, ray_marcher::length_unit(*scene));
   const std::string& storage = settings.text("grid_storage");
   return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical(),

@@ -14,8 +14,10 @@ class RayMarcherGpu final : public scene::Renderer {
   // What the CPU refuses; and, one line each, what the shaders do not do.
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
   // Throws Unavailable without a device, or where it has no room.
-  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
-                                           const scene::Execution&) const override;
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
 };
 
 }  // namespace airlight::gpu

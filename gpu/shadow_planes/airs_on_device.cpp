@@ -58,21 +58,21 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
 
 }  // namespace
 
-AirsOnDevice::AirsOnDevice(Context& context, const scene::Scene& scene, const Options& options)
+AirsOnDevice::AirsOnDevice(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options)
     : context_(context),
       scene_(scene),
       options_(options),
-      grey_(std::all_of(scene.media.begin(), scene.media.end(),
+      grey_(std::all_of(scene->media.begin(), scene->media.end(),
                         [](const scene::Medium& m) { return (extinction_of(m) == extinction_of(m)[0]).all(); })),
-      media_(context, "media", media_data(scene, options.printed_phases)) {
+      media_(context, "media", media_data(*scene, options.printed_phases)) {
   const auto whole = [](const scene::Medium& m) { return std::holds_alternative<scene::Unbounded>(m.region); };
-  if (std::none_of(scene.media.begin(), scene.media.end(),
+  if (std::none_of(scene->media.begin(), scene->media.end(),
                    [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); }))
     return;
   if (options.bounded == Options::Bounded::exact)
-    airs_.push_back(make(0, scene.media.size() > 1 || !whole(scene.media.front()), false));
+    airs_.push_back(make(0, scene->media.size() > 1 || !whole(scene->media.front()), false));
   else
-    for (std::size_t i = 0; i < scene.media.size(); ++i) airs_.push_back(make(int(i), false, !whole(scene.media[i])));
+    for (std::size_t i = 0; i < scene->media.size(); ++i) airs_.push_back(make(int(i), false, !whole(scene->media[i])));
 }
 
 AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const {
@@ -80,7 +80,7 @@ AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const
   air.medium = medium;
   air.bounded = bounded;
   air.paper = paper;
-  const scene::Medium& of = scene_.media[medium];
+  const scene::Medium& of = scene_->media[medium];
   if (paper) air.mean_distance = shadow_planes::mean_distance(of.region);
   std::vector<float> numbers;
   if (options_.evaluator == Options::Evaluator::rule) {
@@ -97,7 +97,7 @@ AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const
 }
 
 const scene::Region* AirsOnDevice::region(int air) const {
-  return airs_[air].paper ? &scene_.media[airs_[air].medium].region : nullptr;
+  return airs_[air].paper ? &scene_->media[airs_[air].medium].region : nullptr;
 }
 
 std::map<std::string, std::string> AirsOnDevice::definitions(int light, int air) const {
@@ -107,17 +107,17 @@ std::map<std::string, std::string> AirsOnDevice::definitions(int light, int air)
           {"PAPER_MEDIUM", flag(air >= 0 && airs_[air].paper)},
           {"POLYNOMIAL", flag(options_.evaluator == Options::Evaluator::polynomial)},
           {"POWER", std::to_string(options_.stretch)},
-          {"SPOT", flag(std::holds_alternative<scene::SpotLight>(scene_.lights[light]))}};
+          {"SPOT", flag(std::holds_alternative<scene::SpotLight>(scene_->lights[light]))}};
 }
 
 void AirsOnDevice::bind_media(LinkedProgram& program) const {
   media_.bind(8);
-  program.set("media_count", int(scene_.media.size()));
+  program.set("media_count", int(scene_->media.size()));
 }
 
 void AirsOnDevice::bind(LinkedProgram& program, int index, int air) const {
   bind_media(program);
-  const scene::Light& light = scene_.lights[index];
+  const scene::Light& light = scene_->lights[index];
   program.set_double("light", scene::ball(light)->center);
   if (const auto* spot = std::get_if<scene::SpotLight>(&light)) {
     program.set_double("spot_axis", spot->axis);

@@ -13,8 +13,8 @@ namespace airlight::gpu {
 
 class AirsOnDevice {
  public:
-  // The scene must live on.
-  AirsOnDevice(Context&, const scene::Scene&, const shadow_planes::Options&);
+  // The pointer must live on; it may come to point to the same scene with other lights.
+  AirsOnDevice(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&);
 
   // All media together, or each alone where they are the paper's; none without a medium.
   int count() const { return int(airs_.size()); }
@@ -38,7 +38,7 @@ class AirsOnDevice {
   Air make(int medium, bool bounded, bool paper) const;
 
   Context& context_;
-  const scene::Scene& scene_;
+  const std::shared_ptr<const scene::Scene>& scene_;
   shadow_planes::Options options_;
   bool grey_;
   Buffer media_;

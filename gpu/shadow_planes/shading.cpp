@@ -21,15 +21,15 @@ LitPicture::LitPicture(Context& context, const scene::View& v, bool shadows)
              shadows ? std::size_t(v.width) * v.height * 48 : 48),
       counters(context, "counters", 20) {}
 
-PlaneShading::PlaneShading(Context& context, const scene::Scene& scene, const Options& options,
+PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options,
                            const AirsOnDevice& airs, const SurfacesOnDevice* surfaces)
     : context_(context),
       scene_(scene),
       options_(options),
       airs_(airs),
       surfaces_(surfaces),
-      materials_(context, "materials", MaterialTables(scene).materials),
-      tables_(context, "reflectance tables", MaterialTables(scene).values) {}
+      materials_(context, "materials", MaterialTables(*scene).materials),
+      tables_(context, "reflectance tables", MaterialTables(*scene).values) {}
 
 // Edges whose planes cannot cut a medium's box, by their places; `edges` null: there are none.
 std::unique_ptr<Buffer> PlaneShading::left_out(const LightEdges* edges, const Box& box, const Point3& light) const {
@@ -49,7 +49,7 @@ std::unique_ptr<Buffer> PlaneShading::left_out(const LightEdges* edges, const Bo
 void PlaneShading::add(LitPicture& picture, int index, int air, const std::vector<int>& counts, const Edges& lists,
                        const VertexValues* values) const {
   const Use use(context_);
-  const scene::Light& light = scene_.lights[index];
+  const scene::Light& light = scene_->lights[index];
   const auto* spot = std::get_if<scene::SpotLight>(&light);
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const scene::Region* region = air >= 0 ? airs_.region(air) : nullptr;
@@ -64,7 +64,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
                       {"FAN", flag(lists.fan)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
                       {"STENCIL", flag(stages)},
-                      {"SURFACES", flag(!scene_.surfaces.empty())},
+                      {"SURFACES", flag(!scene_->surfaces.empty())},
                       {"VERTICES", flag(values)}});
   Program& p = context_.program("shadow_planes/shade.comp", definitions);
   std::unique_ptr<Buffer> by_pixel, flags;
@@ -80,7 +80,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   airs_.bind(p, index, air);
   if (values) {
     values->bind(p);
-    p.set("media_end", shadow_planes::all_end(scene_.media));
+    p.set("media_end", shadow_planes::all_end(scene_->media));
   }
   if (lists.edges) {
     lists.edges->edges->bind(0);
@@ -134,7 +134,7 @@ void PlaneShading::compose(const LitPicture& picture, const Layers& layers) cons
   set_view(p, picture.view);
   p.set("triangle_count", surfaces_ ? surfaces_->triangles() : 0);
   p.set("has_primitives", picture.primitives != nullptr);
-  p.set("ambient", options_.ambient ? scene_.ambient_in_scatter : Rgb::Zero());
+  p.set("ambient", options_.ambient ? scene_->ambient_in_scatter : Rgb::Zero());
   p.dispatch(picture.view.width, picture.view.height);
 }
 

@@ -25,8 +25,9 @@ struct LitPicture {
 
 class PlaneShading {
  public:
-  // Uploads materials. `surfaces` is null where there are none, nor balls of lights; all must live on.
-  PlaneShading(Context&, const scene::Scene&, const shadow_planes::Options&, const AirsOnDevice&,
+  // Uploads materials. `surfaces` is null where there are none, nor balls of lights; all must live on. The pointer may
+  // come to point to the same scene with other lights.
+  PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&, const AirsOnDevice&,
                const SurfacesOnDevice* surfaces);
 
   // Of one light, the edges whose planes rays may cross: all null where nothing casts a shadow, else one of the lists.
@@ -50,7 +51,7 @@ class PlaneShading {
   std::unique_ptr<Buffer> left_out(const LightEdges*, const Box&, const Point3& light) const;
 
   Context& context_;
-  const scene::Scene& scene_;
+  const std::shared_ptr<const scene::Scene>& scene_;
   shadow_planes::Options options_;
   const AirsOnDevice& airs_;
   const SurfacesOnDevice* surfaces_;

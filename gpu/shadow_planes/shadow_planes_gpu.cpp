@@ -33,7 +33,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
       : scene_(std::move(scene)),
         options_(options),
         context_(Context::get()),
-        airs_(context_, *scene_, options),
+        airs_(context_, scene_, options),
         fan_(context_),
         tiles_(context_) {
     const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
@@ -44,7 +44,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
       first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
       timer.stage("upload");
     }
-    shading_ = std::make_unique<PlaneShading>(context_, *scene_, options_, airs_, surfaces_on_device());
+    shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airs_, surfaces_on_device());
     if (lit && surfaces) {
       occluders_ = std::make_shared<const shadow_planes::Occluders>(scene_);
       silhouettes_ = std::make_unique<Silhouettes>(context_, *occluders_);
@@ -59,10 +59,11 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
   // Of every light, and m where it is asked for.
-  void find_silhouettes() const {
+  void find_silhouettes() {
     counts_.clear();
     for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
       silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
@@ -82,8 +83,8 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::unique_ptr<PlaneShading> shading_;
   std::shared_ptr<const shadow_planes::Occluders> occluders_;
   std::unique_ptr<Silhouettes> silhouettes_;  // null: nothing casts a shadow
-  mutable std::vector<LightEdges> edges_;     // by light
-  mutable std::vector<SurfaceCount> counts_;
+  std::vector<LightEdges> edges_;             // by light
+  std::vector<SurfaceCount> counts_;
   mutable FanOnDevice fan_;
   mutable TileBins tiles_;
   mutable VertexValues values_;
@@ -95,17 +96,29 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
   for (const LightEdges& of_light : edges_) edges += of_light.count;
   const bool lit = !scene_->lights.empty();
   const std::string dark = lit ? "one dispatch per light and air" : "no light shines";
-  const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, scene_->lights.size(), options_)
+  const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, scene_->lights.size())
                             : lit        ? "there are no surfaces"
                                          : dark;
-  return {{"device", true, context_.description()},
-          {"silhouettes", silhouettes_ != nullptr, found},
+  return {{"silhouettes", silhouettes_ != nullptr, found},
           {"edges of rays", silhouettes_ != nullptr,
            !silhouettes_                                     ? found
            : options_.candidates == Options::Candidates::fan ? "by angle around the line from light to camera"
                                                              : "by tiles of 16 x 16 pixels"},
           {"airlight and surfaces", lit, dark},
           {"composition", true, "layers of the film"}};
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedShadowPlanesGpu::next(std::shared_ptr<const Scene> scene,
+                                                                           const Execution&) {
+  if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
+  const Use use(context_);
+  if (first_hits_ && !first_hits_->move_balls(*scene)) return std::nullopt;
+  scene_ = std::move(scene);
+  if (!silhouettes_) return std::vector<scene::StageTime>{};
+  StageTimer timer(context_);
+  find_silhouettes();
+  timer.stage("silhouettes");
+  return timer.times();
 }
 
 std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, const View& view,
@@ -170,10 +183,6 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
     throw Error("evaluation = vertices is for perspective cameras");
   const Use use(context_);
   StageTimer timer(context_);
-  if (silhouettes_ && options_.moving_lights) {
-    find_silhouettes();
-    timer.stage("silhouettes");
-  }
   LitPicture picture(context_, view, silhouettes_ != nullptr);
   if (first_hits_) {
     picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
@@ -238,11 +247,9 @@ std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const sce
   return reasons;
 }
 
-std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare(std::shared_ptr<const Scene> scene,
-                                                          const scene::Settings& settings, const Execution&) const {
-  const std::vector<std::string> reasons = supports(*scene, settings);
-  if (!reasons.empty())
-    throw Error(fmt::format("{}: shadow_planes_gpu cannot render this: {}", scene->name, reasons.front()));
+std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                                    const scene::Settings& settings,
+                                                                    const Execution&) const {
   return std::make_unique<PreparedShadowPlanesGpu>(std::move(scene), shadow_planes::read_options(settings));
 }
 

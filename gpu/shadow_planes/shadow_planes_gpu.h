@@ -13,8 +13,10 @@ class ShadowPlanesGpu final : public scene::Renderer {
   std::string device() const override { return Context::name_of_device(); }
   std::vector<scene::SettingSpec> settings() const override;  // those of shadow_planes; fewer nodes
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
-  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
-                                           const scene::Execution&) const override;
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
 };
 
 }  // namespace airlight::gpu

@@ -193,10 +193,9 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   return reasons;
 }
 
-std::unique_ptr<scene::Prepared> Fogshop::prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,
-                                                  const Execution& execution) const {
-  const std::vector<std::string> reasons = supports(*scene, settings);
-  if (!reasons.empty()) throw Error(fmt::format("{}: fogshop cannot render this: {}", scene->name, reasons.front()));
+std::unique_ptr<scene::Prepared> Fogshop::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                            const scene::Settings& settings,
+                                                            const Execution& execution) const {
   return std::make_unique<PreparedFogshop>(std::move(scene), read_options(settings), execution);
 }
 

@@ -86,13 +86,6 @@ std::vector<scene::SettingSpec> setting_specs() {
        {}},
       {"printed_phases", Type::flag, "false", "hazy and murky as printed, with means of 2 and 83/33", 0, 0, {}},
       {"ambient", Type::flag, "false", "adds the scene's ambient_in_scatter", 0, 0, {}},
-      {"lights",
-       Type::choice,
-       "static",
-       "static: silhouettes are found once, in preparation; moving: for every picture",
-       0,
-       0,
-       {"static", "moving"}},
       {"candidates",
        Type::choice,
        "fan",
@@ -125,13 +118,11 @@ Options read_options(const scene::Settings& settings) {
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
   o.candidates = settings.text("candidates") == "fan" ? Options::Candidates::fan : Options::Candidates::tiles;
-  o.moving_lights = settings.text("lights") == "moving";
   return o;
 }
 
-std::string silhouettes_found(std::size_t edges, std::size_t lights, const Options& options) {
-  return fmt::format("{} edges for {} light{}, {}", edges, lights, lights == 1 ? "" : "s",
-                     options.moving_lights ? "found again for every picture" : "found once: lights = static");
+std::string silhouettes_found(std::size_t edges, std::size_t lights) {
+  return fmt::format("{} edges for {} light{}, found again where lights move", edges, lights, lights == 1 ? "" : "s");
 }
 
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {

@@ -34,7 +34,6 @@ struct Options {
   bool frame_buffer = false;    // sums are rounded to 8 bits and clamped to 1 after each plane
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
-  bool moving_lights = false;   // silhouettes are found for every picture, not once
   // How the edges are found that a ray may cross: by angle around the line from light to camera, or by tile of the
   // film.
   enum class Candidates { fan, tiles };
@@ -43,7 +42,7 @@ struct Options {
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
 // For `explain`: how many edges of how many lights, and when they are found.
-std::string silhouettes_found(std::size_t edges, std::size_t lights, const Options&);
+std::string silhouettes_found(std::size_t edges, std::size_t lights);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
 std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
 

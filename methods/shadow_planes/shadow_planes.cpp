@@ -61,6 +61,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
   std::vector<ShadowVolumes> silhouettes() const;
@@ -87,6 +88,16 @@ std::vector<ShadowVolumes> PreparedShadowPlanes::silhouettes() const {
   std::vector<ShadowVolumes> result;
   for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
   return result;
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedShadowPlanes::next(std::shared_ptr<const Scene> scene,
+                                                                        const Execution&) {
+  if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
+  scene_ = std::move(scene);
+  if (!needs_.shadows) return std::vector<scene::StageTime>{};
+  scene::Stopwatch watch;
+  shadows_ = silhouettes();
+  return std::vector<scene::StageTime>{{"silhouettes", watch.lap()}};
 }
 
 bool PreparedShadowPlanes::in_stages() const {
@@ -162,12 +173,7 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
   scene::Stopwatch watch;
-  std::vector<ShadowVolumes> moving;
-  if (options_.moving_lights && needs_.shadows) {
-    moving = silhouettes();
-    result.times.push_back({"silhouettes", watch.lap()});
-  }
-  Frame frame{view, moving.empty() ? shadows_ : moving, {}, {}, {}, {}};
+  Frame frame{view, shadows_, {}, {}, {}, {}};
   for (const ShadowVolumes& shadows : frame.shadows) {
     if (options_.candidates == Options::Candidates::tiles) frame.tiles.emplace_back(shadows, view, execution.threads);
     if (options_.candidates == Options::Candidates::fan) frame.fans.emplace_back(shadows, view.camera);
@@ -230,11 +236,9 @@ std::vector<std::string> ShadowPlanes::supports(const Scene& scene, const scene:
   return reasons_against(scene, read_options(settings));
 }
 
-std::unique_ptr<scene::Prepared> ShadowPlanes::prepare(std::shared_ptr<const Scene> scene,
-                                                       const scene::Settings& settings, const Execution&) const {
-  const std::vector<std::string> reasons = supports(*scene, settings);
-  if (!reasons.empty())
-    throw Error(fmt::format("{}: shadow_planes cannot render this: {}", scene->name, reasons.front()));
+std::unique_ptr<scene::Prepared> ShadowPlanes::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                                 const scene::Settings& settings,
+                                                                 const Execution&) const {
   return std::make_unique<PreparedShadowPlanes>(std::move(scene), read_options(settings));
 }
 

@@ -11,8 +11,10 @@ class ShadowPlanes final : public scene::Renderer {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
-  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const scene::Scene>, const scene::Settings&,
-                                           const scene::Execution&) const override;
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
 };
 
 }  // namespace airlight::shadow_planes

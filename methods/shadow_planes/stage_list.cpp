@@ -17,8 +17,7 @@ std::vector<scene::Stage> stage_list(const scene::Scene& scene, const Options& o
   const std::string surfaces =
       scene.surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
   std::vector<scene::Stage> result{
-      {"silhouettes", needs.shadows,
-       needs.shadows ? silhouettes_found(needs.edges, scene.lights.size(), options) : no_shadows}};
+      {"silhouettes", needs.shadows, needs.shadows ? silhouettes_found(needs.edges, scene.lights.size()) : no_shadows}};
   if (needs.paper_stages) {
     const bool vertices = options.evaluation == Options::Evaluation::vertices;
     const std::string by_pixel = evaluator + " for every pixel";

@@ -161,10 +161,11 @@ class DeterministicRenderer final : public scene::Renderer {
     if (const std::string reason = too_much(scene); !reason.empty()) return {reason};
     return {};
   }
-  std::unique_ptr<scene::Prepared> prepare(std::shared_ptr<const Scene> scene, const scene::Settings& settings,
-                                           const scene::Execution&) const override {
-    if (const auto reasons = supports(*scene, settings); !reasons.empty())
-      throw Error(fmt::format("{}: {}", scene->name, reasons.front()));
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const Scene> scene,
+                                                     const scene::Settings& settings,
+                                                     const scene::Execution&) const override {
     return std::make_unique<DeterministicPrepared>(std::move(scene), settings);
   }
 };

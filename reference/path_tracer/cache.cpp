@@ -1,7 +1,6 @@
 #include "reference/path_tracer/cache.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +9,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "reference/path_tracer/refusals.h"
 #include "reference/path_tracer/stopping.h"
+#include "scene/content_key.h"
 #include "scene/error.h"
 
 namespace airlight::path_tracer {
@@ -57,10 +56,7 @@ std::optional<Accumulation> load(const Accumulation& fresh, const std::string& p
 }
 
 std::string picture_name(const Identity& id) {
-  const std::string text =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n{}", id.scene, id.view, id.settings, id.seed, id.stream, id.build);
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return content_key({id.scene, id.view, id.settings, std::to_string(id.seed), std::to_string(id.stream), id.build});
 }
 
 // Numbers of samples, fewer than `samples`, for which the folder has a file of this picture; the greatest first.
@@ -139,14 +135,6 @@ CachedRendering render_cached(const World& world, const scene::View& view, const
   result.counters = samples.counters;
   result.seconds = samples.seconds;
   return result;
-}
-
-CachedRendering render_cached(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
-                              const scene::View& view, const std::string& folder, const scene::Execution& execution) {
-  const Options options = parse_options(settings);
-  if (const auto reasons = refusals(*scene, options); !reasons.empty())
-    throw Error(fmt::format("path_tracer: {}", reasons.front()));
-  return render_cached(World(std::move(scene), options), view, folder, execution);
 }
 
 }  // namespace airlight::path_tracer

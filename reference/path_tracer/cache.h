@@ -33,8 +33,5 @@ std::string cache_file(const std::string& folder, const Identity&, const Options
 // cannot be read is renamed to *.damaged, noted and not used. `save_every` is in seconds.
 CachedRendering render_cached(const World&, const scene::View&, const std::string& folder, const scene::Execution&,
                               double save_every = 10);
-// The same from a scene and settings; throws Error as PathTracer::prepare.
-CachedRendering render_cached(std::shared_ptr<const scene::Scene>, const scene::Settings&, const scene::View&,
-                              const std::string& folder, const scene::Execution&);
 
 }  // namespace airlight::path_tracer

@@ -4,10 +4,10 @@
 
 #include <chrono>
 
-#include "reference/path_tracer/accumulation.h"
+#include "reference/path_tracer/cache.h"
 #include "reference/path_tracer/refusals.h"
 #include "reference/path_tracer/stopping.h"
-#include "scene/error.h"
+#include "scene/content_store.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -24,6 +24,7 @@ class PreparedTracer : public scene::Prepared {
   std::vector<scene::StageTime> prepare_times() const override { return {{"supergrid", prepare_seconds_}}; }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    if (execution.store) return render_kept(view, execution);
     const auto start = Clock::now();
     Accumulation accumulation = empty_accumulation(world_, view);
     const bool whole = render_to_target(world_, view, execution, accumulation);
@@ -39,6 +40,13 @@ class PreparedTracer : public scene::Prepared {
   }
 
  private:
+  scene::Rendering render_kept(const scene::View& view, const scene::Execution& execution) const {
+    const std::string folder = (execution.store->folder() / "samples").string();
+    CachedRendering kept = render_cached(world_, view, folder, execution);
+    for (const std::string& note : kept.notes) execution.store->say(note);
+    return {std::move(kept.film), {{"paths", kept.seconds}}, kept.counters.named()};
+  }
+
   Clock::time_point start_;
   World world_;
   double prepare_seconds_;
@@ -80,12 +88,10 @@ std::vector<std::string> PathTracer::supports(const scene::Scene& scene, const s
   return refusals(scene, parse_options(settings));
 }
 
-std::unique_ptr<scene::Prepared> PathTracer::prepare(std::shared_ptr<const scene::Scene> scene,
-                                                     const scene::Settings& settings, const scene::Execution&) const {
-  const Options options = parse_options(settings);
-  if (const auto reasons = refusals(*scene, options); !reasons.empty())
-    throw Error(fmt::format("path_tracer: {}", reasons.front()));
-  return std::make_unique<PreparedTracer>(std::move(scene), options);
+std::unique_ptr<scene::Prepared> PathTracer::prepare_supported(std::shared_ptr<const scene::Scene> scene,
+                                                               const scene::Settings& settings,
+                                                               const scene::Execution&) const {
+  return std::make_unique<PreparedTracer>(std::move(scene), parse_options(settings));
 }
 
 }  // namespace airlight::path_tracer

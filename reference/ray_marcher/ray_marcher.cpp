@@ -176,10 +176,10 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
   return reasons;
 }
 
-std::unique_ptr<scene::Prepared> RayMarcher::prepare(std::shared_ptr<const scene::Scene> scene,
-                                                     const scene::Settings& settings, const scene::Execution&) const {
+std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<const scene::Scene> scene,
+                                                               const scene::Settings& settings,
+                                                               const scene::Execution&) const {
   const double start = now();
-  for (const std::string& reason : supports(*scene, settings)) throw Error("ray_marcher: " + reason);
   const Options options = read_options(settings, length_unit(*scene));
   Plan plan = make_plan(std::move(scene), options);
   return std::make_unique<PreparedMarch>(std::move(plan), settings.canonical(), now() - start);

@@ -12,7 +12,11 @@ namespace fs = std::filesystem;
 namespace airlight::scene::load {
 
 std::string find_asset(const TableReader& reader, const std::string& key, const std::string& folder) {
-  const std::string name = reader.text(key);
+  return find_asset(reader, key, reader.text(key), folder);
+}
+
+std::string find_asset(const TableReader& reader, const std::string& key, const std::string& name,
+                       const std::string& folder) {
   if (name.empty()) reader.expected(key, "the name of a file");
   std::error_code code;
   const fs::path beside = fs::path(folder) / name;  // `name` alone if it is absolute

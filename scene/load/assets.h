@@ -9,5 +9,7 @@ namespace airlight::scene::load {
 
 // The path of the file that `key` names. Throws Error (position, the places looked at) if it is in neither.
 std::string find_asset(const TableReader&, const std::string& key, const std::string& folder);
+// Of the file `name`, which comes from `key`.
+std::string find_asset(const TableReader&, const std::string& key, const std::string& name, const std::string& folder);
 
 }  // namespace airlight::scene::load

@@ -241,3 +241,15 @@ for (const script of document.querySelectorAll("script.pictures")) {
   }, {rootMargin: "400px"});
   observer.observe(host);
 }
+
+// A sequence shows one of its frames, the one that the slider is at.
+for (const sequence of document.querySelectorAll(".sequence")) {
+  const slider = sequence.querySelector("input"), frames = [...sequence.querySelectorAll(".frame")];
+  const show = () => {
+    frames.forEach((frame, i) => { frame.hidden = i !== Number(slider.value); });
+    sequence.querySelector("output").textContent = frames[slider.value].dataset.frame;
+  };
+  slider.max = frames.length - 1;  // pictures that are missing have no frame
+  slider.addEventListener("input", show);
+  show();
+}

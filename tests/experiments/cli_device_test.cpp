@@ -67,7 +67,7 @@ TEST_CASE("the device is chosen by --gpu, and one that is not there is one line 
   const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
   for (const std::string& command :
        {"render " + scene + " --method fogshop --out picture.exr", "explain " + scene,
-        std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1"), std::string("evaluators")}) {
+        std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1")}) {
     const Result r = run(command + " --gpu 'no such device'", folder);
     CAPTURE(command, r.err);
     CHECK(r.code == 3);

@@ -143,36 +143,6 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
   CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
 }
 
-// The figures are the machine's; that the loops ran and what was counted is not.
-TEST_CASE("rate of kernels", "[cli]") {
-  const TemporaryFolder folder;
-  const std::string small = " --runs 1 --override film.width=8 --override film.height=6";
-  const Result both = run("rate " + scenes + "fogshop/a30.toml --threads 2 --set K=8" + small, folder);
-  CHECK(both.code == 0);
-  CHECK(both.err.empty());
-  CHECK_THAT(both.out, Contains("\npaper ") && Contains("\nS           8 precise "));
-  // Pairs of ray and Gaussian, as the renderer counts them.
-  const auto scene = std::make_shared<const airlight::scene::Scene>(
-      airlight::scene::load_scene(scenes + "fogshop/a30.toml", {{"film.width", "8"}, {"film.height", "6"}}));
-  const airlight::fogshop::Fogshop method;
-  const auto counters =
-      method.prepare(scene, {method.settings(), {}}, {})->render(airlight::scene::view_of(*scene), {}).counters;
-  CHECK_THAT(both.out, Contains(fmt::format("      2 {:11.1f} ", counters.at("gaussians_crossed") / 48)));
-  REQUIRE(run("rate " + scenes + "fogshop/a30.toml --out record/rate" + small, folder).code == 0);
-  CHECK_THAT(read_bytes(folder.file("record/rate/table.md")),
-             Contains("| paper |  | precise |") && Contains("--runs 1"));
-  CHECK_THAT(read_bytes(folder.file("record/rate/rate.csv")), Catch::StartsWith("variant,K,erf,"));
-  CHECK_THAT(read_bytes(folder.file("record/rate/run.json")), Contains("\"rate.csv\""));
-  const Result one = run("rate " + scenes + "fogshop/a30.toml --processor-time --set variant=paper" + small, folder);
-  CHECK_THAT(one.out, Contains("processor time") && !Contains("\nS "));
-  const Result coloured = run("rate " + scenes + "fogshop/colours.toml" + small, folder);
-  CHECK(coloured.code == 2);
-  CHECK_THAT(coloured.err, Contains("expected grey fog of Gaussians"));
-  CHECK(run("rate " + scenes + "fogshop/a30.toml --set variant=VS2" + small, folder).code == 2);
-  CHECK(run("rate " + scenes + "fogshop/a30.toml --runs 0", folder).code == 2);
-  CHECK(run("rate " + scenes + "fogshop/a30.toml --processor-time --threads 2", folder).code == 2);
-}
-
 TEST_CASE("explain and doctor", "[cli]") {
   const TemporaryFolder folder;
   const Result explained = run("explain " + scenes + "constant_homogeneous.toml", folder);

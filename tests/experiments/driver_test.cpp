@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "experiments/driver/content_key.h"
 #include "experiments/driver/run.h"
+#include "scene/content_key.h"
 #include "tests/experiments/small_project.h"
 
 using namespace airlight::experiments;
@@ -109,7 +109,7 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   std::string old = journal.substr(1, journal.find('\n', 1) - 1);
   old.erase(0, 33);
   old.replace(old.find("\"note\""), 6, "\"noet\"");
-  std::ofstream(project.journal(), std::ios::app) << content_key(std::string_view(old)) << ' ' << old << '\n';
+  std::ofstream(project.journal(), std::ios::app) << airlight::content_key(std::string_view(old)) << ' ' << old << '\n';
   // Complete now: a third run keeps the times of the second.
   const Outcome third = project.run(true);
   CHECK(third.rows[1].seconds.value == resumed.rows[1].seconds.value);

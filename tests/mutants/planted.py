@@ -13,7 +13,7 @@ class Mutant(NamedTuple):
 
 SILHOUETTE = "methods/shadow_planes/silhouette.cpp", "methods/shadow_planes/silhouette_test.cpp"
 COMPARISONS = "experiments/driver/comparisons.cpp", "experiments/comparisons_test.cpp"
-RUN = "experiments/driver/run.cpp", "experiments/driver_noise_test.cpp"
+RUN = "experiments/driver/images.cpp", "experiments/driver_noise_test.cpp"
 PLAN = "experiments/driver/plan.cpp", "experiments/driver_noise_test.cpp"
 PICTURES = "experiments/driver/pictures.cpp", "experiments/driver_noise_test.cpp"
 METRICS = "experiments/metrics.cpp", "experiments/hand_worked_metrics_test.cpp"
@@ -116,7 +116,7 @@ MUTANTS = [
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
     bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
     # Masks
-    bug("pixels that touch a light compared", RUN, "scene::ball_mask(*planned.scene, view)", "std::vector<unsigned char>()",
+    bug("pixels that touch a light compared", RUN, "scene::ball_mask(scene, judged->view)", "std::vector<unsigned char>()",
         "rows leave out balls and background"),
     bug("ball mask ignored by metrics", VALUES, "if (!masks.left_out.empty() && masks.left_out[p]) kept_[p] = 0;", "",
         "what is left out counts nowhere"),

@@ -218,9 +218,9 @@ def queue_files():
     run(['render', 'good.toml', '-m', 'path_tracer', '--samples', '0..64', '-o', 'part.exr'])
     trace = ['render', 'good.toml', '-m', 'path_tracer', '--samples', '64', '-o', 'traced.exr', '--cache']
     run([*trace, 'kept'])
-    (kept,) = (WORK / 'kept').iterdir()
+    (kept,) = (WORK / 'kept/samples').iterdir()
     for what, content, _ in damaged(kept.read_bytes()):
-        write(f'cache {what}/{kept.name}', content)
+        write(f'cache {what}/samples/{kept.name}', content)
         # Set aside with one line, and computed anew.
         case(f'cache, {what}', [*trace, f'cache {what}'], code=0, says='damaged')
     write('cache file', 'no folder')

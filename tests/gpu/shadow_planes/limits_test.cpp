@@ -71,10 +71,9 @@ TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow
     return prepared->render(view_of(*scene), {1, {}}).counters;
   };
   const scene::Scene boxes = *scene_of("shadow_planes/boxes_3", 32, 24);
-  // Three of the fan or two levels of tiles, the light, the layers; silhouettes only where the light moves.
+  // Three of the fan or two levels of tiles, the light, the layers.
   CHECK(dispatches(boxes, {}).at("dispatches") == 5);
   CHECK(dispatches(boxes, {{"candidates", "tiles"}}).at("dispatches") == 4);
-  CHECK(dispatches(boxes, {{"lights", "moving"}}).at("dispatches") == 6);
   scene::Scene empty = boxes;
   empty.surfaces.clear();
   CHECK(dispatches(empty, {}).at("dispatches") == 2);

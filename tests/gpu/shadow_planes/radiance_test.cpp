@@ -54,7 +54,8 @@ TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][sh
     options.nodes = 16;
     options.stretch = 3;
     options.printed_phases = true;
-    const gpu::AirsOnDevice airs(*context, scene, options);
+    const auto shared = std::make_shared<const scene::Scene>(scene);
+    const gpu::AirsOnDevice airs(*context, shared, options);
     REQUIRE(airs.count() == 1);
     const auto definitions = airs.definitions(0, 0);
     auto& program = programs[definitions];

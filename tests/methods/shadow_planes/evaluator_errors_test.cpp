@@ -1,15 +1,13 @@
-// The map of stability and the tables of `airlight evaluators` against values that are computed another way.
+// The map of stability and the errors of the evaluators against values that are computed another way.
 #include "experiments/shadow_planes/evaluator_errors.h"
 
 #include <catch2/catch.hpp>
 
-#include "experiments/shadow_planes/evaluator_tables.h"
 #include "experiments/shadow_planes/light_on_ray.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "scene/math/exponential_integral.h"
 #include "scene/math/quadrature.h"
 #include "tests/methods/shadow_planes/vectors.h"
-#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
@@ -71,41 +69,42 @@ TEST_CASE("shadow planes: the reference of the map", "[shadow_planes]") {
 }
 
 TEST_CASE("shadow planes: cells of the map of stability", "[shadow_planes]") {
-  const auto& titles = map_evaluators();
-  REQUIRE(titles.size() == 8);
-  REQUIRE(titles[5] == "polynomial, part by part, double");
+  const auto error = [](Evaluator::Form form, int terms, bool single, double k, double h) {
+    return map_error({form, terms, single}, k, h);
+  };
+  constexpr auto polynomial = Evaluator::Form::polynomial, differences = Evaluator::Form::differences,
+                 rule = Evaluator::Form::rule;
   for (const double k : {1e-5, 1e-2, 0.3, 2.0})
     for (const double h : {1e-3, 0.05, 1.0, 20.0}) {
-      const MapCell cell = map_cell(k, h);
       CAPTURE(k, h);
-      CHECK(cell.own_error < 1e-14);
-      double polynomial = 0, first = 0;
+      CHECK(map_reference_error(k, h) < 1e-14);
+      double expected = 0, first = 0;
       for (const auto& [begin, length] : map_parts) {
-        const LightOnRay<double> on{cell.extinction, map_foot, cell.h, begin, length};
+        const LightOnRay<double> on{double(float(k)), map_foot, double(float(h)), begin, length};
         const double exact = by_quadrature(on), a = on.extinction * on.h;
         const auto gamma = [&](double x0, double x1) {
           return polynomial_airlight(taylor_coefficients(PhaseForm{}, a, 4), 0, on.extinction, 1, 1, on.T, on.h,
                                      std::atan((x0 - on.T) / on.h), std::atan((x1 - on.T) / on.h));
         };
-        polynomial = std::max(polynomial, std::abs(gamma(begin, begin + length) / exact - 1));
+        expected = std::max(expected, std::abs(gamma(begin, begin + length) / exact - 1));
         first = std::max(first, std::abs(by_rule(on, MappedRule<double>(32, 6)) / exact - 1));
         CHECK(by_rule(on, MappedRule<double>(128, 6)) == Approx(exact).epsilon(1e-12));
       }
-      CHECK(cell.error[5] == Approx(polynomial).epsilon(1e-6).margin(1e-11));
-      CHECK(cell.error[6] == Approx(first).margin(1e-12));
+      CHECK(error(polynomial, 4, false, k, h) == Approx(expected).epsilon(1e-6).margin(1e-11));
+      CHECK(error(rule, 32, false, k, h) == Approx(first).margin(1e-12));
       // Single precision and differences only add rounding: what they add is small where h is not.
       if (h >= 1) {
-        CHECK(cell.error[4] == Approx(polynomial).epsilon(1e-6).margin(1e-11));
-        CHECK(cell.error[1] == Approx(polynomial).epsilon(1e-2).margin(3e-5));
+        CHECK(error(differences, 4, false, k, h) == Approx(expected).epsilon(1e-6).margin(1e-11));
+        CHECK(error(polynomial, 4, true, k, h) == Approx(expected).epsilon(1e-2).margin(3e-5));
       }
-      CHECK(cell.error[2] < 4e-4);
-      CHECK(cell.error[3] < 1e-5);
-      CHECK(cell.error[7] < 1e-14);
+      CHECK(error(rule, 8, true, k, h) < 4e-4);
+      CHECK(error(rule, 16, true, k, h) < 1e-5);
+      CHECK(error(rule, 64, false, k, h) < 1e-14);
     }
   // Too dark for either precision, and for single alone.
-  CHECK(std::isnan(map_cell(1e4, 1).error[7]));
-  CHECK(std::isnan(map_cell(30, 1).error[3]));
-  CHECK(map_cell(30, 1).error[7] < 1e-13);
+  CHECK(std::isnan(error(rule, 64, false, 1e4, 1)));
+  CHECK(std::isnan(error(rule, 16, true, 30, 1)));
+  CHECK(error(rule, 64, false, 30, 1) < 1e-13);
 }
 
 TEST_CASE("shadow planes: polynomials without memory of their own", "[shadow_planes]") {
@@ -119,35 +118,21 @@ TEST_CASE("shadow planes: polynomials without memory of their own", "[shadow_pla
 
 // Medians of the specification's table, section 3, to one digit.
 TEST_CASE("shadow planes: errors of the polynomial over angles", "[shadow_planes]") {
-  const std::vector<AngleRow> rows = errors_over_angles(4000);
-  const double medians[9][5] = {
-      {3e-8, 2e-10, 2e-12, 2e-14, 2e-16}, {6e-5, 4e-7, 2e-9, 2e-11, 3e-15}, {8e-2, 3e-3, 3e-5, 2e-7, 5e-12},
-      {6e-4, 5e-5, 5e-6, 4e-7, 4e-9},     {2e-3, 1e-4, 9e-6, 1e-6, 1e-8},   {0.8, 0.3, 5e-2, 4e-3, 2e-5},
-      {7e-6, 2e-6, 8e-7, 3e-7, 5e-8},     {5e-3, 1e-3, 4e-4, 1e-4, 2e-5},   {2e-2, 3e-3, 8e-4, 3e-4, 4e-5}};
-  REQUIRE(rows.size() == 9);
-  for (int i = 0; i < 9; ++i)
-    for (int d = 0; d < 5; ++d) {
-      CAPTURE(rows[i].reach, rows[i].a_low, angle_degrees[d]);
-      CHECK(rows[i].error[d].median > medians[i][d] / 3);
-      CHECK(rows[i].error[d].median < medians[i][d] * 3);
-    }
-}
-
-TEST_CASE("shadow planes: files of the evaluators", "[shadow_planes]") {
-  const TemporaryFolder folder;
-  write_evaluator_tables(folder.path(), {1, 200, 1});
-  const auto lines = [&](const std::string& name) {
-    const std::string text = read_bytes((folder.path() / name).string());
-    return std::count(text.begin(), text.end(), '\n');
+  constexpr int degrees[] = {2, 4, 6, 8, 12};
+  struct Line {
+    double reach, a_low, a_high, medians[5];
   };
-  CHECK(lines("map.csv") == 1 + 11 * 10);
-  CHECK(lines("shares.csv") == 1 + 8);
-  CHECK(lines("angles.csv") == 1 + 9);
-  CHECK(lines("image.csv") == 1 + 5);
-  const std::string times = read_bytes((folder.path() / "times.csv").string());
-  const bool device = times.find("device") != std::string::npos;  // rows of its own, where there is one
-  CHECK(lines("times.csv") == 1 + (device ? 3 : 2) * (6 + 5));
-  const json record = json::parse(read_bytes((folder.path() / "run.json").string()));
-  for (const char* list : {"tables", "plots"})
-    for (const json& file : record.at(list)) CHECK(lines(file.at("file").get<std::string>()) > 1);
+  const Line lines[] = {
+      {0.25, 1e-6, 1e-2, {3e-8, 2e-10, 2e-12, 2e-14, 2e-16}}, {0.25, 0.3, 3, {6e-5, 4e-7, 2e-9, 2e-11, 3e-15}},
+      {0.25, 3, 30, {8e-2, 3e-3, 3e-5, 2e-7, 5e-12}},         {0.8, 1e-2, 0.3, {6e-4, 5e-5, 5e-6, 4e-7, 4e-9}},
+      {0.8, 0.3, 3, {2e-3, 1e-4, 9e-6, 1e-6, 1e-8}},          {0.8, 3, 30, {0.8, 0.3, 5e-2, 4e-3, 2e-5}},
+      {1.5, 1e-6, 1e-2, {7e-6, 2e-6, 8e-7, 3e-7, 5e-8}},      {1.5, 1e-2, 0.3, {5e-3, 1e-3, 4e-4, 1e-4, 2e-5}},
+      {1.5, 0.3, 3, {2e-2, 3e-3, 8e-4, 3e-4, 4e-5}}};
+  for (const Line& line : lines)
+    for (int d = 0; d < 5; ++d) {
+      CAPTURE(line.reach, line.a_low, line.a_high, degrees[d]);
+      const double median = errors_over_angles(degrees[d], line.reach, line.a_low, line.a_high, 4000).median;
+      CHECK(median > line.medians[d] / 3);
+      CHECK(median < line.medians[d] * 3);
+    }
 }

@@ -334,11 +334,6 @@ TEST_CASE("shadow planes: stages of the paper and their times", "[shadow_planes]
     }
     CHECK(kept == timed);
     CHECK(kept.size() == 5);
-    // Where lights move the first is found for every picture: the same.
-    const scene::Rendering moving = render(scene, with(given, {{"lights", "moving"}}));
-    CHECK(moving.times.size() == 5);
-    CHECK(moving.times[0].name == "silhouettes");
-    CHECK(moving.film.layers == render(scene, given).film.layers);
   }
   // Rays that begin at different places have orders of their own.
   scene->surfaces.push_back({"second", scene::make_box({{0.1, -0.6, -0.6}, {0.8, -0.1, 0.1}}), scene::Lambert{}});

@@ -46,7 +46,7 @@ TEST_CASE("quadrature: work without end is refused in one line", "[deterministic
                                     Catch::Contains("expected at most 1e+14"));
   CHECK(reasons(scene)[0].find('\n') == std::string::npos);
   CHECK_THROWS_WITH(renderer->prepare(std::make_shared<const Scene>(scene), settings, {}),
-                    Catch::StartsWith("cloud: 512 x 512 pixels"));
+                    Catch::StartsWith("cloud: deterministic cannot render this: 512 x 512 pixels"));
   scene.width = scene.height = 64;
   CHECK(reasons(scene).empty());
   // Lights beyond counting, negative amplitudes, whose zeros are sought.

@@ -32,7 +32,7 @@
 #include <vector>
 
 #include "experiments/cli/program.h"
-#include "experiments/driver/content_key.h"
+#include "scene/content_key.h"
 
 namespace {
 
@@ -102,7 +102,7 @@ void seal_journal(const std::filesystem::path& path) {
   for (std::string line; std::getline(in, line);)
     sealed += line.size() < 33
                   ? line + "\n"
-                  : airlight::experiments::content_key(std::string_view(line).substr(33)) + line.substr(32) + "\n";
+                  : airlight::content_key(std::string_view(line).substr(33)) + line.substr(32) + "\n";
   std::ofstream(path, std::ios::binary) << sealed;
 }
 

@@ -1,0 +1,149 @@
+#include "experiments/driver/images.h"
+
+#include <fmt/format.h>
+
+#include "experiments/driver/keeper.h"
+#include "experiments/driver/pictures.h"
+#include "experiments/driver/plan.h"
+#include "experiments/driver/reference_cache.h"
+#include "experiments/driver/timing.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
+
+namespace airlight::experiments {
+namespace {
+
+// What all rows of a scene share.
+struct Judged {
+  PlannedScene planned;
+  scene::View view;
+  Masks masks;
+  std::optional<Reference> reference;
+  double exposure = 0;
+};
+
+void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
+  const Experiment& e = keeper.experiment();
+  const PlannedScene& planned = judged.planned;
+  Progress progress(fmt::format("{}: reference of {}", e.id, c.name));
+  scene::Execution execution = progress.execution(e.timing.threads);
+  execution.store = &keeper.store();
+  judged.reference = reference_for(planned.scene, *planned.reference, *planned.reference_settings, execution);
+  const Reference& reference = *judged.reference;
+  judged.exposure = exposure_of(reference.film, e.layer);
+  ReferenceInfo info{c.name,
+                     reference.key,
+                     planned.reference->name(),
+                     planned.reference_settings->canonical(),
+                     keeper.name() + "/" + file_name(c.name) + "/reference",
+                     reference.seconds,
+                     reference.cached,
+                     judged.exposure,
+                     ""};
+  keep_picture(keeper.images(), info.image, reference.film, e.layer, judged.exposure);
+  const auto samples = reference.film.metadata.find("samples");
+  if (samples != reference.film.metadata.end()) info.samples = samples->second;
+  keeper.add(info);
+}
+
+// The median of several preparations where they are short.
+std::shared_ptr<scene::Prepared> prepare(const Experiment& e, const Judged& judged, const PlannedRow& planned,
+                                         const scene::Execution& execution, double& seconds) {
+  std::shared_ptr<scene::Prepared> prepared;
+  std::vector<double> preparations;
+  const double allowed = std::min(0.25, e.timing.budget / 2);
+  for (double spent = 0; preparations.empty() || (preparations.size() < 5 && spent + preparations.back() < allowed);) {
+    const double start = steady_seconds();
+    prepared = planned.renderer->prepare(judged.planned.scene, planned.settings, execution);
+    preparations.push_back(steady_seconds() - start);
+    spent += preparations.back();
+  }
+  seconds = median(preparations);
+  return prepared;
+}
+
+// Frames of lights that move to and fro by a millimetre: the next frame, and its render.
+class MovingLights {
+ public:
+  MovingLights(std::shared_ptr<scene::Prepared> prepared, std::shared_ptr<const scene::Scene> here)
+      : prepared_(std::move(prepared)), here_(std::move(here)) {
+    auto there = std::make_shared<scene::Scene>(*here_);
+    for (scene::Light& light : there->lights) light = scene::moved(light, {1e-3, 0, 0});
+    there_ = there;
+  }
+
+  // Ends where the scene has its lights.
+  scene::Rendering render(const scene::View& view, const scene::Execution& execution) {
+    one(there_, view, execution);
+    return one(here_, view, execution);
+  }
+  std::vector<scene::StageTime> again(const scene::View& view, const scene::Execution& execution) {
+    std::swap(here_, there_);
+    return one(here_, view, execution).times;
+  }
+
+ private:
+  scene::Rendering one(const std::shared_ptr<const scene::Scene>& at, const scene::View& view,
+                       const scene::Execution& execution) {
+    auto times = prepared_->next(at, execution);
+    if (!times) throw scene::NotSupported("", "its lights cannot move: every frame is prepared anew");
+    scene::Rendering rendering = prepared_->render(view, execution);
+    times->insert(times->end(), rendering.times.begin(), rendering.times.end());
+    rendering.times = std::move(*times);
+    return rendering;
+  }
+
+  std::shared_ptr<scene::Prepared> prepared_;
+  std::shared_ptr<const scene::Scene> here_, there_;
+};
+
+// Prepares and renders once; the errors and the picture are those of that render.
+MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, const PlannedRow& planned, Row row,
+                 const scene::Execution& execution) {
+  const Experiment& e = keeper.experiment();
+  const MethodCase& m = *planned.method;
+  const std::shared_ptr<scene::Prepared> prepared = prepare(e, *judged, planned, execution, row.prepare_seconds);
+  row.device = planned.renderer->device();
+  if (!row.device.empty()) prepared->render(judged->view, execution);  // drivers compile shaders at first use
+  const auto moving = m.moving_lights ? std::make_shared<MovingLights>(prepared, judged->planned.scene) : nullptr;
+  const double start = steady_seconds();
+  scene::Rendering rendering =
+      moving ? moving->render(judged->view, execution) : prepared->render(judged->view, execution);
+  const double first = (steady_seconds() - start) / (moving ? 2 : 1);
+  check_interrupted();
+  row.counters = rendering.counters;
+  if (m.layer != e.layer) rendering.film.layers[e.layer] = rendering.film.layer(m.layer);
+  if (judged->reference) row.measures = compare(e, m, rendering.film, judged->reference->film, judged->masks);
+  row.image = keeper.name() + "/" + file_name(row.scene) + "/" +
+              file_name(row.setting.empty() ? row.method : row.method + "_" + row.setting);
+  row.exposure = judged->reference ? judged->exposure : exposure_of(rendering.film, e.layer);
+  keep_picture(keeper.images(), row.image, rendering.film, m.layer, row.exposure);
+  return {row, first, rendering.times, [prepared, moving, judged](const scene::Execution& execution) {
+            return moving ? moving->again(judged->view, execution) : prepared->render(judged->view, execution).times;
+          }};
+}
+
+}  // namespace
+
+Outcome run_images(Experiment experiment, const RunOptions& options) {
+  RowKeeper keeper(std::move(experiment), options);
+  return keeper.run([&](const SceneCase& c) {
+    const auto judged = std::make_shared<Judged>();
+    judged->planned = plan_scene(keeper.experiment(), c);
+    const scene::Scene& scene = *judged->planned.scene;
+    judged->view = scene::view_of(scene);
+    judged->masks = {scene::ball_mask(scene, judged->view), foreground_of(scene, judged->view)};
+    if (judged->planned.reference) judge_by_reference(keeper, c, *judged);
+    std::vector<RowPlan> rows;
+    for (const PlannedRow& planned : judged->planned.rows) {
+      Row row = planned.row;
+      row.exposure = judged->exposure;
+      rows.push_back({row, [&keeper, judged, &planned](Row known, const scene::Execution& execution) {
+                        return make_row(keeper, judged, planned, std::move(known), execution);
+                      }});
+    }
+    return rows;
+  });
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,206 @@
+#include "experiments/driver/keeper.h"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "experiments/driver/plots.h"
+#include "experiments/driver/tables.h"
+#include "experiments/driver/timing.h"
+#include "experiments/folders.h"
+#include "experiments/interrupt.h"
+#include "experiments/machine.h"
+#include "experiments/progress.h"
+#include "experiments/say.h"
+#include "gpu/context.h"
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+// What is held ready at once, so that the runs of several rows can take turns.
+constexpr std::size_t most_held = 16;
+constexpr double most_held_gib = 2;
+
+bool is_text_of(const fs::path& file, const std::string& text) {
+  std::ifstream in(file, std::ios::binary);
+  return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
+}
+
+}  // namespace
+
+struct RowKeeper::Held {
+  std::size_t place = 0;  // among the scene's rows
+  MadeRow made;
+  StageTimes stages;
+};
+
+RowKeeper::RowKeeper(Experiment experiment, const RunOptions& options)
+    : options_(options),
+      results_(options.root / "results"),
+      store_(results_ / "cache", experiments::say),
+      name_(results_name(experiment.id, experiment.profile)),
+      journal_(journal_file(options.root, experiment), options.resume) {
+  outcome_.experiment = std::move(experiment);
+  if (options.resume) return;
+  journal_.begin_anew();
+  fs::remove_all(images() / name_);
+}
+
+Outcome RowKeeper::run(const Plan& plan) {
+  const double start = steady_seconds();
+  bool stopped = false;
+  std::optional<Error> failure;
+  for (const SceneCase& c : experiment().scenes) {
+    try {
+      check_interrupted();
+      measure(plan(c));
+    } catch (const scene::Interrupted&) {
+      stopped = true;
+      break;
+    } catch (const Error& error) {
+      // A scene that cannot be judged takes nothing from the others.
+      if (!failure) failure = error;
+    }
+  }
+  outcome_.complete = !stopped && !failure;
+  outcome_.seconds = steady_seconds() - start;
+  outcome_.gates = judge(outcome_.experiment, outcome_.rows);
+  if (!outcome_.rows.empty()) write();
+  if (stopped) throw scene::Interrupted("interrupted");
+  if (failure) throw Error(*failure);
+  return outcome_;
+}
+
+std::size_t RowKeeper::row_count() const {
+  std::size_t count = 0;
+  for (const SceneCase& c : experiment().scenes)
+    for (const MethodCase& m : experiment().methods) count += is_on(m, c);
+  return count;
+}
+
+// Rows that are finished are kept; the others are made in groups, and timed in turns.
+void RowKeeper::measure(std::vector<RowPlan> plans) {
+  std::vector<std::optional<Row>> rows(plans.size());
+  std::exception_ptr failure;
+  try {
+    std::vector<Held> group;
+    double memory = resident_gib();
+    std::optional<Error> error;
+    for (std::size_t i = 0; i < plans.size() && !error; ++i) {
+      check_interrupted();
+      try {
+        make(plans[i], i, group, rows);
+      } catch (const Error& e) {
+        error = e;
+      }
+      if (group.size() < most_held && resident_gib() - memory < most_held_gib) continue;
+      time_group(group, rows);
+      memory = resident_gib();
+    }
+    time_group(group, rows);
+    if (error) throw Error(*error);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  for (std::optional<Row>& row : rows)
+    if (row) outcome_.rows.push_back(std::move(*row));
+  if (failure) std::rethrow_exception(failure);
+}
+
+void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
+                     std::vector<std::optional<Row>>& rows) {
+  Row row = plan.row;
+  if (const Row* finished = journal_.find(row.key)) {
+    rows[place] = *finished;
+    rows[place]->parameter = row.parameter;  // only where it is plotted
+    say(*finished, "kept");
+    return;
+  }
+  Progress progress(fmt::format("{} [{} of {}]: {}{}", experiment().id, outcome_.rows.size() + place + 1, row_count(),
+                                row.method, row.scene.empty() ? "" : " on " + row.scene));
+  try {
+    Held held{place, plan.make(row, progress.execution(experiment().timing.threads)), {}};
+    check_interrupted();  // what a stopped run kept is no row
+    if (!held.made.again) return finish(held.made.row, rows[place]);
+    held.stages.add(held.made.stages);
+    group.push_back(std::move(held));
+  } catch (const scene::NotSupported& objection) {
+    row.note = "not supported: " + objection.reason;
+    finish(row, rows[place]);
+  } catch (const Unavailable& reason) {
+    row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
+    row.unavailable = dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen();
+    rows[place] = row;  // not into the journal: the next run may find what is missing
+    say(row, "left out");
+  }
+}
+
+void RowKeeper::time_group(std::vector<Held>& group, std::vector<std::optional<Row>>& rows) {
+  if (group.empty()) return;
+  const TimingRule& rule = experiment().timing;
+  const scene::Execution execution = quiet_execution(rule.threads);
+  std::vector<TimedJob> jobs;
+  for (Held& held : group)
+    jobs.push_back({held.made.first, [&held, execution] {
+                      held.stages.add(held.made.again(execution));
+                      check_interrupted();
+                    }});
+  const std::vector<Timing> timings = time_runs(rule, jobs);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    Row& row = group[i].made.row;
+    const Timing& timing = timings[i];
+    row.stages = group[i].stages.medians();
+    row.seconds = timing.seconds;
+    row.coverage = timing.coverage;
+    row.mad = timing.mad;
+    row.runs = timing.runs;
+    row.times = timing.times;
+    row.waited = timing.waited;
+    row.group = group.front().made.row.key;
+    finish(row, rows[group[i].place]);
+  }
+  group.clear();
+}
+
+void RowKeeper::finish(const Row& row, std::optional<Row>& place) {
+  journal_.add(row);
+  made_rows_ = true;
+  place = row;
+  say(row, "done");
+}
+
+void RowKeeper::say(const Row& row, const char* how) const {
+  if (!options_.talk) return;
+  std::string line = fmt::format("{}:", how);
+  for (const std::string& word : {row.scene, row.method, row.setting})
+    if (!word.empty()) line += " " + word;
+  line += ": ";
+  if (!row.note.empty()) line += row.note;
+  if (!row.measures.empty()) line += fmt::format("{} {}, ", row.measures[0].name, text(row.measures[0]));
+  if (row.runs > 0) line += fmt::format("{:.3g} s", row.seconds.value);
+  fmt::print("  {}\n", line);
+  std::fflush(stdout);
+}
+
+void RowKeeper::write() const {
+  const fs::path folder = results_ / name_;
+  make_folder(folder);
+  const auto plots = draw_plots(outcome_, folder);
+  bool changed = made_rows_;
+  for (const auto& [name, text] : table_files(outcome_, plots)) {
+    if (is_text_of(folder / name, text)) continue;
+    scene::write_file_atomically((folder / name).string(), text);
+    changed = true;
+  }
+  // The record tells of the run that made the tables.
+  if (changed || !fs::exists(folder / "run.json"))
+    scene::write_file_atomically((folder / "run.json").string(), run_record(outcome_, plots));
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,29 @@
+#include "experiments/probes.h"
+
+#include "experiments/find_component.h"
+#include "experiments/fogshop/kernel_rate.h"
+#include "experiments/shadow_planes/evaluator_probes.h"
+#include "experiments/verify/oracle_probe.h"
+
+namespace airlight::experiments {
+
+const std::vector<std::unique_ptr<Probe>>& all_probes() {
+  static const auto probes = [] {
+    std::vector<std::unique_ptr<Probe>> list;
+    list.push_back(std::make_unique<OracleProbe>());
+    list.push_back(std::make_unique<KernelRate>());
+    list.push_back(std::make_unique<shadow_planes::EvaluatorMap>());
+    list.push_back(std::make_unique<shadow_planes::EvaluatorAngles>());
+    list.push_back(std::make_unique<shadow_planes::EvaluatorImage>());
+    list.push_back(std::make_unique<shadow_planes::EvaluatorTimes>());
+    list.push_back(std::make_unique<shadow_planes::EvaluatorTimesGpu>());
+    return list;
+  }();
+  return probes;
+}
+
+const Probe& find_probe(const std::string& name, const std::string& where) {
+  return find_component(all_probes(), "probe", name, where);
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,56 @@
+#include "scene/content_store.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "scene/atomic_file.h"
+#include "scene/content_key.h"
+#include "scene/error.h"
+
+namespace airlight::scene {
+namespace fs = std::filesystem;
+namespace {
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+fs::path checksum_of(fs::path file) { return file += ".xxh128"; }
+
+}  // namespace
+
+std::optional<fs::path> ContentStore::find(const std::string& name) const {
+  const fs::path file = folder_ / name;
+  if (!fs::exists(file) || !fs::exists(checksum_of(file))) return std::nullopt;
+  if (content_key(std::string_view(bytes_of(file))) == bytes_of(checksum_of(file))) return file;
+  say(fmt::format("{}: checksum differs, computing it anew", file.string()));
+  return std::nullopt;
+}
+
+void ContentStore::keep(const std::string& name, const std::function<void(const fs::path&)>& write) const {
+  const fs::path file = folder_ / name;
+  std::error_code failure;
+  fs::create_directories(file.parent_path(), failure);
+  if (failure) throw Error(fmt::format("{}: cannot be created: {}", file.parent_path().string(), failure.message()));
+  const fs::path part =
+      file.parent_path() / fmt::format("{}.{}.part{}", file.stem().string(), getpid(), file.extension().string());
+  try {
+    write(part);
+    // A file between two checksums counts as damaged.
+    const std::string checksum = content_key(std::string_view(bytes_of(part)));
+    fs::rename(part, file);
+    write_file_atomically(checksum_of(file).string(), checksum);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove(part, failure);
+    throw Error(fmt::format("{}: {}", file.string(), error.code().message()));
+  } catch (...) {
+    fs::remove(part, failure);
+    throw;
+  }
+}
+
+}  // namespace airlight::scene
