@@ -1,19 +1,18 @@
 #include "scene/geometry/mesh_io.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <filesystem>
-#include <map>
 
 #include "scene/error.h"
 #include "scene/geometry/clean_mesh.h"
-#include "scene/geometry/mesh_check.h"
+#include "scene/geometry/polygon_mesh.h"
 #include "scene/read_file.h"
 
 namespace airlight::scene {
@@ -27,83 +26,64 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-// What the importer is given, once the file is known to be whole, and as which format.
-struct Plain {
-  std::string content;
-  const char* format;
-};
-Plain checked(const std::string& path, const std::string& extension, std::string content) {
-  if (extension == ".obj") return {plain_obj(path, content), "obj"};
-  if (extension == ".off") return {plain_off(path, content), "ply"};
-  if (extension == ".ply") return {plain_ply(path, content), "ply"};
+PolygonMesh read_polygons(const std::string& path, const std::string& content) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj") return read_obj(path, content);
+  if (extension == ".off") return read_off(path, content);
+  if (extension == ".ply") return read_ply(path, content);
   throw Error(fmt::format("{}: found a file named '{}', expected .obj, .ply or .off", path, extension));
 }
 
-// What polygons cut into triangles must give.
-long long triangles_expected(const aiScene& scene) {
-  long long count = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m)
-    for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
-      count += std::max(0, int(scene.mMeshes[m]->mFaces[f].mNumIndices) - 2);
-  return count;
-}
+// The library cuts polygons only in what one of its readers gave it: this one hands over what was read here.
+class Handed : public Assimp::BaseImporter {
+ public:
+  static constexpr const char* extension = "polygons";
+  explicit Handed(const PolygonMesh& mesh) : from_(mesh) {}
+  bool CanRead(const std::string&, Assimp::IOSystem*, bool) const override { return true; }
 
-void append(const aiMesh& from, TriangleMesh& mesh) {
-  const int first = int(mesh.vertices.size());
-  for (unsigned i = 0; i < from.mNumVertices; ++i)
-    mesh.vertices.emplace_back(from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z);
-  for (unsigned f = 0; f < from.mNumFaces; ++f) {
-    const aiFace& face = from.mFaces[f];
-    if (face.mNumIndices != 3) continue;
-    mesh.triangles.push_back(
-        {first + int(face.mIndices[0]), first + int(face.mIndices[1]), first + int(face.mIndices[2])});
+ private:
+  const aiImporterDesc* GetInfo() const override {
+    static const aiImporterDesc info{"", "", "", "", 0, 0, 0, 0, 0, extension};
+    return &info;
   }
-}
+  void InternReadFile(const std::string&, aiScene* scene, Assimp::IOSystem*) override {
+    aiMesh& mesh = *new aiMesh;
+    scene->mMeshes = new aiMesh* [scene->mNumMeshes = 1] { &mesh };
+    scene->mRootNode = new aiNode;
+    mesh.mVertices = new aiVector3D[mesh.mNumVertices = unsigned(from_.vertices.size())];
+    std::transform(from_.vertices.begin(), from_.vertices.end(), mesh.mVertices,
+                   [](const Point3& v) { return aiVector3D(float(v[0]), float(v[1]), float(v[2])); });
+    mesh.mFaces = new aiFace[mesh.mNumFaces = unsigned(from_.ends.size())];
+    std::size_t begin = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; begin = from_.ends[f++]) {
+      const std::size_t count = from_.ends[f] - begin;
+      mesh.mFaces[f].mIndices = new unsigned[mesh.mFaces[f].mNumIndices = unsigned(count)];
+      std::copy_n(from_.corners.begin() + std::ptrdiff_t(begin), count, mesh.mFaces[f].mIndices);
+    }
+  }
+  const PolygonMesh& from_;
+};
 
-// The importer gives every corner of an OBJ face a vertex of its own; those at one place become one again.
-void join_vertices(TriangleMesh& mesh) {
-  std::map<std::array<double, 3>, int> numbers;
-  std::vector<Point3> vertices;
-  std::vector<int> number(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Point3& v = mesh.vertices[i];
-    const auto [place, is_new] = numbers.try_emplace({v[0], v[1], v[2]}, int(vertices.size()));
-    if (is_new) vertices.push_back(v);
-    number[i] = place->second;
-  }
-  for (auto& triangle : mesh.triangles)
-    for (int& v : triangle) v = number[v];
-  mesh.vertices = std::move(vertices);
+TriangleMesh cut(const std::string& path, PolygonMesh from) {
+  Assimp::Importer importer;
+  importer.RegisterLoader(new Handed(from));  // the importer's from now on
+  const aiScene* scene = importer.ReadFileFromMemory(" ", 1, aiProcess_Triangulate, Handed::extension);
+  if (!scene) throw Error(fmt::format("{}: cannot be cut into triangles: {}", path, importer.GetErrorString()));
+  TriangleMesh mesh;
+  mesh.vertices = std::move(from.vertices);
+  const aiMesh& triangles = *scene->mMeshes[0];
+  for (const aiFace* f = triangles.mFaces; f != triangles.mFaces + triangles.mNumFaces; ++f)
+    if (f->mNumIndices == 3) mesh.triangles.push_back({int(f->mIndices[0]), int(f->mIndices[1]), int(f->mIndices[2])});
+  if (const std::size_t expected = from.corners.size() - 2 * from.ends.size(); mesh.triangles.size() != expected)
+    throw Error(fmt::format("{}: polygons gave {} triangles, expected {}: a polygon crosses itself or has no area",
+                            path, mesh.triangles.size(), expected));
+  return mesh;
 }
 
 }  // namespace
 
 TriangleMesh read_mesh(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  const auto [content, format] = checked(path, extension, read_whole_file(path, max_bytes));
-
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, format);
-  const long long expected = scene ? triangles_expected(*scene) : 0;
-  if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  if (!scene) {
-    std::string reason = importer.GetErrorString();
-    reason = reason.substr(0, std::min<std::size_t>(200, reason.find('\n')));
-    throw Error(fmt::format("{}: cannot be read: {}", path, reason));
-  }
-  TriangleMesh mesh;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) append(*scene->mMeshes[m], mesh);
-  if ((long long)mesh.triangles.size() != expected)
-    throw Error(fmt::format("{}: polygons gave {} triangles, expected {}: a polygon crosses itself or has no area",
-                            path, mesh.triangles.size(), expected));
-  for (const auto& triangle : mesh.triangles)
-    for (const int v : triangle)
-      if (v < 0 || std::size_t(v) >= mesh.vertices.size())
-        throw Error(
-            fmt::format("{}: found the vertex {} in a face, expected 0 to {}", path, v, mesh.vertices.size() - 1));
-  for (const Point3& v : mesh.vertices)
-    if (!v.allFinite()) throw Error(fmt::format("{}: found a vertex that is not finite", path));
-  if (extension == ".obj") join_vertices(mesh);
+  TriangleMesh mesh = cut(path, read_polygons(path, read_whole_file(path, max_bytes)));
   remove_degenerate(mesh);
   if (mesh.triangles.empty()) throw Error(fmt::format("{}: found no triangle with an area", path));
   return mesh;

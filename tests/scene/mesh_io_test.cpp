@@ -228,7 +228,7 @@ TEST_CASE("meshes that are none are refused in one line", "[geometry][mesh_io]")
 TEST_CASE("a PLY cube with more in it is a cube", "[geometry][mesh_io]") {
   const TemporaryFolder folder;
   std::vector<std::string> files;
-  // An element that the importer takes for faces, with lists of what might be corners.
+  // An element with lists of what might be corners.
   std::string other =
       replaced(ply_cube(), "element face", "element x 2\nproperty list uchar int vertex_indices\nelement face");
   files.push_back(replaced(other, "4 0 4 6 2", "3 0 0 0\n0\n4 0 4 6 2"));
@@ -270,8 +270,8 @@ TEST_CASE("binary PLY that begins like text", "[geometry][mesh_io]") {
     }
 }
 
-// On each of these the importer (5.2.5) aborts, writes out of bounds or asks for gigabytes: found by the fuzzer.
-TEST_CASE("PLY elements that end the importer are refused", "[geometry][mesh_io]") {
+// The fuzzer's: a reader that takes one of these aborts, writes out of bounds or asks for gigabytes.
+TEST_CASE("PLY headers of what is no mesh are refused", "[geometry][mesh_io]") {
   const std::string cube = ply_cube();
   const std::string more = "element vertex 9\nproperty float x\nproperty float y\nproperty float z\n";
   CHECK_THAT(message_for("a.ply", replaced(cube, "element face", more + "element face")),
@@ -290,7 +290,7 @@ TEST_CASE("PLY elements that end the importer are refused", "[geometry][mesh_io]
              Contains("without a list"));
 }
 
-// OFF faces of ten corners were left out by the importer (5.2.5), lines of 4096 bytes ended it.
+// Readers are known that leave out faces of ten corners, or end at lines of 4096 bytes.
 TEST_CASE("polygons of many corners", "[geometry][mesh_io]") {
   const TemporaryFolder folder;
   for (const int corners : {9, 10, 11, 600, 3000}) {

@@ -1,5 +1,5 @@
 // Stress cases 1 to 5 and 14: optical depths from 1e-8 to 1e6.
-#include "tests/reference/path_tracer/vectors.h"
+#include "tests/oracle_vectors.h"
 #include "tests/stress/stress.h"
 
 using namespace airlight;
@@ -91,10 +91,10 @@ TEST_CASE("stress 02: a million Gaussians far away, tau 1e-4 together", "[stress
 
 TEST_CASE("stress 03: tau 1e3, albedo 1", "[stress]") {
   // The asymptote of thick slabs against the table, both with eight digits.
-  const double H = path_tracer::test::vector_of("halfspace-H").at("expected").at("H").at("1.0").at("1");
+  const double H = airlight::test::vector_of("halfspace-H").at("expected").at("H").at("1.0").at("1");
   const auto asymptote = [](double tau) { return 1 / (std::sqrt(3.0) * (tau + 1.42089)); };
   bool found = false;
-  for (const auto& row : path_tracer::test::vector_of("slab-table").at("expected").at("rows"))
+  for (const auto& row : airlight::test::vector_of("slab-table").at("expected").at("rows"))
     if (row[0] == "iso" && row[2] == 1.0 && row[3] == 100.0) {
       found = true;
       CHECK(row[4].get<double>() + row[5].get<double>() == Approx(1).margin(1e-7));
@@ -113,7 +113,7 @@ TEST_CASE("stress 03: tau 1e3, albedo 1", "[stress]") {
 
 // What a half space sends back; at tau 1e6 the slab lets nothing through.
 TEST_CASE("stress 04: tau 1e6, albedo 0.999", "[stress]") {
-  const double expected = path_tracer::test::vector_of("halfspace-H").at("expected").at("albedo_mu1").at("0.999");
+  const double expected = airlight::test::vector_of("halfspace-H").at("expected").at("albedo_mu1").at("0.999");
   const auto back = radiance(World(slab(1e6, 0.999, false), Options{}), down, 1 << 16, {}, 41);
   check_equal(expected, back.total, 0.004);
   CHECK(back.orders[0].mean[0] == 0);

@@ -97,48 +97,45 @@ const std::vector<std::string>& renderers() {
   return all;
 }
 
+// On every spot of every shape, with every renderer; `side` is across the normal.
+template <class Test>
+void everywhere(const Test& test) {
+  for (const Touched& t : touched())
+    for (const std::string& name : renderers()) {
+      CAPTURE(t.surface, name);
+      test(t, name, Vec3(t.spot.out.unitOrthogonal()), name.starts_with("fogshop"));
+    }
+}
+
 }  // namespace
 
 // From the surface outwards, a quarter turn to the side: the horizon of the face runs past the picture.
 TEST_CASE("stress: a camera on every shape", "[stress][touching]") {
-  for (const Touched& t : touched())
-    for (const std::string& name : renderers()) {
-      CAPTURE(t.surface, name);
-      const bool endless = name.starts_with("fogshop");
-      const Vec3 side = t.spot.out.unitOrthogonal();
-      const Point3 light = t.spot.at + 1.5 * t.spot.out + 0.4 * side;
-      const auto from = [&](double off) {
-        const Point3 eye = t.spot.at + off * t.spot.out;
-        return answer(name, scene_of(t.surface, eye, eye + t.spot.out + 0.3 * side, light, endless));
-      };
-      check_alike(from(0), from(2e-5), 2e-3, 1);
-    }
+  everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
+    const Point3 light = t.spot.at + 1.5 * t.spot.out + 0.4 * side;
+    const auto from = [&](double off) {
+      const Point3 eye = t.spot.at + off * t.spot.out;
+      return answer(name, scene_of(t.surface, eye, eye + t.spot.out + 0.3 * side, light, endless));
+    };
+    check_alike(from(0), from(2e-5), 2e-3, 1);
+  });
 }
 
 TEST_CASE("stress: a light on every shape, in every renderer", "[stress][touching]") {
-  for (const Touched& t : touched())
-    for (const std::string& name : renderers()) {
-      CAPTURE(t.surface, name);
-      const bool endless = name.starts_with("fogshop");
-      const Vec3 side = t.spot.out.unitOrthogonal();
-      const Point3 eye = t.spot.at + 2 * t.spot.out + 1.5 * side;
-      const auto lit = [&](double off) {
-        return answer(name, scene_of(t.surface, eye, Point3(t.spot.at + 0.6 * t.spot.out), t.spot.at + off * t.spot.out,
-                                     endless));
-      };
-      check_alike(lit(0), lit(2e-5), 5e-3, 1);
-    }
+  everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
+    const Point3 eye = t.spot.at + 2 * t.spot.out + 1.5 * side, target = t.spot.at + 0.6 * t.spot.out;
+    const auto lit = [&](double off) {
+      return answer(name, scene_of(t.surface, eye, target, t.spot.at + off * t.spot.out, endless));
+    };
+    check_alike(lit(0), lit(2e-5), 5e-3, 1);
+  });
 }
 
 // Both on one spot: the light is moved off the surface, and stands beside the eye.
 TEST_CASE("stress: camera and light on one spot of every shape", "[stress][touching]") {
-  for (const Touched& t : touched())
-    for (const std::string& name : renderers()) {
-      CAPTURE(t.surface, name);
-      const Vec3 side = t.spot.out.unitOrthogonal();
-      const auto scene =
-          scene_of(t.surface, t.spot.at, t.spot.at + t.spot.out + 0.3 * side, t.spot.at, name.starts_with("fogshop"));
-      const Answer both = answer(name, scene);
-      if (both.refused.empty()) CHECK(all_finite(both.film));
-    }
+  everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
+    const Point3 target = t.spot.at + t.spot.out + 0.3 * side;
+    const Answer both = answer(name, scene_of(t.surface, t.spot.at, target, t.spot.at, endless));
+    if (both.refused.empty()) CHECK(all_finite(both.film));
+  });
 }

@@ -6,33 +6,8 @@
 
 using namespace airlight;
 using namespace airlight::fogshop;
-using fogshop_test::number;
 using fogshop_test::relative_error;
-using fogshop_test::vec;
 using scene::GaussianSum;
-
-TEST_CASE("paper airlight against the oracle vectors", "[fogshop]") {
-  const auto vectors = fogshop_test::vectors_of("airlight_paper");
-  REQUIRE(vectors.size() == 5);
-  for (const auto& v : vectors) {
-    INFO(v["id"]);
-    const auto& in = v["in"];
-    const Ray ray{vec(in["view"]), vec(in["dir"]).normalized()};
-    const double got = paper_airlight(fogshop_test::fog_of(in), vec(in["light"]), in["I0"], ray, number(in["d_r"]));
-    CHECK(relative_error(got, number(v["value"])) <= 1e-12);
-  }
-}
-
-TEST_CASE("optical depth against the oracle vectors", "[fogshop]") {
-  const auto vectors = fogshop_test::vectors_of("depth");
-  REQUIRE(vectors.size() == 3);
-  for (const auto& v : vectors) {
-    INFO(v["id"]);
-    const auto& in = v["in"];
-    CHECK(relative_error(optical_depth(fogshop_test::fog_of(in), vec(in["p"]), vec(in["q"])), number(v["value"])) <=
-          1e-12);
-  }
-}
 
 static const Ray ray{Point3(0, 0, 0), Vec3(0, 0, 1)};
 

@@ -1,15 +1,13 @@
-// Media in convex regions against the oracle vectors and brute force.
+// Media in convex regions against brute force.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "methods/shadow_planes/bounded_media.h"
 #include "scene/math/gauss_legendre.h"
-#include "tests/methods/shadow_planes/vectors.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
-using namespace shadow_planes_test;
 
 namespace {
 
@@ -41,33 +39,6 @@ Rgb brute_force(const std::vector<scene::Medium>& media, const Ray& ray, const P
 }
 
 }  // namespace
-
-TEST_CASE("shadow planes: vectors of bounded media", "[shadow_planes]") {
-  const MappedRule<double> rule(64, 6, true);
-  int count = 0;
-  for (const json& v : vectors_of("bounded")) {
-    const json& in = v.at("input");
-    const json& p = in.at("params");
-    scene::Medium medium;
-    medium.sigma_t = Rgb::Constant(number(in.at("k_t")));
-    if (in.at("shape") == "sphere")
-      medium.region = scene::Sphere{vec(p[0]), number(p[1])};
-    else
-      medium.region = Box{vec(p[0]), vec(p[1])};
-    const Ray ray{vec(in.at("O")), vec(in.at("dir")).normalized()};
-    const Point3 light = vec(in.at("S"));
-    const json& expected = v.at("expect");
-    const Interval inside = clip(medium.region, ray, {0, infinity});
-    CHECK(inside.lo == Approx(number(expected.at("x_in"))).epsilon(1e-13).margin(1e-300));
-    CHECK(inside.hi == Approx(number(expected.at("x_out"))).epsilon(1e-13));
-    const BoundedMedia media({medium});
-    const double got = media.airlight(rule, ray, light, {0, infinity}, everywhere)[1];
-    CAPTURE(v.at("id").get<std::string>(), got, expected.dump());
-    CHECK(got == Approx(number(expected.at("L_exact"))).epsilon(1e-11));
-    ++count;
-  }
-  CHECK(count == 5);
-}
 
 // Three that tint one another, overlapping, with a thin one everywhere and phase functions of their own.
 TEST_CASE("shadow planes: media that tint one another", "[shadow_planes]") {

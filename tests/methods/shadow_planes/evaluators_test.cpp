@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "methods/shadow_planes/light_from_ray.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "methods/shadow_planes/rule_sum.h"
@@ -42,16 +41,8 @@ TEST_CASE("shadow planes: airlight vectors", "[shadow_planes]") {
     const LitPart<double> part{x0, x1 - x0};
     const double expected = number(v.at("expect").at("L"));
     const double got = lit_airlight(rule, phase, k, albedo, intensity, T, h, part);
-    // Its logarithm, where it is no double.
-    const double log_expected = number(v.at("expect").at("log10_L"));
-    const auto log_of = [&](double shape) {
-      return std::log10(albedo * k * intensity / (4 * pi)) + std::log10(shape) -
-             k * (x0 + std::hypot(x0 - T, h)) / std::log(10.0);
-    };
     const auto one = [](auto, auto, auto) { return 1; };
     const double shape = airlight_integral(rule, phase, k, T, h, part, one);
-    // The expected logarithm has 16 digits.
-    CHECK(std::abs(log_of(shape) - log_expected) < 5e-14 + 4e-16 * condition + 2e-15 * std::abs(log_expected));
     if (expected > 1e-300) CHECK(std::abs(got - expected) < (5e-14 + 4e-16 * condition) * expected);
     // The lesser rules, on the same segment: their greatest errors (murky), and three roundings of the input.
     const double quick = airlight_integral(fast, phase, k, T, h, part, one);
@@ -65,28 +56,6 @@ TEST_CASE("shadow planes: airlight vectors", "[shadow_planes]") {
     ++count;
   }
   CHECK(count == 38);
-}
-
-TEST_CASE("shadow planes: vectors of a spot", "[shadow_planes]") {
-  const MappedRule<double> rule(64, 6);
-  for (const json& v : vectors_of("spot")) {
-    const json& in = v.at("input");
-    const Ray ray{vec(in.at("O")), vec(in.at("dir")).normalized()};
-    const LightFromRay light = light_from_ray(ray, vec(in.at("S")));
-    const double k = number(in.at("k_t")), x0 = number(in.at("x0")), x1 = number(in.at("x1")), n = number(in.at("n"));
-    const Vec3 axis = vec(in.at("axis")).normalized();
-    CHECK(light.T == Approx(number(v.at("expect").at("T"))).epsilon(1e-14));
-    CHECK(light.h == Approx(number(v.at("expect").at("h"))).epsilon(1e-14));
-    const double shape = airlight_integral(rule, phase_of(in), k, light.T, light.h, LitPart<double>{x0, x1 - x0},
-                                           [&](double q, double v_, double w) {
-                                             const Vec3 d = 2 * q * v_ * light.n + (w - v_) * ray.direction;
-                                             return std::pow(std::max(0.0, d.dot(axis)), n);
-                                           });
-    const double L = k / (4 * pi) * std::exp(-k * (x0 + std::hypot(x0 - light.T, light.h))) * shape;
-    CAPTURE(v.at("id").get<std::string>(), L, v.at("expect").dump());
-    // Where the source's edge crosses the segment the rule sees a kink of order n.
-    CHECK(std::abs(L - number(v.at("expect").at("L"))) < (n == 1 ? 1e-4 : 1e-10) * number(v.at("expect").at("L")));
-  }
 }
 
 // The form that shaders take: polynomials in a.
@@ -104,35 +73,6 @@ TEST_CASE("shadow planes: coefficients as polynomials in a", "[shadow_planes]") 
         CHECK(sum == Approx(c[n]).epsilon(1e-11).margin(1e-12));
       }
     }
-}
-
-TEST_CASE("shadow planes: Taylor vectors", "[shadow_planes]") {
-  for (const json& v : vectors_of("taylor_coefficients")) {
-    const json& in = v.at("input");
-    const std::vector<double> c = taylor_coefficients(phase_of(in), number(in.at("a")), in.at("degree").get<int>());
-    REQUIRE(c.size() == v.at("expect").at("c").size());
-    double most = 0;
-    for (const double x : c) most = std::max(most, std::abs(x));
-    for (std::size_t n = 0; n < c.size(); ++n) {
-      CAPTURE(v.at("id").get<std::string>(), n);
-      CHECK(std::abs(c[n] - number(v.at("expect").at("c")[n])) < 1e-13 * most);
-    }
-  }
-  for (const json& v : vectors_of("taylor_integral")) {
-    const json& in = v.at("input");
-    const double a = number(in.at("a"));
-    const std::vector<double> c = taylor_coefficients(phase_of(in), a, in.at("degree").get<int>());
-    const double got = std::exp(-a) * integrate_polynomial(c, 0, number(in.at("theta0")), number(in.at("theta1")));
-    CAPTURE(v.at("id").get<std::string>());
-    CHECK(got == Approx(number(v.at("expect").at("J_poly"))).epsilon(1e-11));
-    // The exact one by the rule: I h e^(-a q0) over T = 0, h = 1.
-    const MappedRule<double> rule(64, 6);
-    const double x0 = std::tan(number(in.at("theta0"))), x1 = std::tan(number(in.at("theta1")));
-    const double exact = airlight_integral(rule, phase_of(in), a, 0.0, 1.0, LitPart<double>{x0, x1 - x0},
-                                           [](double, double, double) { return 1.0; }) *
-                         std::exp(-a * q_at(x0, 1.0));
-    CHECK(exact == Approx(number(v.at("expect").at("J_exact"))).epsilon(1e-13));
-  }
 }
 
 // The annex as printed (section 2 of the corrections): which coefficients are wrong, and by how much.

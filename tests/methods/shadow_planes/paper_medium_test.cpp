@@ -7,41 +7,9 @@
 
 #include "methods/shadow_planes/polynomial.h"
 #include "scene/math/gauss_legendre.h"
-#include "tests/methods/shadow_planes/vectors.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
-using namespace shadow_planes_test;
-
-namespace {
-
-scene::Medium medium_of(const json& in) {
-  const json& p = in.at("params");
-  scene::Medium medium;
-  medium.sigma_t = Rgb::Constant(number(in.at("k_t")));
-  if (in.at("shape") == "sphere")
-    medium.region = scene::Sphere{vec(p[0]), number(p[1])};
-  else
-    medium.region = Box{vec(p[0]), vec(p[1])};
-  return medium;
-}
-
-}  // namespace
-
-TEST_CASE("shadow planes: the paper's media against the vectors", "[shadow_planes]") {
-  for (const json& v : vectors_of("bounded")) {
-    const json& in = v.at("input");
-    const PaperMedium medium(medium_of(in), {});
-    CAPTURE(v.at("id").get<std::string>());
-    // The vectors' R of the box is sampled, 0.3 % too small.
-    const double R = number(in.at("R")), k = number(in.at("k_t"));
-    CHECK(medium.R() == Approx(R).epsilon(in.at("shape") == "box" ? 4e-3 : 1e-14));
-    const Ray ray{vec(in.at("O")), vec(in.at("dir")).normalized()};
-    const Rgb got = medium(scene::PointLight{vec(in.at("S")), Rgb(1, 2, 3), 0}, ray, {0, infinity});
-    const double expected = number(v.at("expect").at("L_paper")) * std::exp(k * (R - medium.R()));
-    for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx((c + 1) * expected).epsilon(1e-12));
-  }
-}
 
 TEST_CASE("shadow planes: mean distance from boundary to inside", "[shadow_planes]") {
   CHECK(mean_distance(scene::Sphere{{1, 2, 3}, 2.5}) == Approx(3).epsilon(1e-15));

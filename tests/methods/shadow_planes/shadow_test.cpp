@@ -1,8 +1,7 @@
-// Lit parts of rays against the oracle vectors and brute force.
+// How many surfaces hide the light along rays, against the oracle vectors.
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/shadow_volumes.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
@@ -11,7 +10,6 @@ using namespace airlight::shadow_planes;
 using namespace shadow_planes_test;
 
 TEST_CASE("shadow planes: vectors of shadows", "[shadow_planes]") {
-  const MappedRule<double> rule(64, 6);
   int count = 0;
   for (const json& v : vectors_of("shadow")) {
     const json& in = v.at("input");
@@ -26,7 +24,6 @@ TEST_CASE("shadow planes: vectors of shadows", "[shadow_planes]") {
     double end = number(in.at("far"));
     if (const auto hit = scene->geometry->first_hit(ray)) end = std::min(end, hit->t);
     const json& expected = v.at("expect");
-    CHECK(end == Approx(number(expected.at("x_end"))).epsilon(1e-14));
     const ShadowVolumes shadows(std::make_shared<Occluders>(scene), vec(in.at("S")));
     const int m = shadows.count(ray.origin);
     std::vector<Crossing> crossings;
@@ -46,17 +43,6 @@ TEST_CASE("shadow planes: vectors of shadows", "[shadow_planes]") {
     }
     CHECK(k + 1 == profile.size());
     CHECK(now == profile.back()[2].get<int>());
-    REQUIRE(lit.size() == expected.at("lit").size());
-    double L = 0;
-    const double extinction = number(in.at("k_t"));
-    const LightFromRay light = light_from_ray(ray, shadows.light());
-    for (std::size_t i = 0; i < lit.size(); ++i) {
-      CHECK(lit[i].begin == Approx(number(expected.at("lit")[i][0])).epsilon(1e-13));
-      CHECK(lit[i].end == Approx(number(expected.at("lit")[i][1])).epsilon(1e-13));
-      L += lit_airlight(rule, PhaseForm{}, extinction, 1, 1, light.T, light.h,
-                        {lit[i].begin, lit[i].end - lit[i].begin});
-    }
-    CHECK(L == Approx(number(expected.at("L"))).epsilon(1e-12).margin(1e-300));
     ++count;
   }
   CHECK(count == 7);

@@ -8,12 +8,14 @@
 #include <catch2/catch.hpp>
 
 #include "reference/path_tracer/sampling.h"
+#include "tests/oracle_vectors.h"
 #include "tests/reference/path_tracer/scenes.h"
-#include "tests/reference/path_tracer/vectors.h"
 
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
+using airlight::test::vec;
+using airlight::test::vector_of;
 
 namespace {
 
@@ -74,10 +76,8 @@ TEST_CASE("single scattering agrees with quadrature", "[path_tracer][oracle]") {
   // The two with large relative variance by nature: a backlit dense sphere, and an optical depth of 1e-4.
   const std::map<std::string, std::uint64_t> more = {{"ss-sphere-directional-murky-backlit", 1 << 18},
                                                      {"ss-sphere-thin", 1 << 18}};
-  std::ifstream file(std::string(AIRLIGHT_SOURCE_DIR) + "/tests/vectors/references.json");
-  const auto all = nlohmann::json::parse(file);
   int index = 100, seen = 0;
-  for (const auto& v : all.at("vectors")) {
+  for (const auto& v : airlight::test::vectors_in("references")) {
     const std::string id = v.at("id"), kind = v.at("kind");
     if (kind != "single_scattering_sphere" && kind != "single_scattering_box" &&
         kind != "single_scattering_environment")

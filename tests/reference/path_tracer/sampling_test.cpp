@@ -4,7 +4,6 @@
 
 #include "reference/path_tracer/surface_sampling.h"
 #include "tests/reference/path_tracer/scenes.h"
-#include "tests/reference/path_tracer/vectors.h"
 
 using namespace airlight;
 using namespace airlight::path_tracer;
@@ -15,15 +14,6 @@ namespace {
 const double extremes[] = {0x1p-53, 0x1p-33, 0.5, 1 - 0x1p-33, 1 - 0x1p-53};
 
 }  // namespace
-
-TEST_CASE("equiangular distances and densities are those of the vectors", "[path_tracer]") {
-  for (const auto& row : vector_of("sample-equiangular").at("expected").at("rows")) {
-    const double D = row[0], h = row[1], begin = row[2], end = row[3], u = row[4], t = row[5], pdf = row[6];
-    const Equiangular angles({{0, 0, 0}, {0, 0, 1}}, {h, 0, D}, {begin, end});
-    CHECK(angles.sample(u) == Approx(t).epsilon(1e-12));
-    CHECK(angles.pdf(t) == Approx(pdf).epsilon(1e-12));
-  }
-}
 
 // The density integrates to 1 if u -> t has dt/du = 1/pdf: the mean of 1/pdf over a midpoint rule in u is the length.
 // 1/pdf is smooth in u; midpoints converge as n^-2.

@@ -2,26 +2,16 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "tests/oracle_vectors.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
 using namespace airlight;
 using namespace airlight::ray_marcher;
-using nlohmann::json;
+using airlight::test::json;
+using airlight::test::vec;
 
 namespace {
-
-const json& vectors() {
-  static const json file = [] {
-    std::ifstream in(std::string(AIRLIGHT_SOURCE_DIR) + "/tests/vectors/references.json");
-    return json::parse(in);
-  }();
-  return file.at("vectors");
-}
-
-Vec3 vec(const json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
 
 scene::PhaseFunction phase_of(const json& j) {
   const std::string name = j.at("name");
@@ -54,7 +44,7 @@ double order(double coarse, double fine) { return std::log2(coarse / fine); }
 // Errors below 1e-8 relative feel the vectors' own 1e-10 and are not asked for a slope.
 TEST_CASE("ray marcher: homogeneous media: oracle vectors are reached at order 2", "[ray_marcher]") {
   int seen = 0;
-  for (const json& v : vectors()) {
+  for (const json& v : airlight::test::vectors_in("references")) {
     if (v.at("kind") != "single_scattering_sphere" && v.at("kind") != "single_scattering_box") continue;
     const json& in = v.at("input");
     const auto scene = make_scene(
@@ -80,7 +70,7 @@ TEST_CASE("ray marcher: homogeneous media: oracle vectors are reached at order 2
 // by a few tenths at these step counts; the median over all rays is not.
 TEST_CASE("ray marcher: sums of Gaussians: oracle vectors are reached at order 2", "[ray_marcher]") {
   std::vector<double> slopes;
-  for (const json& v : vectors()) {
+  for (const json& v : airlight::test::vectors_in("references")) {
     if (v.at("kind") != "single_scattering_gaussians") continue;
     const json& in = v.at("input");
     scene::GaussianSum sum;

@@ -1,41 +1,9 @@
 #include "scene/math/random.h"
 
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 using namespace airlight;
-
-namespace {
-
-std::uint32_t hex(const nlohmann::json& word) {
-  return std::uint32_t(std::stoul(word.get<std::string>(), nullptr, 16));
-}
-
-nlohmann::json vector_of(const std::string& id) {
-  std::ifstream in(std::string(AIRLIGHT_SOURCE_DIR) + "/tests/vectors/references.json");
-  const auto file = nlohmann::json::parse(in);
-  for (const auto& v : file.at("vectors"))
-    if (v.at("id") == id) return v;
-  throw std::runtime_error("no vector " + id);
-}
-
-}  // namespace
-
-// The answers published with Random123, and one of our own counters: exact.
-TEST_CASE("Philox4x32-10 gives the published numbers", "[random]") {
-  const auto vector = vector_of("rng-philox");
-  int rows = 0;
-  for (const auto& row : vector.at("expected").at("rows")) {
-    const PhiloxCounter counter = {hex(row[0][0]), hex(row[0][1]), hex(row[0][2]), hex(row[0][3])};
-    const PhiloxKey key = {hex(row[1][0]), hex(row[1][1])};
-    const PhiloxCounter expected = {hex(row[2][0]), hex(row[2][1]), hex(row[2][2]), hex(row[2][3])};
-    CHECK(philox4x32_10(counter, key) == expected);
-    ++rows;
-  }
-  CHECK(rows == 4);
-}
 
 TEST_CASE("uniforms stay strictly inside (0, 1)", "[random]") {
   CHECK(uniform53(0, 0) == 0x1p-53);

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <iterator>
+#include <map>
 
-#include "scene/geometry/mesh_check.h"
-#include "scene/geometry/plain_mesh.h"
-#include "scene/geometry/text_lines.h"
+#include "scene/geometry/polygon_mesh.h"
 
 namespace airlight::scene {
 namespace {
@@ -37,40 +35,48 @@ long long read_corner(const TextLines& lines, std::string_view word, long long b
   return position;
 }
 
+// Vertices at one place become one, those of no face none; they are numbered as the faces name them.
+void join_vertices(PolygonMesh& mesh) {
+  std::map<std::array<double, 3>, int> numbers;
+  std::vector<Point3> vertices;
+  for (int& corner : mesh.corners) {
+    const Point3& v = mesh.vertices[corner];
+    const auto [place, is_new] = numbers.try_emplace({v[0], v[1], v[2]}, int(vertices.size()));
+    if (is_new) vertices.push_back(v);
+    corner = place->second;
+  }
+  mesh.vertices = std::move(vertices);
+}
+
 }  // namespace
 
-std::string plain_obj(const std::string& path, const std::string& content) {
+PolygonMesh read_obj(const std::string& path, const std::string& content) {
   const long long vertices = count_vertices(path, content);
   TextLines lines(path, content);
-  std::string positions, faces;
-  long long before = 0;
+  PolygonMesh mesh;
   while (lines.next()) {
     const std::string_view kind = lines.word();
     if (kind == "v") {
-      ++before;
-      const double x = lines.number("a coordinate x"), y = lines.number("a coordinate y");
-      fmt::format_to(std::back_inserter(positions), "v {} {} {}\n", x, y, lines.number("a coordinate z"));
+      mesh.vertices.push_back(read_point(lines));
     } else if (kind == "f") {
-      int corners = 0;
-      faces += 'f';
+      const std::size_t first = mesh.corners.size();
       for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-        if (word == "\\") {  // the face goes on in the next line
-          if (!lines.next()) break;
-          continue;
-        }
-        fmt::format_to(std::back_inserter(faces), " {}", read_corner(lines, word, before, vertices));
-        ++corners;
+        if (word != "\\")
+          mesh.corners.push_back(int(read_corner(lines, word, (long long)mesh.vertices.size(), vertices) - 1));
+        else if (!lines.next())  // the face goes on in the next line
+          break;
       }
-      faces += '\n';
-      if (corners < 3 || corners > most_corners)
+      mesh.end_face();
+      if (const std::size_t corners = mesh.corners.size() - first; corners < 3 || corners > most_corners)
         lines.fail(fmt::format("found a face of {} corners, expected 3 to {}", corners, most_corners));
     } else if (std::find(harmless.begin(), harmless.end(), kind) == harmless.end()) {
       lines.fail(
           fmt::format("found '{}', expected v, vt, vn, f, l, p, o, g, s, usemtl or mtllib", TextLines::shown(kind)));
     }
   }
-  if (faces.empty()) lines.fail("found the end of the file without a face, expected lines 'f ...'");
-  return positions + faces;
+  if (mesh.ends.empty()) lines.fail("found the end of the file without a face, expected lines 'f ...'");
+  join_vertices(mesh);
+  return mesh;
 }
 
 }  // namespace airlight::scene

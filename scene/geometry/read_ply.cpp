@@ -7,30 +7,30 @@
 #include <limits>
 
 #include "scene/error.h"
-#include "scene/geometry/mesh_check.h"
-#include "scene/geometry/plain_mesh.h"
 #include "scene/geometry/ply_header.h"
+#include "scene/geometry/polygon_mesh.h"
 
 namespace airlight::scene {
 namespace {
 
 using namespace ply;
 
-void end_element(const Element& element, PlainMesh& plain) {
-  if (element.name == "vertex") plain.end_vertex();
-  if (element.name == "face") plain.end_face();
+void end_element(const Element& element, const Point3& place, PolygonMesh& mesh) {
+  if (element.name == "vertex") mesh.vertices.push_back(place);
+  if (element.name == "face") mesh.end_face();
 }
 
-void check_text(TextLines& lines, const Header& header, PlainMesh& plain) {
+void check_text(TextLines& lines, const Header& header, PolygonMesh& mesh) {
   for (const Element& element : header.elements)
     for (long long i = 0; i < element.count; ++i) {
       if (!lines.next())
         lines.fail(fmt::format("found the end of the file after {} of the element '{}', expected {}", i, element.name,
                                element.count));
+      Point3 place = Point3::Zero();
       for (const Property& property : element.properties) {
         if (!property.count) {
           if (const int axis = coordinate(element, property); axis >= 0)
-            plain.coordinate(axis, lines, "a coordinate");
+            place[axis] = read_coordinate(lines, "a coordinate");
           else if (lines.word().empty())
             lines.fail(fmt::format("found the end of the line, expected property {}", property.name));
           continue;
@@ -39,12 +39,12 @@ void check_text(TextLines& lines, const Header& header, PlainMesh& plain) {
         const auto count = corners ? read_corner_count(lines) : lines.integer("the length of a list", 0, 1000000);
         for (long long k = 0; k < count; ++k) {
           if (corners)
-            plain.corner(lines.integer("the index of a vertex", 0, header.vertices - 1));
+            mesh.corners.push_back(int(lines.integer("the index of a vertex", 0, header.vertices - 1)));
           else if (lines.word().empty())
             lines.fail("found the end of the line in the middle of a list");
         }
       }
-      end_element(element, plain);
+      end_element(element, place, mesh);
     }
   if (lines.next()) lines.fail("found more after the elements that the header announces");
 }
@@ -86,9 +86,10 @@ class Bytes {
   bool big_endian_;
 };
 
-void check_binary(Bytes& bytes, const Header& header, PlainMesh& plain) {
+void check_binary(Bytes& bytes, const Header& header, PolygonMesh& mesh) {
   for (const Element& element : header.elements)
     for (long long i = 0; i < element.count; ++i) {
+      Point3 place = Point3::Zero();
       for (const Property& property : element.properties) {
         if (!property.count) {
           const double value = bytes.scalar(property.value);
@@ -96,7 +97,7 @@ void check_binary(Bytes& bytes, const Header& header, PlainMesh& plain) {
           if (axis < 0) continue;
           if (!(std::abs(value) <= std::numeric_limits<float>::max()))
             bytes.fail(fmt::format("found {}, expected a coordinate that is finite in single precision", value));
-          plain.coordinate(axis, value);
+          place[axis] = float(value);
           continue;
         }
         const double count = bytes.scalar(*property.count);
@@ -112,26 +113,26 @@ void check_binary(Bytes& bytes, const Header& header, PlainMesh& plain) {
           if (!(index >= 0 && index < double(header.vertices)))
             bytes.fail(
                 fmt::format("found '{}', expected the index of a vertex from 0 to {}", index, header.vertices - 1));
-          plain.corner((long long)index);
+          mesh.corners.push_back(int(index));
         }
       }
-      end_element(element, plain);
+      end_element(element, place, mesh);
     }
 }
 
 }  // namespace
 
-std::string plain_ply(const std::string& path, const std::string& content) {
+PolygonMesh read_ply(const std::string& path, const std::string& content) {
   TextLines lines(path, content);
   const Header header = read_header(lines, content.size());
-  PlainMesh plain;
+  PolygonMesh mesh;
   if (header.format == Header::Format::text) {
-    check_text(lines, header, plain);
+    check_text(lines, header, mesh);
   } else {
     Bytes bytes(path, content, lines.rest(), header.format == Header::Format::big_endian);
-    check_binary(bytes, header, plain);
+    check_binary(bytes, header, mesh);
   }
-  return std::move(plain).content();
+  return mesh;
 }
 
 }  // namespace airlight::scene
