@@ -18,11 +18,16 @@ double cone_factor(const SpotLight& spot, double cosine) {
 
 }  // namespace
 
-bool is_delta(const Light& light) { return !std::holds_alternative<EnvironmentLight>(light); }
+bool is_delta(const Light& light) {
+  return match(
+      light, [](const PointLight&) { return true; }, [](const SpotLight&) { return true; },
+      [](const DirectionalLight&) { return true; }, [](const EnvironmentLight&) { return false; });
+}
 
 std::string light_name(const Light& light) {
-  static const char* const names[] = {"point", "spot", "directional", "environment"};
-  return names[light.index()];
+  return match(
+      light, [](const PointLight&) { return "point"; }, [](const SpotLight&) { return "spot"; },
+      [](const DirectionalLight&) { return "directional"; }, [](const EnvironmentLight&) { return "environment"; });
 }
 
 Light moved(const Light& light, const Vec3& by) {
@@ -33,16 +38,27 @@ Light moved(const Light& light, const Vec3& by) {
 }
 
 std::optional<LightBall> ball(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light)) return LightBall{point->position, point->radius};
-  if (const auto* spot = std::get_if<SpotLight>(&light)) return LightBall{spot->position, spot->radius};
-  return std::nullopt;
+  using Ball = std::optional<LightBall>;
+  return match(
+      light,
+      [](const PointLight& point) -> Ball {
+        return LightBall{point.position, point.radius};
+      },
+      [](const SpotLight& spot) -> Ball {
+        return LightBall{spot.position, spot.radius};
+      },
+      [](const DirectionalLight&) -> Ball { return std::nullopt; },
+      [](const EnvironmentLight&) -> Ball { return std::nullopt; });
 }
 
 Rgb intensity_towards(const Light& light, const Vec3& from_light) {
-  if (const auto* point = std::get_if<PointLight>(&light)) return point->intensity;
-  if (const auto* spot = std::get_if<SpotLight>(&light))
-    return spot->intensity * cone_factor(*spot, std::clamp(spot->axis.dot(from_light), -1.0, 1.0));
-  return Rgb::Zero();
+  return match(
+      light, [](const PointLight& point) { return point.intensity; },
+      [&](const SpotLight& spot) -> Rgb {
+        return spot.intensity * cone_factor(spot, std::clamp(spot.axis.dot(from_light), -1.0, 1.0));
+      },
+      [](const DirectionalLight&) -> Rgb { return Rgb::Zero(); },
+      [](const EnvironmentLight&) -> Rgb { return Rgb::Zero(); });
 }
 
 Incident incident(const Light& light, const Point3& x) {

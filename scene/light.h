@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/environment.h"
+#include "scene/kinds.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {
@@ -41,6 +42,12 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentL
 // True for lights that illuminate a point from exactly one direction (all but the environment).
 bool is_delta(const Light&);
 std::string light_name(const Light&);  // "point", "spot", "directional", "environment"
+// Why a renderer that knows no other lights than these cannot render that one; empty if it can.
+template <class... Known>
+std::string unknown_light(const std::vector<Light>& lights, std::size_t i) {
+  const std::string other = unknown_kind<Known...>(lights[i], light_name);
+  return other.empty() ? "" : fmt::format("light {} is {}", i, other);
+}
 
 // What a delta light sends to a point in vacuum.
 struct Incident {

@@ -116,8 +116,9 @@ void move_lights_off_surfaces(Scene& scene) {
     const double seen = (own->center - scene.camera.position).stableNorm();
     const double there = std::max(finite > 0 ? std::min(finite, seen) : seen, 1e-9 * finite);
     const Vec3 shift = shift_off(scene, own->center, on_surface, there, fmt::format("light {}", l));
-    if (auto* point = std::get_if<PointLight>(&scene.lights[l])) point->position += shift;
-    if (auto* spot = std::get_if<SpotLight>(&scene.lights[l])) spot->position += shift;
+    match(
+        scene.lights[l], [&](PointLight& point) { point.position += shift; },
+        [&](SpotLight& spot) { spot.position += shift; }, [](DirectionalLight&) {}, [](EnvironmentLight&) {});
   }
 }
 

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/kinds.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {
 namespace {
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 constexpr double per_sphere = 1 / (4 * pi);
 
@@ -49,51 +43,40 @@ double power8(double x) {
 }  // namespace
 
 double phase_value(const PhaseFunction& phase, double c) {
-  return std::visit(Overloaded{
-                        [](Isotropic) { return per_sphere; },
-                        [c](Rayleigh) { return per_sphere * 0.75 * (1 + c * c); },
-                        [c](HenyeyGreenstein p) {
-                          const double g = p.g;
-                          const double d = (1 - g) * (1 - g) + 2 * g * (1 - c);  // 1 + g^2 - 2 g c, without cancelling
-                          return per_sphere * (1 - g) * (1 + g) / (d * std::sqrt(d));
-                        },
-                        [c](Hazy) { return per_sphere * 0.5 * (1 + 9 * power8(0.5 * (1 + c))); },
-                        [c](Murky) {
-                          const double p8 = power8(0.5 * (1 + c));
-                          const double p32 = (p8 * p8) * (p8 * p8);
-                          return per_sphere * (33.0 / 83.0) * (1 + 50 * p32);
-                        },
-                    },
-                    phase);
+  return match(
+      phase, [](Isotropic) { return per_sphere; }, [c](Rayleigh) { return per_sphere * 0.75 * (1 + c * c); },
+      [c](HenyeyGreenstein p) {
+        const double g = p.g;
+        const double d = (1 - g) * (1 - g) + 2 * g * (1 - c);  // 1 + g^2 - 2 g c, without cancelling
+        return per_sphere * (1 - g) * (1 + g) / (d * std::sqrt(d));
+      },
+      [c](Hazy) { return per_sphere * 0.5 * (1 + 9 * power8(0.5 * (1 + c))); },
+      [c](Murky) {
+        const double p8 = power8(0.5 * (1 + c));
+        const double p32 = (p8 * p8) * (p8 * p8);
+        return per_sphere * (33.0 / 83.0) * (1 + 50 * p32);
+      });
 }
 
 double sample_phase_cosine(const PhaseFunction& phase, double u) {
-  const double c = std::visit(Overloaded{
-                                  [u](Isotropic) { return 2 * u - 1; },
-                                  [u](Rayleigh) { return sample_rayleigh(u); },
-                                  [u](HenyeyGreenstein p) { return sample_hg(p.g, u); },
-                                  [u](Hazy) { return sample_lobe(0.5, 9, u); },
-                                  [u](Murky) { return sample_lobe(33.0 / 83.0, 33, u); },
-                              },
-                              phase);
+  const double c = match(
+      phase, [u](Isotropic) { return 2 * u - 1; }, [u](Rayleigh) { return sample_rayleigh(u); },
+      [u](HenyeyGreenstein p) { return sample_hg(p.g, u); }, [u](Hazy) { return sample_lobe(0.5, 9, u); },
+      [u](Murky) { return sample_lobe(33.0 / 83.0, 33, u); });
   return std::clamp(c, -1.0, 1.0);
 }
 
 double mean_cosine(const PhaseFunction& phase) {
-  return std::visit(Overloaded{
-                        [](Isotropic) { return 0.0; },
-                        [](Rayleigh) { return 0.0; },
-                        [](HenyeyGreenstein p) { return p.g; },
-                        // A lobe of density n/2 ((1+c)/2)^(n-1) has the mean cosine (n-1)/(n+1).
-                        [](Hazy) { return 0.5 * 8.0 / 10.0; },
-                        [](Murky) { return 50.0 / 83.0 * 32.0 / 34.0; },
-                    },
-                    phase);
+  return match(
+      phase, [](Isotropic) { return 0.0; }, [](Rayleigh) { return 0.0; }, [](HenyeyGreenstein p) { return p.g; },
+      // A lobe of density n/2 ((1+c)/2)^(n-1) has the mean cosine (n-1)/(n+1).
+      [](Hazy) { return 0.5 * 8.0 / 10.0; }, [](Murky) { return 50.0 / 83.0 * 32.0 / 34.0; });
 }
 
 std::string phase_name(const PhaseFunction& phase) {
-  static const char* const names[] = {"isotropic", "rayleigh", "hg", "hazy", "murky"};
-  return names[phase.index()];
+  return match(
+      phase, [](Isotropic) { return "isotropic"; }, [](Rayleigh) { return "rayleigh"; },
+      [](HenyeyGreenstein) { return "hg"; }, [](Hazy) { return "hazy"; }, [](Murky) { return "murky"; });
 }
 
 }  // namespace airlight::scene

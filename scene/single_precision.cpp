@@ -46,38 +46,48 @@ class Reasons {
   std::vector<std::string> list_;
 };
 
-void look_at(Reasons& r, const Light& light) {
-  if (const auto* e = std::get_if<EnvironmentLight>(&light)) return r.light(e->scale);
-  if (const auto* d = std::get_if<DirectionalLight>(&light)) return r.light(d->irradiance);
-  const LightBall at = *ball(light);
-  r.place(at.center);
-  r.size("radius", at.radius);
-  std::visit(
-      [&](const auto& l) {
-        if constexpr (requires { l.intensity; }) r.light(l.intensity);
-      },
-      light);
+template <class Lamp>
+void look_at_lamp(Reasons& r, const Lamp& lamp) {
+  r.place(lamp.position);
+  r.size("radius", lamp.radius);
+  r.light(lamp.intensity);
 }
 
-// Its greatest density [-].
-double look_at(Reasons&, const Homogeneous& field) { return field.density; }
-double look_at(Reasons& r, const GaussianSum& sum) {
-  double most = sum.constant;
-  for (const Gaussian& g : sum.gaussians) {
-    r.place(g.center);
-    r.size("width", g.width);
-    most = std::max(most, std::abs(g.amplitude));
-  }
-  return most;
+void look_at(Reasons& r, const Light& light) {
+  match(
+      light, [&](const PointLight& lamp) { look_at_lamp(r, lamp); },
+      [&](const SpotLight& lamp) { look_at_lamp(r, lamp); },
+      [&](const DirectionalLight& sun) { r.light(sun.irradiance); },
+      [&](const EnvironmentLight& environment) { r.light(environment.scale); });
 }
-double look_at(Reasons& r, const std::shared_ptr<const VoxelGrid>& grid) {
-  r.size("voxel", grid->voxel_size);
-  r.box(support(*grid));
-  return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
+
+void look_at(Reasons& r, const DensityField& field) {
+  match(
+      field, [](const Homogeneous&) {},
+      [&](const GaussianSum& sum) {
+        for (const Gaussian& g : sum.gaussians) {
+          r.place(g.center);
+          r.size("width", g.width);
+        }
+      },
+      [&](const GridPointer& grid) {
+        r.size("voxel", grid->voxel_size);
+        r.box(support(*grid));
+      });
+}
+
+void look_at(Reasons& r, const PhaseFunction& phase) {
+  match(
+      phase, [](Isotropic) {}, [](Rayleigh) {},
+      [&](HenyeyGreenstein hg) {
+        if (std::abs(hg.g) > greatest_g) r.add(fmt::format("g = {}, expected at most {} in size", hg.g, greatest_g));
+      },
+      [](Hazy) {}, [](Murky) {});
 }
 
 void look_at(Reasons& r, const Medium& medium, const Point3& camera) {
-  const double density = std::visit([&](const auto& field) { return look_at(r, field); }, medium.field);
+  look_at(r, medium.field);
+  const double density = greatest_density(medium.field);
   for (int c = 0; c < 3; ++c)
     r.within("extinction", medium.sigma_t[c] * density, least_extinction, greatest_extinction, " 1/m");
   double reach = camera.cwiseAbs().maxCoeff();
@@ -88,18 +98,21 @@ void look_at(Reasons& r, const Medium& medium, const Point3& camera) {
   r.within("extinction times the largest coordinate", medium.sigma_t.maxCoeff() * density * reach, 0, greatest_depth,
            "");
   if (!std::holds_alternative<Unbounded>(medium.region)) r.box(bounding_box(medium.region));
-  if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase))
-    if (std::abs(hg->g) > greatest_g) r.add(fmt::format("g = {}, expected at most {} in size", hg->g, greatest_g));
+  look_at(r, medium.phase);
 }
 
 void look_at(Reasons& r, const Surface& surface) {
-  if (const auto* mesh = std::get_if<TriangleMesh>(&surface.shape))
-    for (const Point3& x : mesh->vertices) r.place(x);
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape))
-    r.place(sphere->center), r.size("radius", sphere->radius);
-  if (const auto* plane = std::get_if<Plane>(&surface.shape)) r.place(plane->point);
-  if (const auto* phong = std::get_if<Phong>(&surface.material))
-    r.within("exponent", phong->exponent, 0, greatest_exponent, "");
+  match(
+      surface.shape,
+      [&](const TriangleMesh& mesh) {
+        for (const Point3& x : mesh.vertices) r.place(x);
+      },
+      [&](const Sphere& sphere) { r.place(sphere.center), r.size("radius", sphere.radius); },
+      [&](const Plane& plane) { r.place(plane.point); });
+  match(
+      surface.material, [](const Lambert&) {},
+      [&](const Phong& phong) { r.within("exponent", phong.exponent, 0, greatest_exponent, ""); },
+      [](const Tabulated&) {});
 }
 
 template <class List>

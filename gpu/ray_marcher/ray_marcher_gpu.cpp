@@ -172,12 +172,16 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;
-  for (const scene::Medium& medium : scene.media) {
-    if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
-      negative = negative || std::any_of(sum->gaussians.begin(), sum->gaussians.end(),
-                                         [](const scene::Gaussian& g) { return g.amplitude < 0; });
-    else
-      grid = grid || !std::holds_alternative<scene::Homogeneous>(medium.field);
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    const std::string why =
+        scene::unknown_field<scene::Homogeneous, scene::GaussianSum, scene::GridPointer>(scene.media, i);
+    if (!why.empty()) reasons.push_back(why);
+    scene::match(
+        scene.media[i].field, [](const scene::Homogeneous&) {},
+        [&](const scene::GaussianSum& sum) {
+          for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
+        },
+        [&](const scene::GridPointer&) { grid = true; });
   }
   if (options.exact_shadow && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",

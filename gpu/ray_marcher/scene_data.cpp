@@ -62,24 +62,28 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
     const ray_marcher::PhaseShape phase = ray_marcher::phase_shape(layer.medium->phase);
     d.phase = int(phase.kind);
     d.g = phase.g;
-    if (layer.grid) {
-      const ray_marcher::GridField& grid = *layer.grid;
-      d.field = 1;
-      d.field_frame = frame_data(grid.frame, middle);
-      d.lo = float3(grid.lo), d.hi = float3(grid.hi);
-      d.first = int(textures ? grids : values), d.first_brick = int(bricks);
-      d.size = {grid.size[0], grid.size[1], grid.size[2]};
-      d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
-      values += samples(grid), bricks += grid.free_distance.size(), ++grids;
-    } else if (layer.gaussians) {
-      const ray_marcher::GaussianField& field = *layer.gaussians;
-      d.field = 2;
-      d.field_frame = frame_data(field.frame, middle);
-      d.lo = float3(field.lo), d.hi = float3(field.hi);
-      d.first = int(gaussians), d.count = int(field.count);
-      d.negative = field.any_negative;
-      gaussians += field.count;
-    }
+    scene::match(
+        layer.medium->field, [](const scene::Homogeneous&) {},
+        [&](const scene::GaussianSum&) {
+          if (!layer.varies) return;
+          const ray_marcher::GaussianField& field = *layer.gaussians;
+          d.field = 2;
+          d.field_frame = frame_data(field.frame, middle);
+          d.lo = float3(field.lo), d.hi = float3(field.hi);
+          d.first = int(gaussians), d.count = int(field.count);
+          d.negative = field.any_negative;
+          gaussians += field.count;
+        },
+        [&](const scene::GridPointer&) {
+          const ray_marcher::GridField& grid = *layer.grid;
+          d.field = 1;
+          d.field_frame = frame_data(grid.frame, middle);
+          d.lo = float3(grid.lo), d.hi = float3(grid.hi);
+          d.first = int(textures ? grids : values), d.first_brick = int(bricks);
+          d.size = {grid.size[0], grid.size[1], grid.size[2]};
+          d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
+          values += samples(grid), bricks += grid.free_distance.size(), ++grids;
+        });
     data.push_back(d);
   }
   return data;

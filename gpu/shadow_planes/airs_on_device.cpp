@@ -11,6 +11,7 @@
 namespace airlight::gpu {
 namespace {
 
+using shadow_planes::extinction_of;
 using shadow_planes::Options;
 
 // The layout of media.glsl.
@@ -22,20 +23,23 @@ struct MediumData {
   int unused;
 };
 
-Rgb extinction_of(const scene::Medium& medium) {
-  return medium.sigma_t * std::get<scene::Homogeneous>(medium.field).density;
-}
-
 // What a region is made of, as media.glsl.
 struct RegionNumbers {
   int kind;
   Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();
 };
 RegionNumbers numbers(const scene::Region& region) {
-  if (const auto* box = std::get_if<Box>(&region)) return {1, box->lo, box->hi};
-  if (const auto* sphere = std::get_if<scene::Sphere>(&region)) return {2, sphere->center, Vec3(sphere->radius, 0, 0)};
-  if (const auto* slab = std::get_if<scene::Slab>(&region)) return {3, slab->normal, Vec3(slab->lo, slab->hi, 0)};
-  return {0};
+  return scene::match(
+      region, [](const scene::Unbounded&) { return RegionNumbers{0}; },
+      [](const Box& box) {
+        return RegionNumbers{1, box.lo, box.hi};
+      },
+      [](const scene::Sphere& ball) {
+        return RegionNumbers{2, ball.center, Vec3(ball.radius, 0, 0)};
+      },
+      [](const scene::Slab& slab) {
+        return RegionNumbers{3, slab.normal, Vec3(slab.lo, slab.hi, 0)};
+      });
 }
 
 std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {

@@ -5,31 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/error.h"
+
 namespace airlight::fogshop {
 namespace {
 
 using scene::GaussianSum;
+using scene::GridPointer;
 using scene::Homogeneous;
 using scene::Medium;
-
-bool extinguishes(const Medium& medium) {
-  if (!(medium.sigma_t > 0).any()) return false;
-  if (const auto* fog = std::get_if<Homogeneous>(&medium.field)) return fog->density > 0;
-  if (const auto* sum = std::get_if<GaussianSum>(&medium.field)) return !sum->gaussians.empty() || sum->constant > 0;
-  return true;
-}
-
-std::string label(const std::vector<Medium>& media, std::size_t i) {
-  return media[i].name.empty() ? fmt::format("medium {}", i) : fmt::format("medium '{}'", media[i].name);
-}
-
-std::string objection_to_field(const Medium& medium) {
-  if (std::holds_alternative<Homogeneous>(medium.field)) return "";
-  const auto* sum = std::get_if<GaussianSum>(&medium.field);
-  if (!sum) return fmt::format("is a {}, not a sum of Gaussians", field_name(medium.field));
-  if (sum->cutoff < 6)
-    return fmt::format("cuts its Gaussians at {} widths, and this method's have no end", sum->cutoff);
-  if (std::any_of(sum->gaussians.begin(), sum->gaussians.end(), [](const auto& g) { return g.amplitude < 0; }))
+std::string objection_to(const GaussianSum& sum) {
+  if (sum.cutoff < 6) return fmt::format("cuts its Gaussians at {} widths, and this method's have no end", sum.cutoff);
+  if (std::any_of(sum.gaussians.begin(), sum.gaussians.end(), [](const auto& g) { return g.amplitude < 0; }))
     return "has a Gaussian of negative amplitude, and densities here cannot be clamped at 0";
   return "";
 }
@@ -43,7 +30,11 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
     const Medium& medium = media[i];
     if (!extinguishes(medium)) continue;
     const auto object = [&](const std::string& why) { reasons.push_back(label(media, i) + " " + why); };
-    const std::string why = objection_to_field(medium);
+    if (const std::string why = scene::unknown_field<Homogeneous, GaussianSum>(media, i); !why.empty())
+      reasons.push_back(why);
+    const std::string why = scene::match(
+        medium.field, [](const Homogeneous&) { return std::string(); },
+        [](const GaussianSum& sum) { return objection_to(sum); }, [](const GridPointer&) { return std::string(); });
     if (!why.empty()) object(why);
     if (!std::holds_alternative<scene::Unbounded>(medium.region))
       object("is bounded, and the closed forms know no boundary");
@@ -79,17 +70,17 @@ Fog make_fog(const std::vector<Medium>& media) {
       from_constant += extinction * medium.albedo;
       constant_albedos.push_back(medium.albedo);
     };
-    if (const auto* homogeneous = std::get_if<Homogeneous>(&medium.field)) {
-      add_constant(strength * homogeneous->density);
-      continue;
-    }
-    const GaussianSum& sum = std::get<GaussianSum>(medium.field);
-    add_constant(strength * sum.constant);
-    for (scene::Gaussian g : sum.gaussians) {
-      g.amplitude *= strength;
-      fog.sum.gaussians.push_back(g);
-      albedos.push_back(medium.albedo);
-    }
+    add_constant(strength * constant_part(medium.field));
+    scene::match(
+        medium.field, [](const Homogeneous&) {},
+        [&](const GaussianSum& sum) {
+          for (scene::Gaussian g : sum.gaussians) {
+            g.amplitude *= strength;
+            fog.sum.gaussians.push_back(g);
+            albedos.push_back(medium.albedo);
+          }
+        },
+        [](const GridPointer&) { throw Error("fogshop: a grid, in spite of its objections"); });
   }
   const auto differs = [&](const Rgb& albedo) { return ((albedo - fog.albedo).abs() > 1e-12).any(); };
   if (std::none_of(albedos.begin(), albedos.end(), differs) &&

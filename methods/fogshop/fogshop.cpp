@@ -154,10 +154,9 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   const Options options = read_options(settings);
   std::vector<std::string> reasons = objections(scene.media);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (!std::holds_alternative<scene::PointLight>(scene.lights[i]) &&
-        !std::holds_alternative<scene::EnvironmentLight>(scene.lights[i]))
-      reasons.push_back(fmt::format("light {} is a {} light, expected point and environment lights", i,
-                                    scene::light_name(scene.lights[i])));
+    if (const std::string why = scene::unknown_light<scene::PointLight, scene::EnvironmentLight>(scene.lights, i);
+        !why.empty())
+      reasons.push_back(why);
   if (options.sky_volume && reasons.empty() && make_fog(scene.media).sum.constant > 0)
     reasons.push_back("environment_airlight = volume is for Gaussians alone, and the medium has a constant");
   if (options.sky_volume && options.noise_scale > 0 && options.variant == Options::Variant::paper)

@@ -29,7 +29,7 @@ LitAirlight::LitAirlight(const std::vector<scene::Medium>& media, const Options&
   if (!alone_) return;
   const scene::Medium& medium = media.front();
   phase_ = phase_form(medium.phase, options.printed_phases);
-  extinction_ = medium.sigma_t * std::get<scene::Homogeneous>(medium.field).density;
+  extinction_ = extinction_of(medium);
   albedo_ = medium.albedo;
 }
 

@@ -128,13 +128,12 @@ std::string silhouettes_found(std::size_t edges, std::size_t lights) {
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < scene.media.size(); ++i)
-    if (!std::holds_alternative<scene::Homogeneous>(scene.media[i].field))
-      reasons.push_back(
-          fmt::format("medium {} is {}, expected homogeneous media", i, field_name(scene.media[i].field)));
+    if (const std::string why = scene::unknown_field<scene::Homogeneous>(scene.media, i); !why.empty())
+      reasons.push_back(why);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (!scene::ball(scene.lights[i]))
-      reasons.push_back(
-          fmt::format("light {} is a {} light, expected point and spot lights", i, light_name(scene.lights[i])));
+    if (const std::string why = scene::unknown_light<scene::PointLight, scene::SpotLight>(scene.lights, i);
+        !why.empty())
+      reasons.push_back(why);
   const Point3& camera = scene.camera.position;
   const auto around_camera = [&](const scene::Medium& medium) {
     return (medium.sigma_t > 0).any() && contains(medium.region, camera);
@@ -179,5 +178,7 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
   }
   return reasons;
 }
+
+Rgb extinction_of(const scene::Medium& medium) { return medium.sigma_t * homogeneous_density(medium.field).value(); }
 
 }  // namespace airlight::shadow_planes

@@ -46,4 +46,7 @@ std::string silhouettes_found(std::size_t edges, std::size_t lights);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
 std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
 
+// Of a medium in a scene against which there are no reasons: it is homogeneous [1/m].
+Rgb extinction_of(const scene::Medium&);
+
 }  // namespace airlight::shadow_planes

@@ -32,7 +32,7 @@ double mean_distance(const scene::Region& region) {
 PaperMedium::PaperMedium(const scene::Medium& medium, const Options& options)
     : options_(options),
       region_(medium.region),
-      extinction_(medium.sigma_t * std::get<scene::Homogeneous>(medium.field).density),
+      extinction_(extinction_of(medium)),
       albedo_(medium.albedo),
       phase_(phase_form(medium.phase, options.printed_phases)),
       R_(mean_distance(medium.region)),

@@ -1,5 +1,7 @@
 #include "methods/shadow_planes/phase_form.h"
 
+#include "scene/kinds.h"
+
 namespace airlight::shadow_planes {
 
 double PhaseForm::width() const {
@@ -17,11 +19,20 @@ double PhaseForm::width() const {
 
 PhaseForm phase_form(const scene::PhaseFunction& phase, bool printed) {
   using Kind = PhaseForm::Kind;
-  if (std::holds_alternative<scene::Rayleigh>(phase)) return {Kind::rayleigh, 0, 1};
-  if (std::holds_alternative<scene::Hazy>(phase)) return {Kind::hazy, 0, printed ? 1 : 0.5};
-  if (std::holds_alternative<scene::Murky>(phase)) return {Kind::murky, 0, printed ? 1 : 33.0 / 83};
-  if (const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase)) return {Kind::henyey_greenstein, hg->g, 1};
-  return {};
+  return scene::match(
+      phase, [](scene::Isotropic) { return PhaseForm{}; },
+      [](scene::Rayleigh) {
+        return PhaseForm{Kind::rayleigh, 0, 1};
+      },
+      [](scene::HenyeyGreenstein hg) {
+        return PhaseForm{Kind::henyey_greenstein, hg.g, 1};
+      },
+      [&](scene::Hazy) {
+        return PhaseForm{Kind::hazy, 0, printed ? 1 : 0.5};
+      },
+      [&](scene::Murky) {
+        return PhaseForm{Kind::murky, 0, printed ? 1 : 33.0 / 83};
+      });
 }
 
 }  // namespace airlight::shadow_planes

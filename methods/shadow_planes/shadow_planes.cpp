@@ -44,9 +44,8 @@ class PreparedShadowPlanes final : public scene::Prepared {
   PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options)
       : scene_(std::move(scene)), options_(options) {
     const bool lit = !scene_->lights.empty();
-    const bool medium = std::any_of(scene_->media.begin(), scene_->media.end(), [](const scene::Medium& m) {
-      return (m.sigma_t * std::get<scene::Homogeneous>(m.field).density > 0).any();
-    });
+    const bool medium = std::any_of(scene_->media.begin(), scene_->media.end(),
+                                    [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); });
     needs_ = {medium, medium && lit && !scene_->surfaces.empty() && options.shadows != Options::Shadows::none,
               lit && !scene_->surfaces.empty()};
     scene::Stopwatch watch;

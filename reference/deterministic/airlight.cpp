@@ -70,8 +70,10 @@ struct AirlightIntegrator::Impl {
   Impl(const Scene& s, const Accuracy& a)
       : scene(s), accuracy(a), depth_error(1e-3 * std::max(a.relative_tolerance, 1e-13)), tables(s.media.size()) {
     for (std::size_t m = 0; m < scene.media.size(); ++m)
-      if (const auto* sum = std::get_if<scene::GaussianSum>(&scene.media[m].field))
-        tables[m] = make_gaussian_table(*sum);
+      tables[m] = scene::match(
+          scene.media[m].field, [](const scene::Homogeneous&) { return std::optional<GaussianTable>(); },
+          [](const scene::GaussianSum& sum) { return make_gaussian_table(sum); },
+          [](const scene::GridPointer&) { return std::optional<GaussianTable>(); });
     if (scene.geometry) shadows = std::make_unique<ShadowFinder>(*scene.geometry, 256);
   }
 

@@ -8,6 +8,7 @@ namespace airlight::deterministic {
 namespace {
 
 using scene::GaussianSum;
+using scene::GridPointer;
 using scene::Homogeneous;
 using scene::Medium;
 using scene::VoxelGrid;
@@ -191,25 +192,25 @@ class GridAlongRay final : public DensityAlongRay {
   double total_ = 0;
 };
 
-// Any other field, by its own functions: slower, and with no features but its ends.
-class FieldAlongRay final : public DensityAlongRay {
+// Gaussians of which some are negative: no sum of single integrals, since the density is clamped at 0. Slower.
+class ClampedGaussiansAlongRay final : public DensityAlongRay {
  public:
-  FieldAlongRay(Interval extent, const Medium& medium, const Ray& ray)
-      : DensityAlongRay(extent), medium_(medium), ray_(ray) {}
-  double density(double t) const override { return scene::density(medium_.field, ray_.at(t)); }
+  ClampedGaussiansAlongRay(Interval extent, const Medium& medium, const GaussianSum& sum, const Ray& ray)
+      : DensityAlongRay(extent), medium_(medium), sum_(sum), ray_(ray) {}
+  double density(double t) const override { return scene::density(sum_, ray_.at(t)); }
   double integral(double t) const override { return scene::density_integral(medium_, ray_, {0, t}); }
   void add_features(std::vector<Feature>& features) const override {
     features.push_back({extent_.lo, 0});
     features.push_back({extent_.hi, 0});
-    if (const auto* sum = std::get_if<GaussianSum>(&medium_.field))
-      for (const scene::Gaussian& g : sum->gaussians) {
-        const double center = (g.center - ray_.origin).dot(ray_.direction);
-        for (const double k : {-2.4, -1.2, 0.0, 1.2, 2.4}) features.push_back({center + k * g.width, g.width});
-      }
+    for (const scene::Gaussian& g : sum_.gaussians) {
+      const double center = (g.center - ray_.origin).dot(ray_.direction);
+      for (const double k : {-2.4, -1.2, 0.0, 1.2, 2.4}) features.push_back({center + k * g.width, g.width});
+    }
   }
 
  private:
   const Medium& medium_;
+  const GaussianSum& sum_;
   Ray ray_;
 };
 
@@ -222,17 +223,19 @@ std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const G
   // finite.
   const Interval inside = scene::extent(medium, ray, {0, t_end});
   if (inside.empty()) return nullptr;
-  if (const auto* homogeneous = std::get_if<Homogeneous>(&medium.field)) {
-    if (!(homogeneous->density > 0)) return nullptr;
-    return std::make_unique<HomogeneousAlongRay>(inside, homogeneous->density);
-  }
-  if (table) {
-    if (table->size() == 0 && table->constant == 0) return nullptr;
-    return std::make_unique<GaussiansAlongRay>(inside, *table, ray, cull, medium.sigma_t.maxCoeff());
-  }
-  if (const auto* grid = std::get_if<std::shared_ptr<const VoxelGrid>>(&medium.field))
-    return std::make_unique<GridAlongRay>(inside, **grid, ray);
-  return std::make_unique<FieldAlongRay>(inside, medium, ray);
+  using Result = std::unique_ptr<DensityAlongRay>;
+  return scene::match(
+      medium.field,
+      [&](const Homogeneous& uniform) -> Result {
+        if (!(uniform.density > 0)) return nullptr;
+        return std::make_unique<HomogeneousAlongRay>(inside, uniform.density);
+      },
+      [&](const GaussianSum& sum) -> Result {
+        if (!table) return std::make_unique<ClampedGaussiansAlongRay>(inside, medium, sum, ray);
+        if (table->size() == 0 && table->constant == 0) return nullptr;
+        return std::make_unique<GaussiansAlongRay>(inside, *table, ray, cull, medium.sigma_t.maxCoeff());
+      },
+      [&](const GridPointer& grid) -> Result { return std::make_unique<GridAlongRay>(inside, *grid, ray); });
 }
 
 }  // namespace airlight::deterministic

@@ -126,18 +126,24 @@ void add_cone(const LightPlane& plane, const scene::SpotLight& spot, std::vector
 }
 
 void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vector<double>& t) {
-  if (const auto* box = std::get_if<Box>(&medium.region)) add_box(plane, corners(box->lo, box->hi), t);
-  if (const auto* sphere = std::get_if<scene::Sphere>(&medium.region))
-    add_tangents(plane, sphere->center, sphere->radius, t);
-  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field); sum && sum->cutoff < infinity)
-    for (const scene::Gaussian& g : sum->gaussians) add_tangents(plane, g.center, sum->cutoff * g.width, t);
-  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
-    if ((*grid)->size.minCoeff() == 0) return;
-    const double margin = (*grid)->clamp_border ? 0.5 : 1;
-    auto corner = corners(Point3::Constant(-margin), (*grid)->size.cast<double>() + Vec3::Constant(margin - 1));
-    for (Point3& c : corner) c = scene::sample_to_world(**grid, c);
-    add_box(plane, corner, t);
-  }
+  scene::match(
+      medium.region, [](const scene::Unbounded&) {},
+      [&](const Box& box) { add_box(plane, corners(box.lo, box.hi), t); },
+      [&](const scene::Sphere& sphere) { add_tangents(plane, sphere.center, sphere.radius, t); },
+      [](const scene::Slab&) {});
+  scene::match(
+      medium.field, [](const scene::Homogeneous&) {},
+      [&](const scene::GaussianSum& sum) {
+        if (!(sum.cutoff < infinity)) return;
+        for (const scene::Gaussian& g : sum.gaussians) add_tangents(plane, g.center, sum.cutoff * g.width, t);
+      },
+      [&](const scene::GridPointer& grid) {
+        if (grid->size.minCoeff() == 0) return;
+        const double margin = grid->clamp_border ? 0.5 : 1;
+        auto corner = corners(Point3::Constant(-margin), grid->size.cast<double>() + Vec3::Constant(margin - 1));
+        for (Point3& c : corner) c = scene::sample_to_world(*grid, c);
+        add_box(plane, corner, t);
+      });
 }
 
 void add_gaussian_shadows(const LightPlane& plane, const GaussianTable& table, double sigma, double skip,

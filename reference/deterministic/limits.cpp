@@ -37,13 +37,15 @@ Cost cost(const scene::GaussianSum& sum, const Box& box) {
 }
 
 Cost cost(const scene::Medium& medium) {
-  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
-    return cost(*sum, intersect(scene::support(medium.field), scene::bounding_box(medium.region)));
-  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
-    const double voxels = (*grid)->size.cast<double>().sum();  // met by a ray at most
-    return {voxels / 2, voxels};                               // panels of a shorter rule
-  }
-  return {};
+  return scene::match(
+      medium.field, [](const scene::Homogeneous&) { return Cost{}; },
+      [&](const scene::GaussianSum& sum) {
+        return cost(sum, intersect(scene::support(medium.field), scene::bounding_box(medium.region)));
+      },
+      [](const scene::GridPointer& grid) {
+        const double voxels = grid->size.cast<double>().sum();  // met by a ray at most
+        return Cost{voxels / 2, voxels};                        // panels of a shorter rule
+      });
 }
 
 }  // namespace

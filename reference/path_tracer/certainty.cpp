@@ -11,18 +11,18 @@ namespace {
 constexpr double few = 4;
 
 bool shines(const scene::Light& light, int c) {
-  if (const auto* point = std::get_if<scene::PointLight>(&light)) return point->intensity[c] > 0;
-  if (const auto* spot = std::get_if<scene::SpotLight>(&light)) return spot->intensity[c] > 0;
-  if (const auto* sun = std::get_if<scene::DirectionalLight>(&light)) return sun->irradiance[c] > 0;
-  return std::get<scene::EnvironmentLight>(light).scale[c] > 0;
+  return scene::match(
+      light, [c](const scene::PointLight& point) { return point.intensity[c] > 0; },
+      [c](const scene::SpotLight& spot) { return spot.intensity[c] > 0; },
+      [c](const scene::DirectionalLight& sun) { return sun.irradiance[c] > 0; },
+      [c](const scene::EnvironmentLight& environment) { return environment.scale[c] > 0; });
 }
 
 bool reflects(const scene::Material& material, int c) {
-  if (const auto* lambert = std::get_if<scene::Lambert>(&material)) return lambert->albedo[c] > 0;
-  if (const auto* tabulated = std::get_if<scene::Tabulated>(&material))
-    return tabulated->table->greatest_albedo()[c] > 0;
-  const auto& phong = std::get<scene::Phong>(material);
-  return phong.diffuse[c] + phong.specular[c] > 0;
+  return scene::match(
+      material, [c](const scene::Lambert& lambert) { return lambert.albedo[c] > 0; },
+      [c](const scene::Phong& phong) { return phong.diffuse[c] + phong.specular[c] > 0; },
+      [c](const scene::Tabulated& tabulated) { return tabulated.table->greatest_albedo()[c] > 0; });
 }
 
 }  // namespace

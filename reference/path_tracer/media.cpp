@@ -117,49 +117,45 @@ void prepare_grid(TrackedMedium& tracked, const scene::VoxelGrid& grid, const Op
                                      [&](const Box& cell) { return scene::density_bounds_at_samples(grid, cell).hi; });
 }
 
-TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
-  TrackedMedium tracked;
-  tracked.medium = &medium;
-  if (const auto* field = std::get_if<scene::Homogeneous>(&medium.field)) {
-    tracked.homogeneous = true;
-    tracked.constant = field->density;
-    return tracked;
-  }
-  if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field)) {
-    prepare_grid(tracked, **grid, options);
-    return tracked;
-  }
+// Cells around the Gaussians, sixteen along each side.
+void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, const Options& options) {
+  const scene::Medium& medium = *tracked.medium;
   const double scale = options.majorant_scale;
   const Eigen::Vector3i cells = Eigen::Vector3i::Constant(cells_along(16, 1, options));
   const Box all{Point3::Constant(-infinity), Point3::Constant(infinity)};
   const Box box = intersect(scene::support(medium.field), scene::bounding_box(medium.region));
-  const bool bounded = (box.size().array() < infinity).all();
-  // The bound of the field where the grid is not: everywhere, if there is no box to put a grid on.
-  if (!bounded) {
-    tracked.majorants.outside = round_up(scale * scene::density_bounds(medium.field, all).hi);
+  const auto bound = [&](const Box& cell) { return scene::density_bounds(sum, cell).hi; };
+  if ((box.size().array() < infinity).all()) {
+    if (!box.empty() && (box.size().array() > 0).all()) tracked.majorants = make_supergrid(box, cells, scale, bound);
+    return;
   }
-  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field); sum && !bounded) {
-    // A constant without bounds around bounded Gaussians: a grid on these, and a bound for the six half-spaces around.
-    scene::GaussianSum peaks = *sum;
-    peaks.constant = 0;
-    const Box core = intersect(scene::support(scene::DensityField(peaks)), scene::bounding_box(medium.region));
-    if (!core.empty() && (core.size().array() > 0).all() && (core.size().array() < infinity).all()) {
-      double around = 0;
-      for (int a = 0; a < 3; ++a) {
-        Box below = all, above = all;
-        below.hi[a] = core.lo[a];
-        above.lo[a] = core.hi[a];
-        around = std::max(
-            {around, scene::density_bounds(medium.field, below).hi, scene::density_bounds(medium.field, above).hi});
-      }
-      tracked.majorants = make_supergrid(core, cells, scale,
-                                         [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
-      tracked.majorants.outside = round_up(scale * around);
-    }
-  } else if (bounded && !box.empty() && (box.size().array() > 0).all()) {
-    tracked.majorants = make_supergrid(box, cells, scale,
-                                       [&](const Box& cell) { return scene::density_bounds(medium.field, cell).hi; });
+  // The bound where the grid is not: everywhere, if there is no box to put a grid on.
+  tracked.majorants.outside = round_up(scale * bound(all));
+  // A constant without bounds around bounded Gaussians: a grid on these, and a bound for the six half-spaces around.
+  const Box core = intersect(scene::support(sum), scene::bounding_box(medium.region));
+  if (core.empty() || !(core.size().array() > 0).all() || !(core.size().array() < infinity).all()) return;
+  double around = 0;
+  for (int a = 0; a < 3; ++a) {
+    Box below = all, above = all;
+    below.hi[a] = core.lo[a];
+    above.lo[a] = core.hi[a];
+    around = std::max({around, bound(below), bound(above)});
   }
+  tracked.majorants = make_supergrid(core, cells, scale, bound);
+  tracked.majorants.outside = round_up(scale * around);
+}
+
+TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
+  TrackedMedium tracked;
+  tracked.medium = &medium;
+  scene::match(
+      medium.field,
+      [&](const scene::Homogeneous& uniform) {
+        tracked.homogeneous = true;
+        tracked.constant = uniform.density;
+      },
+      [&](const scene::GaussianSum& sum) { prepare_gaussians(tracked, sum, options); },
+      [&](const scene::GridPointer& grid) { prepare_grid(tracked, *grid, options); });
   return tracked;
 }
 

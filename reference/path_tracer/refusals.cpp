@@ -36,6 +36,14 @@ double thinnest_depth(const scene::Medium& medium, int c) {
   return least > 0 ? medium.sigma_t[c] * least : 0;
 }
 
+// Of which a density is the sum, beside a constant.
+double terms_of(const scene::DensityField& field) {
+  return scene::match(
+      field, [](const scene::Homogeneous&) { return 0.0; },
+      [](const scene::GaussianSum& sum) { return double(sum.gaussians.size()); },
+      [](const scene::GridPointer&) { return 0.0; });
+}
+
 // Terms of density that a render sums up, to an order of magnitude: one for each Gaussian at each collision. Paths
 // scatter as often as absorption lets them, and no more often than twice the depth in the thinnest direction (the mean
 // chord's theorem: 4 int scattering dV / surface, which is exact for a slab).
@@ -51,7 +59,7 @@ double work(const scene::Scene& scene, const Options& options) {
     if (options.max_order >= 0) most = std::min(most, double(options.max_order));
     if (options.paths != Options::Paths::all) most = std::min(most, 1.0);  // they end after one scattering
     collisions += most;
-    if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field)) terms += double(sum->gaussians.size());
+    terms += terms_of(medium.field);
   }
   return double(scene.width) * scene.height * double(options.samples) * collisions * terms;
 }
@@ -67,21 +75,22 @@ Majorants majorants(const scene::Scene& scene, const Options& options) {
   if (!options.supergrid) return all;
   const double cells = std::pow(options.supergrid_cells > 0 ? options.supergrid_cells : 16, 3);
   for (const scene::Medium& medium : scene.media) {
-    const auto* sum = std::get_if<scene::GaussianSum>(&medium.field);
-    if (std::holds_alternative<scene::Homogeneous>(medium.field) || (!sum && options.supergrid_cells == 0)) continue;
+    const bool counted = scene::match(
+        medium.field, [](const scene::Homogeneous&) { return false; }, [](const scene::GaussianSum&) { return true; },
+        [&](const scene::GridPointer&) { return options.supergrid_cells > 0; });
+    if (!counted) continue;
     ++all.media;
     all.cells += cells;
-    if (sum) all.terms += cells * double(sum->gaussians.size());
+    all.terms += cells * terms_of(medium.field);
   }
   return all;
 }
 
 bool reflects_all(const scene::Material& material, int c) {
-  if (const auto* lambert = std::get_if<scene::Lambert>(&material)) return lambert->albedo[c] >= 1;
-  if (const auto* tabulated = std::get_if<scene::Tabulated>(&material))
-    return tabulated->table->greatest_albedo()[c] >= 1;
-  const auto& phong = std::get<scene::Phong>(material);
-  return phong.diffuse[c] + phong.specular[c] >= 1;
+  return scene::match(
+      material, [c](const scene::Lambert& lambert) { return lambert.albedo[c] >= 1; },
+      [c](const scene::Phong& phong) { return phong.diffuse[c] + phong.specular[c] >= 1; },
+      [c](const scene::Tabulated& tabulated) { return tabulated.table->greatest_albedo()[c] >= 1; });
 }
 
 // Do all rays from the point end on surfaces that reflect everything in channel c?

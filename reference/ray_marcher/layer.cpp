@@ -34,64 +34,60 @@ std::shared_ptr<const GaussianField> make_gaussian_field(const scene::GaussianSu
 
 // A region in a frame of its own, around its middle, where float has digits to spare.
 void set_shape(Layer& layer) {
-  if (const auto* box = std::get_if<Box>(&layer.medium->region)) {
-    layer.shape.kind = LocalShape::box;
-    for (int i = 0; i < 3; ++i) {
-      layer.shape_frame.b[i] = -box->center()[i];
-      layer.shape.half[i] = float(0.5 * box->size()[i]);
-    }
-  } else if (const auto* sphere = std::get_if<scene::Sphere>(&layer.medium->region)) {
-    layer.shape.kind = LocalShape::sphere;
-    for (int i = 0; i < 3; ++i) {
-      layer.shape_frame.m[4 * i] = 1 / sphere->radius;
-      layer.shape_frame.b[i] = -sphere->center[i] / sphere->radius;
-    }
-  } else if (const auto* slab = std::get_if<scene::Slab>(&layer.medium->region)) {
-    layer.shape.kind = LocalShape::slab;
-    for (int i = 0; i < 3; ++i) layer.shape_frame.m[i] = slab->normal[i];
-    layer.shape_frame.b[0] = -0.5 * (slab->lo + slab->hi);
-    layer.shape.half[0] = float(0.5 * (slab->hi - slab->lo));
-  }
+  scene::match(
+      layer.medium->region, [](const scene::Unbounded&) {},
+      [&](const Box& box) {
+        layer.shape.kind = LocalShape::box;
+        for (int i = 0; i < 3; ++i) {
+          layer.shape_frame.b[i] = -box.center()[i];
+          layer.shape.half[i] = float(0.5 * box.size()[i]);
+        }
+      },
+      [&](const scene::Sphere& sphere) {
+        layer.shape.kind = LocalShape::sphere;
+        for (int i = 0; i < 3; ++i) {
+          layer.shape_frame.m[4 * i] = 1 / sphere.radius;
+          layer.shape_frame.b[i] = -sphere.center[i] / sphere.radius;
+        }
+      },
+      [&](const scene::Slab& slab) {
+        layer.shape.kind = LocalShape::slab;
+        for (int i = 0; i < 3; ++i) layer.shape_frame.m[i] = slab.normal[i];
+        layer.shape_frame.b[0] = -0.5 * (slab.lo + slab.hi);
+        layer.shape.half[0] = float(0.5 * (slab.hi - slab.lo));
+      });
+}
+
+// What varies, and its kernel.
+void set_varied(Layer& layer) {
+  const Box box = varied_support(layer.medium->field);
+  scene::match(
+      layer.medium->field, [&](const scene::Homogeneous&) { layer.varies = false; },
+      [&](const scene::GaussianSum& sum) {
+        layer.varies = !sum.gaussians.empty();
+        if (layer.varies) layer.gaussians = make_gaussian_field(sum, box);
+      },
+      [&](const scene::GridPointer& grid) {
+        layer.varies = true;
+        layer.grid = make_grid_field(*grid);
+      });
+  if (!layer.varies) return;
+  layer.varied = box;
+  const Box inside = intersect(box, bounding_box(*layer.medium));
+  layer.most_varied = inside.empty() ? 0 : density_bounds(*layer.medium, inside).hi - layer.constant;
 }
 
 }  // namespace
 
-bool is_visible(const scene::Medium& medium) {
-  if ((medium.sigma_t <= 0).all()) return false;
-  if (const auto* uniform = std::get_if<scene::Homogeneous>(&medium.field)) return uniform->density > 0;
-  if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field))
-    return sum->constant > 0 || !sum->gaussians.empty();
-  return !support(medium.field).empty();
-}
-
 std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
   std::vector<Layer> layers;
   for (const scene::Medium& medium : media) {
-    if (!is_visible(medium)) continue;
-    Layer layer{&medium, 0, true, scene::Unbounded{}, nullptr, nullptr, {}, {}, 0, 0};
+    if (!extinguishes(medium)) continue;
+    Layer layer{};
+    layer.medium = &medium;
+    layer.constant = constant_part(medium.field);
     set_shape(layer);
-    if (const auto* uniform = std::get_if<scene::Homogeneous>(&medium.field)) {
-      layer.constant = uniform->density;
-      layer.varies = false;
-    } else if (const auto* sum = std::get_if<scene::GaussianSum>(&medium.field)) {
-      layer.constant = sum->constant;
-      layer.varies = !sum->gaussians.empty();
-      if (layer.varies) {
-        scene::GaussianSum varied = *sum;
-        varied.constant = 0;
-        const Box box = support(varied);
-        layer.varied = box;
-        layer.gaussians = make_gaussian_field(*sum, box);
-      }
-    } else {
-      layer.varied = support(medium.field);
-      if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
-        layer.grid = make_grid_field(**grid);
-    }
-    if (layer.varies) {
-      const Box box = intersect(layer.grid ? support(medium.field) : std::get<Box>(layer.varied), bounding_box(medium));
-      layer.most_varied = box.empty() ? 0 : density_bounds(medium, box).hi - layer.constant;
-    }
+    set_varied(layer);
     layers.push_back(std::move(layer));
   }
   double thickest = 0;

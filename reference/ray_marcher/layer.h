@@ -30,7 +30,6 @@ struct Layer {
 
 // Media that can be seen at all: some extinction, some density.
 std::vector<Layer> make_layers(const std::vector<scene::Medium>&);
-bool is_visible(const scene::Medium&);
 
 // Where a ray meets the region; and where it meets the varying part, empty if there is none.
 Interval constant_extent(const Layer&, const Ray&, Interval t);

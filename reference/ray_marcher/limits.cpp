@@ -31,10 +31,8 @@ double longest(const scene::Medium& medium, const scene::Scene& scene, const Opt
 double longest_varied(const scene::Scene& scene) {
   double longest = 0;
   for (const scene::Medium& medium : scene.media) {
-    if (!is_visible(medium) || std::holds_alternative<scene::Homogeneous>(medium.field)) continue;
-    scene::DensityField varied = medium.field;
-    if (auto* sum = std::get_if<scene::GaussianSum>(&varied)) sum->constant = 0;
-    const Box box = intersect(support(varied), bounding_box(medium.region));
+    if (!extinguishes(medium)) continue;
+    const Box box = intersect(varied_support(medium.field), bounding_box(medium.region));
     if (!box.empty() && box.size().allFinite()) longest = std::max(longest, box.size().stableNorm());
   }
   return longest;
@@ -50,7 +48,7 @@ double steps_per_ray(const scene::Scene& scene, const Options& options) {
   if (!(options.step > 0)) return options.steps;
   double sum = 0;
   for (const scene::Medium& medium : scene.media)
-    if (is_visible(medium)) sum += 1 + longest(medium, scene, options) / options.step;
+    if (extinguishes(medium)) sum += 1 + longest(medium, scene, options) / options.step;
   return std::max(sum, 1.0);
 }
 

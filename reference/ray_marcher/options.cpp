@@ -12,8 +12,9 @@ namespace {
 double deepest_lamp(const scene::Scene& scene) {
   double deepest = 0;
   for (const scene::Medium& medium : scene.media) {
-    if (!std::holds_alternative<scene::Homogeneous>(medium.field) || bounding_box(medium).size().allFinite()) continue;
-    const double extinction = medium.sigma_t.maxCoeff() * std::get<scene::Homogeneous>(medium.field).density;
+    const auto density = homogeneous_density(medium.field);
+    if (!density || bounding_box(medium).size().allFinite()) continue;
+    const double extinction = medium.sigma_t.maxCoeff() * *density;
     for (const scene::Light& light : scene.lights)
       if (const auto lamp = scene::ball(light))
         deepest = std::max(deepest, extinction * (lamp->center - scene.camera.position).norm());

@@ -25,8 +25,10 @@ std::vector<scene::DirectionalLight> environment_as_lights(const scene::Environm
 double length_unit(const scene::Scene& scene) {
   double unit = infinity;
   for (const scene::Medium& medium : scene.media)
-    if (const auto* grid = std::get_if<std::shared_ptr<const scene::VoxelGrid>>(&medium.field))
-      unit = std::min(unit, (*grid)->voxel_size);
+    unit = std::min(unit, scene::match(
+                              medium.field, [](const scene::Homogeneous&) { return infinity; },
+                              [](const scene::GaussianSum&) { return infinity; },
+                              [](const scene::GridPointer& grid) { return grid->voxel_size; }));
   return unit == infinity ? 1 : unit;
 }
 

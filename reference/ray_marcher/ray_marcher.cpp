@@ -154,7 +154,7 @@ std::vector<scene::SettingSpec> RayMarcher::settings() const { return option_spe
 std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings& settings) const {
   const double unit = length_unit(scene);
   std::vector<std::string> reasons = too_much(scene, read_options(settings, unit), unit);
-  const auto visible = std::count_if(scene.media.begin(), scene.media.end(), is_visible);
+  const auto visible = std::count_if(scene.media.begin(), scene.media.end(), scene::extinguishes);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));
   if (const std::string reason = scene::too_thick(scene, 0.01); !reason.empty()) reasons.push_back(reason);
@@ -165,8 +165,7 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
   // Its depths are 32-bit floats, and so are the squares of what it steps over: as far as 1 over the extinction.
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     const scene::Medium& m = scene.media[i];
-    const auto* fog = std::get_if<scene::Homogeneous>(&m.field);
-    const double extinction = fog ? m.sigma_t.maxCoeff() * fog->density : 0;
+    const double extinction = m.sigma_t.maxCoeff() * homogeneous_density(m.field).value_or(0);
     if (extinction > 0 && extinction < 1e-12 && std::holds_alternative<scene::Unbounded>(m.region))
       reasons.push_back(
           fmt::format("medium {} has no bounds and an extinction of {:.3g} 1/m: expected a region, or 1e-12 "

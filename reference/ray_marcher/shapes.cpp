@@ -3,37 +3,51 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/error.h"
+
 namespace airlight::ray_marcher {
 
 PhaseShape phase_shape(const scene::PhaseFunction& phase) {
-  PhaseShape shape;
-  shape.kind = PhaseShape::Kind(phase.index());
-  if (const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase)) shape.g = float(hg->g);
-  return shape;
+  const auto shape = [](PhaseShape::Kind kind, double g = 0) {
+    PhaseShape shape;
+    shape.kind = kind;
+    shape.g = float(g);
+    return shape;
+  };
+  return scene::match(
+      phase, [&](scene::Isotropic) { return shape(PhaseShape::isotropic); },
+      [&](scene::Rayleigh) { return shape(PhaseShape::rayleigh); },
+      [&](scene::HenyeyGreenstein hg) { return shape(PhaseShape::henyey_greenstein, hg.g); },
+      [&](scene::Hazy) { return shape(PhaseShape::hazy); }, [&](scene::Murky) { return shape(PhaseShape::murky); });
 }
 
 LightShape light_shape(const scene::Light& light) {
   LightShape shape;
   const auto put = [](const Vec3& v, double* to) { std::copy(v.data(), v.data() + 3, to); };
-  if (const auto* sun = std::get_if<scene::DirectionalLight>(&light)) {
-    put(sun->to_light, shape.axis);
-  } else if (const auto* point = std::get_if<scene::PointLight>(&light)) {
-    shape.kind = LightShape::point;
-    put(point->position, shape.position);
-  } else if (const auto* spot = std::get_if<scene::SpotLight>(&light)) {
-    shape.kind = LightShape::spot;
-    put(spot->position, shape.position);
-    put(spot->axis, shape.axis);
-    shape.cos_inner = std::cos(spot->inner_angle);
-    shape.cos_outer = std::cos(spot->outer_angle);
-  }
+  scene::match(
+      light,
+      [&](const scene::PointLight& point) {
+        shape.kind = LightShape::point;
+        put(point.position, shape.position);
+      },
+      [&](const scene::SpotLight& spot) {
+        shape.kind = LightShape::spot;
+        put(spot.position, shape.position);
+        put(spot.axis, shape.axis);
+        shape.cos_inner = std::cos(spot.inner_angle);
+        shape.cos_outer = std::cos(spot.outer_angle);
+      },
+      [&](const scene::DirectionalLight& sun) { put(sun.to_light, shape.axis); },
+      [](const scene::EnvironmentLight&) { throw Error("ray_marcher: an environment has many directions"); });
   return shape;
 }
 
 Rgb light_colour(const scene::Light& light) {
-  if (const auto* sun = std::get_if<scene::DirectionalLight>(&light)) return sun->irradiance;
-  if (const auto* point = std::get_if<scene::PointLight>(&light)) return point->intensity;
-  return std::get<scene::SpotLight>(light).intensity;
+  return scene::match(
+      light, [](const scene::PointLight& point) { return point.intensity; },
+      [](const scene::SpotLight& spot) { return spot.intensity; },
+      [](const scene::DirectionalLight& sun) { return sun.irradiance; },
+      [](const scene::EnvironmentLight&) -> Rgb { throw Error("ray_marcher: an environment has many directions"); });
 }
 
 }  // namespace airlight::ray_marcher

@@ -101,7 +101,9 @@ void add(ContentHash& hash, const Medium& medium) {
   hash.add(medium.sigma_t);
   hash.add(medium.albedo);
   hash.tag(phase_name(medium.phase));
-  if (const auto* hg = std::get_if<HenyeyGreenstein>(&medium.phase)) hash.add(hg->g);
+  match(
+      medium.phase, [](Isotropic) {}, [](Rayleigh) {}, [&](HenyeyGreenstein hg) { hash.add(hg.g); }, [](Hazy) {},
+      [](Murky) {});
 }
 
 void add(ContentHash& hash, const TriangleMesh& mesh) {

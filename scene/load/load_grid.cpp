@@ -56,7 +56,7 @@ VoxelGrid read_inline(const TableReader& reader) {
 
 }  // namespace
 
-std::shared_ptr<const VoxelGrid> read_grid(TableReader& reader, const std::string& folder) {
+GridPointer read_grid(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and(
       {"file", "frame", "grid", "size", "voxel_size", "origin", "values", "clamp_border", "transform"}));
   const bool from_file = reader.one_of({"file", "values"}) == "file";

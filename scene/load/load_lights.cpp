@@ -42,11 +42,11 @@ DirectionalLight read_directional(TableReader reader) {
 }  // namespace
 
 Light read_light(TableReader reader, const std::string& folder) {
-  const std::string type = reader.type({"point", "spot", "directional", "environment"});
-  if (type == "point") return read_point(reader);
-  if (type == "spot") return read_spot(reader);
-  if (type == "directional") return read_directional(reader);
-  return read_environment(reader, folder);
+  return match(
+      read_kind(reader, light_name), [&](const PointLight&) -> Light { return read_point(reader); },
+      [&](const SpotLight&) -> Light { return read_spot(reader); },
+      [&](const DirectionalLight&) -> Light { return read_directional(reader); },
+      [&](const EnvironmentLight&) -> Light { return read_environment(reader, folder); });
 }
 
 }  // namespace airlight::scene::load

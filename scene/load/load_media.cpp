@@ -8,46 +8,58 @@ namespace airlight::scene::load {
 namespace {
 
 PhaseFunction read_phase(TableReader reader) {
-  const std::string type = reader.type({"isotropic", "rayleigh", "hg", "hazy", "murky"});
-  if (type == "hg") {
-    reader.allow({"type", "g"});
-    return HenyeyGreenstein{reader.number("g", anisotropy)};
-  }
-  reader.allow({"type"});
-  if (type == "rayleigh") return Rayleigh{};
-  if (type == "hazy") return Hazy{};
-  if (type == "murky") return Murky{};
-  return Isotropic{};
+  const PhaseFunction kind = read_kind(reader, phase_name);
+  const auto plain = [&] {
+    reader.allow({"type"});
+    return kind;
+  };
+  return match(
+      kind, [&](Isotropic) { return plain(); }, [&](Rayleigh) { return plain(); },
+      [&](HenyeyGreenstein) -> PhaseFunction {
+        reader.allow({"type", "g"});
+        return HenyeyGreenstein{reader.number("g", anisotropy)};
+      },
+      [&](Hazy) { return plain(); }, [&](Murky) { return plain(); });
+}
+
+Slab read_slab(TableReader& reader) {
+  reader.allow({"type", "normal", "lo", "hi"});
+  const Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", coordinate),
+                  reader.number("hi", coordinate)};
+  if (!(slab.hi - slab.lo >= least_length))
+    reader.expected("hi", fmt::format("a number {} m or more above 'lo'", least_length));
+  return slab;
 }
 
 Region read_region(TableReader reader) {
-  const std::string type = reader.type({"unbounded", "box", "sphere", "slab"});
-  if (type == "box") {
-    reader.allow({"type", "lo", "hi"});
-    return read_corners(reader);
-  }
-  if (type == "sphere") {
-    reader.allow({"type", "center", "radius"});
-    return Sphere{reader.vector("center"), reader.number("radius", length)};
-  }
-  if (type == "slab") {
-    reader.allow({"type", "normal", "lo", "hi"});
-    const Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", coordinate),
-                    reader.number("hi", coordinate)};
-    if (!(slab.hi - slab.lo >= least_length))
-      reader.expected("hi", fmt::format("a number {} m or more above 'lo'", least_length));
-    return slab;
-  }
-  reader.allow({"type"});
-  return Unbounded{};
+  const Region kind = read_kind(reader, region_name);
+  return match(
+      kind,
+      [&](const Unbounded&) -> Region {
+        reader.allow({"type"});
+        return Unbounded{};
+      },
+      [&](const Box&) -> Region {
+        reader.allow({"type", "lo", "hi"});
+        return read_corners(reader);
+      },
+      [&](const Sphere&) -> Region {
+        reader.allow({"type", "center", "radius"});
+        return Sphere{reader.vector("center"), reader.number("radius", length)};
+      },
+      [&](const Slab&) -> Region { return read_slab(reader); });
 }
 
-// Allows the keys of this type and of every medium, for the reads that follow.
-DensityField read_field(const std::string& type, TableReader& reader, const std::string& folder) {
-  if (type == "gaussians") return read_gaussian_sum(reader, folder);
-  if (type == "grid") return read_grid(reader, folder);
-  reader.allow(medium_keys_and({"density"}));
-  return Homogeneous{reader.number("density", density_range, 1)};
+// Allows the keys of this kind and of every medium, for the reads that follow.
+DensityField read_field(const DensityField& kind, TableReader& reader, const std::string& folder) {
+  return match(
+      kind,
+      [&](const Homogeneous&) -> DensityField {
+        reader.allow(medium_keys_and({"density"}));
+        return Homogeneous{reader.number("density", density_range, 1)};
+      },
+      [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
+      [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); });
 }
 
 }  // namespace
@@ -59,9 +71,9 @@ std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys) {
 }
 
 Medium read_medium(TableReader reader, const std::string& folder) {
-  const std::string type = reader.type({"homogeneous", "gaussians", "grid"});
+  const DensityField kind = read_kind(reader, field_name);
   Medium medium;
-  medium.field = read_field(type, reader, folder);
+  medium.field = read_field(kind, reader, folder);
   medium.name = reader.text("name", "");
   medium.sigma_t = reader.color("sigma_t", amount, Rgb::Ones());
   require_extinction(reader, medium);

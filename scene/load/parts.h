@@ -2,6 +2,7 @@
 //
 // `folder` is where the scene file lies: files that it names are looked for there first.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,19 @@ EnvironmentLight read_environment(TableReader, const std::string& folder);
 Medium read_medium(TableReader, const std::string& folder);
 Surface read_surface(TableReader, const std::string& folder);
 
+// The kind that the key `type` names, as it is by default; `name` names a kind.
+template <class Variant>
+Variant read_kind(TableReader& reader, std::string (*name)(const Variant&)) {
+  const std::vector<Variant> kinds = Kinds<Variant>::all();
+  std::vector<std::string> names;
+  for (const Variant& kind : kinds) names.push_back(name(kind));
+  const std::string type = reader.type(names);
+  return kinds[std::size_t(std::find(names.begin(), names.end(), type) - names.begin())];
+}
+
 // Fields of media. The reader is the medium's; they allow their own keys beside those of every medium.
 GaussianSum read_gaussian_sum(TableReader&, const std::string& folder);
-std::shared_ptr<const VoxelGrid> read_grid(TableReader&, const std::string& folder);
+GridPointer read_grid(TableReader&, const std::string& folder);
 
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();

@@ -10,23 +10,12 @@
 namespace airlight::scene::load {
 namespace {
 
-// That the density of a field never exceeds, but for overlaps.
-double greatest(const Homogeneous& field) { return field.density; }
-double greatest(const GaussianSum& field) {
-  double most = field.constant;
-  for (const Gaussian& g : field.gaussians) most = std::max(most, std::abs(g.amplitude));
-  return most;
-}
-double greatest(const std::shared_ptr<const VoxelGrid>& grid) {
-  return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
-}
-
 bool near(const Point3& x) { return (x.array().abs() <= greatest_length).all(); }
 
 }  // namespace
 
 void require_extinction(const TableReader& reader, const Medium& medium) {
-  const double density = std::visit([](const auto& field) { return greatest(field); }, medium.field);
+  const double density = greatest_density(medium.field);
   for (int c = 0; c < 3; ++c)
     if (!extinction_range.contains(medium.sigma_t[c] * density))
       reader.fail(reader.has("sigma_t") ? "sigma_t" : "",
@@ -35,8 +24,7 @@ void require_extinction(const TableReader& reader, const Medium& medium) {
 }
 
 void require_resolved(const TableReader& reader, const Scene& scene, const Medium& medium) {
-  const double extinction =
-      medium.sigma_t.maxCoeff() * std::visit([](const auto& field) { return greatest(field); }, medium.field);
+  const double extinction = medium.sigma_t.maxCoeff() * greatest_density(medium.field);
   double reach = scene.camera.position.cwiseAbs().maxCoeff();
   const Box box = bounding_box(medium);
   if (box.empty()) return;

@@ -1,12 +1,12 @@
 #include "scene/media/medium.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace airlight::scene {
 namespace {
-
-using GridPointer = std::shared_ptr<const VoxelGrid>;
 
 // Does the box lie wholly inside (rounding counted against it)?
 bool inside(const Unbounded&, const Box&) { return true; }
@@ -41,34 +41,89 @@ bool outside(const Slab& slab, const Box& box) {
 }  // namespace
 
 double density(const DensityField& field, const Point3& x) {
-  if (const auto* grid = std::get_if<GridPointer>(&field)) return density(**grid, x);
-  if (const auto* sum = std::get_if<GaussianSum>(&field)) return density(*sum, x);
-  return std::get<Homogeneous>(field).density;
+  return match(
+      field, [](const Homogeneous& uniform) { return uniform.density; },
+      [&](const GaussianSum& sum) { return density(sum, x); },
+      [&](const GridPointer& grid) { return density(*grid, x); });
 }
 
 Interval density_bounds(const DensityField& field, const Box& box) {
-  if (const auto* grid = std::get_if<GridPointer>(&field)) return density_bounds(**grid, box);
-  if (const auto* sum = std::get_if<GaussianSum>(&field)) return density_bounds(*sum, box);
-  const double value = std::get<Homogeneous>(field).density;
-  return {value, value};
+  return match(
+      field,
+      [](const Homogeneous& uniform) {
+        return Interval{uniform.density, uniform.density};
+      },
+      [&](const GaussianSum& sum) { return density_bounds(sum, box); },
+      [&](const GridPointer& grid) { return density_bounds(*grid, box); });
 }
 
 double density_integral(const DensityField& field, const Ray& ray, Interval t) {
-  if (const auto* grid = std::get_if<GridPointer>(&field)) return density_integral(**grid, ray, t);
-  if (const auto* sum = std::get_if<GaussianSum>(&field)) return density_integral(*sum, ray, t);
-  const double value = std::get<Homogeneous>(field).density;
-  return value > 0 ? value * t.length() : 0;
+  return match(
+      field, [&](const Homogeneous& uniform) { return uniform.density > 0 ? uniform.density * t.length() : 0; },
+      [&](const GaussianSum& sum) { return density_integral(sum, ray, t); },
+      [&](const GridPointer& grid) { return density_integral(*grid, ray, t); });
+}
+
+Interval extent(const DensityField& field, const Ray& ray, Interval t) {
+  return match(
+      field, [&](const Homogeneous&) { return t; }, [&](const GaussianSum& sum) { return extent(sum, ray, t); },
+      [&](const GridPointer& grid) { return extent(*grid, ray, t); });
 }
 
 Box support(const DensityField& field) {
-  if (const auto* grid = std::get_if<GridPointer>(&field)) return support(**grid);
-  if (const auto* sum = std::get_if<GaussianSum>(&field); sum && sum->constant == 0) return support(*sum);
-  return bounding_box(Unbounded{});
+  const bool everywhere = homogeneous_density(field) || constant_part(field) != 0;
+  return everywhere ? bounding_box(Unbounded{}) : varied_support(field);
+}
+
+double constant_part(const DensityField& field) {
+  return match(
+      field, [](const Homogeneous& uniform) { return uniform.density; },
+      [](const GaussianSum& sum) { return sum.constant; }, [](const GridPointer&) { return 0.0; });
+}
+
+Box varied_support(const DensityField& field) {
+  return match(
+      field, [](const Homogeneous&) { return Box{}; }, [](const GaussianSum& sum) { return support(sum); },
+      [](const GridPointer& grid) { return support(*grid); });
+}
+
+std::optional<double> homogeneous_density(const DensityField& field) {
+  using Density = std::optional<double>;
+  return match(
+      field, [](const Homogeneous& uniform) -> Density { return uniform.density; },
+      [](const GaussianSum&) -> Density { return std::nullopt; },
+      [](const GridPointer&) -> Density { return std::nullopt; });
+}
+
+double greatest_density(const DensityField& field) {
+  return match(
+      field, [](const Homogeneous& uniform) { return uniform.density; },
+      [](const GaussianSum& sum) {
+        double most = sum.constant;
+        for (const Gaussian& g : sum.gaussians) most = std::max(most, std::abs(g.amplitude));
+        return most;
+      },
+      [](const GridPointer& grid) -> double {
+        return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
+      });
 }
 
 std::string field_name(const DensityField& field) {
-  static const char* const names[] = {"homogeneous", "gaussians", "grid"};
-  return names[field.index()];
+  return match(
+      field, [](const Homogeneous&) { return "homogeneous"; }, [](const GaussianSum&) { return "gaussians"; },
+      [](const GridPointer&) { return "grid"; });
+}
+
+bool extinguishes(const Medium& medium) {
+  if (!(medium.sigma_t > 0).any()) return false;
+  return match(
+      medium.field, [](const Homogeneous& uniform) { return uniform.density > 0; },
+      [](const GaussianSum& sum) { return sum.constant > 0 || !sum.gaussians.empty(); },
+      [](const GridPointer& grid) { return !support(*grid).empty(); });
+}
+
+std::string label(const std::vector<Medium>& media, std::size_t i) {
+  return media[i].name.empty() ? fmt::format("medium {}", i) : fmt::format("medium '{}'", media[i].name);
 }
 
 double density(const Medium& medium, const Point3& x) {
@@ -85,12 +140,6 @@ Interval density_bounds(const Medium& medium, const Box& box) {
 double density_integral(const Medium& medium, const Ray& ray, Interval t) {
   t = clip(medium.region, ray, t);
   return t.empty() ? 0 : density_integral(medium.field, ray, t);
-}
-
-Interval extent(const DensityField& field, const Ray& ray, Interval t) {
-  if (const auto* grid = std::get_if<GridPointer>(&field)) return extent(**grid, ray, t);
-  if (const auto* sum = std::get_if<GaussianSum>(&field)) return extent(*sum, ray, t);
-  return t;
 }
 
 Interval extent(const Medium& medium, const Ray& ray, Interval t) {

@@ -5,10 +5,12 @@
 // Several media at one point add. No emission. Index-matched, vacuum outside the regions.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "scene/kinds.h"
 #include "scene/media/gaussian_sum.h"
 #include "scene/media/region.h"
 #include "scene/media/voxel_grid.h"
@@ -20,9 +22,11 @@ struct Homogeneous {
   double density = 1;  // [-], >= 0
 };
 
-// The closed set of density fields. The fogmap (Giroud and Biri 2010) and the Legendre box (Gupta and Narasimhan 2007)
-// join here: a field answers density, density_bounds, density_integral, support.
-using DensityField = std::variant<Homogeneous, GaussianSum, std::shared_ptr<const VoxelGrid>>;
+using GridPointer = std::shared_ptr<const VoxelGrid>;  // never null in a scene
+
+// The closed set of density fields. Whoever asks which one it is names all of them (match), so that a new one does not
+// compile where it is not thought of; a renderer that does not know one refuses it by name (unknown_field).
+using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer>;
 
 double density(const DensityField&, const Point3& x);
 Interval density_bounds(const DensityField&, const Box&);
@@ -32,7 +36,14 @@ Interval extent(const DensityField&, const Ray&, Interval t);
 // World box outside which the field is zero (or, for a field without a constant, negligible: below 1e-17 of its
 // amplitude); infinite sides for an unbounded one.
 Box support(const DensityField&);
-std::string field_name(const DensityField&);  // "homogeneous", "gaussians", "grid"
+// The density that it has everywhere, to which the rest adds [-]; and the world box of the rest, empty if there is none.
+double constant_part(const DensityField&);
+Box varied_support(const DensityField&);
+// The density of a field that cannot vary [-]; nothing for the others.
+std::optional<double> homogeneous_density(const DensityField&);
+// Of any of its parts [-]: where Gaussians overlap the sum may be greater.
+double greatest_density(const DensityField&);
+std::string field_name(const DensityField&);  // "homogeneous", "gaussians", "grid", as scene files call them
 
 struct Medium {
   std::string name;
@@ -42,6 +53,18 @@ struct Medium {
   Rgb albedo = Rgb::Ones();   // in [0, 1]
   PhaseFunction phase = Isotropic{};
 };
+
+// Is there any extinction at all: a sigma_t above 0, and a density.
+bool extinguishes(const Medium&);
+
+// "medium 'smoke'", or "medium 0" without a name: begins a refusal.
+std::string label(const std::vector<Medium>&, std::size_t i);
+// Why a renderer that knows no other fields than these cannot render that medium; empty if it can.
+template <class... Known>
+std::string unknown_field(const std::vector<Medium>& media, std::size_t i) {
+  const std::string other = unknown_kind<Known...>(media[i].field, field_name);
+  return other.empty() ? "" : label(media, i) + " is " + other;
+}
 
 // Density at x, 0 outside the region [-]; times sigma_t it is the extinction.
 double density(const Medium&, const Point3& x);

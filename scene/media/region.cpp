@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/kinds.h"
+
 namespace airlight::scene {
 namespace {
 
@@ -79,6 +81,12 @@ bool contains(const Region& region, const Point3& x) {
 
 Box bounding_box(const Region& region) {
   return std::visit([](const auto& shape) { return box_around(shape); }, region);
+}
+
+std::string region_name(const Region& region) {
+  return match(
+      region, [](const Unbounded&) { return "unbounded"; }, [](const Box&) { return "box"; },
+      [](const Sphere&) { return "sphere"; }, [](const Slab&) { return "slab"; });
 }
 
 }  // namespace airlight::scene

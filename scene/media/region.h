@@ -1,6 +1,7 @@
 // The part of space that a medium fills: everything, a box, a sphere or a slab. Closed sets.
 #pragma once
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "scene/math/types.h"
@@ -28,5 +29,7 @@ bool contains(const Region&, const Point3&);
 
 // The smallest box around the region; sides of an unbounded one are infinite.
 Box bounding_box(const Region&);
+
+std::string region_name(const Region&);  // "unbounded", "box", "sphere", "slab"
 
 }  // namespace airlight::scene

@@ -152,3 +152,52 @@ TEST_CASE("stress 16: a medium scaled by a power of two", "[media]") {
               .all());
   }
 }
+
+TEST_CASE("a field is its constant part where nothing varies", "[media]") {
+  for (const Medium& medium : some_media()) {
+    const DensityField& field = medium.field;
+    CAPTURE(field_name(field));
+    const Box varied = varied_support(field);
+    const double constant = constant_part(field);
+    // Gaussians end where they are 1e-17 of their amplitude, here at most 2: less than a rounding of the constant.
+    for (const Point3& x : {Point3(9, 0, 0), Point3(0, -9, 3), Point3(-4, 5, 6)}) {
+      REQUIRE_FALSE(varied.contains(x));
+      CHECK(std::abs(density(field, x) - constant) <= 4e-17);
+    }
+    CHECK(homogeneous_density(field).has_value() == varied.empty());
+    CHECK(homogeneous_density(field).value_or(constant) == constant);
+    CHECK(greatest_density(field) >= constant);
+    const bool everywhere = support(field).size()[0] == infinity;
+    CHECK(everywhere == (constant > 0));
+    CHECK(extinguishes(medium));
+  }
+}
+
+TEST_CASE("media without density or extinction do not extinguish", "[media]") {
+  Medium medium;
+  CHECK(extinguishes(medium));
+  medium.sigma_t = Rgb::Zero();
+  CHECK_FALSE(extinguishes(medium));
+  medium.sigma_t = {0, 0, 1};
+  CHECK(extinguishes(medium));
+  const std::vector<DensityField> none = {Homogeneous{0}, GaussianSum{}, std::make_shared<const VoxelGrid>()};
+  for (const DensityField& field : none) {
+    medium.field = field;
+    CHECK_FALSE(extinguishes(medium));
+  }
+}
+
+TEST_CASE("a field that a renderer does not know is refused by name", "[media]") {
+  // Every kind has a name of its own: scene files tell them apart by it.
+  std::vector<std::string> names;
+  for (const DensityField& kind : Kinds<DensityField>::all()) names.push_back(field_name(kind));
+  CHECK(names == std::vector<std::string>{"homogeneous", "gaussians", "grid"});
+  std::vector<Medium> media(2);
+  media[0].field = small_grid();
+  media[1].field = GaussianSum{};
+  media[1].name = "puff";
+  CHECK(unknown_field<Homogeneous>(media, 0) == "medium 0 is grid, expected homogeneous");
+  CHECK(unknown_field<Homogeneous, GaussianSum>(media, 0) == "medium 0 is grid, expected homogeneous or gaussians");
+  CHECK(unknown_field<Homogeneous>(media, 1) == "medium 'puff' is gaussians, expected homogeneous");
+  CHECK(unknown_field<Homogeneous, GaussianSum>(media, 1).empty());
+}

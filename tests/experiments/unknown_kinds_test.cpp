@@ -1,0 +1,53 @@
+// What a renderer does not know it refuses by name, and all of them in the same words.
+#include <catch2/catch.hpp>
+
+#include "experiments/renderers.h"
+
+using namespace airlight;
+
+namespace {
+
+std::vector<std::string> refusals(const scene::Renderer& renderer, const scene::Scene& scene) {
+  return renderer.supports(scene, scene::Settings(renderer.settings(), {}));
+}
+
+bool has(const std::vector<std::string>& reasons, const std::string& reason) {
+  return std::find(reasons.begin(), reasons.end(), reason) != reasons.end();
+}
+
+}  // namespace
+
+TEST_CASE("renderers refuse fields and lights that they do not know in the same words", "[media]") {
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = {1, 1, 1};
+  grid->values = {1.0f};
+  scene::Scene scene;
+  scene.name = "smoke";
+  scene.width = scene.height = 4;
+  scene.media.resize(1);
+  scene.media[0].name = "smoke";
+  scene.media[0].field = scene::GridPointer(grid);
+  scene.lights = {scene::DirectionalLight{}};
+  scene::finish(scene);
+  int fogshop = 0, shadow_planes = 0, others = 0;
+  for (const auto& renderer : experiments::all_renderers()) {
+    const std::string name = renderer->name();
+    CAPTURE(name);
+    const auto reasons = refusals(*renderer, scene);
+    if (name.starts_with("fogshop")) {
+      ++fogshop;
+      CHECK(has(reasons, "medium 'smoke' is grid, expected homogeneous or gaussians"));
+      CHECK(has(reasons, "light 0 is directional, expected point or environment"));
+    } else if (name.starts_with("shadow_planes")) {
+      ++shadow_planes;
+      CHECK(has(reasons, "medium 'smoke' is grid, expected homogeneous"));
+      CHECK(has(reasons, "light 0 is directional, expected point or spot"));
+    } else {
+      ++others;
+      CHECK(reasons.empty());
+    }
+  }
+  CHECK(fogshop == 2);
+  CHECK(shadow_planes == 2);
+  CHECK(others == 4);
+}
