@@ -145,10 +145,12 @@ class Figures(Tree):
         self.assertEqual(self.run_script("figures")[0], 0)  # of a user's own tables there is nothing to put in
 
     def test_a_number_that_nothing_gives(self):
-        self.write("methods/PAGE.figures", "!column 2\n" + FIGURES)
+        self.write("methods/PAGE.figures", "!after Ours:\n" + FIGURES)
+        page = self.read("methods/PAGE.md")
+        self.write("methods/PAGE.md", page + "- one, 12 % on paper. Ours: It\n  has none\n- 3 items\n")
         self.assertEqual(self.run_script("figures", "--check")[0], 0)
-        self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace("|---|---|", "|---|---|\n| more | 12 % |"))
-        self.objects("methods/PAGE.md:5: no line of methods/PAGE.figures covers '12 %'")
+        self.write("methods/PAGE.md", page + "- one, 12 % on paper. Ours: some\n  or 13 %.\n")
+        self.objects("methods/PAGE.md:10: no line of methods/PAGE.figures covers 'or 13 %.'")
 
 
 @unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
