@@ -1,5 +1,6 @@
 // Variant S: airlight and optical depth of every pixel of a strip, by K slices with exact depths at their edges. Variant VS2:
-// the Gaussians over 1/d^2 exactly, the slices for the constant alone. One tile is one work group. The steps and their names are those of methods/fogshop/ray_airlight.cpp and slices.cpp.
+// the Gaussians over 1/d^2 exactly, the slices for the constant alone. One tile is one work group. The steps and their names
+// are those of methods/fogshop/ray_airlight.cpp and slices.cpp.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"

@@ -16,7 +16,8 @@ layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; }; 
 #if COUNT_BY_PIXEL
 layout(std430, binding = 13) readonly buffer Counts { int count_at[]; };  // m where a ray begins
 #endif
-layout(std430, binding = 14) buffer Counters { uint counters[]; };  // lit parts, crossings, gatherings after the first; unfinished, loops cut
+// lit parts, crossings, gatherings after the first; unfinished, loops cut
+layout(std430, binding = 14) buffer Counters { uint counters[]; };
 #if SURFACES
 layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
 #include "common/reflection.glsl"

@@ -31,5 +31,6 @@ void main() {
   for (int k = edge.z; k < edge.z + edge.w; ++k) sum += (sides[k] & 1) == int(faces_light(sides[k] >> 1)) ? 1 : -1;
   if (sum == 0) return;
   dvec3 a = from_light(sum > 0 ? edge.x : edge.y), b = from_light(sum > 0 ? edge.y : edge.x);
-  edges[atomicAdd(edge_count, 1)] = Edge(vec4(vec3(a), length(a)), vec4(vec3(b), length(b)), double[3](a.x, a.y, a.z), double[3](b.x, b.y, b.z), abs(sum), i);
+  edges[atomicAdd(edge_count, 1)] =
+      Edge(vec4(vec3(a), length(a)), vec4(vec3(b), length(b)), double[3](a.x, a.y, a.z), double[3](b.x, b.y, b.z), abs(sum), i);
 }

@@ -164,7 +164,8 @@ function makeComparer(host, group) {
       const text = v => [0, 1, 2].map(c => v(c).toPrecision(4).padStart(11)).join(" ");
       numbers.textContent = `(${h.x}, ${h.y})  A ${text(c => va[i + c])}   B ${text(c => vb[i + c])}   ` +
         `A/B-1 ${text(c => va[i + c] / vb[i + c] - 1)}`;
-    } else numbers.textContent = "drag: wipe    shift-drag: pan    wheel (after a click): zoom    double-click: whole picture    space: flip";
+    } else numbers.textContent =
+      "drag: wipe    shift-drag: pan    wheel (after a click): zoom    double-click: whole picture    space: flip";
   }
 
   const place = event => {

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""scripts/figures and scripts/tighten on a small tree of their own: what they write, and what they object to."""
+"""scripts/figures, tighten and gallery on a small tree of their own: what they write, and what they object to."""
+import importlib.machinery
+import importlib.util
 import json
 import os
 import shutil
@@ -65,7 +67,7 @@ class Tree(unittest.TestCase):
     def setUp(self):
         self.root = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.root)
-        for script in ("figures", "tighten"):
+        for script in ("figures", "tighten", "gallery"):
             os.makedirs(f"{self.root}/scripts", exist_ok=True)
             shutil.copy(next(f for f in (f"{SCRIPTS}/{script}", f"{SOURCE}/scripts/{script}") if os.path.exists(f)), f"{self.root}/scripts")
 
@@ -145,10 +147,12 @@ class Figures(Tree):
         self.assertEqual(self.run_script("figures")[0], 0)  # of a user's own tables there is nothing to put in
 
     def test_a_number_that_nothing_gives(self):
-        self.write("methods/PAGE.figures", "!column 2\n" + FIGURES)
+        self.write("methods/PAGE.figures", "!after Ours:\n" + FIGURES)
+        page = self.read("methods/PAGE.md")
+        self.write("methods/PAGE.md", page + "- one, 12 % on paper. Ours: It\n  has none\n- 3 items\n")
         self.assertEqual(self.run_script("figures", "--check")[0], 0)
-        self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace("|---|---|", "|---|---|\n| more | 12 % |"))
-        self.objects("methods/PAGE.md:5: no line of methods/PAGE.figures covers '12 %'")
+        self.write("methods/PAGE.md", page + "- one, 12 % on paper. Ours: some\n  or 13 %.\n")
+        self.objects("methods/PAGE.md:10: no line of methods/PAGE.figures covers 'or 13 %.'")
 
 
 @unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
@@ -240,6 +244,106 @@ class Tighten(Tree):
         self.assertIn("two, S, 8, rel_l2: 0.1 lies beyond the gate's own bound", text)
         self.assertNotIn("two,S,8,rel_l2", self.read("experiments/g/e.bounds.csv"))
 
+
+GALLERY = """[[picture]]
+name = "one"
+title = "One"
+caption = "a picture"
+exposure = 0
+width = 320
+height = 2
+[[picture.scene]]
+file = "scenes/a.toml"
+[[picture.panel]]
+label = "truth"
+method = "exact"
+[[picture.panel]]
+label = "ours"
+method = "fast"
+settings = { K = 3 }
+"""
+# In place of the program: writes down what it is asked for, and pictures of 640x4 pixels, 0 and 1 in turns.
+PROGRAM = """#!/usr/bin/env python3
+import array, os, sys
+with open(os.path.dirname(os.path.abspath(__file__)) + "/log", "a") as log:
+    log.write(" ".join(sys.argv[1:]) + "\\n")
+if sys.argv[1] == "render":
+    open(sys.argv[sys.argv.index("--out") + 1], "w").close()
+elif sys.argv[1] == "compare":
+    print("rel_l2                   0.25")
+else:
+    with open(sys.argv[3], "wb") as pfm:
+        pfm.write(b"PF\\n640 4\\n-1.0\\n" + array.array("f", [0, 0, 0, 1, 1, 1] * 1280).tobytes())
+"""
+
+
+@unittest.skipIf(sys.version_info < (3, 11) or not shutil.which("gnuplot"), "no tomllib or no gnuplot")
+class Gallery(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("experiments/gallery.toml", GALLERY)
+        self.write("experiments/scenes/a.toml", "[camera]\n")
+        self.write("results/README.md", "![one](gallery/one.png)\n")
+        self.write("build/release/airlight", PROGRAM)
+        os.chmod(f"{self.root}/build/release/airlight", 0o755)
+
+    def renders(self):
+        return [line.split() for line in self.read("build/release/log").split("\n") if line.startswith("render")]
+
+    def test_renders_what_has_changed(self):
+        code, text = self.run_script("gallery")
+        self.assertEqual(code, 0, text)
+        self.assertEqual(self.run_script("gallery", "--check"), (0, "1 pictures, 0 faults\n"))
+        self.assertEqual([r[r.index("--method") + 1] for r in self.renders()], ["exact", "fast"])
+        self.assertIn("film.width=640", self.renders()[0])
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        self.assertEqual(len(self.renders()), 2)
+        self.write("experiments/gallery.toml", GALLERY.replace("K = 3", "K = 4"))
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        self.assertEqual(["--set" in r and r[r.index("--set") + 1] for r in self.renders()[2:]], ["K=4"])
+        self.write("experiments/scenes/a.toml", "[camera] # another\n")
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        self.assertEqual(len(self.renders()), 5)
+
+    def test_panels_are_means_over_pixels(self):
+        loader = importlib.machinery.SourceFileLoader("gallery", f"{self.root}/scripts/gallery")
+        gallery = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
+        sys.dont_write_bytecode = True
+        loader.exec_module(gallery)
+        # The mean of two zeros and two ones is 0.5, in sRGB 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354, of 255: 187.5.
+        self.assertEqual(gallery.shown("x.exr", "mean", 2, 0, self.root), bytes([188]) * (320 * 2 * 3))
+        self.assertEqual(gallery.shown("x.exr", "mean", 2, 1, self.root), bytes([255]) * (320 * 2 * 3))
+
+    def objects(self, code, word, *command):
+        got, text = self.run_script("gallery", *command)
+        self.assertEqual(got, code, text)
+        self.assertIn(word, text)
+        return text
+
+    def test_bad_input(self):
+        for old, new, word in (
+                ("exposure = 0", "exposur = 0", "gallery.toml:5: unknown key 'exposur' of a picture (nearest: exposure)"),
+                ("exposure = 0", "exposure = '0'", "gallery.toml:5: 'exposure' of a picture is '0', expected a number"),
+                ("K = 3 }", "K = 3 }\nmetod = 'x'", "gallery.toml:17: unknown key 'metod' of a panel (nearest: method)"),
+                ("caption = \"a picture\"\n", "", "gallery.toml:1: a picture has no 'caption'"),
+                ("height = 2", "height = 0", "gallery.toml:1: 'height' is 0, expected 1 to 1024"),
+                ("title = ", "title ", "experiments/gallery.toml: Expected '='")):
+            self.write("experiments/gallery.toml", GALLERY.replace(old, new))
+            self.assertEqual(self.objects(2, word, "--check").count("\n"), 1)
+        self.write("experiments/gallery.toml", GALLERY)
+        self.objects(2, "unknown picture 'on' (nearest: one)", "on")
+
+    def test_what_is_missing(self):
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        self.write("results/README.md", "")
+        self.objects(1, "results/README.md: no link to results/gallery/one.png", "--check")
+        self.write("results/gallery/two.png", "")
+        self.objects(1, "results/gallery/two.png: no entry of experiments/gallery.toml draws it", "--check")
+        os.remove(f"{self.root}/results/gallery/one.png")
+        self.objects(1, "results/gallery/one.png is missing", "--check")
+        os.remove(f"{self.root}/experiments/scenes/a.toml")
+        self.objects(1, "one: there is no experiments/scenes/a.toml", "--check")
+        self.objects(2, "scenes/a.toml: No such file or directory")
 
 if __name__ == "__main__":
     unittest.main()

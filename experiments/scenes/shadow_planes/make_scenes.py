@@ -234,8 +234,9 @@ def figure_1():
         for side in (-1, 1):
             path = [(2.4 * side, 2.95 + 1.0 * math.sin(math.pi * k / 8), -2 * i - 1 + 1.0 * math.cos(math.pi * k / 8))
                     for k in range(9)]
+            lines = ",\n  ".join(", ".join(vector(p) for p in path[k:k + 3]) for k in (0, 3, 6))
             shapes.append(surface(f"arch {i} {'left' if side < 0 else 'right'}", "tube",
-                                  {"path": "[" + ", ".join(vector(p) for p in path) + "]", "radius": 0.17, "size": "[12, 12]"}, 0.6))
+                                  {"path": f"[\n  {lines}\n]", "radius": 0.17, "size": "[12, 12]"}, 0.6))
     boxes = [("floor", (-6, -0.3, -44), (6, 0, 8), 0.45), ("left wall", (-5.3, -0.1, -43), (-5, 6.1, 7), 0.5),
              ("right wall", (5, -0.1, -43), (5.3, 6.1, 7), 0.5), ("far wall", (-5.2, -0.1, -42), (5.2, 6.1, -41.7), 0.5),
              ("near wall", (-5.2, -0.1, 6), (5.2, 6.1, 6.3), 0.5), ("roof", (-5.4, 6, -43), (5.4, 6.3, 7), 0.5),
