@@ -7,6 +7,7 @@
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "tests/gpu/device.h"
+#include "tests/pictures.h"
 #include "tests/stress/shapes.h"
 #include "tests/stress/stress.h"
 
@@ -40,8 +41,7 @@ region = { type = "sphere", center = [0, 0, 0], radius = 6 }
 // Mean of a layer of the film.
 double mean_of(const scene::Renderer& renderer, const std::shared_ptr<scene::Scene>& s, const char* layer,
                const Given& given = {}) {
-  const scene::Film film =
-      renderer.prepare(s, {renderer.settings(), given}, {1, {}})->render(view_of(*s), {1, {}}).film;
+  const scene::Film film = airlight::test::picture(renderer, s, given);
   double sum = 0;
   for (const float v : film.layer(layer)) sum += v;
   return sum / double(film.layer(layer).size());

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using gpu::test::quantile;
@@ -19,13 +20,11 @@ namespace {
 
 scene::Film render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene, Pairs given) {
   given.insert({{"variant", "paper"}, {"homogeneous", "table"}, {"erf", "erf10"}});
-  return renderer.prepare(scene, {renderer.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}}).film;
+  return airlight::test::picture(renderer, scene, given);
 }
 
 std::shared_ptr<scene::Scene> scene_named(const std::string& name) {
-  return std::make_shared<scene::Scene>(
-      scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/" + name + ".toml",
-                        {{"film.width", "24"}, {"film.height", "18"}}));
+  return airlight::test::scene_named("fogshop/" + name, 24, 18);
 }
 
 // The same on the device: a constant medium of extinction `beta`, a light of 1 W/sr, one ray along +z.

@@ -10,23 +10,17 @@
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using gpu::test::p99;
 using Pairs = std::map<std::string, std::string>;
+using airlight::test::picture;
 
 namespace {
 
-scene::Film render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
-                   const Pairs& given) {
-  const auto prepared = renderer.prepare(scene, {renderer.settings(), given}, {1, {}});
-  return prepared->render(view_of(*scene), {1, {}}).film;
-}
-
 std::shared_ptr<const scene::Scene> scene_named(const std::string& name) {
-  return std::make_shared<const scene::Scene>(
-      scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/" + name + ".toml",
-                        {{"film.width", "24"}, {"film.height", "18"}}));
+  return airlight::test::scene_named("fogshop/" + name, 24, 18);
 }
 
 }  // namespace
@@ -43,7 +37,7 @@ TEST_CASE("fogshop: GPU agrees with CPU", "[gpu]") {
                         Pairs{{"K", "12"}, {"extrapolate", "false"}},
                         Pairs{{"K", "13"}, {"extrapolate", "false"}, {"edges", "plain"}}}) {
       given.emplace("erf", "erf10");  // the same approximation on both sides; `precise` differs by 3.3e-7
-      const scene::Film a = render(cpu, scene, given), b = render(gpu, scene, given);
+      const scene::Film a = picture(cpu, scene, given), b = picture(gpu, scene, given);
       CAPTURE(name, given);
       const double error = p99(a, b, "airlight");
       worst = std::max(worst, error);
@@ -83,7 +77,7 @@ TEST_CASE("fogshop: GPU agrees with CPU under an environment", "[gpu]") {
                         Pairs{{"environment_psf", "npsfT"}, {"sh_order", "12"}}, Pairs{{"environment_psf", "ball"}}}) {
       given.insert({{"erf", "erf10"}, {"reflectance", "npsfT"}});
       if (scene == constant || scene == alone) given["environment_distance"] = "40";
-      const scene::Film a = render(cpu, scene, given), b = render(gpu, scene, given);
+      const scene::Film a = picture(cpu, scene, given), b = picture(gpu, scene, given);
       CAPTURE(scene == sky, scene == both, scene == constant, given);
       CHECK(*std::max_element(a.layer("airlight").begin(), a.layer("airlight").end()) > 0);
       for (const char* layer : {"airlight", "transmittance", "surface", "mean"}) {
@@ -99,12 +93,12 @@ TEST_CASE("fogshop: many Gaussians and slices on the device", "[gpu]") {
   if (!context) return;
   const auto scene = scene_named("count_967");
   const Pairs many{{"K", "128"}};
-  CHECK(p99(render(fogshop::Fogshop(), scene, many), render(gpu::FogshopGpu(), scene, many), "airlight") < 1e-5);
+  CHECK(p99(picture(fogshop::Fogshop(), scene, many), picture(gpu::FogshopGpu(), scene, many), "airlight") < 1e-5);
   const Pairs exact{{"K", "128"}, {"light_depth", "exact"}};
   if (context->software())
-    CHECK_THROWS_AS(render(gpu::FogshopGpu(), scene, exact), Unavailable);
+    CHECK_THROWS_AS(picture(gpu::FogshopGpu(), scene, exact), Unavailable);
   else
-    CHECK(p99(render(fogshop::Fogshop(), scene, exact), render(gpu::FogshopGpu(), scene, exact), "airlight") < 1e-5);
+    CHECK(p99(picture(fogshop::Fogshop(), scene, exact), picture(gpu::FogshopGpu(), scene, exact), "airlight") < 1e-5);
 }
 
 TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
@@ -113,12 +107,12 @@ TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
   auto scene = std::make_shared<scene::Scene>(*scene_named("f100"));
   const auto dispatches = [&](const Pairs& given) {
     const long before = gpu::Program::dispatches();
-    render(method, scene, given);
+    picture(method, scene, given);
     return gpu::Program::dispatches() - before;
   };
   const auto draws = [&] {
     const long before = gpu::RasterProgram::draws();
-    render(method, scene, {});
+    picture(method, scene, {});
     return gpu::RasterProgram::draws() - before;
   };
   CHECK(dispatches({}) == 5);  // one light map, tiles, airlight, the wall, composition
@@ -161,7 +155,7 @@ TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu]") {
         for (const char* upsample : {"bilinear", "paper", "recompute"}) {
           const Pairs given{
               {"variant", variant}, {"K", "8"}, {"erf", "erf10"}, {"downsample", factor}, {"upsample", upsample}};
-          const scene::Film a = render(fogshop::Fogshop(), each, given), b = render(gpu::FogshopGpu(), each, given);
+          const scene::Film a = picture(fogshop::Fogshop(), each, given), b = picture(gpu::FogshopGpu(), each, given);
           CAPTURE(given, each->media[0].field.index(), each->surfaces.size());
           CHECK(p99(a, b, "airlight") < 2e-3);
           CHECK(p99(a, b, "transmittance") < 2e-3);
@@ -185,7 +179,7 @@ TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu]") {
   for (const Rgb& hue : {Rgb(1, 1, 1), Rgb(0.5, 0.8, 1)}) {
     for (auto& medium : scene->media) medium.sigma_t = 0.25 * hue;
     for (const Pairs& given : {Pairs{{"variant", "paper"}, {"erf", "erf10"}}, Pairs{{"K", "24"}, {"erf", "erf10"}}}) {
-      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      const scene::Film a = picture(fogshop::Fogshop(), scene, given), b = picture(gpu::FogshopGpu(), scene, given);
       CAPTURE(given);
       CHECK(p99(a, b, "airlight") < 2e-3);
       CHECK(p99(a, b, "transmittance") < 2e-3);
@@ -202,7 +196,7 @@ TEST_CASE("fogshop: culling, GPU agrees with CPU", "[gpu]") {
       Pairs given = cull;
       given["erf"] = "erf10";
       const auto scene = scene_named(name);
-      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      const scene::Film a = picture(fogshop::Fogshop(), scene, given), b = picture(gpu::FogshopGpu(), scene, given);
       CAPTURE(name, given);
       CHECK(p99(a, b, "airlight") < 2e-3);
       CHECK(p99(a, b, "transmittance") < 2e-3);
@@ -217,7 +211,7 @@ TEST_CASE("fogshop: noise, GPU agrees with CPU", "[gpu]") {
       const Pairs given{{"variant", variant}, {"erf", "erf10"},         {"noise_scale", "0.4"},
                         {"noise_seed", "3"},  {"noise_phase", "100.3"}, {"noise_frequency", "1.7"}};
       const auto scene = scene_named(name);
-      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      const scene::Film a = picture(fogshop::Fogshop(), scene, given), b = picture(gpu::FogshopGpu(), scene, given);
       CAPTURE(name, given);
       CHECK(p99(a, b, "airlight") < 2e-3);
       CHECK(p99(a, b, "transmittance") < 2e-3);

@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using gpu::test::quantile;
@@ -28,7 +29,7 @@ ScenePointer cloud() {
 
 scene::Rendering render(const scene::Renderer& renderer, const ScenePointer& scene, Pairs given) {
   given.insert({{"environment_airlight", "volume"}, {"sky_cells", "9"}, {"erf", "erf10"}});
-  return renderer.prepare(scene, {renderer.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}});
+  return airlight::test::render(renderer, scene, given);
 }
 
 // Of the airlight, the depth and the whole: 99th, 99.9th percentile and worst, kept as the greatest of all calls.

@@ -9,20 +9,15 @@
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/pictures.h"
 
 namespace airlight::gpu::test {
 
 using Pairs = std::map<std::string, std::string>;
-
-inline scene::Rendering render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
-                               const Pairs& given) {
-  return renderer.prepare(scene, {renderer.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}});
-}
+using airlight::test::render;
 
 inline std::shared_ptr<scene::Scene> scene_of(const std::string& file, int width = 48, int height = 36) {
-  return std::make_shared<scene::Scene>(
-      scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/" + file + ".toml",
-                        {{"film.width", std::to_string(width)}, {"film.height", std::to_string(height)}}));
+  return airlight::test::scene_named(file, width, height);
 }
 
 // Pixels of which any channel differs by more than `limit` of itself and 1 % of the greatest; all if one is not finite.

@@ -9,6 +9,7 @@
 #include "methods/fogshop/paper_airlight.h"
 #include "reference/deterministic/renderer.h"
 #include "scene/error.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -16,6 +17,7 @@ using namespace airlight::fogshop;
 namespace {
 
 using Given = std::map<std::string, std::string>;
+using airlight::test::picture;
 
 // One ray through the middle of one Gaussian, a light 4.3 m from the camera and 2.5 m from the middle.
 std::shared_ptr<const scene::Scene> one_gaussian(double width, double amplitude) {
@@ -36,17 +38,11 @@ std::string objection(const scene::Scene& scene, const Given& given) {
 }
 
 double airlight_of(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Given& given) {
-  const auto view = view_of(*scene);
-  return renderer.prepare(std::move(scene), {renderer.settings(), given}, {1, {}})
-      ->render(view, {1, {}})
-      .film.layer("airlight")[0];
+  return picture(renderer, std::move(scene), given).layer("airlight")[0];
 }
 
 std::string warning(std::shared_ptr<const scene::Scene> scene, const Given& given) {
-  const Fogshop renderer;
-  const auto view = view_of(*scene);
-  const auto film =
-      renderer.prepare(std::move(scene), {renderer.settings(), given}, {1, {}})->render(view, {1, {}}).film;
+  const auto film = picture(Fogshop(), std::move(scene), given);
   const auto found = film.metadata.find("warning");
   return found == film.metadata.end() ? "" : found->second;
 }

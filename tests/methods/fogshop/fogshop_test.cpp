@@ -7,11 +7,13 @@
 #include "reference/deterministic/renderer.h"
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using scene::Film;
 using scene::Scene;
 using Pairs = std::map<std::string, std::string>;
+using airlight::test::relative_l2;
 
 namespace {
 
@@ -24,8 +26,7 @@ std::vector<std::string> reasons(const Scene& scene, const Pairs& given = {}) {
 }
 
 scene::Rendering render(const Scene& scene, const Pairs& given = {}, int threads = 1) {
-  const auto prepared = method.prepare(std::make_shared<const Scene>(scene), settings(given), {threads, {}});
-  return prepared->render(view_of(scene), {threads, {}});
+  return airlight::test::render(method, scene, given, threads);
 }
 
 // A camera at the origin that looks along -z, a small film, one light.
@@ -57,15 +58,6 @@ bool kept(const std::vector<scene::Stage>& stages, const std::string& name) {
     if (stage.name == name) return stage.kept;
   FAIL("no stage " << name);
   return false;
-}
-
-double relative_l2(const std::vector<float>& a, const std::vector<float>& r) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += (double(a[i]) - r[i]) * (double(a[i]) - r[i]);
-    norm += double(r[i]) * r[i];
-  }
-  return std::sqrt(difference / norm);
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include <random>
 
 #include "methods/fogshop/fogshop.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
 using Pairs = std::map<std::string, std::string>;
+using airlight::test::relative_l2;
 
 namespace {
 
@@ -33,19 +35,7 @@ scene::Scene posts(int width, int height) {
 }
 
 scene::Rendering render(const scene::Scene& scene, const Pairs& given, int threads = 1) {
-  const Fogshop method;
-  const auto prepared =
-      method.prepare(std::make_shared<const scene::Scene>(scene), {method.settings(), given}, {threads, {}});
-  return prepared->render(view_of(scene), {threads, {}});
-}
-
-double rel_l2(const std::vector<float>& a, const std::vector<float>& r) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += (double(a[i]) - r[i]) * (double(a[i]) - r[i]);
-    norm += double(r[i]) * r[i];
-  }
-  return std::sqrt(difference / norm);
+  return airlight::test::render(Fogshop(), scene, given, threads);
 }
 
 }  // namespace
@@ -129,8 +119,9 @@ TEST_CASE("low resolution in a scene with edges", "[fogshop]") {
     };
     const scene::Rendering bilinear = low("bilinear"), paper = low("paper"), again = low("recompute");
     const auto& truth = full.film.layer("airlight");
-    const double errors[] = {rel_l2(bilinear.film.layer("airlight"), truth),
-                             rel_l2(paper.film.layer("airlight"), truth), rel_l2(again.film.layer("airlight"), truth)};
+    const double errors[] = {relative_l2(bilinear.film.layer("airlight"), truth),
+                             relative_l2(paper.film.layer("airlight"), truth),
+                             relative_l2(again.film.layer("airlight"), truth)};
     const double edges = again.counters.at("pixels_edge") / (160 * 120);
     double lost = 0;
     std::size_t same = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "methods/fogshop/fogshop.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -14,8 +15,7 @@ namespace {
 scene::Film render(const char* name, const Pairs& given, int threads = 1) {
   const auto scene = std::make_shared<const scene::Scene>(
       scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/") + name + ".toml"));
-  const Fogshop method;
-  return method.prepare(scene, {method.settings(), given}, {threads, {}})->render(view_of(*scene), {threads, {}}).film;
+  return airlight::test::picture(Fogshop(), scene, given, threads);
 }
 
 }  // namespace

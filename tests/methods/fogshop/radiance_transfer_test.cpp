@@ -8,6 +8,7 @@
 #include "scene/geometry/shapes.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -35,11 +36,7 @@ scene::Scene floor_scene() {
 const SurfacePoint on_floor{{0.3, 0, 0.2}, {0, 1, 0}, 0, 0};
 
 scene::Film render(const scene::Scene& scene, std::map<std::string, std::string> values, int threads = 1) {
-  const Fogshop method;
-  return method
-      .prepare(std::make_shared<const scene::Scene>(scene), scene::Settings(method.settings(), values), {threads, {}})
-      ->render(view_of(scene), {threads, {}})
-      .film;
+  return airlight::test::render(Fogshop(), scene, values, threads).film;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 #include "scene/scene.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -90,9 +91,7 @@ TEST_CASE("a tabulated floor reflects scattered light", "[fogshop]") {
   scene.surfaces.push_back({"floor", scene::Plane{Point3::Zero(), Vec3(0, 1, 0)}, satin()});
   finish(scene);
   const Fogshop method;
-  const scene::Settings settings(method.settings(), {{"reflectance", "npsfT"}, {"sh_order", "6"}});
-  const auto shared = std::make_shared<const scene::Scene>(scene);
-  const scene::Film film = method.prepare(shared, settings, {1, {}})->render(view_of(scene), {1, {}}).film;
+  const scene::Film film = airlight::test::render(method, scene, {{"reflectance", "npsfT"}, {"sh_order", "6"}}).film;
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 2; ++x) {
       const Ray ray = camera_ray(scene.camera, x + 0.5, y + 0.5, 2, 2);

@@ -11,6 +11,7 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/scene.h"
 #include "tests/methods/fogshop/exact_reflection.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
@@ -103,11 +104,8 @@ TEST_CASE("a floor reflects what constant fog scatters onto it", "[fogshop]") {
   const scene::Material material = scene::Lambert{Rgb::Constant(0.7)};
   scene.surfaces.push_back({"floor", scene::Plane{Point3::Zero(), Vec3(0, 1, 0)}, material});
   finish(scene);
-  const auto shared = std::make_shared<const scene::Scene>(scene);
-  const Fogshop method;
   const auto film = [&](const char* reflectance) {
-    const scene::Settings settings(method.settings(), {{"reflectance", reflectance}, {"sh_order", "12"}});
-    return method.prepare(shared, settings, {1, {}})->render(view_of(scene), {1, {}}).film;
+    return airlight::test::render(Fogshop(), scene, {{"reflectance", reflectance}, {"sh_order", "12"}}).film;
   };
   const scene::Film direct = film("direct"), printed = film("npsf"), improved = film("npsfT");
   CHECK_FALSE(direct.has("reflected_airlight"));

@@ -6,6 +6,7 @@
 
 #include "methods/fogshop/fogshop.h"
 #include "scene/scene.h"
+#include "tests/pictures.h"
 
 namespace airlight::fogshop::test {
 
@@ -16,9 +17,7 @@ using Pairs = std::map<std::string, std::string>;
 inline const Fogshop method;
 
 inline scene::Rendering render(const Scene& scene, const Pairs& given = {}, int threads = 1) {
-  const scene::Settings settings(method.settings(), given);
-  return method.prepare(std::make_shared<const Scene>(scene), settings, {threads, {}})
-      ->render(view_of(scene), {threads, {}});
+  return airlight::test::render(method, scene, given, threads);
 }
 
 inline bool kept(const Scene& scene, const std::string& name, const Pairs& given = {}) {

@@ -7,18 +7,10 @@
 #include "experiments/equality.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "reference/path_tracer/renderer.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
-
-namespace {
-
-scene::Film render(const scene::Renderer& method, std::shared_ptr<const scene::Scene> scene,
-                   const std::map<std::string, std::string>& given) {
-  const scene::View view = view_of(*scene);
-  return method.prepare(scene, {method.settings(), given}, {})->render(view, {}).film;
-}
-
-}  // namespace
+using airlight::test::picture;
 
 // False alarms: 1e-3 for all scenes together.
 TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
@@ -45,8 +37,8 @@ TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
                           {{"film.width", "32"}, {"film.height", "24"}}));
     for (scene::Surface& surface : scene->surfaces) surface.material = scene::Lambert{Rgb::Zero()};  // airlight alone
     finish(*scene);
-    const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, {{"nodes", "32"}});
-    const scene::Film b = render(path_tracer::PathTracer(), scene, {{"max_order", "1"}, {"samples", samples}});
+    const scene::Film a = picture(shadow_planes::ShadowPlanes(), scene, {{"nodes", "32"}}, 0);
+    const scene::Film b = picture(path_tracer::PathTracer(), scene, {{"max_order", "1"}, {"samples", samples}}, 0);
     const experiments::Equality e = experiments::compare_equal(a, b, "mean", ball_mask(*scene, view_of(*scene)), alpha);
     CAPTURE(file, experiments::text(e));
     if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("{}: {}\n", file, experiments::text(e));

@@ -7,16 +7,13 @@
 #include "reference/deterministic/renderer.h"
 #include "scene/geometry/shapes.h"
 #include "scene/scene.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using Given = std::map<std::string, std::string>;
+using airlight::test::render;
 
 namespace {
-
-scene::Rendering render(const scene::Renderer& method, std::shared_ptr<const scene::Scene> scene, const Given& given) {
-  const scene::View view = view_of(*scene);
-  return method.prepare(scene, {method.settings(), given}, {1, {}})->render(view, {1, {}});
-}
 
 // Greatest |a - b| over the greatest a, of a layer.
 double difference(const scene::Film& a, const scene::Film& b, const std::string& layer,

@@ -6,16 +6,13 @@
 #include "methods/shadow_planes/shadow_volumes.h"
 #include "reference/deterministic/renderer.h"
 #include "tests/methods/shadow_planes/special_scenes.h"
+#include "tests/pictures.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
+using airlight::test::picture;
 
 namespace {
-
-scene::Film render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
-                   const std::map<std::string, std::string>& given = {}) {
-  return renderer.prepare(scene, {renderer.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}}).film;
-}
 
 // A box, and a light and points relative to it.
 ShadowVolumes around_box(const Point3& light) {
@@ -30,8 +27,8 @@ ShadowVolumes around_box(const Point3& light) {
 TEST_CASE("shadow planes: cameras in the plane of an edge and the light", "[shadow_planes]") {
   for (const auto& scene : test::special_scenes())
     for (const char* candidates : {"fan", "tiles"}) {
-      const scene::Film expected = render(*deterministic::make_renderer(), scene);
-      const scene::Film film = render(ShadowPlanes(), scene, {{"candidates", candidates}});
+      const scene::Film expected = picture(*deterministic::make_renderer(), scene);
+      const scene::Film film = picture(ShadowPlanes(), scene, {{"candidates", candidates}});
       CAPTURE(scene->name, candidates);
       const std::vector<float>&x = expected.layer("airlight"), &y = film.layer("airlight");
       int wrong = 0, lit = 0;

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "reference/deterministic/airlight.h"
+#include "tests/pictures.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
 using namespace airlight;
 using namespace airlight::ray_marcher;
+using airlight::test::relative_l2;
 
 namespace {
 
@@ -24,16 +26,6 @@ scene::View one_ray(const Ray& ray) {
   scene::View view = view_at(ray.origin, ray.at(1), 1, 1);
   view.camera.forward = ray.direction;
   return view;
-}
-
-// Root mean square difference over a root mean square value.
-double relative_rms(const std::vector<float>& a, const std::vector<float>& b) {
-  double difference = 0, scale = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
-    scale += double(b[i]) * b[i];
-  }
-  return difference == 0 ? 0 : std::sqrt(difference / scale);
 }
 
 // Least-squares slope of log y over log x.
@@ -80,8 +72,8 @@ TEST_CASE("ray marcher: a trilinear grid is reached at order 2 from its determin
     for (const char* step : {"1", "0.5", "0.25", "0.125", "0.0625"}) {
       const auto film = render(scene, view, {{"step", step}, {"shadow_step", step}}).film;
       lengths.push_back(std::stod(step));
-      airlight_errors.push_back(relative_rms(film.layer("airlight"), airlight));
-      transmittance_errors.push_back(relative_rms(film.layer("transmittance"), transmittance));
+      airlight_errors.push_back(relative_l2(film.layer("airlight"), airlight));
+      transmittance_errors.push_back(relative_l2(film.layer("transmittance"), transmittance));
     }
     INFO(light_name(light) << ": airlight " << airlight_errors[0] << " " << airlight_errors[1] << " "
                            << airlight_errors[2] << " " << airlight_errors[3] << " " << airlight_errors[4]
@@ -102,7 +94,7 @@ TEST_CASE("ray marcher: equal and graded steps converge to one picture", "[ray_m
   const auto graded = render(scene, view, {{"steps", "512"}}).film;
   const auto uniform = render(scene, view, {{"steps", "2048"}, {"spacing", "uniform"}}).film;
   // (1/512)^2 times second derivatives of order one, relative, near the light: 1e-4.
-  CHECK(relative_rms(uniform.layer("airlight"), graded.layer("airlight")) < 2e-4);
+  CHECK(relative_l2(uniform.layer("airlight"), graded.layer("airlight")) < 2e-4);
 }
 
 // A constant grid that ends at its border is a homogeneous box: sums of equal values against products of the same, in
@@ -126,7 +118,7 @@ TEST_CASE("ray marcher: a constant grid is a homogeneous box", "[ray_marcher]") 
     const Given given = {{"steps", "40"}, {"shadow_steps", "20"}, {"kernel", kernel}};
     const auto a = render(voxels, view, given), b = render(plain, view, given);
     for (const char* layer : {"airlight", "transmittance"})
-      CHECK(relative_rms(a.film.layer(layer), b.film.layer(layer)) < 4e-6);
+      CHECK(relative_l2(a.film.layer(layer), b.film.layer(layer)) < 4e-6);
     CHECK(b.counters.at("steps") == 0);  // a constant is never sampled
     CHECK(b.counters.at("shadow_steps") == 0);
   }
@@ -146,7 +138,7 @@ TEST_CASE("ray marcher: overlapping media add up", "[ray_marcher]") {
     const auto a = render(std::make_shared<scene::Scene>(halves), view, given), b = render(whole, view, given);
     INFO(name);
     for (const char* layer : {"mean", "airlight", "transmittance"})
-      CHECK(relative_rms(a.film.layer(layer), b.film.layer(layer)) < 2e-6);
+      CHECK(relative_l2(a.film.layer(layer), b.film.layer(layer)) < 2e-6);
   }
 }
 
