@@ -115,6 +115,11 @@ bool Settings::flag(const std::string& name) const { return values_.at(spec(name
 
 const std::string& Settings::text(const std::string& name) const { return values_.at(spec(name).name); }
 
+int Settings::place_of_choice(const std::string& name) const {
+  const std::vector<std::string>& choices = spec(name).choices;
+  return int(std::find(choices.begin(), choices.end(), text(name)) - choices.begin());
+}
+
 std::string Settings::canonical() const {
   std::vector<std::string> parts;
   for (const SettingSpec& s : specs_) parts.push_back(s.name + "=" + values_.at(s.name));

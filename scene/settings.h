@@ -17,6 +17,23 @@ struct SettingSpec {
   std::vector<std::string> choices = {};  // of a choice
 };
 
+// `fallback` as text keeps the spelling that canonical() prints.
+inline SettingSpec integer_setting(std::string name, std::string fallback, double least, double greatest,
+                                   std::string doc) {
+  return {std::move(name), SettingSpec::Type::integer, std::move(fallback), std::move(doc), least, greatest, {}};
+}
+inline SettingSpec real_setting(std::string name, std::string fallback, double least, double greatest,
+                                std::string doc) {
+  return {std::move(name), SettingSpec::Type::real, std::move(fallback), std::move(doc), least, greatest, {}};
+}
+inline SettingSpec flag_setting(std::string name, bool fallback, std::string doc) {
+  return {std::move(name), SettingSpec::Type::flag, fallback ? "true" : "false", std::move(doc), 0, 0, {}};
+}
+inline SettingSpec choice_setting(std::string name, std::string fallback, std::vector<std::string> choices,
+                                  std::string doc) {
+  return {std::move(name), SettingSpec::Type::choice, std::move(fallback), std::move(doc), 0, 0, std::move(choices)};
+}
+
 // Values for all specs of one renderer.
 class Settings {
  public:
@@ -29,11 +46,17 @@ class Settings {
   double real(const std::string& name) const;
   bool flag(const std::string& name) const;
   const std::string& text(const std::string& name) const;
+  // Of a choice: the enumerator with the place of its text among the choices.
+  template <class Enum>
+  Enum choice(const std::string& name) const {
+    return Enum(place_of_choice(name));
+  }
 
   // "name=value name=value ..." of all settings in the order of the specs: part of cache keys and metadata.
   std::string canonical() const;
 
  private:
+  int place_of_choice(const std::string& name) const;
   const SettingSpec& spec(const std::string& name) const;
   std::vector<SettingSpec> specs_;
   std::map<std::string, std::string> values_;

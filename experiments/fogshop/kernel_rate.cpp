@@ -92,16 +92,10 @@ std::string KernelRate::about() const {
 }
 
 std::vector<scene::SettingSpec> KernelRate::settings() const {
-  using Type = scene::SettingSpec::Type;
   auto settings = fogshop::Fogshop().settings();
-  settings.push_back({"runs", Type::integer, "15", "pictures, each beside bare loops", 1, 10000});
-  settings.push_back({"clock",
-                      Type::choice,
-                      "wall",
-                      "processor: of one thread, on a machine that others use",
-                      0,
-                      0,
-                      {"wall", "processor"}});
+  settings.push_back(scene::integer_setting("runs", "15", 1, 10000, "pictures, each beside bare loops"));
+  settings.push_back(scene::choice_setting("clock", "wall", {"wall", "processor"},
+                                           "processor: of one thread, on a machine that others use"));
   return settings;
 }
 

@@ -9,22 +9,16 @@ namespace airlight::experiments::shadow_planes {
 namespace {
 
 using scene::SettingSpec;
-using Type = SettingSpec::Type;
 
-const SettingSpec terms{"terms", Type::integer, "4", "degree of the polynomial, at most 12, or nodes of the rule", 0,
-                        256};
-const SettingSpec precision{"precision", Type::choice, "double", "of all arithmetic", 0, 0, {"single", "double"}};
-const SettingSpec degree{"degree", Type::integer, "4", "of the polynomial", 0, 12};
-const SettingSpec cases{"cases", Type::integer, "20000", "random ones", 100, 1e7};
+const SettingSpec terms =
+    scene::integer_setting("terms", "4", 0, 256, "degree of the polynomial, at most 12, or nodes of the rule");
+const SettingSpec precision = scene::choice_setting("precision", "double", {"single", "double"}, "of all arithmetic");
+const SettingSpec degree = scene::integer_setting("degree", "4", 0, 12, "of the polynomial");
+const SettingSpec cases = scene::integer_setting("cases", "20000", 100, 1e7, "random ones");
 
 SettingSpec form(std::vector<std::string> choices) {
-  return {"evaluator",
-          Type::choice,
-          "polynomial",
-          "polynomial over the lit part, differences from the eye, or the rule",
-          0,
-          0,
-          std::move(choices)};
+  return scene::choice_setting("evaluator", "polynomial", std::move(choices),
+                               "polynomial over the lit part, differences from the eye, or the rule");
 }
 
 Evaluator evaluator_of(const scene::Settings& s) {
@@ -32,10 +26,8 @@ Evaluator evaluator_of(const scene::Settings& s) {
   const int count = int(s.integer("terms"));
   if (form != "rule" && count > 12) throw Error(fmt::format("terms = {}: a degree is at most 12", count));
   if (form == "rule" && count < 1) throw Error("terms = 0: the rule needs a node");
-  return {form == "rule"          ? Evaluator::Form::rule
-          : form == "differences" ? Evaluator::Form::differences
-                                  : Evaluator::Form::polynomial,
-          count, false};
+  using Form = Evaluator::Form;
+  return {form == "rule" ? Form::rule : form == "differences" ? Form::differences : Form::polynomial, count, false};
 }
 
 double share_below(const std::vector<double>& errors, double bound) {
@@ -67,10 +59,8 @@ std::string EvaluatorMap::about() const {
 }
 
 std::vector<SettingSpec> EvaluatorMap::settings() const {
-  return {form({"polynomial", "differences", "rule"}),
-          terms,
-          precision,
-          {"per_decade", Type::integer, "4", "cells along each axis", 1, 32}};
+  return {form({"polynomial", "differences", "rule"}), terms, precision,
+          scene::integer_setting("per_decade", "4", 1, 32, "cells along each axis")};
 }
 
 std::vector<std::string> EvaluatorMap::figures() const {
@@ -133,11 +123,9 @@ std::string EvaluatorAngles::about() const {
 }
 
 std::vector<SettingSpec> EvaluatorAngles::settings() const {
-  return {degree,
-          {"reach", Type::real, "0.25", "angles lie within +-reach", 1e-3, 1.57},
-          {"a_low", Type::real, "0.3", "least extinction * h", 1e-12, 1e3},
-          {"a_high", Type::real, "3", "greatest extinction * h", 1e-12, 1e3},
-          cases};
+  return {degree, scene::real_setting("reach", "0.25", 1e-3, 1.57, "angles lie within +-reach"),
+          scene::real_setting("a_low", "0.3", 1e-12, 1e3, "least extinction * h"),
+          scene::real_setting("a_high", "3", 1e-12, 1e3, "greatest extinction * h"), cases};
 }
 
 Findings EvaluatorAngles::run(const ProbeInput&, const scene::Settings& s, const scene::Execution&) const {
@@ -153,9 +141,8 @@ std::string EvaluatorImage::about() const {
 }
 
 std::vector<SettingSpec> EvaluatorImage::settings() const {
-  return {degree,
-          {"optical_distance", Type::real, "1", "of the light", 1e-6, 100},
-          {"rays", Type::integer, "90", "evenly over the angles", 2, 1e6}};
+  return {degree, scene::real_setting("optical_distance", "1", 1e-6, 100, "of the light"),
+          scene::integer_setting("rays", "90", 2, 1e6, "evenly over the angles")};
 }
 
 Findings EvaluatorImage::run(const ProbeInput&, const scene::Settings& s, const scene::Execution&) const {
@@ -170,11 +157,8 @@ std::string EvaluatorTimes::about() const {
 }
 
 std::vector<SettingSpec> EvaluatorTimes::settings() const {
-  return {form({"polynomial", "differences", "rule"}),
-          terms,
-          precision,
-          cases,
-          {"runs", Type::integer, "15", "timed", 1, 10000}};
+  return {form({"polynomial", "differences", "rule"}), terms, precision, cases,
+          scene::integer_setting("runs", "15", 1, 10000, "timed")};
 }
 
 Findings EvaluatorTimes::run(const ProbeInput&, const scene::Settings& s, const scene::Execution&) const {
@@ -184,7 +168,7 @@ Findings EvaluatorTimes::run(const ProbeInput&, const scene::Settings& s, const 
 }
 
 std::vector<SettingSpec> EvaluatorTimesGpu::settings() const {
-  return {form({"polynomial", "rule"}), terms, cases, {"runs", Type::integer, "15", "timed", 1, 10000}};
+  return {form({"polynomial", "rule"}), terms, cases, scene::integer_setting("runs", "15", 1, 10000, "timed")};
 }
 
 Findings EvaluatorTimesGpu::run(const ProbeInput&, const scene::Settings& s, const scene::Execution&) const {

@@ -11,7 +11,7 @@ namespace airlight::experiments {
 
 std::vector<scene::SettingSpec> OracleProbe::settings() const {
   static const std::vector<std::string> kinds = verification::known_kinds();
-  return {{"kind", scene::SettingSpec::Type::choice, kinds.front(), "of the vectors that are recomputed", 0, 0, kinds}};
+  return {scene::choice_setting("kind", kinds.front(), kinds, "of the vectors that are recomputed")};
 }
 
 std::vector<std::string> OracleProbe::figures() const {

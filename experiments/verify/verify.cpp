@@ -20,18 +20,18 @@ namespace {
 
 using namespace verification;
 
-struct Work {
+struct Vector {
   std::string id, kind;
   Check check;
 };
 
 // Everything of a file is read before anything is computed: a malformed last entry is not found after minutes of work.
-std::vector<Work> read_file(const std::string& path) {
+std::vector<Vector> read_file(const std::string& path) {
   const nlohmann::json json = read_json(path);
   const Value file(json, path);
   const std::string family = family_of(file);
   const Value vectors = file["vectors"];
-  std::vector<Work> work;
+  std::vector<Vector> vectors_read;
   std::set<std::string> ids;
   std::string unknown;  // the first vector of an unknown kind
   std::size_t unknown_count = 0;
@@ -51,15 +51,15 @@ std::vector<Work> read_file(const std::string& path) {
                               fmt::join(kinds, ", "), scene::nearest(kind, kinds));
       continue;
     }
-    work.push_back({id, kind, read(named)});
+    vectors_read.push_back({id, kind, read(named)});
   }
   if (unknown_count)
     throw Error(fmt::format("{}; {} of {} vectors are of unknown kinds", unknown, unknown_count, vectors.size()));
-  return work;
+  return vectors_read;
 }
 
 // What a job refuses is told with the vector's place.
-Outcome computed(const Work& w, const std::string& path, VerifyProfile profile) try {
+Outcome computed(const Vector& w, const std::string& path, VerifyProfile profile) try {
   return w.check.job(profile);
 } catch (const Error& e) {
   throw Error(fmt::format("{}: vector '{}': {}", path, w.id, e.what()), e.exit_code());
@@ -117,11 +117,11 @@ std::string text(const Totals& t) {
 
 int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile profile, std::ostream& out,
            std::vector<VerifyKind>* table) {
-  std::vector<std::pair<std::string, std::vector<Work>>> all;
+  std::vector<std::pair<std::string, std::vector<Vector>>> all;
   std::set<std::string> kinds;
   for (const std::string& path : files) {
     all.push_back({path, read_file(path)});
-    for (const Work& w : all.back().second) kinds.insert(w.kind);
+    for (const Vector& w : all.back().second) kinds.insert(w.kind);
   }
   if (!kind.empty() && !kinds.count(kind))
     throw Error(fmt::format("no vector of kind '{}', expected one of {} (nearest: {})", kind, fmt::join(kinds, ", "),
@@ -130,11 +130,11 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
   std::vector<VerifyKind> kinds_found;
   std::map<std::string, int> waiting;
   std::vector<std::string> failures;
-  for (const auto& [path, work] : all) {
+  for (const auto& [path, vectors] : all) {
     out << path << "\n";
     out << fmt::format("{:<42} {:<32} {:<22} {:>20} {:>20} {:>9}  {:<26} {}\n", "id", "kind", "number", "expected",
                        "got", "rel.err", "tolerance", "");
-    for (const Work& w : work) {
+    for (const Vector& w : vectors) {
       if (!kind.empty() && w.kind != kind) continue;
       VerifyKind& line = line_of(kinds_found, path, w.kind);
       if (!w.check.job) {
@@ -163,7 +163,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
   for (const std::string& f : failures) out << "OUT: " << f << "\n";
   Totals totals;
   for (const VerifyKind& line : kinds_found) totals.add(line);
-  for (const auto& [path, work] : all) {
+  for (const auto& [path, vectors] : all) {
     Totals of_file;
     for (const VerifyKind& line : kinds_found)
       if (line.file == path) of_file.add(line);

@@ -88,7 +88,7 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   set_view(p, view);
   p.set("light_count", int(model_.lights.size()));
   p.set("triangle_count", surfaces.triangles());
-  p.set("three", 3);
+  p.set("loop_count", 3);
   p.set("map_side", maps_ ? maps_->side() : 0);
   p.set("has_airlight", pixels != nullptr);
   p.set("has_scattered", scattered != nullptr);

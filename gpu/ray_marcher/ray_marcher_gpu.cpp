@@ -156,13 +156,9 @@ std::string RayMarcherGpu::about() const {
 
 std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
   auto settings = ray_marcher::option_specs();
-  settings.push_back({"grid_storage",
-                      scene::SettingSpec::Type::choice,
-                      "auto",
-                      "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough",
-                      0,
-                      0,
-                      {"auto", "buffer", "texture"}});
+  settings.push_back(scene::choice_setting(
+      "grid_storage", "auto", {"auto", "buffer", "texture"},
+      "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough"));
   return settings;
 }
 

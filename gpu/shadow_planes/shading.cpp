@@ -105,7 +105,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   p.set("tile_columns", TileBins::columns(picture.view));
   p.set("edge_split", options_.edge_split);
   p.set("frame_buffer", options_.frame_buffer && stages);
-  p.set("three", 3);
+  p.set("loop_count", 3);
   for (bool resume = false;; resume = true) {
     p.set("resume", resume);
     p.dispatch(picture.view.width, picture.view.height);

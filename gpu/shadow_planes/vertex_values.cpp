@@ -40,7 +40,7 @@ void VertexValues::fill(Context& context, const scene::Scene& scene, const shado
     airs.bind(p, light, air);
     values_->bind(13);
     counters.bind(14);
-    p.set("three", 3);
+    p.set("loop_count", 3);
     p.set("vertex_count", count);
     p.set("first_value", first);
     p.set("pieces", options.edge_split);

@@ -145,14 +145,8 @@ class DeterministicRenderer final : public scene::Renderer {
     return "noise-free single scattering by adaptive Gauss-Kronrod quadrature (reference)";
   }
   std::vector<SettingSpec> settings() const override {
-    return {{"relative_tolerance",
-             SettingSpec::Type::real,
-             "1e-10",
-             "of each pixel's airlight, per channel",
-             1e-14,
-             0.1,
-             {}},
-            {"max_evaluations", SettingSpec::Type::integer, "200000", "of the integrand, per pixel", 15, 1e7, {}}};
+    return {scene::real_setting("relative_tolerance", "1e-10", 1e-14, 0.1, "of each pixel's airlight, per channel"),
+            scene::integer_setting("max_evaluations", "200000", 15, 1e7, "of the integrand, per pixel")};
   }
   std::vector<std::string> supports(const Scene& scene, const scene::Settings&) const override {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
