@@ -27,6 +27,7 @@ std::string range(const scene::SettingSpec& spec) {
 
 void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
   fmt::print("\n{}: {}\n", renderer.name(), renderer.about());
+  if (const std::string device = renderer.device(); !device.empty()) fmt::print("  on {}\n", device);
   const scene::Settings settings(renderer.settings(), given, renderer.name());
   fmt::print("  settings (name = value here; range; meaning)\n");
   for (const scene::SettingSpec& spec : renderer.settings())
