@@ -207,7 +207,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
 }  // namespace
 
 std::string FogshopGpu::about() const {
-  return "fogshop in compute shaders, single precision: variants paper, S and VS2 (Zhou et al. 2007)";
+  return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
 }
 
 std::vector<scene::SettingSpec> FogshopGpu::settings() const {

@@ -8,7 +8,6 @@
 
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
-#include "scene/math/gauss_legendre.h"
 
 namespace airlight::gpu {
 namespace {
@@ -205,7 +204,6 @@ void FogOnDevice::upload_f_table(const fogshop::FTable& table) {
 void FogOnDevice::compute(const scene::View& view, int step, bool has_distances, bool only_edges, StageTimer& timer) {
   const fogshop::Options& o = model_.options;
   const int n = model_.gaussians.count, lights = int(model_.lights.size());
-  const bool voigt = o.variant == fogshop::Options::Variant::voigt;
   const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
   const std::string stage = only_edges ? "edges at full resolution" : "airlight";
   const auto prepare = [&](Program& p) {
@@ -241,12 +239,6 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   if (!model_.paper()) {
     definitions["K"] = std::to_string(o.slices);
     definitions["EXACT_LIGHT_DEPTH"] = o.map ? "0" : "1";
-    definitions["VOIGT"] = voigt ? "1" : "0";
-    if (voigt) {
-      const scene::GaussLegendre rule = scene::gauss_legendre(16);
-      definitions["RULE_NODES"] = fmt::format("{:.9e}", fmt::join(rule.node, ", "));
-      definitions["RULE_WEIGHTS"] = fmt::format("{:.9e}", fmt::join(rule.weight, ", "));
-    }
   }
   definitions["NOISE"] = model_.noise ? "1" : "0";
   Program& p = program(model_.paper() ? "fogshop/paper.comp" : "fogshop/slices.comp", definitions);
@@ -286,7 +278,6 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
   const double each = model_.paper()
                           ? 1 + lights
                           : 3 + std::ceil((1.5 * o.slices + 1 + lights * light_steps) / 8) + std::ceil(o.slices / 8.0);
-  const double in_voigt = voigt ? 1 + lights * (41 + 2 * (std::log2(o.slices) + (o.map ? 2 : n + 2))) : 0;
   const double apart = model_.paper() ? 0 : lights * (10.0 * o.slices + (o.map ? 0.0 : (o.slices + 1.0) * n));
   for (int first = 0; first < rows; first += strip) {
     const int count = std::min(strip, rows - first);
@@ -300,7 +291,7 @@ void FogOnDevice::compute(const scene::View& view, int step, bool has_distances,
       const int most = *std::max_element(near.begin(), near.begin() + columns * count);
       check_iterations(context_, each * most + apart, what);
     };
-    watch(each + in_voigt, apart, model_.paper() ? "the paper's airlight" : "the airlight by slices");
+    watch(each, apart, model_.paper() ? "the paper's airlight" : "the airlight by slices");
     if (sky) watch(2 + std::ceil(o.slices / 8.0), 10.0 * o.slices, "the environment's airlight by slices");
     timer.stage("tiles");
     p.set("tile_row", first);

@@ -1,6 +1,5 @@
-// Variant S: airlight and optical depth of every pixel of a strip, by K slices with exact depths at their edges. Variant VS2:
-// the Gaussians over 1/d^2 exactly, the slices for the constant alone. One tile is one work group. The steps and their names
-// are those of methods/fogshop/ray_airlight.cpp and slices.cpp.
+// Variant S: airlight and optical depth of every pixel of a strip, by K slices with exact depths at their edges. One tile
+// is one work group. The steps and their names are those of methods/fogshop/ray_airlight.cpp and slices.cpp.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
@@ -10,7 +9,6 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/noise.glsl"
 #include "fogshop/light.glsl"
 #include "fogshop/light_lookup.glsl"
-#include "fogshop/voigt.glsl"
 
 uniform int boxes, extrapolate;
 uniform float clearest;  // least hue above 0
@@ -75,12 +73,7 @@ vec3 sum_slices(LightFromRay seen, int stride) {
     vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
     for (int c = 0; c < 3; ++c) {
       float mean = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * s1)) / q[c];
-#if VOIGT
-      float scattered = constant * length_;
 #if COLOURED
-      scattered *= constant_colour[c];
-#endif
-#elif COLOURED
       float scattered = slice_scattering[k][c];
       if (stride == 2) scattered += slice_scattering[k + 1][c];
 #else
@@ -96,30 +89,6 @@ vec3 sum_slices(LightFromRay seen, int stride) {
 float shadow_at(Light light, vec3 x) {
   return EXACT_LIGHT_DEPTH != 0 ? gaussian_depth(light.position, x) : light_depth(light, x);
 }
-
-#if VOIGT
-// What one Gaussian scatters of one light, attenuated at two nodes; the depth from the viewer is linear between the edges.
-vec3 voigt_term(Crossing c, Light light, LightFromRay seen, vec3 origin, vec3 direction, float end) {
-  VoigtNodes nodes = voigt_nodes(c, end, seen);
-  vec3 sum = vec3(0);
-  for (int i = 0; i < 2; ++i) {
-    float t = clamp(nodes.t[i], edge[0], edge[K]);
-    int low = 1, high = K;  // the first edge beyond t, by halving
-    while (low < high) {
-      int middle = (low + high) / 2;
-      if (edge[middle] > t)
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    float step_ = edge[low] - edge[low - 1], s = step_ > 0 ? min((t - edge[low - 1]) / step_, 1) : 0;
-    float exponent = mix(view_depth[low - 1], view_depth[low], s) + shadow_at(light, origin + t * direction) +
-                     constant * length(vec2(t - seen.along, seen.h));
-    sum += nodes.weight[i] / (4 * pi) * hue * exp(-hue * exponent);
-  }
-  return sum;
-}
-#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
@@ -237,26 +206,7 @@ void main() {
   for (int k = 0; k < K; ++k) view_depth[k + 1] = view_depth[k] + slice_depth[k];
 
   vec3 airlight = vec3(0);
-#if VOIGT
-  for (int first = 0; first < count; first += group_size) {
-    int loaded = load_near(first, count);
-    for (int i = 0; i < loaded && sliced; ++i) {
-      Crossing c = cross_view(near_block[i], origin, direction, end);
-      if (!c.met) continue;
-      vec3 colour = vec3(1);
-#if COLOURED
-      colour = colour_of[int(near_block[i].place)].rgb;
-#endif
-      for (int l = 0; l < LIGHTS; ++l) {
-        Light light = lights[l];
-        LightFromRay seen = light_from_ray(light, origin, direction);
-        airlight += light.intensity * colour * voigt_term(c, light, seen, origin, direction, end);
-      }
-    }
-  }
-#endif
-  bool slices = sliced && (VOIGT == 0 || constant > 0);
-  for (int l = 0; l < LIGHTS && slices; ++l) {
+  for (int l = 0; l < LIGHTS && sliced; ++l) {
     Light light = lights[l];
     LightFromRay seen = light_from_ray(light, origin, direction);
     float shadow = 0;

@@ -73,13 +73,7 @@ double nearest_light(const scene::Scene& scene, const Fog& fog) {
 }  // namespace
 
 std::string objection_to_domain(const scene::Scene& scene, const Fog& fog, const Options& options) {
-  if (options.variant == Options::Variant::paper) return too_wide(scene, fog, options);
-  if (options.variant == Options::Variant::voigt)
-    for (const scene::Gaussian& g : fog.sum.gaussians)
-      if (depth_across(g) > deepest_voigt)
-        return fmt::format("a Gaussian of optical depth {:.3g}: variant VS2 expects at most {}, S knows no such limit",
-                           depth_across(g), deepest_voigt);
-  return "";
+  return options.variant == Options::Variant::paper ? too_wide(scene, fog, options) : "";
 }
 
 std::string doubt_of(const scene::Scene& scene, const Fog& fog, const Options& options) {

@@ -8,14 +8,13 @@
 // Each is a quarter at `least_widths` and `deepest`. A light in a Gaussian wider than its distance from the camera is
 // nearer to every ray than the Gaussian is wide, so that no pixel is right: its light grows like w, its true light does
 // not (0.5 too much at once the distance, 13 times too much at 19, linearly on; a closed form in a test).
-// VS2 takes the attenuation at two points; a Gaussian deeper than `deepest_voigt` has both behind its front.
 // Eq. 28 lights all of a ray of depth T by T e^-T; seen from outside, a cloud differs by up to T/2 of that.
 #pragma once
 #include "methods/fogshop/model.h"
 
 namespace airlight::fogshop {
 
-constexpr double least_widths = 2.45, deepest = 1.2, deepest_voigt = 8, deepest_sky = 0.5;
+constexpr double least_widths = 2.45, deepest = 1.2, deepest_sky = 0.5;
 
 // Why the scene lies clearly outside what the variant can do; empty if it does not. Source: above.
 std::string objection_to_domain(const scene::Scene&, const Fog&, const Options&);

@@ -160,15 +160,10 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   if (options.sky_volume && reasons.empty() && make_fog(scene.media).sum.constant > 0)
     reasons.push_back("environment_airlight = volume is for Gaussians alone, and the medium has a constant");
   if (options.sky_volume && options.noise_scale > 0 && options.variant == Options::Variant::paper)
-    reasons.push_back(
-        "variant = paper bends depths by noise and not places: environment_airlight = volume needs S or VS2");
+    reasons.push_back("variant = paper bends depths by noise and not places: environment_airlight = volume needs S");
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");
-  // VS2 slices the constant alone.
-  const bool sliced =
-      options.variant == Options::Variant::slices ||
-      (options.variant == Options::Variant::voigt && reasons.empty() && make_fog(scene.media).sum.constant > 0);
-  if (sliced && options.extrapolate && options.slices % 2 != 0)
+  if (options.variant == Options::Variant::slices && options.extrapolate && options.slices % 2 != 0)
     reasons.push_back(fmt::format("K = {} is odd: extrapolation needs an even number of slices", options.slices));
   const auto points = std::count_if(scene.lights.begin(), scene.lights.end(),
                                     [](const auto& l) { return std::holds_alternative<scene::PointLight>(l); });

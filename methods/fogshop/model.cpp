@@ -24,8 +24,7 @@ scene::SettingSpec real(const char* name, const char* fallback, double least, do
 
 std::vector<scene::SettingSpec> setting_specs() {
   return {
-      choice("variant", "S", {"paper", "S", "VS2"},
-             "paper: Zhou et al. 2007; S: slices with exact depths at their edges; VS2: Gaussians over 1/d^2 exactly"),
+      choice("variant", "S", {"paper", "S"}, "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
       integer("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
       choice("edges", "S3", {"plain", "S3"}, "where S cuts: by length and lights, or by the Gaussians too"),
       {"extrapolate", Type::flag, "true", "S from K/2 and K slices (error K^-4 instead of K^-2); K even", 0, 0, {}},
@@ -71,10 +70,7 @@ std::vector<scene::SettingSpec> setting_specs() {
 
 Options read_options(const scene::Settings& settings) {
   Options o;
-  const std::string& variant = settings.text("variant");
-  o.variant = variant == "paper" ? Options::Variant::paper
-              : variant == "S"   ? Options::Variant::slices
-                                 : Options::Variant::voigt;
+  o.variant = settings.text("variant") == "paper" ? Options::Variant::paper : Options::Variant::slices;
   o.slices = int(settings.integer("K"));
   o.extrapolate = settings.flag("extrapolate");
   o.boxes = settings.text("edges") == "S3";

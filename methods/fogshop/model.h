@@ -15,7 +15,7 @@
 namespace airlight::fogshop {
 
 struct Options {
-  enum class Variant { paper, slices, voigt };
+  enum class Variant { paper, slices };
   Variant variant = Variant::slices;
   int slices = 24;          // K
   bool extrapolate = true;  // from K/2 and K slices; K is even

@@ -173,7 +173,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
   const double constant = model_.fog.sum.constant;
   const Options& o = model_.options;
   const int slices = o.slices;
-  const bool voigt = o.variant == Options::Variant::voigt, separate = voigt || !model_.fog.one_albedo();
+  const bool separate = !model_.fog.one_albedo();
   const Interval range = stretch(line);
   Rgb airlight = Rgb::Zero();
   if (range.empty()) return airlight;
@@ -186,7 +186,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
   place_edges(range.lo, range.hi, seen_, o.boxes ? &crossings_ : nullptr, slices, scratch_, t_.data());
   if (separate)
     for (auto& channel : scattering_) channel.assign(t_.size(), 0.0);
-  if (separate && !voigt) {
+  if (separate) {
     double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
     scattering_depths_at(crossings_, near, t_.data(), padded(slices + 1), view_depth_.data(), scattering, o.erf);
   } else {
@@ -201,56 +201,21 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
 
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];
-    Rgb sum = Rgb::Zero();
-    if (voigt) sum = voigt_terms(near, line, range, l);
-    if (!voigt || constant > 0) {
-      depths_from_light(light, line, range, t_, padded(slices + 1), light_depth_);
-      if (!light.map) evaluations += 2.0 * double(places_.size()) * (slices + 1);
-      const double last_shadow = light_depth_[slices];
-      const double h2 = seen_[l].h * seen_[l].h;
-      for (int k = 0; constant > 0 && k <= slices; ++k) {
-        const double x = t_[k] - seen_[l].along;
-        light_depth_[k] += constant * std::sqrt(x * x + h2);
-      }
-      sum += sum_of_slices(seen_[l], separate);
-      if (constant > 0 && range.hi < line.length)
-        sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
-               homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
+    depths_from_light(light, line, range, t_, padded(slices + 1), light_depth_);
+    if (!light.map) evaluations += 2.0 * double(places_.size()) * (slices + 1);
+    const double last_shadow = light_depth_[slices];
+    const double h2 = seen_[l].h * seen_[l].h;
+    for (int k = 0; constant > 0 && k <= slices; ++k) {
+      const double x = t_[k] - seen_[l].along;
+      light_depth_[k] += constant * std::sqrt(x * x + h2);
     }
+    Rgb sum = sum_of_slices(seen_[l], separate);
+    if (constant > 0 && range.hi < line.length)
+      sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
+             homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
     airlight += light.intensity * sum;
   }
   return airlight;
-}
-
-// Variant VS2: every Gaussian over 1/d^2 exactly, the attenuation at two nodes; per channel, for 1 W/sr. The depth from
-// the viewer is linear between the edges.
-Rgb RayAirlight::voigt_terms(const GaussianArrays& near, const Line& line, const Interval& range, std::size_t l) {
-  const LightFromRay& seen = seen_[l];
-  const double constant = model_.fog.sum.constant, soft = std::hypot(seen.h, model_.options.source_radius);
-  nodes_.clear();
-  for (int i = 0; i < crossings_.count; ++i) append_voigt_nodes(crossings_, i, line.length, seen.along, soft, nodes_);
-  const int count = int(nodes_.size());
-  const int padded = (count + GaussianArrays::padding - 1) & -GaussianArrays::padding;
-  node_t_.assign(padded, range.hi);
-  node_depth_.resize(padded);
-  for (int k = 0; k < count; ++k) node_t_[k] = std::clamp(nodes_[k].t, range.lo, range.hi);
-  depths_from_light(model_.lights[l], line, range, node_t_, padded, node_depth_);
-  if (!model_.lights[l].map) evaluations += 2.0 * double(places_.size()) * count;
-  Rgb sum = Rgb::Zero();
-  for (int k = 0; k < count; ++k) {
-    const double t = node_t_[k];
-    const auto first = t_.begin(), last = first + model_.options.slices;
-    const std::size_t e = std::upper_bound(first + 1, last, t) - first;  // t lies in [t_[e-1], t_[e]]
-    const double step = t_[e] - t_[e - 1], s = step > 0 ? std::min((t - t_[e - 1]) / step, 1.0) : 0;
-    const double to_view = view_depth_[e - 1] + s * (view_depth_[e] - view_depth_[e - 1]);
-    const double exponent = to_view + node_depth_[k] + constant * std::hypot(t - seen.along, seen.h);
-    const int place = crossings_.place[nodes_[k].crossing];
-    for (int c = 0; c < (coloured() ? 3 : 1); ++c) {
-      const double hue = model_.fog.hue[c], colour = near.has_colours() ? near.colour[c][place] : 1;
-      sum[c] += nodes_[k].weight / (4 * pi) * colour * hue * std::exp(-hue * exponent);
-    }
-  }
-  return coloured() ? sum : Rgb::Constant(sum[0]);
 }
 
 }  // namespace airlight::fogshop

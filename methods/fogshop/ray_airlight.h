@@ -6,7 +6,6 @@
 #include "methods/fogshop/model.h"
 #include "methods/fogshop/paper_ray.h"
 #include "methods/fogshop/slices.h"
-#include "methods/fogshop/voigt.h"
 
 namespace airlight::fogshop {
 
@@ -38,7 +37,6 @@ class RayAirlight {
   Interval stretch(const Line&) const;
   bool coloured() const { return !model_.fog.grey() || !model_.fog.one_albedo(); }
   Rgb sum_of_slices(const LightFromRay&, bool separate);
-  Rgb voigt_terms(const GaussianArrays& near, const Line&, const Interval& range, std::size_t light);
   void depths_from_light(const LightModel&, const Line&, const Interval& range, const std::vector<double>& t, int count,
                          std::vector<double>& depth);
 
@@ -52,8 +50,6 @@ class RayAirlight {
   std::vector<double> t_, view_depth_, light_depth_;
   // What the medium up to an edge scatters, per channel [-], hue 1; unused where that is what is extinguished.
   std::array<std::vector<double>, 3> scattering_;
-  std::vector<VoigtNode> nodes_;
-  std::vector<double> node_t_, node_depth_;
 };
 
 }  // namespace airlight::fogshop

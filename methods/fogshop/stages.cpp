@@ -89,12 +89,10 @@ std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model
                                       : "light_depth = exact: sums per edge instead"));
   if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
   stage("airlight of Gaussians", gaussians && lit,
-        !gaussians
-            ? no_gaussians
-            : unlit_or(model.paper() ? "Eqs. 8 to 17"
-                       : o.variant == Options::Variant::voigt
-                           ? fmt::format("over 1/d^2 exactly, attenuated at two nodes each; {} slices", o.slices)
-                           : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : "")));
+        !gaussians ? no_gaussians
+                   : unlit_or(model.paper() ? "Eqs. 8 to 17"
+                                            : fmt::format("{} slices{}", o.slices,
+                                                          o.extrapolate ? ", extrapolated from half" : "")));
   stage("colour", !model.fog.grey(),
         model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
   if (const std::string doubt = doubt_of(scene, model.fog, o); !doubt.empty()) stage("doubt", true, doubt);

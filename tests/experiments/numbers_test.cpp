@@ -152,7 +152,7 @@ TEST_CASE("rate of kernels", "[driver]") {
   CHECK(run({{"variant", "paper"}, {"clock", "processor"}}, scene_file).counters.at("threads") == 1);
   CHECK_THROWS_WITH(run({}, airlight::test::scenes + "fogshop/colours.toml"),
                     Contains("expected grey fog of Gaussians"));
-  CHECK_THROWS_WITH(run({{"variant", "VS2"}}, scene_file), Contains("measures variant = paper, and S"));
+  CHECK_THROWS_WITH(run({{"noise_scale", "0.5"}}, scene_file), Contains("measures variant = paper, and S"));
   CHECK_THROWS_WITH(run({}, ""), Contains("needs a [[scene]]"));
 }
 

@@ -32,12 +32,11 @@ bool has_gaussians(const scene::Scene& scene) {
 }
 
 // Fogshop's closed forms alone are exact. S: its light maps of 64^2 directions, 0.003 of the brightest measured in
-// `smoke` (3e-5 with exact depths), 0.006 in a Gaussian 18 deep. VS2: its two nodes, 0.048 there. paper: a quarter, or
+// `smoke` (3e-5 with exact depths), 0.006 in a Gaussian 18 deep. paper: a quarter, or
 // it warns (domain.h): 0.24. The sky's grid of 24 cells and 64 directions: 0.014.
 double fogshop_error(const std::string& spec, const scene::Scene& scene) {
   if (!has_gaussians(scene)) return 1e-5;
   if (spec.ends_with("paper")) return 0.25;
-  if (spec.ends_with("VS2")) return 0.1;
   return spec.ends_with("volume") ? 0.02 : 0.01;
 }
 

@@ -29,8 +29,7 @@ std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std
     specs.push_back(name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
     if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
-    if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian")
-      for (const char* variant : {"paper", "VS2"}) specs.push_back(name + " variant=" + variant);
+    if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian") specs.push_back(name + " variant=paper");
   }
   return specs;
 }
