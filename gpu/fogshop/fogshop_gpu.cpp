@@ -212,13 +212,9 @@ std::string FogshopGpu::about() const {
 
 std::vector<scene::SettingSpec> FogshopGpu::settings() const {
   auto settings = fogshop::Fogshop().settings();
-  settings.push_back({"light_distance_side",
-                      scene::SettingSpec::Type::integer,
-                      "512",
-                      "texels to a side of a light-distance map's six faces; shadows are exact whatever it is",
-                      1,
-                      8192,
-                      {}});
+  settings.push_back(
+      scene::integer_setting("light_distance_side", "512", 1, 8192,
+                             "texels to a side of a light-distance map's six faces; shadows are exact whatever it is"));
   return settings;
 }
 

@@ -4,73 +4,64 @@
 #include <numeric>
 
 namespace airlight::fogshop {
-namespace {
-
-using Type = scene::SettingSpec::Type;
-
-scene::SettingSpec choice(const char* name, const char* fallback, std::vector<std::string> choices, const char* doc) {
-  return {name, Type::choice, fallback, doc, 0, 0, std::move(choices)};
-}
-
-scene::SettingSpec integer(const char* name, const char* fallback, double least, double greatest, const char* doc) {
-  return {name, Type::integer, fallback, doc, least, greatest, {}};
-}
-
-scene::SettingSpec real(const char* name, const char* fallback, double least, double greatest, const char* doc) {
-  return {name, Type::real, fallback, doc, least, greatest, {}};
-}
-
-}  // namespace
 
 std::vector<scene::SettingSpec> setting_specs() {
   return {
-      choice("variant", "S", {"paper", "S"}, "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
-      integer("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
-      choice("edges", "S3", {"plain", "S3"}, "where S cuts: by length and lights, or by the Gaussians too"),
-      {"extrapolate", Type::flag, "true", "S from K/2 and K slices (error K^-4 instead of K^-2); K even", 0, 0, {}},
-      choice("light_depth", "map", {"map", "exact"}, "depths from the lights in S: by maps, or by exact sums"),
-      integer("map_directions", "64", 2, 2048, "a light map has this number squared of directions"),
-      integer("map_edges", "48", 1, 4096, "distances per direction of a light map"),
-      choice("homogeneous", "exact", {"exact", "table"}, "F in the paper variant: closed form, or a table of 256^2"),
-      choice("erf", "precise", {"precise", "erf10", "paper"}, "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
-      choice("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
-      real("eps_T", "1e-4", 1e-15, 1, "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
-      choice("reflectance", "direct", {"direct", "npsf", "npsfT", "sun"},
-             "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
-             "Sun et al.'s integrals"),
-      {"prt",
-       Type::flag,
-       "false",
-       "surfaces shadow scattered light, and that of environments, on meshes: precomputed transfer",
-       0,
-       0,
-       {}},
-      integer("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
-      real("prt_reach", "1e300", 0, 1e300, "distance [m] up to which surfaces shadow in the precomputed transfer"),
-      integer("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
-      choice("environment_psf", "ball", {"npsf", "npsfT", "ball"},
-             "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
-      choice(
+      scene::choice_setting("variant", "S", {"paper", "S"},
+                            "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
+      scene::integer_setting("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
+      scene::choice_setting("edges", "S3", {"plain", "S3"},
+                            "where S cuts: by length and lights, or by the Gaussians too"),
+      scene::flag_setting("extrapolate", true, "S from K/2 and K slices (error K^-4 instead of K^-2); K even"),
+      scene::choice_setting("light_depth", "map", {"map", "exact"},
+                            "depths from the lights in S: by maps, or by exact sums"),
+      scene::integer_setting("map_directions", "64", 2, 2048, "a light map has this number squared of directions"),
+      scene::integer_setting("map_edges", "48", 1, 4096, "distances per direction of a light map"),
+      scene::choice_setting("homogeneous", "exact", {"exact", "table"},
+                            "F in the paper variant: closed form, or a table of 256^2"),
+      scene::choice_setting("erf", "precise", {"precise", "erf10", "paper"},
+                            "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
+      scene::choice_setting("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
+      scene::real_setting("eps_T", "1e-4", 1e-15, 1,
+                          "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
+      scene::choice_setting(
+          "reflectance", "direct", {"direct", "npsf", "npsfT", "sun"},
+          "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
+          "Sun et al.'s integrals"),
+      scene::flag_setting("prt", false,
+                          "surfaces shadow scattered light, and that of environments, on meshes: precomputed transfer"),
+      scene::integer_setting("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
+      scene::real_setting("prt_reach", "1e300", 0, 1e300,
+                          "distance [m] up to which surfaces shadow in the precomputed transfer"),
+      scene::integer_setting("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
+      scene::choice_setting(
+          "environment_psf", "ball", {"npsf", "npsfT", "ball"},
+          "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
+      scene::choice_setting(
           "environment_airlight", "psf", {"psf", "everywhere", "volume"},
           "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
           "grid of what arrives unscattered"),
-      integer("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
-      integer("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
-      real("environment_distance", "inf", 0, infinity, "D [m]: how far the constant medium reaches to the environment"),
-      choice("downsample", "1", {"1", "2", "4"}, "airlight for one ray per so many pixels to each side, section 5.4"),
-      choice("upsample", "recompute", {"bilinear", "paper", "recompute"},
-             "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
-      real("noise_scale", "0", 0, 4, "how far noise bends rays, in radii of the Gaussian, section 5.5; 0: no noise"),
-      real("noise_frequency", "1", 1e-12, 1e12, "cells of the noise per metre; it repeats after 32"),
-      integer("noise_seed", "0", 0, 4294967295.0, "of the noise's gradients"),
-      real("noise_phase", "0", -1e6, 1e6, "shift of the noise along all axes, in cells"),
-      real("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
+      scene::integer_setting("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
+      scene::integer_setting("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
+      scene::real_setting("environment_distance", "inf", 0, infinity,
+                          "D [m]: how far the constant medium reaches to the environment"),
+      scene::choice_setting("downsample", "1", {"1", "2", "4"},
+                            "airlight for one ray per so many pixels to each side, section 5.4"),
+      scene::choice_setting(
+          "upsample", "recompute", {"bilinear", "paper", "recompute"},
+          "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
+      scene::real_setting("noise_scale", "0", 0, 4,
+                          "how far noise bends rays, in radii of the Gaussian, section 5.5; 0: no noise"),
+      scene::real_setting("noise_frequency", "1", 1e-12, 1e12, "cells of the noise per metre; it repeats after 32"),
+      scene::integer_setting("noise_seed", "0", 0, 4294967295.0, "of the noise's gradients"),
+      scene::real_setting("noise_phase", "0", -1e6, 1e6, "shift of the noise along all axes, in cells"),
+      scene::real_setting("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
   };
 }
 
 Options read_options(const scene::Settings& settings) {
   Options o;
-  o.variant = settings.text("variant") == "paper" ? Options::Variant::paper : Options::Variant::slices;
+  o.variant = settings.choice<Options::Variant>("variant");
   o.slices = int(settings.integer("K"));
   o.extrapolate = settings.flag("extrapolate");
   o.boxes = settings.text("edges") == "S3";
@@ -78,20 +69,13 @@ Options read_options(const scene::Settings& settings) {
   o.map_directions = int(settings.integer("map_directions"));
   o.map_edges = int(settings.integer("map_edges"));
   o.table = settings.text("homogeneous") == "table";
-  const std::string& erf = settings.text("erf");
-  o.erf = erf == "precise" ? Erf::precise : erf == "erf10" ? Erf::erf10 : Erf::paper;
-  o.cull = settings.text("cull") == "paper" ? Cull::paper : Cull::depth;
+  o.erf = settings.choice<Erf>("erf");
+  o.cull = settings.choice<Cull>("cull");
   o.depth_threshold = settings.real("eps_T");
   o.source_radius = settings.real("source_radius");
-  const std::string& reflectance = settings.text("reflectance");
-  using Reflectance = Options::Reflectance;
-  o.reflectance = reflectance == "direct" ? Reflectance::direct
-                  : reflectance == "npsf" ? Reflectance::npsf
-                  : reflectance == "sun"  ? Reflectance::sun
-                                          : Reflectance::npsf_by_depth;
+  o.reflectance = settings.choice<Options::Reflectance>("reflectance");
   o.sh_order = int(settings.integer("sh_order"));
-  const std::string& psf = settings.text("environment_psf");
-  o.environment_psf = psf == "npsf" ? Psf::npsf : psf == "npsfT" ? Psf::npsf_by_depth : Psf::ball;
+  o.environment_psf = settings.choice<Psf>("environment_psf");
   o.environment_everywhere = settings.text("environment_airlight") == "everywhere";
   o.sky_volume = settings.text("environment_airlight") == "volume";
   o.sky_cells = int(settings.integer("sky_cells"));
@@ -102,11 +86,7 @@ Options read_options(const scene::Settings& settings) {
   o.noise_seed = std::uint32_t(settings.integer("noise_seed"));
   o.noise_phase = settings.real("noise_phase");
   o.downsample = std::stoi(settings.text("downsample"));
-  const std::string& upsample = settings.text("upsample");
-  using Upsample = Options::Upsample;
-  o.upsample = upsample == "bilinear" ? Upsample::bilinear
-               : upsample == "paper"  ? Upsample::paper
-                                      : Upsample::recompute;
+  o.upsample = settings.choice<Options::Upsample>("upsample");
   o.prt = settings.flag("prt");
   o.prt_rays = int(settings.integer("prt_rays"));
   o.prt_reach = settings.real("prt_reach");
