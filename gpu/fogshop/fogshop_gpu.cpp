@@ -11,7 +11,6 @@
 #include "gpu/fogshop/surface_shading.h"
 #include "gpu/raster_program.h"
 #include "gpu/timer.h"
-#include "methods/fogshop/domain.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
@@ -32,7 +31,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
                      const Execution& execution)
       : scene_(std::move(scene)),
         model_(fogshop::make_model(*scene_, options)),
-        needs_(fogshop::needs_of(*scene_, model_)),
+        plan_(fogshop::make_plan(*scene_, model_)),
         context_(Context::get()),
         fog_(context_, model_),
         map_side_(map_side) {
@@ -70,7 +69,6 @@ class PreparedFogshopGpu final : public scene::Prepared {
       }
     }
     times_ = timer.times();
-    doubt_ = fogshop::doubt_of(*scene_, model_.fog, options);
   }
 
   std::vector<scene::Stage> stages() const override;
@@ -82,7 +80,8 @@ class PreparedFogshopGpu final : public scene::Prepared {
 
   std::shared_ptr<const Scene> scene_;
   fogshop::Model model_;
-  fogshop::Needs needs_;
+  fogshop::Plan plan_;
+  const fogshop::Needs& needs_ = plan_.needs;
   Context& context_;
   mutable FogOnDevice fog_;
   int map_side_;
@@ -90,12 +89,11 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
   std::unique_ptr<Background> background_;   // the same
-  std::string doubt_;
   std::vector<scene::StageTime> times_;
 };
 
 std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
-  auto stages = fogshop::describe_stages(*scene_, model_);
+  auto stages = plan_.stages;
   const bool maps = needs_.surfaces && casts_shadows(*scene_, model_);
   const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
                               : model_.lights.empty()  ? "no point light shines"
@@ -195,7 +193,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
   timer.stage("read back");
   result.times = timer.times();
-  if (!doubt_.empty()) film.metadata["warning"] = "fogshop_gpu: " + doubt_;
+  if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop_gpu: " + plan_.doubt;
   result.counters["rays"] = double(pixels);
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
   result.counters["draws"] = double(RasterProgram::draws() - draws);

@@ -3,11 +3,7 @@
 // again, so none is lost. Needs raster/primitive.glsl, raster/view.glsl, edge.glsl and ray.glsl.
 #include "shadow_planes/fan.glsl"
 layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
-#if FAN
 layout(std430, binding = 3) readonly buffer Starts { int starts[]; };  // of the lists of sectors
-#else
-layout(std430, binding = 3) readonly buffer Ranges { ivec2 ranges[]; };  // of tiles of 16 x 16 pixels: first, count
-#endif
 layout(std430, binding = 4) readonly buffer Lists { int lists[]; };
 uniform int solid_count, edge_count, edge_split;
 
@@ -86,12 +82,11 @@ void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_or
   keep_crossing(key, edges[e].origin, change, x, e, share, ray.h / towards);
 }
 
-// Of the edges that the ray may cross: those of its tile, or of its sectors in a fan.
-void cross_edges(Ray ray, double end, int tile) {
+// Of the edges that the ray may cross: those of its sectors in the fan.
+void cross_edges(Ray ray, double end) {
   if (!(ray.h > 1e-12LF * length(ray.to_light))) return;
   dvec3 side = cross(ray.direction, ray.to_light), to_origin = -normalize(ray.to_light);
   vec3 normal = vec3(normalize(side));
-#if FAN
   dvec3 v = view_perspective != 0 ? ray.direction : -ray.to_light;
   dvec2 across = dvec2(dot(v, fan_x), dot(v, fan_y));
   if (is_across(across, v)) {
@@ -104,10 +99,6 @@ void cross_edges(Ray ray, double end, int tile) {
   } else {
     for (int e = 0; e < edge_count; ++e) cross_edge(ray, end, e, side, normal, to_origin);
   }
-#else
-  ivec2 range = ranges[tile];
-  for (int i = range.x; i < range.x + range.y; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
-#endif
 }
 
 // Does the open segment from the light to y, relative to it, meet the sphere around c?
@@ -160,7 +151,7 @@ void cross_spheres(Ray ray, double end) {
 
 // Gathers the next crossings within (0, end) in order, after `key` and `origin`, which then are those of the last; true if
 // more are left.
-bool gather(Ray ray, double end, int tile, inout double key, inout int origin) {
+bool gather(Ray ray, double end, inout double key, inout int origin) {
   hit_count = 0;
   crossing_sum = 0;
   crossing_count = 0;
@@ -170,7 +161,7 @@ bool gather(Ray ray, double end, int tile, inout double key, inout int origin) {
   last_key = key;
   last_origin = origin;
   Ray from = general_ray(ray);
-  cross_edges(from, end, tile);
+  cross_edges(from, end);
   cross_spheres(from, end);
   if (hit_count <= most_hits) return false;
   hit_count = most_hits;

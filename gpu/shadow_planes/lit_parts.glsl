@@ -1,11 +1,11 @@
 // Airlight of the lit parts of a ray, by counting (SHADOWS 1) or as a signed sum (2), or of all of it (0):
 // methods/shadow_planes/lit_parts.cpp. `state.unfinished` on return: there are more crossings. `m_end`: m where it ends.
-vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, inout State state, out int m_end, out int parts) {
+vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State state, out int m_end, out int parts) {
   parts = 0;
   m_end = m_origin;
   bool more = false;
 #if CROSSINGS
-  more = gather(ray, end, tile, state.last_key, state.last_origin);
+  more = gather(ray, end, state.last_key, state.last_origin);
   m_end = m_origin + crossing_sum;
 #endif
 #if AIRLIGHT && (SHADOWS == 0 || !CROSSINGS)

@@ -22,7 +22,7 @@ layout(std430, binding = 14) buffer Counters { uint counters[]; };
 layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
 #include "common/reflection.glsl"
 #endif
-uniform int has_primitives, count_at_camera, tile_columns, frame_buffer;
+uniform int has_primitives, count_at_camera, frame_buffer;
 uniform int reflects;  // light on surfaces is added once, not with every medium
 uniform vec3 intensity;  // [W/sr], of a spot on its axis
 
@@ -52,7 +52,7 @@ void main() {
 #endif
     State state = begin_state(place, m);
     if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // that of all lights
-    vec3 in_air = airlight_of(ray, end, primitive, (pixel.y >> 4) * tile_columns + (pixel.x >> 4), m, state, m_end, parts);
+    vec3 in_air = airlight_of(ray, end, primitive, m, state, m_end, parts);
 #if CROSSINGS
     states[place] = state;
     if (resume == 0) atomicAdd(crossing_total, uint(crossing_count));

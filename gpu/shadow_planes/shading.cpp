@@ -61,7 +61,6 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
                       {"AIRLIGHT", flag(air >= 0)},
                       {"COUNT_BY_PIXEL", flag(counts.size() > 1)},
                       {"CROSSINGS", flag(lists.edges)},
-                      {"FAN", flag(lists.fan)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
                       {"STENCIL", flag(stages)},
                       {"SURFACES", flag(!scene_->surfaces.empty())},
@@ -87,7 +86,6 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
     p.set("edge_count", lists.edges->count);
   }
   if (lists.fan) lists.fan->bind(p);
-  if (lists.tiles) lists.tiles->bind();
   if (picture.primitives) picture.primitives->bind(1);
   if (surfaces_) surfaces_->bind();
   materials_.bind(2);
@@ -102,7 +100,6 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   p.set("has_primitives", picture.primitives != nullptr);
   p.set("count_at_camera", counts.front());
   p.set("reflects", air <= 0);
-  p.set("tile_columns", TileBins::columns(picture.view));
   p.set("edge_split", options_.edge_split);
   p.set("frame_buffer", options_.frame_buffer && stages);
   p.set("loop_count", 3);

@@ -6,7 +6,6 @@
 #include "gpu/raster/surfaces_on_device.h"
 #include "gpu/shadow_planes/airs_on_device.h"
 #include "gpu/shadow_planes/fan_on_device.h"
-#include "gpu/shadow_planes/tile_bins.h"
 #include "gpu/shadow_planes/vertex_values.h"
 #include "scene/renderer.h"
 
@@ -30,11 +29,10 @@ class PlaneShading {
   PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&, const AirsOnDevice&,
                const SurfacesOnDevice* surfaces);
 
-  // Of one light, the edges whose planes rays may cross: all null where nothing casts a shadow, else one of the lists.
+  // Of one light, the edges whose planes rays may cross: null where nothing casts a shadow.
   struct Edges {
     const LightEdges* edges = nullptr;
     const FanOnDevice* fan = nullptr;
-    const TileBins* tiles = nullptr;
   };
   // Adds an air (-1: there is none) as a light shows it, and with the first of them what surfaces reflect of the light.
   // `counts`: m where rays begin, one number or one for every pixel; `values` is null where the airlight is computed

@@ -34,8 +34,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
         options_(options),
         context_(Context::get()),
         airs_(context_, scene_, options),
-        fan_(context_),
-        tiles_(context_) {
+        fan_(context_) {
     const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
     const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
                                    [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
@@ -86,7 +85,6 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::vector<LightEdges> edges_;             // by light
   std::vector<SurfaceCount> counts_;
   mutable FanOnDevice fan_;
-  mutable TileBins tiles_;
   mutable VertexValues values_;
   std::vector<scene::StageTime> times_;
 };
@@ -101,9 +99,7 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
                                          : dark;
   return {{"silhouettes", silhouettes_ != nullptr, found},
           {"edges of rays", silhouettes_ != nullptr,
-           !silhouettes_                                     ? found
-           : options_.candidates == Options::Candidates::fan ? "by angle around the line from light to camera"
-                                                             : "by tiles of 16 x 16 pixels"},
+           silhouettes_ ? "by angle around the line from light to camera" : found},
           {"airlight and surfaces", lit, dark},
           {"composition", true, "layers of the film"}};
 }
@@ -142,14 +138,8 @@ double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Exec
   const std::vector<int> counts = counts_at_origins(l, picture.view, execution);
   PlaneShading::Edges lists;
   if (silhouettes_) {
-    lists.edges = &edges_[l];
-    if (options_.candidates == Options::Candidates::fan) {
-      fan_.fill(picture.view.camera, light, edges_[l]);
-      lists.fan = &fan_;
-    } else {
-      tiles_.fill(picture.view, light, edges_[l]);
-      lists.tiles = &tiles_;
-    }
+    fan_.fill(picture.view.camera, light, edges_[l]);
+    lists = {&edges_[l], &fan_};
     timer.stage("edges of rays");
   }
   double vertices = 0;
@@ -178,7 +168,6 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   const std::size_t pixels = result.film.pixels();
   const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
-  const int overflows = tiles_.overflows();
   if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const Use use(context_);
@@ -189,11 +178,8 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
     first_hits_->draw(view).read_primitives(*picture.primitives, 0);
     timer.stage("distances");
   }
-  double entries = 0, vertices = 0;
-  for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
-    vertices += add_light(int(l), picture, execution, timer);
-    if (options_.candidates == Options::Candidates::tiles) entries += tiles_.entries();
-  }
+  double vertices = 0;
+  for (std::size_t l = 0; l < scene_->lights.size(); ++l) vertices += add_light(int(l), picture, execution, timer);
   const auto layer = [&](const char* name) { return Buffer(context_, name, pixels * 12); };
   const PlaneShading::Layers layers{layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")};
   shading_->compose(picture, layers);
@@ -210,10 +196,6 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   result.counters["crossings"] = counted[1];
   result.counters["gatherings_beyond_32"] = counted[2];
   if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;
-  if (silhouettes_ && options_.candidates == Options::Candidates::tiles) {
-    result.counters["tile_entries"] = entries;
-    result.counters["tile_overflows"] = tiles_.overflows() - overflows;
-  }
   result.counters["dispatches"] = double(Program::dispatches() - dispatches);
   result.counters["draws"] = double(RasterProgram::draws() - draws);
   return result;

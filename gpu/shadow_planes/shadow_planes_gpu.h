@@ -1,4 +1,4 @@
-// methods/shadow_planes on the GPU: silhouettes, lists of their edges by tile and lit parts of rays in compute shaders,
+// methods/shadow_planes on the GPU: silhouettes, lists of their edges by angle and lit parts of rays in compute shaders,
 // the latter in double precision; airlight in single precision.
 #pragma once
 #include "gpu/context.h"

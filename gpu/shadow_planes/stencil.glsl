@@ -48,7 +48,7 @@ vec3 gamma_on_triangle(ivec4 corners, dvec3 point) {
 #endif
 
 // `state.unfinished` on return: there are more crossings. `m_end`: m where the ray ends.
-vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, inout State state, out int m_end, out int parts) {
+vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State state, out int m_end, out int parts) {
   dvec2 domain = dvec2(0, end);
   double entry = 1e300LF;  // nothing that is sorted in front of it is drawn: there the stencil becomes 255
 #if PAPER_MEDIUM
@@ -78,7 +78,7 @@ vec3 airlight_of(Ray ray, double end, int primitive, int tile, int m_origin, ino
   bool more = false;
   hit_count = 0;
 #if CROSSINGS
-  more = gather(ray, end, tile, state.last_key, state.last_origin);
+  more = gather(ray, end, state.last_key, state.last_origin);
   m_end = m_origin + crossing_sum;
   if (resume == 0) stencil = m_origin + stencil_sum;
 #endif

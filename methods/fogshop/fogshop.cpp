@@ -24,15 +24,15 @@ using scene::View;
 class PreparedFogshop final : public scene::Prepared {
  public:
   PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution);
-  std::vector<scene::Stage> stages() const override { return describe_stages(*scene_, model_); }
+  std::vector<scene::Stage> stages() const override { return plan_.stages; }
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
   std::shared_ptr<const Scene> scene_;
   Model model_;
+  Plan plan_;
   SurfaceLighting lighting_;
-  std::string doubt_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -40,9 +40,9 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     : scene_(std::move(scene)) {
   scene::Stopwatch watch;
   model_ = make_model(*scene_, options);
-  doubt_ = doubt_of(*scene_, model_.fog, options);
+  plan_ = make_plan(*scene_, model_);
   times_.push_back({"gaussians", watch.lap()});
-  const Needs needs = needs_of(*scene_, model_);
+  const Needs& needs = plan_.needs;
   if (needs.center_depths) {
     for (LightModel& light : model_.lights)
       light.center_depth = depths_to_centers(model_, light.position, execution, model_.evaluations);
@@ -83,7 +83,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
 
   // Section 5.4, step 1: distances.
   const std::size_t pixels = film.pixels();
-  const Needs needs = needs_of(*scene_, model_);
+  const Needs& needs = plan_.needs;
   FirstHits hits{std::vector<double>(pixels, infinity), {}};
   if (needs.distances) {
     hits = first_hits(*scene_, view, execution);
@@ -133,7 +133,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
     result.times.push_back({"environment", watch.lap()});
   }
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
-  if (!doubt_.empty()) film.metadata["warning"] = "fogshop: " + doubt_;
+  if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop: " + plan_.doubt;
   result.counters["rays"] = double(pixels);
   result.counters["erf_evaluations"] = evaluations;
   result.counters["erf_evaluations_prepare"] = model_.evaluations;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "methods/fogshop/domain.h"
 #include "methods/fogshop/radiance_transfer.h"
@@ -23,144 +24,128 @@ const char* psf_name(Psf psf) {
                                      : "the PSF of a ball of each depth";
 }
 
-// An endless constant lets no light through from infinitely far away.
-bool walled_in(const Model& model) {
-  return model.fog.sum.constant > 0 && model.options.environment_distance == infinity;
+// Stages in the order in which they are read; a condition stands here once, beside what is said where it holds.
+class List {
+ public:
+  struct WhyNot {
+    bool holds;
+    std::string reason;
+  };
+  // Whether the stage is kept: none of the reasons against it holds. The first that does is given, else `why`.
+  bool operator()(const char* name, std::initializer_list<WhyNot> against, const std::string& why) {
+    const auto first = std::find_if(against.begin(), against.end(), [](const WhyNot& reason) { return reason.holds; });
+    const bool kept = first == against.end();
+    stages.push_back({name, kept, kept ? why : first->reason});
+    return kept;
+  }
+  std::vector<scene::Stage> stages;
+};
+
+std::string low_resolution_by(const Options& o, bool distances) {
+  using Upsample = Options::Upsample;
+  const std::string rays = fmt::format("one ray per {0} x {0} pixels, ", o.downsample);
+  return rays + (!distances                         ? "bilinear: no surface, no edges"
+                 : o.upsample == Upsample::bilinear ? "bilinear"
+                 : o.upsample == Upsample::paper    ? "the most alike neighbour at edges"
+                                                    : "edges at full resolution");
+}
+
+std::string reflected_by(const Options& o) {
+  using Reflectance = Options::Reflectance;
+  return o.reflectance == Reflectance::sun
+             ? "Sun et al.'s integrals for Lambert and Phong, with the depth along the path"
+             : fmt::format("Eq. 25, {} bands of the {}", o.sh_order,
+                           o.reflectance == Reflectance::npsf ? "printed NPSF" : "NPSF of each depth");
 }
 
 }  // namespace
 
-Needs needs_of(const scene::Scene& scene, const Model& model) {
-  const bool lit = !model.lights.empty(), gaussians = model.gaussians.count > 0, constant = model.fog.sum.constant > 0;
-  Needs needs;
-  needs.distances = !scene.surfaces.empty() || has_ball(scene);
-  needs.center_depths = model.paper() && lit && gaussians;
-  needs.light_maps = !model.paper() && model.options.map && lit && gaussians;
-  needs.f_table = model.paper() && model.options.table && lit && constant;
-  needs.airlight = gaussians || constant;
-  needs.environment = model.environment && !walled_in(model);
-  needs.surfaces = !scene.surfaces.empty() && (lit || needs.environment);
-  needs.low_resolution = needs.airlight && model.options.downsample > 1;
-  needs.scattered = needs.surfaces && needs.airlight && model.options.reflectance != Options::Reflectance::direct;
-  needs.point_harmonics = needs.scattered && lit;
-  needs.environment_airlight = needs.environment && needs.airlight;
-  needs.sky_volume = needs.environment_airlight && model.options.sky_volume && gaussians;
-  needs.environment_psf = (needs.environment_airlight && !needs.sky_volume) || (needs.environment && needs.scattered);
-  needs.environment_harmonics = needs.environment && (needs.environment_psf || needs.surfaces);
-  needs.reflectances = (needs.point_harmonics && model.options.reflectance != Options::Reflectance::sun) ||
-                       (needs.environment && needs.surfaces);
-  needs.transfer =
-      model.options.prt && needs.surfaces && (needs.point_harmonics || needs.environment) && mesh_vertices(scene) > 0;
-  return needs;
-}
-
-std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const Model& model) {
-  const Needs needs = needs_of(scene, model);
+Plan make_plan(const scene::Scene& scene, const Model& model) {
   const Options& o = model.options;
+  const bool paper = model.paper(), surfaces = !scene.surfaces.empty();
+  const bool lit = !model.lights.empty(), gaussians = model.gaussians.count > 0, constant = model.fog.sum.constant > 0;
+  const List::WhyNot no_lights{!lit, "no point light shines"},
+      no_gaussians{!gaussians, "no Gaussian reaches the threshold"};
+  const List::WhyNot no_surfaces{!surfaces, "there are no surfaces"};
+  const List::WhyNot no_medium{!gaussians && !constant, "there is no medium"};
+  // An endless constant lets no light through from infinitely far away.
+  const bool walled_in = constant && o.environment_distance == infinity;
+  const List::WhyNot dark{
+      !model.environment || walled_in,
+      model.environment ? "the constant medium has no end: none of its light arrives" : "no environment light shines"};
+  const List::WhyNot direct{o.reflectance == Options::Reflectance::direct, "reflectance = direct"};
+  List stage;
+  Needs needs{};
+  needs.airlight = !no_medium.holds;
+  needs.distances =
+      stage("distances", {{!surfaces && !has_ball(scene), "no surface and no light with a radius: rays are infinite"}},
+            fmt::format("{} surfaces and the balls of the lights end rays", scene.surfaces.size()));
+  const std::string of_all = fmt::format("{} of {}, the rest is below the threshold everywhere", model.gaussians.count,
+                                         model.gaussians.count + model.dropped);
+  stage("gaussians", {{model.fog.sum.gaussians.empty(), "the medium has none"}, {!gaussians, of_all}}, of_all);
+  stage("homogeneous term", {{!constant, "the constant is 0"}, no_lights},
+        paper       ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
+        : gaussians ? "inside the slices, in closed form beyond them"
+                    : "in closed form");
   const std::string lights = fmt::format("{} point light{}", model.lights.size(), model.lights.size() == 1 ? "" : "s");
-  const std::string no_lights = "no point light shines";
-  const std::string no_gaussians = "no Gaussian reaches the threshold";
-  const bool lit = !model.lights.empty(), constant = model.fog.sum.constant > 0, gaussians = model.gaussians.count > 0;
-  const auto unlit_or = [&](const std::string& otherwise) { return lit ? otherwise : no_lights; };
-  std::vector<scene::Stage> stages;
-  const auto stage = [&](const char* name, bool kept, const std::string& reason) {
-    stages.push_back({name, kept, reason});
-  };
-  stage("distances", needs.distances,
-        needs.distances ? fmt::format("{} surfaces and the balls of the lights end rays", scene.surfaces.size())
-                        : "no surface and no light with a radius: rays are infinite");
-  stage("gaussians", gaussians,
-        model.fog.sum.gaussians.empty() ? "the medium has none"
-                                        : fmt::format("{} of {}, the rest is below the threshold everywhere",
-                                                      model.gaussians.count, model.gaussians.count + model.dropped));
-  stage("homogeneous term", needs.airlight && constant && lit,
-        !constant ? "the constant is 0"
-                  : unlit_or(model.paper()
-                                 ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
-                                 : (gaussians ? "inside the slices, in closed form beyond them" : "in closed form")));
-  if (model.paper())
-    stage("depths to centres", needs.center_depths,
-          !gaussians ? no_gaussians : unlit_or(fmt::format("T(s,b_i), T(v,b_i) for {}", lights)));
+  if (paper)
+    needs.center_depths =
+        stage("depths to centres", {no_gaussians, no_lights}, fmt::format("T(s,b_i), T(v,b_i) for {}", lights));
   else
-    stage("light maps", needs.light_maps,
-          !gaussians ? no_gaussians
-                     : unlit_or(o.map ? fmt::format("{0}^2 directions x {1} distances for {2}", o.map_directions,
-                                                    o.map_edges, lights)
-                                      : "light_depth = exact: sums per edge instead"));
-  if (o.table) stage("table of F", needs.f_table, needs.f_table ? "asked for" : "nothing reads it");
-  stage("airlight of Gaussians", gaussians && lit,
-        !gaussians ? no_gaussians
-                   : unlit_or(model.paper() ? "Eqs. 8 to 17"
-                                            : fmt::format("{} slices{}", o.slices,
-                                                          o.extrapolate ? ", extrapolated from half" : "")));
-  stage("colour", !model.fog.grey(),
-        model.fog.grey() ? "the extinction is grey: one channel for all" : "depths once, exponentials per channel");
-  if (const std::string doubt = doubt_of(scene, model.fog, o); !doubt.empty()) stage("doubt", true, doubt);
-  using Upsample = Options::Upsample;
-  stage("low resolution", needs.low_resolution,
-        !needs.airlight     ? "there is no medium"
-        : o.downsample == 1 ? "downsample = 1"
-        : !needs.distances  ? fmt::format("one ray per {0} x {0} pixels, bilinear: no surface, no edges", o.downsample)
-        : o.upsample == Upsample::bilinear ? fmt::format("one ray per {0} x {0} pixels, bilinear", o.downsample)
-        : o.upsample == Upsample::paper
-            ? fmt::format("one ray per {0} x {0} pixels, the most alike neighbour at edges", o.downsample)
-            : fmt::format("one ray per {0} x {0} pixels, edges at full resolution", o.downsample));
-  stage("colours of scattering", lit && !model.fog.one_albedo(),
-        model.fog.one_albedo() ? "one albedo for all"
-                               : unlit_or("one per Gaussian: it scales what scatters, not what extinguishes"));
-  stage("noise", model.noise != nullptr,
-        model.noise         ? fmt::format("rays bent by up to {:g} radii", o.noise_scale)
-        : o.noise_scale > 0 ? no_gaussians
-                            : "noise_scale = 0");
-  stage("surfaces", needs.surfaces,
-        scene.surfaces.empty() ? "there are none"
-        : needs.surfaces       ? "direct light through the medium, Eq. 29"
-                               : "no light reaches them");
-  stage("ambient in-scatter", false,
-        (scene.ambient_in_scatter > 0).any() ? "the method has none: its airlight is that of the lights"
-                                             : "the scene has none");
-  stage("shadows of surfaces in the medium", false,
-        scene.surfaces.empty() ? "there are no surfaces"
-                               : "the method does not know them: airlight behind an occluder is not darkened");
-  stage("airlight reflected by surfaces", needs.point_harmonics,
-        scene.surfaces.empty()                          ? "there are no surfaces"
-        : !lit                                          ? no_lights
-        : !needs.airlight                               ? "there is no medium"
-        : o.reflectance == Options::Reflectance::direct ? "reflectance = direct"
-        : o.reflectance == Options::Reflectance::npsf ? fmt::format("Eq. 25, {} bands of the printed NPSF", o.sh_order)
-        : o.reflectance == Options::Reflectance::sun
-            ? "Sun et al.'s integrals for Lambert and Phong, with the depth along the path"
-            : fmt::format("Eq. 25, {} bands of the NPSF of each depth", o.sh_order));
-  stage("radiance transfer", needs.transfer,
-        !o.prt                                         ? "prt = false: occluders shadow direct light of points alone"
-        : !needs.point_harmonics && !needs.environment ? "no light that it would shadow"
-        : !needs.transfer                              ? "there are no meshes, and other shapes have no vertices"
-                          : fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays,
-                                        mesh_vertices(scene), o.sh_order));
-  const std::string no_environment = !model.environment ? "no environment light shines"
-                                     : walled_in(model) ? "the constant medium has no end: none of its light arrives"
-                                                        : "";
-  const auto unless_dark = [&](const std::string& otherwise) {
-    return no_environment.empty() ? otherwise : no_environment;
-  };
-  stage("background", needs.environment,
-        unless_dark("the environment through the medium, Eq. 29, where no surface is"));
-  stage("harmonics of the environment", needs.environment_harmonics,
-        unless_dark(needs.environment_harmonics ? fmt::format("{} bands", o.sh_order) : "nothing reads them"));
-  stage("airlight of the environment", needs.environment_airlight,
-        unless_dark(!needs.airlight ? "there is no medium"
-                    : needs.sky_volume
-                        ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions", o.slices,
-                                      o.sky_cells, o.sky_directions)
-                        : fmt::format("Eq. 28, {}, {}", psf_name(o.environment_psf),
-                                      o.environment_everywhere ? "before surfaces too" : "where no surface is")));
-  stage("environment on surfaces", needs.environment && needs.surfaces,
-        scene.surfaces.empty()
-            ? "there are no surfaces"
-            : unless_dark(!needs.airlight    ? "no medium is in the way"
-                          : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
-                                             : fmt::format("Eqs. 26 and 27, {}", psf_name(o.environment_psf))));
-  return stages;
+    needs.light_maps =
+        stage("light maps", {no_gaussians, no_lights, {!o.map, "light_depth = exact: sums per edge instead"}},
+              fmt::format("{0}^2 directions x {1} distances for {2}", o.map_directions, o.map_edges, lights));
+  if (o.table) needs.f_table = stage("table of F", {{!(paper && lit && constant), "nothing reads it"}}, "asked for");
+  stage("airlight of Gaussians", {no_gaussians, no_lights},
+        paper ? "Eqs. 8 to 17" : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : ""));
+  stage("colour", {{model.fog.grey(), "the extinction is grey: one channel for all"}},
+        "depths once, exponentials per channel");
+  const std::string doubt = doubt_of(scene, model.fog, o);
+  if (!doubt.empty()) stage("doubt", {}, doubt);
+  needs.low_resolution = stage("low resolution", {no_medium, {o.downsample == 1, "downsample = 1"}},
+                               low_resolution_by(o, needs.distances));
+  stage("colours of scattering", {{model.fog.one_albedo(), "one albedo for all"}, no_lights},
+        "one per Gaussian: it scales what scatters, not what extinguishes");
+  stage("noise", {{!(o.noise_scale > 0), "noise_scale = 0"}, no_gaussians},
+        fmt::format("rays bent by up to {:g} radii", o.noise_scale));
+  needs.surfaces = stage("surfaces", {{!surfaces, "there are none"}, {!lit && dark.holds, "no light reaches them"}},
+                         "direct light through the medium, Eq. 29");
+  stage("ambient in-scatter",
+        {{(scene.ambient_in_scatter > 0).any(), "the method has none: its airlight is that of the lights"},
+         {true, "the scene has none"}},
+        "");
+  stage("shadows of surfaces in the medium",
+        {no_surfaces, {true, "the method does not know them: airlight behind an occluder is not darkened"}}, "");
+  needs.scattered = needs.surfaces && !no_medium.holds && !direct.holds;
+  needs.point_harmonics =
+      stage("airlight reflected by surfaces", {no_surfaces, no_lights, no_medium, direct}, reflected_by(o));
+  const double vertices = mesh_vertices(scene);
+  needs.transfer =
+      stage("radiance transfer",
+            {{!o.prt, "prt = false: occluders shadow direct light of points alone"},
+             {!needs.point_harmonics && dark.holds, "no light that it would shadow"},
+             {vertices == 0, "there are no meshes, and other shapes have no vertices"}},
+            fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays, vertices, o.sh_order));
+  needs.environment = stage("background", {dark}, "the environment through the medium, Eq. 29, where no surface is");
+  needs.sky_volume = needs.environment && gaussians && o.sky_volume;
+  const bool by_psf = needs.environment && needs.airlight && !needs.sky_volume;
+  needs.environment_psf = by_psf || (needs.environment && needs.scattered);
+  needs.environment_harmonics =
+      stage("harmonics of the environment", {dark, {!by_psf && !surfaces, "nothing reads them"}},
+            fmt::format("{} bands", o.sh_order));
+  const std::string psf = psf_name(o.environment_psf);
+  needs.environment_airlight =
+      stage("airlight of the environment", {dark, no_medium},
+            needs.sky_volume ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions",
+                                           o.slices, o.sky_cells, o.sky_directions)
+                             : fmt::format("Eq. 28, {}, {}", psf,
+                                           o.environment_everywhere ? "before surfaces too" : "where no surface is"));
+  const bool sky_on_surfaces = stage("environment on surfaces", {no_surfaces, dark},
+                                     no_medium.holds    ? "no medium is in the way"
+                                     : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
+                                                        : fmt::format("Eqs. 26 and 27, {}", psf));
+  needs.reflectances = sky_on_surfaces || (needs.point_harmonics && o.reflectance != Options::Reflectance::sun);
+  return {needs, std::move(stage.stages), doubt};
 }
 
 std::string objection_to_view(const scene::Scene& scene, const Fog& fog, const Options& options,

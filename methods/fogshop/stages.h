@@ -22,10 +22,13 @@ struct Needs {
   bool transfer;               // surfaces that shadow scattered light and environments
   bool sky_volume;             // the grid instead of Eq. 28
 };
-Needs needs_of(const scene::Scene&, const Model&);
 
-// Every stage, kept or left out, with the reason.
-std::vector<scene::Stage> describe_stages(const scene::Scene&, const Model&);
+struct Plan {
+  Needs needs;
+  std::vector<scene::Stage> stages;  // every one, kept or left out, with the reason
+  std::string doubt;                 // doubt_of the scene
+};
+Plan make_plan(const scene::Scene&, const Model&);
 
 // Why the scene cannot be seen from this camera; empty if it can.
 std::string objection_to_view(const scene::Scene&, const Fog&, const Options&, const scene::Camera&);

@@ -43,20 +43,4 @@ class EdgeFan {
   std::vector<int> edges_;
 };
 
-// The candidates of rays of a tile: the same for all, or each ray's own.
-class EdgeCandidates {
- public:
-  explicit EdgeCandidates(std::vector<int> of_tile) : edges_(std::move(of_tile)) {}
-  explicit EdgeCandidates(const EdgeFan& fan) : fan_(&fan) {}
-
-  const std::vector<int>& of(const Ray& ray) {
-    if (fan_) fan_->of_ray(ray, edges_);
-    return edges_;
-  }
-
- private:
-  const EdgeFan* fan_ = nullptr;
-  std::vector<int> edges_;
-};
-
 }  // namespace airlight::shadow_planes

@@ -33,10 +33,11 @@ Rgb signed_sum(const LitLight& lit, const Ray& ray, double end, int count, const
 
 }  // namespace
 
-void add_lit_parts(const LitLight& lit, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>& pixels,
-                   Counts& counts, StageSeconds& seconds) {
+void add_lit_parts(const LitLight& lit, std::optional<int> count, std::vector<Pixel>& pixels, Counts& counts,
+                   StageSeconds& seconds) {
   // In two passes, so that the clock is read for a tile, not for every pixel.
   scene::Stopwatch watch;
+  std::vector<int> edges;
   std::vector<Crossing> crossings;
   std::vector<ShadowVolumes::Interval> of_ray, parts;
   std::vector<std::size_t> first{0};
@@ -45,7 +46,8 @@ void add_lit_parts(const LitLight& lit, EdgeCandidates& edges, std::optional<int
   const auto find = [&](const Pixel& pixel) {
     const Ray ray = general_ray(pixel.ray, lit.shadows->light());
     const int m = count ? *count : lit.shadows->count(ray.origin);
-    lit.shadows->lit_parts(ray, pixel.end.t, m, &edges.of(ray), crossings, of_ray);
+    lit.fan->of_ray(ray, edges);
+    lit.shadows->lit_parts(ray, pixel.end.t, m, &edges, crossings, of_ray);
     return m;
   };
   if (counted)

@@ -13,12 +13,11 @@ struct LitLight {
   const std::vector<Air>& airs;
   const scene::Light& light;
   const ShadowVolumes* shadows;  // null: all is lit
+  const EdgeFan* fan;            // of their edges
   Options::Shadows how;          // counted, or signed_sum
 };
 
-// Adds the light's airlight to pixels of a tile. `edges`: whose planes their rays may cross; `count`: m of the camera,
-// of each ray's own origin where there is none.
-void add_lit_parts(const LitLight&, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
-                   StageSeconds&);
+// Adds the light's airlight to pixels of a tile. `count`: m of the camera, of each ray's own origin where there is none.
+void add_lit_parts(const LitLight&, std::optional<int> count, std::vector<Pixel>&, Counts&, StageSeconds&);
 
 }  // namespace airlight::shadow_planes

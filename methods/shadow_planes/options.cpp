@@ -86,13 +86,6 @@ std::vector<scene::SettingSpec> setting_specs() {
        {}},
       {"printed_phases", Type::flag, "false", "hazy and murky as printed, with means of 2 and 83/33", 0, 0, {}},
       {"ambient", Type::flag, "false", "adds the scene's ambient_in_scatter", 0, 0, {}},
-      {"candidates",
-       Type::choice,
-       "fan",
-       "edges that a ray may cross: by angle around the line from light to camera, or by tile of 16 x 16 pixels",
-       0,
-       0,
-       {"fan", "tiles"}},
   };
 }
 
@@ -117,7 +110,6 @@ Options read_options(const scene::Settings& settings) {
   o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");
-  o.candidates = settings.text("candidates") == "fan" ? Options::Candidates::fan : Options::Candidates::tiles;
   return o;
 }
 

@@ -34,10 +34,6 @@ struct Options {
   bool frame_buffer = false;    // sums are rounded to 8 bits and clamped to 1 after each plane
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
-  // How the edges are found that a ray may cross: by angle around the line from light to camera, or by tile of the
-  // film.
-  enum class Candidates { fan, tiles };
-  Candidates candidates = Candidates::fan;
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -172,17 +172,18 @@ std::size_t PaperStages::vertices() const {
   return sum;
 }
 
-void PaperStages::draw(std::size_t l, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>& pixels,
+void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> count, std::vector<Pixel>& pixels,
                        Counts& counts, StageSeconds& seconds) const {
   scene::Stopwatch watch;
   Work work;
   work.first.push_back(0);
   for (const Pixel& pixel : pixels) work.sum.push_back(pixel.in_air);  // the frame buffer is that of all lights
-  std::vector<int> at_origin(pixels.size(), 0);
+  std::vector<int> at_origin(pixels.size(), 0), edges;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty()) {
       const Ray ray = general_ray(pixels[i].ray, shadows_[l].light());
-      shadows_[l].cross_edges(ray, pixels[i].end.t, edges.of(ray), work.crossings);
+      fan->of_ray(ray, edges);
+      shadows_[l].cross_edges(ray, pixels[i].end.t, edges, work.crossings);
       shadows_[l].cross_spheres(ray, pixels[i].end.t, work.crossings);
       at_origin[i] = count ? *count : shadows_[l].count(ray.origin);
     }

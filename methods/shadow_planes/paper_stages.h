@@ -27,9 +27,9 @@ class PaperStages {
   PaperStages(const scene::Scene&, const Options&, const std::vector<Air>&, const std::vector<ShadowVolumes>& shadows,
               const scene::Camera&, int threads);
 
-  // Adds the airlight of a light to pixels. `edges`: whose planes their rays may cross; `count`: of surfaces between
+  // Adds the airlight of a light to pixels. `fan`: null if nothing casts shadows; `count`: of surfaces between
   // light and camera; of a ray's own origin where there is none.
-  void draw(std::size_t light, EdgeCandidates& edges, std::optional<int> count, std::vector<Pixel>&, Counts&,
+  void draw(std::size_t light, const EdgeFan* fan, std::optional<int> count, std::vector<Pixel>&, Counts&,
             StageSeconds&) const;
 
   const StageSeconds& seconds() const { return seconds_; }  // of the constructor

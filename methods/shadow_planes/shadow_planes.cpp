@@ -9,7 +9,6 @@
 #include "methods/shadow_planes/lit_parts.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/stage_list.h"
-#include "methods/shadow_planes/tile_edges.h"
 #include "scene/error.h"
 
 namespace airlight::shadow_planes {
@@ -18,6 +17,8 @@ namespace {
 using scene::Execution;
 using scene::Scene;
 using scene::View;
+
+constexpr int tile_side = 16;  // pixels
 
 struct Needs {
   bool medium, shadows, surfaces;
@@ -33,8 +34,7 @@ struct Tally {
 struct Frame {
   View view;
   const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows
-  std::vector<TileEdges> tiles;               // by light; empty: fans
-  std::vector<EdgeFan> fans;                  // by light; empty: tiles
+  std::vector<EdgeFan> fans;                  // by light, of the same
   std::vector<int> at_camera;                 // m there, by light; empty where every ray starts elsewhere
   std::optional<PaperStages> stages;          // none: lit parts of rays
 };
@@ -135,16 +135,14 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
       if (needs_.medium) pixel.visible = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
       if (pixel.end.hit) pixel.on_surface = pixel.visible * reflected(*pixel.end.hit, -pixel.ray.direction);
     }
-  std::vector<int> of_tile;
   for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
     const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
-    if (!frame.tiles.empty()) frame.tiles[l].of_tile(tile_x, tile_y, of_tile);
-    EdgeCandidates edges = frame.fans.empty() ? EdgeCandidates(of_tile) : EdgeCandidates(frame.fans[l]);
+    const EdgeFan* fan = needs_.shadows ? &frame.fans[l] : nullptr;
     tally.seconds.scene += watch.lap();
     if (frame.stages)
-      frame.stages->draw(l, edges, count, pixels, tally.counts, tally.seconds);
+      frame.stages->draw(l, fan, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts({airs_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, options_.shadows}, edges,
+      add_lit_parts({airs_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, fan, options_.shadows},
                     count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
@@ -172,15 +170,12 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
   scene::Stopwatch watch;
-  Frame frame{view, shadows_, {}, {}, {}, {}};
-  for (const ShadowVolumes& shadows : frame.shadows) {
-    if (options_.candidates == Options::Candidates::tiles) frame.tiles.emplace_back(shadows, view, execution.threads);
-    if (options_.candidates == Options::Candidates::fan) frame.fans.emplace_back(shadows, view.camera);
-  }
+  Frame frame{view, shadows_, {}, {}, {}};
+  for (const ShadowVolumes& shadows : frame.shadows) frame.fans.emplace_back(shadows, view.camera);
   if (view.camera.kind == scene::Camera::Kind::perspective)
     for (const ShadowVolumes& shadows : frame.shadows)
       frame.at_camera.push_back(shadows.count(general_origin(view.camera.position, shadows.light())));
-  const double tiles = watch.lap();
+  const double fans = watch.lap();
   std::optional<PaperStages>& stages = frame.stages;
   if (in_stages()) stages.emplace(*scene_, options_, airs_, frame.shadows, view.camera, execution.threads);
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
@@ -205,12 +200,12 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   const double share = wall / std::max(1e-300, of.scene + of.ends + of.sort + of.planes);
   const auto add_time = [&](const char* stage, double seconds) { result.times.push_back({stage, seconds}); };
   if (stages) {
-    add_time("surfaces and stencil", tiles + of.scene * share);
+    add_time("surfaces and stencil", fans + of.scene * share);
     add_time("medium on surfaces", once.ends + of.ends * share);
     add_time("sort", once.sort + of.sort * share);
     add_time("shadow planes", once.planes + of.planes * share);
   } else {
-    add_time("surfaces", tiles + of.scene * share);
+    add_time("surfaces", fans + of.scene * share);
     if (of.planes > 0) add_time("airlight", of.planes * share);
   }
   const double vertices = stages ? double(stages->vertices()) : 0;

@@ -11,7 +11,6 @@
 #include "tests/gpu/shadow_planes/pictures.h"
 
 using namespace airlight;
-using gpu::test::beyond;
 using gpu::test::compare;
 using gpu::test::Pairs;
 using gpu::test::render;
@@ -51,16 +50,6 @@ TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_plan
   CHECK(many.counters.at("crossings") == render(shadow_planes::ShadowPlanes(), scene, {}).counters.at("crossings"));
 }
 
-// Lists that have no room are made greater: the picture is whole, and the row says so.
-TEST_CASE("shadow planes: lists of tiles overflow with a word", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
-  const auto scene = scene_of("elephant_fog", 320, 240);
-  const scene::Rendering first = render(gpu::ShadowPlanesGpu(), scene, {{"candidates", "tiles"}});
-  CHECK(first.counters.at("tile_overflows") > 0);
-  const scene::Film cpu = render(shadow_planes::ShadowPlanes(), scene, {}).film;
-  CHECK(beyond(cpu, first.film, "airlight", 1e-4) <= 150);
-}
-
 TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
   const gpu::ShadowPlanesGpu method;
@@ -71,9 +60,8 @@ TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow
     return prepared->render(view_of(*scene), {1, {}}).counters;
   };
   const scene::Scene boxes = *scene_of("shadow_planes/boxes_3", 32, 24);
-  // Three of the fan or two levels of tiles, the light, the layers.
+  // Three of the fan, the light, the layers.
   CHECK(dispatches(boxes, {}).at("dispatches") == 5);
-  CHECK(dispatches(boxes, {{"candidates", "tiles"}}).at("dispatches") == 4);
   scene::Scene empty = boxes;
   empty.surfaces.clear();
   CHECK(dispatches(empty, {}).at("dispatches") == 2);
@@ -110,7 +98,6 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
   }
   CHECK(others < 20);  // measured: 12 of 768
   if (!context->software()) return;
-  CHECK_THROWS_AS(render(gpu::ShadowPlanesGpu(), scene, {{"candidates", "tiles"}}), Unavailable);
   const auto media = scene_of("shadow_planes/media", 16, 12);
   for (const Pairs& given :
        {Pairs{{"nodes", "1024"}}, Pairs{{"nodes", "1024"}, {"shadows", "stencil"}, {"evaluation", "vertices"}}})

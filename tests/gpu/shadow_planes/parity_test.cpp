@@ -29,8 +29,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_p
   for (const Pairs& given :
        {Pairs{{"shadows", "none"}}, Pairs{{"shadows", "signed_sum"}}, Pairs{{"shadows", "stencil"}},
         Pairs{{"shadows", "stencil"}, {"edge_split", "4"}}, Pairs{{"evaluator", "polynomial"}, {"degree", "6"}},
-        Pairs{{"evaluator", "polynomial"}, {"annex", "true"}}, Pairs{{"ambient", "true"}},
-        Pairs{{"candidates", "tiles"}}, Pairs{{"candidates", "tiles"}, {"shadows", "stencil"}}})
+        Pairs{{"evaluator", "polynomial"}, {"annex", "true"}}, Pairs{{"ambient", "true"}}})
     compare(scene, given);
   compare(scene, {{"nodes", "8"}, {"stretch", "2"}}, 1e-3, 2e-4);
   // Sums in steps of 1/255: where one rounds up the other may round down.
@@ -164,10 +163,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_
 
 TEST_CASE("shadow planes: GPU agrees with CPU where camera, light and edges share planes", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
-  for (const auto& scene : test::special_scenes()) {
-    compare(scene, {});
-    compare(scene, {{"candidates", "tiles"}});
-  }
+  for (const auto& scene : test::special_scenes()) compare(scene, {});
 }
 
 // Where single precision would cancel: lights far from a region, cones of a thousandth, entries far before a light that

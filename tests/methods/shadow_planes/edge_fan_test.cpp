@@ -1,11 +1,12 @@
-// Edges by angle and by tile: nothing that a ray crosses may be missing.
+// Edges by angle: nothing that a ray crosses may be missing.
 #include "methods/shadow_planes/edge_fan.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "methods/shadow_planes/tile_edges.h"
 #include "scene/geometry/shapes.h"
+#include "scene/renderer.h"
 
 using namespace airlight;
 using namespace airlight::shadow_planes;
@@ -26,7 +27,7 @@ std::shared_ptr<scene::Scene> boxes(std::mt19937_64& random, int count) {
 
 }  // namespace
 
-TEST_CASE("shadow planes: fans and tiles miss no crossing", "[shadow_planes]") {
+TEST_CASE("shadow planes: a fan misses no crossing", "[shadow_planes]") {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> place(-2, 2);
   double all_crossings = 0, candidates = 0, edges = 0;
@@ -41,26 +42,20 @@ TEST_CASE("shadow planes: fans and tiles miss no crossing", "[shadow_planes]") {
     if (k % 8 == 7) light = view.camera.position;
     const ShadowVolumes shadows(std::make_shared<const Occluders>(scene), light);
     const EdgeFan fan(shadows, view.camera);
-    const TileEdges tiles(shadows, view, 1);
     std::vector<Crossing> expected, got;
-    std::vector<int> of_ray, of_tile;
-    const auto same = [&](const Ray& ray, const std::vector<int>& given) {
-      got.clear();
-      shadows.cross_edges(ray, 10, given, got);
-      std::sort(got.begin(), got.end(), [](const Crossing& a, const Crossing& b) { return a.edge < b.edge; });
-      REQUIRE(got.size() == expected.size());
-      for (std::size_t i = 0; i < got.size(); ++i)
-        CHECK((got[i].edge == expected[i].edge && got[i].x == expected[i].x && got[i].change == expected[i].change));
-    };
+    std::vector<int> of_ray;
     for (int y = 0; y < view.height; y += 3)
       for (int x = 0; x < view.width; x += 3) {
         const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
         expected.clear();
+        got.clear();
         shadows.cross_edges(ray, 10, shadows.all_edges(), expected);
         fan.of_ray(ray, of_ray);
-        same(ray, of_ray);
-        tiles.of_tile(x / tile_side, y / tile_side, of_tile);
-        same(ray, of_tile);
+        shadows.cross_edges(ray, 10, of_ray, got);
+        std::sort(got.begin(), got.end(), [](const Crossing& a, const Crossing& b) { return a.edge < b.edge; });
+        REQUIRE(got.size() == expected.size());
+        for (std::size_t i = 0; i < got.size(); ++i)
+          CHECK((got[i].edge == expected[i].edge && got[i].x == expected[i].x && got[i].change == expected[i].change));
         all_crossings += double(expected.size());
         candidates += double(of_ray.size());
         edges += double(shadows.edges().size());
