@@ -34,7 +34,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const s
   std::vector<Experiment> experiments;
   for (const std::string& id : choose_experiments(root, options.names)) {
     Experiment e = read_experiment(root, id, options.profile);
-    if (options.gates_only && e.gates.empty() && e.kind != "oracles") continue;
+    if (options.gates_only && e.gates.empty()) continue;
     if (options.in_tests && !e.in_tests) continue;
     if (options.threads > 0) e.timing.threads = options.threads;
     experiments.push_back(std::move(e));

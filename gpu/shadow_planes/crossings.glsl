@@ -160,7 +160,7 @@ bool gather(Ray ray, double end, inout double key, inout int origin) {
 #endif
   last_key = key;
   last_origin = origin;
-  Ray from = general_ray(ray);
+  Ray from = ray_in_general_position(ray);
   cross_edges(from, end);
   cross_spheres(from, end);
   if (hit_count <= most_hits) return false;

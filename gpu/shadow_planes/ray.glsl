@@ -20,8 +20,8 @@ Ray ray_to(dvec3 origin, dvec3 direction) {
   return ray;
 }
 
-// From beside the origin: methods/shadow_planes/general_origin.h.
-Ray general_ray(Ray ray) {
+// From beside the origin: methods/shadow_planes/general_position.h.
+Ray ray_in_general_position(Ray ray) {
   double aside = 2e-13LF * length(ray.to_light) + 4e-15LF * (length(ray.origin) + length(light));
   return ray_to(ray.origin + aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF), ray.direction);
 }

@@ -22,11 +22,11 @@ LitPicture::LitPicture(Context& context, const scene::View& v, bool shadows)
       counters(context, "counters", 20) {}
 
 PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options,
-                           const AirsOnDevice& airs, const SurfacesOnDevice* surfaces)
+                           const AirlightTermsOnDevice& airlight_terms, const SurfacesOnDevice* surfaces)
     : context_(context),
       scene_(scene),
       options_(options),
-      airs_(airs),
+      airlight_terms_(airlight_terms),
       surfaces_(surfaces),
       materials_(context, "materials", MaterialTables(*scene).materials),
       tables_(context, "reflectance tables", MaterialTables(*scene).values) {}
@@ -46,19 +46,19 @@ std::unique_ptr<Buffer> PlaneShading::left_out(const LightEdges* edges, const Bo
   return flags;
 }
 
-void PlaneShading::add(LitPicture& picture, int index, int air, const std::vector<int>& counts, const Edges& lists,
+void PlaneShading::add(LitPicture& picture, int index, int term, const std::vector<int>& counts, const Edges& lists,
                        const VertexValues* values) const {
   const Use use(context_);
   const scene::Light& light = scene_->lights[index];
   const auto* spot = std::get_if<scene::SpotLight>(&light);
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  const scene::Region* region = air >= 0 ? airs_.region(air) : nullptr;
+  const scene::Region* region = term >= 0 ? airlight_terms_.region(term) : nullptr;
   // Values at vertices are drawn by the paper's stages, with or without shadows.
-  const bool stages = air >= 0 && (values || (options_.shadows == Options::Shadows::stencil && lists.edges));
-  auto definitions = airs_.definitions(index, air);
+  const bool stages = term >= 0 && (values || (options_.shadows == Options::Shadows::stencil && lists.edges));
+  auto definitions = airlight_terms_.definitions(index, term);
   definitions.insert({{"LOCAL_SIZE_X", "16"},
                       {"LOCAL_SIZE_Y", "8"},
-                      {"AIRLIGHT", flag(air >= 0)},
+                      {"AIRLIGHT", flag(term >= 0)},
                       {"COUNT_BY_PIXEL", flag(counts.size() > 1)},
                       {"CROSSINGS", flag(lists.edges)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
@@ -76,7 +76,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
     flags->bind(15);
     p.set("boundary_cells", options_.boundary_cells);
   }
-  airs_.bind(p, index, air);
+  airlight_terms_.bind(p, index, term);
   if (values) {
     values->bind(p);
     p.set("media_end", shadow_planes::all_end(scene_->media));
@@ -99,7 +99,7 @@ void PlaneShading::add(LitPicture& picture, int index, int air, const std::vecto
   p.set("solid_count", surfaces_ ? int(surfaces_->solids().size()) : 0);
   p.set("has_primitives", picture.primitives != nullptr);
   p.set("count_at_camera", counts.front());
-  p.set("reflects", air <= 0);
+  p.set("reflects", term <= 0);
   p.set("edge_split", options_.edge_split);
   p.set("frame_buffer", options_.frame_buffer && stages);
   p.set("loop_count", 3);
@@ -123,7 +123,7 @@ void PlaneShading::compose(const LitPicture& picture, const Layers& layers) cons
   if (picture.primitives) picture.primitives->bind(1);
   if (surfaces_) surfaces_->bind();
   picture.pixels.bind(6);
-  airs_.bind_media(p);
+  airlight_terms_.bind_media(p);
   layers.airlight.bind(0);
   layers.transmittance.bind(3);
   layers.surface.bind(4);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gpu/raster/surfaces_on_device.h"
-#include "gpu/shadow_planes/airs_on_device.h"
+#include "gpu/shadow_planes/airlight_terms_on_device.h"
 #include "gpu/shadow_planes/fan_on_device.h"
 #include "gpu/shadow_planes/vertex_values.h"
 #include "scene/renderer.h"
@@ -26,8 +26,8 @@ class PlaneShading {
  public:
   // Uploads materials. `surfaces` is null where there are none, nor balls of lights; all must live on. The pointer may
   // come to point to the same scene with other lights.
-  PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&, const AirsOnDevice&,
-               const SurfacesOnDevice* surfaces);
+  PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&,
+               const AirlightTermsOnDevice&, const SurfacesOnDevice* surfaces);
 
   // Of one light, the edges whose planes rays may cross: null where nothing casts a shadow.
   struct Edges {
@@ -37,7 +37,7 @@ class PlaneShading {
   // Adds an air (-1: there is none) as a light shows it, and with the first of them what surfaces reflect of the light.
   // `counts`: m where rays begin, one number or one for every pixel; `values` is null where the airlight is computed
   // for every pixel.
-  void add(LitPicture&, int light, int air, const std::vector<int>& counts, const Edges&, const VertexValues*) const;
+  void add(LitPicture&, int light, int term, const std::vector<int>& counts, const Edges&, const VertexValues*) const;
 
   // Layers of 3 floats per pixel.
   struct Layers {
@@ -51,7 +51,7 @@ class PlaneShading {
   Context& context_;
   const std::shared_ptr<const scene::Scene>& scene_;
   shadow_planes::Options options_;
-  const AirsOnDevice& airs_;
+  const AirlightTermsOnDevice& airlight_terms_;
   const SurfacesOnDevice* surfaces_;
   Buffer materials_, tables_;
 };

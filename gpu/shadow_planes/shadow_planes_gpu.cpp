@@ -9,7 +9,7 @@
 #include "gpu/raster_program.h"
 #include "gpu/shadow_planes/shading.h"
 #include "gpu/timer.h"
-#include "methods/shadow_planes/general_origin.h"
+#include "methods/shadow_planes/general_position.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
@@ -33,7 +33,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
       : scene_(std::move(scene)),
         options_(options),
         context_(Context::get()),
-        airs_(context_, scene_, options),
+        airlight_terms_(context_, scene_, options),
         fan_(context_) {
     const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
     const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
@@ -43,7 +43,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
       first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
       timer.stage("upload");
     }
-    shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airs_, surfaces_on_device());
+    shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airlight_terms_, surfaces_on_device());
     if (lit && surfaces) {
       occluders_ = std::make_shared<const shadow_planes::Occluders>(scene_);
       silhouettes_ = std::make_unique<Silhouettes>(context_, *occluders_);
@@ -77,7 +77,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Context& context_;
-  AirsOnDevice airs_;
+  AirlightTermsOnDevice airlight_terms_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
   std::unique_ptr<PlaneShading> shading_;
   std::shared_ptr<const shadow_planes::Occluders> occluders_;
@@ -121,7 +121,9 @@ std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, c
                                                             const Execution& execution) const {
   if (counts_.empty()) return {0};
   const Point3 at = scene::ball(scene_->lights[light])->center;
-  const auto count = [&](const Point3& origin) { return counts_[light].at(shadow_planes::general_origin(origin, at)); };
+  const auto count = [&](const Point3& origin) {
+    return counts_[light].at(shadow_planes::origin_in_general_position(origin, at));
+  };
   if (view.camera.kind == scene::Camera::Kind::perspective) return {count(view.camera.position)};
   std::vector<int> counts(std::size_t(view.width) * view.height);
   scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
@@ -143,20 +145,21 @@ double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Exec
     timer.stage("edges of rays");
   }
   double vertices = 0;
-  for (int air = 0; air < airs_.count(); ++air) {
+  for (int term = 0; term < airlight_terms_.count(); ++term) {
     const bool by_vertex = options_.evaluation == Options::Evaluation::vertices;
     if (by_vertex) {
-      const double far =
-          lists.edges ? shadow_planes::mesh_reach(*scene_, airs_.region(air), light, camera, options_.plane_levels) : 0;
+      const double far = lists.edges ? shadow_planes::mesh_reach(*scene_, airlight_terms_.region(term), light, camera,
+                                                                 options_.plane_levels)
+                                     : 0;
       const bool planes = lists.edges && options_.shadows != Options::Shadows::none;
-      values_.fill(context_, *scene_, options_, airs_, l, air, camera, surfaces_on_device(),
+      values_.fill(context_, *scene_, options_, airlight_terms_, l, term, camera, surfaces_on_device(),
                    planes ? lists.edges : nullptr, far, picture.counters, timer);
       vertices += double(values_.count());
     }
-    shading_->add(picture, l, air, counts, lists, by_vertex ? &values_ : nullptr);
+    shading_->add(picture, l, term, counts, lists, by_vertex ? &values_ : nullptr);
     timer.stage("airlight and surfaces");
   }
-  if (airs_.count() == 0) {
+  if (airlight_terms_.count() == 0) {
     shading_->add(picture, l, -1, counts, lists, nullptr);
     timer.stage("airlight and surfaces");
   }

@@ -10,7 +10,7 @@
 namespace airlight::gpu {
 
 void VertexValues::fill(Context& context, const scene::Scene& scene, const shadow_planes::Options& options,
-                        const AirsOnDevice& airs, int light, int air, const Point3& camera,
+                        const AirlightTermsOnDevice& airlight_terms, int light, int term, const Point3& camera,
                         const SurfacesOnDevice* surfaces, const LightEdges* edges, double far, const Buffer& counters,
                         StageTimer& timer) {
   const Use use(context);
@@ -20,7 +20,7 @@ void VertexValues::fill(Context& context, const scene::Scene& scene, const shado
   cells_ = options.boundary_cells;
   far_ = far;
   meshes_ = surfaces ? surfaces->vertices() : 0;
-  boundary_ = airs.region(air) ? 6 * (cells_ + 1) * (cells_ + 1) : 0;
+  boundary_ = airlight_terms.region(term) ? 6 * (cells_ + 1) * (cells_ + 1) : 0;
   const double of_planes = edges ? double(edges->count) * (options.edge_split + 1) * (levels_ + 2) : 0;
   const std::size_t most = context.limits().storage_block;
   if ((of_planes + meshes_ + boundary_) * 16 > double(most))
@@ -32,12 +32,12 @@ void VertexValues::fill(Context& context, const scene::Scene& scene, const shado
   int first = 0;
   const auto evaluate = [&](int kind, int count, const char* stage) {
     if (count == 0) return;
-    auto definitions = airs.definitions(light, air);
+    auto definitions = airlight_terms.definitions(light, term);
     definitions.insert({{"LOCAL_SIZE_X", "64"}, {"OF", std::to_string(kind)}});
     Program& p = context.program("shadow_planes/vertices.comp", definitions);
     if (surfaces) surfaces->bind();
     if (edges) edges->edges->bind(0);
-    airs.bind(p, light, air);
+    airlight_terms.bind(p, light, term);
     values_->bind(13);
     counters.bind(14);
     p.set("loop_count", 3);

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "gpu/raster/surfaces_on_device.h"
-#include "gpu/shadow_planes/airs_on_device.h"
+#include "gpu/shadow_planes/airlight_terms_on_device.h"
 #include "gpu/shadow_planes/silhouettes.h"
 #include "gpu/timer.h"
 
@@ -14,8 +14,8 @@ class VertexValues {
  public:
   // `far`: how far from the light planes are meshed [m]. `surfaces` and `edges` are null where there are none. Loops
   // that the driver ends are told in `counters` (shading.h).
-  void fill(Context&, const scene::Scene&, const shadow_planes::Options&, const AirsOnDevice&, int light, int air,
-            const Point3& camera, const SurfacesOnDevice* surfaces, const LightEdges* edges, double far,
+  void fill(Context&, const scene::Scene&, const shadow_planes::Options&, const AirlightTermsOnDevice&, int light,
+            int term, const Point3& camera, const SurfacesOnDevice* surfaces, const LightEdges* edges, double far,
             const Buffer& counters, StageTimer&);
 
   // Binds 13, sets the uniforms of stencil.glsl.

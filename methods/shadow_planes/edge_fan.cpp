@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/shadow_planes/general_origin.h"
+#include "methods/shadow_planes/general_position.h"
 
 namespace airlight::shadow_planes {
 namespace {
@@ -16,8 +16,9 @@ constexpr double margin = 1e-8, least_across = 1e-6;
 }  // namespace
 
 FanAxes fan_axes(const scene::Camera& camera, const Point3& light) {
-  Vec3 line = camera.kind == scene::Camera::Kind::perspective ? Vec3(general_origin(camera.position, light) - light)
-                                                              : camera.forward;
+  Vec3 line = camera.kind == scene::Camera::Kind::perspective
+                  ? Vec3(origin_in_general_position(camera.position, light) - light)
+                  : camera.forward;
   if (!(line.norm() > 0)) line = Vec3::UnitX();  // all rays pass through the light and cross nothing
   line.normalize();
   const Vec3 x = line.unitOrthogonal();

@@ -1,6 +1,6 @@
 #include "methods/shadow_planes/lit_parts.h"
 
-#include "methods/shadow_planes/general_origin.h"
+#include "methods/shadow_planes/general_position.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::shadow_planes {
@@ -8,9 +8,9 @@ namespace {
 
 Rgb over(const LitLight& lit, const Ray& ray, Interval part, Counts& counts) {
   counts.parts += 1;
-  counts.by_pixel += double(lit.airs.size());
+  counts.by_pixel += double(lit.airlight_terms.size());
   Rgb sum = Rgb::Zero();
-  for (const Air& air : lit.airs) sum += airlight(air, lit.light, ray, part);
+  for (const AirlightTerm& term : lit.airlight_terms) sum += airlight(term, lit.light, ray, part);
   return sum;
 }
 
@@ -44,7 +44,7 @@ void add_lit_parts(const LitLight& lit, std::optional<int> count, std::vector<Pi
   const bool counted = lit.shadows && lit.how == Options::Shadows::counted;
   // Sorts the crossings and finds the lit parts; m of the origin.
   const auto find = [&](const Pixel& pixel) {
-    const Ray ray = general_ray(pixel.ray, lit.shadows->light());
+    const Ray ray = ray_in_general_position(pixel.ray, lit.shadows->light());
     const int m = count ? *count : lit.shadows->count(ray.origin);
     lit.fan->of_ray(ray, edges);
     lit.shadows->lit_parts(ray, pixel.end.t, m, &edges, crossings, of_ray);

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "methods/shadow_planes/air.h"
+#include "methods/shadow_planes/airlight_term.h"
 #include "methods/shadow_planes/edge_fan.h"
 #include "methods/shadow_planes/pixel.h"
 #include "methods/shadow_planes/shadow_volumes.h"
@@ -10,7 +10,7 @@
 namespace airlight::shadow_planes {
 
 struct LitLight {
-  const std::vector<Air>& airs;
+  const std::vector<AirlightTerm>& airlight_terms;
   const scene::Light& light;
   const ShadowVolumes* shadows;  // null: all is lit
   const EdgeFan* fan;            // of their edges

@@ -7,106 +7,55 @@
 namespace airlight::shadow_planes {
 
 std::vector<scene::SettingSpec> setting_specs() {
-  using Type = scene::SettingSpec::Type;
   return {
-      {"evaluator",
-       Type::choice,
-       "rule",
-       "of a lit part of a ray: a mapped Gauss-Legendre rule, or the paper's polynomial in theta",
-       0,
-       0,
-       {"rule", "polynomial"}},
-      {"nodes", Type::integer, "64", "of the rule", 1, 1024, {}},
-      {"stretch", Type::integer, "6", "m of the rule's map", 1, 16, {}},
-      {"degree", Type::integer, "4", "of the polynomial", 0, 60, {}},
-      {"centred",
-       Type::flag,
-       "false",
-       "the polynomial about the middle of each lit part, not about theta = 0",
-       0,
-       0,
-       {}},
-      {"annex",
-       Type::flag,
-       "false",
-       "the polynomial with the coefficients that the annex prints, errors included",
-       0,
-       0,
-       {}},
-      {"shadows",
-       Type::choice,
-       "counted",
-       "none; by counting surfaces along the ray; as a signed sum over shadow planes, wrong where shadows overlap; by "
-       "the "
-       "paper's order of planes and stencil",
-       0,
-       0,
-       {"none", "counted", "signed_sum", "stencil"}},
-      {"edge_split", Type::integer, "1", "pieces of every silhouette edge, for the stencil's order", 1, 4096, {}},
-      {"evaluation",
-       Type::choice,
-       "pixels",
-       "of a lit ray's airlight: for every pixel; or at the vertices of meshes, shadow planes and media, linear "
-       "between "
-       "them, as the paper has it (other surfaces have no vertices: by pixel)",
-       0,
-       0,
-       {"pixels", "vertices"}},
-      {"plane_levels",
-       Type::integer,
-       "16",
-       "evaluation = vertices: strips of a shadow plane away from the light, in geometric progression",
-       1,
-       4096,
-       {}},
-      {"boundary_cells",
-       Type::integer,
-       "16",
-       "evaluation = vertices, bounded = paper: cells along a side of the six faces of a medium's boundary; entries "
-       "are "
-       "sorted by its triangles",
-       1,
-       1024,
-       {}},
-      {"bounded",
-       Type::choice,
-       "exact",
-       "media in regions: exact; or as the paper has it, light through a mean length R of the medium, media that do "
-       "not "
-       "tint one another",
-       0,
-       0,
-       {"exact", "paper"}},
-      {"frame_buffer",
-       Type::flag,
-       "false",
-       "the stencil's sums in a frame buffer of 8 bits that ends at radiance 1",
-       0,
-       0,
-       {}},
-      {"printed_phases", Type::flag, "false", "hazy and murky as printed, with means of 2 and 83/33", 0, 0, {}},
-      {"ambient", Type::flag, "false", "adds the scene's ambient_in_scatter", 0, 0, {}},
+      scene::choice_setting("evaluator", "rule", {"rule", "polynomial"},
+                            "of a lit part of a ray: a mapped Gauss-Legendre rule, or the paper's polynomial in theta"),
+      scene::integer_setting("nodes", "64", 1, 1024, "of the rule"),
+      scene::integer_setting("stretch", "6", 1, 16, "m of the rule's map"),
+      scene::integer_setting("degree", "4", 0, 60, "of the polynomial"),
+      scene::flag_setting("centred", false, "the polynomial about the middle of each lit part, not about theta = 0"),
+      scene::flag_setting("annex", false,
+                          "the polynomial with the coefficients that the annex prints, errors included"),
+      scene::choice_setting("shadows", "counted", {"none", "counted", "signed_sum", "stencil"},
+                            "none; by counting surfaces along the ray; as a signed sum over shadow planes, wrong where "
+                            "shadows overlap; by the paper's order of planes and stencil"),
+      scene::integer_setting("edge_split", "1", 1, 4096, "pieces of every silhouette edge, for the stencil's order"),
+      scene::choice_setting(
+          "evaluation", "pixels", {"pixels", "vertices"},
+          "of a lit ray's airlight: for every pixel; or at the vertices of meshes, shadow planes and media, "
+          "linear between them, as the paper has it (other surfaces have no vertices: by pixel)"),
+      scene::integer_setting(
+          "plane_levels", "16", 1, 4096,
+          "evaluation = vertices: strips of a shadow plane away from the light, in geometric progression"),
+      scene::integer_setting(
+          "boundary_cells", "16", 1, 1024,
+          "evaluation = vertices, bounded = paper: cells along a side of the six faces of a medium's "
+          "boundary; entries are sorted by its triangles"),
+      scene::choice_setting(
+          "bounded", "exact", {"exact", "paper"},
+          "media in regions: exact; or as the paper has it, light through a mean length R of the medium, "
+          "media that do not tint one another"),
+      scene::flag_setting("frame_buffer", false,
+                          "the stencil's sums in a frame buffer of 8 bits that ends at radiance 1"),
+      scene::flag_setting("printed_phases", false, "hazy and murky as printed, with means of 2 and 83/33"),
+      scene::flag_setting("ambient", false, "adds the scene's ambient_in_scatter"),
   };
 }
 
 Options read_options(const scene::Settings& settings) {
   Options o;
-  o.evaluator = settings.text("evaluator") == "rule" ? Options::Evaluator::rule : Options::Evaluator::polynomial;
+  o.evaluator = settings.choice<Options::Evaluator>("evaluator");
   o.nodes = int(settings.integer("nodes"));
   o.stretch = int(settings.integer("stretch"));
   o.degree = int(settings.integer("degree"));
   o.centred = settings.flag("centred");
   o.annex = settings.flag("annex");
-  const std::string& shadows = settings.text("shadows");
-  o.shadows = shadows == "none"      ? Options::Shadows::none
-              : shadows == "counted" ? Options::Shadows::counted
-              : shadows == "stencil" ? Options::Shadows::stencil
-                                     : Options::Shadows::signed_sum;
+  o.shadows = settings.choice<Options::Shadows>("shadows");
   o.edge_split = int(settings.integer("edge_split"));
-  o.evaluation = settings.text("evaluation") == "pixels" ? Options::Evaluation::pixels : Options::Evaluation::vertices;
+  o.evaluation = settings.choice<Options::Evaluation>("evaluation");
   o.plane_levels = int(settings.integer("plane_levels"));
   o.boundary_cells = int(settings.integer("boundary_cells"));
-  o.bounded = settings.text("bounded") == "exact" ? Options::Bounded::exact : Options::Bounded::paper;
+  o.bounded = settings.choice<Options::Bounded>("bounded");
   o.frame_buffer = settings.flag("frame_buffer");
   o.printed_phases = settings.flag("printed_phases");
   o.ambient = settings.flag("ambient");

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/shadow_planes/general_origin.h"
+#include "methods/shadow_planes/general_position.h"
 #include "scene/error.h"
 
 namespace airlight::shadow_planes {
@@ -82,18 +82,19 @@ struct PaperStages::Work {
   std::vector<Rgb> sum;
 };
 
-PaperStages::PaperStages(const scene::Scene& scene, const Options& options, const std::vector<Air>& airs,
-                         const std::vector<ShadowVolumes>& shadows, const scene::Camera& camera, int threads)
-    : scene_(scene), options_(options), airs_(airs), shadows_(shadows) {
+PaperStages::PaperStages(const scene::Scene& scene, const Options& options,
+                         const std::vector<AirlightTerm>& airlight_terms, const std::vector<ShadowVolumes>& shadows,
+                         const scene::Camera& camera, int threads)
+    : scene_(scene), options_(options), airlight_terms_(airlight_terms), shadows_(shadows) {
   const bool vertices = options.evaluation == Options::Evaluation::vertices;
   const Box everywhere{Point3::Constant(-infinity), Point3::Constant(infinity)};
   scene::Stopwatch watch;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     std::vector<Part>& of_light = parts_.emplace_back();
-    for (const Air& air : airs) {
+    for (const AirlightTerm& term : airlight_terms) {
       Part& part = of_light.emplace_back();
-      part.medium = std::get_if<PaperMedium>(&air);
-      if (vertices) part.at_vertices.emplace(air, scene.lights[l], camera.position);
+      part.medium = std::get_if<PaperMedium>(&term);
+      if (vertices) part.at_vertices.emplace(term, scene.lights[l], camera.position);
       part.planes_end = vertices && !part.medium && all_end(scene.media);
       if (l >= shadows.size()) continue;
       part.left_out.assign(shadows[l].edges().size(), false);
@@ -181,7 +182,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   std::vector<int> at_origin(pixels.size(), 0), edges;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty()) {
-      const Ray ray = general_ray(pixels[i].ray, shadows_[l].light());
+      const Ray ray = ray_in_general_position(pixels[i].ray, shadows_[l].light());
       fan->of_ray(ray, edges);
       shadows_[l].cross_edges(ray, pixels[i].end.t, edges, work.crossings);
       shadows_[l].cross_spheres(ray, pixels[i].end.t, work.crossings);
@@ -194,7 +195,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   for (std::size_t i = 0; i < pixels.size() && !shadows_.empty(); ++i)
     orders_[l].sort(pixels[i].ray, work.crossings.data() + work.first[i], work.crossings.data() + work.first[i + 1]);
   seconds.sort += watch.lap();
-  for (std::size_t a = 0; a < airs_.size(); ++a) {
+  for (std::size_t a = 0; a < airlight_terms_.size(); ++a) {
     work.stencil = at_origin;
     draw_ends(l, a, pixels, work, counts);
     seconds.ends += watch.lap();
@@ -230,7 +231,7 @@ Rgb PaperStages::to_end(std::size_t l, std::size_t a, const Pixel& pixel, Interv
       if (const auto value = part.at_vertices->on_surface(scene_.surfaces, *pixel.end.hit)) return *value;
   }
   counts.by_pixel += 1;
-  return airlight(airs_[a], scene_.lights[l], pixel.ray, {0, domain.hi});
+  return airlight(airlight_terms_[a], scene_.lights[l], pixel.ray, {0, domain.hi});
 }
 
 // Stage 5, with the stencil's rules put right: each plane adds or takes away all light in front of it.
@@ -258,7 +259,7 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
         add(work.sum[i], sign * part.at_vertices->on_plane(crossing));
       } else {
         counts.by_pixel += 1;
-        add(work.sum[i], sign * airlight(airs_[a], scene_.lights[l], pixels[i].ray, {0, crossing.x}));
+        add(work.sum[i], sign * airlight(airlight_terms_[a], scene_.lights[l], pixels[i].ray, {0, crossing.x}));
       }
     }
   }

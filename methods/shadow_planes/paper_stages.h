@@ -24,8 +24,8 @@ class PaperStages {
   // What is done once per picture: keys of planes, vertices. `shadows` by light, empty: nothing casts shadows. Keeps
   // references to all but the camera. Throws Error, naming the scene and the settings, if keys and vertices would take
   // more than 1.5 GB.
-  PaperStages(const scene::Scene&, const Options&, const std::vector<Air>&, const std::vector<ShadowVolumes>& shadows,
-              const scene::Camera&, int threads);
+  PaperStages(const scene::Scene&, const Options&, const std::vector<AirlightTerm>&,
+              const std::vector<ShadowVolumes>& shadows, const scene::Camera&, int threads);
 
   // Adds the airlight of a light to pixels. `fan`: null if nothing casts shadows; `count`: of surfaces between
   // light and camera; of a ray's own origin where there is none.
@@ -48,14 +48,14 @@ class PaperStages {
   };
   struct Work;
   void check_memory() const;  // throws Error before more is allocated than anybody has
-  void draw_ends(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
-  void draw_planes(std::size_t light, std::size_t air, const std::vector<Pixel>&, Work&, Counts&) const;
-  Rgb to_end(std::size_t light, std::size_t air, const Pixel&, Interval domain, Counts&) const;
+  void draw_ends(std::size_t light, std::size_t term, const std::vector<Pixel>&, Work&, Counts&) const;
+  void draw_planes(std::size_t light, std::size_t term, const std::vector<Pixel>&, Work&, Counts&) const;
+  Rgb to_end(std::size_t light, std::size_t term, const Pixel&, Interval domain, Counts&) const;
   void add(Rgb& sum, const Rgb& value) const;
 
   const scene::Scene& scene_;
   const Options& options_;
-  const std::vector<Air>& airs_;
+  const std::vector<AirlightTerm>& airlight_terms_;
   const std::vector<ShadowVolumes>& shadows_;
   std::vector<PlaneOrder> orders_;        // by light
   std::vector<std::vector<Part>> parts_;  // by light, air

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/shadow_planes/general_origin.h"
+#include "methods/shadow_planes/general_position.h"
 #include "methods/shadow_planes/lit_parts.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/stage_list.h"
@@ -49,7 +49,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
     needs_ = {medium, medium && lit && !scene_->surfaces.empty() && options.shadows != Options::Shadows::none,
               lit && !scene_->surfaces.empty()};
     scene::Stopwatch watch;
-    if (medium) airs_ = airs(scene_->media, options);
+    if (medium) airlight_terms_ = airlight_terms(scene_->media, options);
     if (!needs_.shadows) return;
     occluders_ = std::make_shared<const Occluders>(scene_);
     times_.push_back({"edges", watch.lap()});
@@ -71,7 +71,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Needs needs_;
-  std::vector<Air> airs_;                       // empty: no medium
+  std::vector<AirlightTerm> airlight_terms_;    // empty: no medium
   std::shared_ptr<const Occluders> occluders_;  // null: nothing casts shadows
   std::vector<ShadowVolumes> shadows_;          // by light; empty: the same
   std::vector<scene::StageTime> times_;
@@ -142,8 +142,9 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
     if (frame.stages)
       frame.stages->draw(l, fan, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts({airs_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, fan, options_.shadows},
-                    count, pixels, tally.counts, tally.seconds);
+      add_lit_parts(
+          {airlight_terms_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, fan, options_.shadows},
+          count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -174,10 +175,10 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   for (const ShadowVolumes& shadows : frame.shadows) frame.fans.emplace_back(shadows, view.camera);
   if (view.camera.kind == scene::Camera::Kind::perspective)
     for (const ShadowVolumes& shadows : frame.shadows)
-      frame.at_camera.push_back(shadows.count(general_origin(view.camera.position, shadows.light())));
+      frame.at_camera.push_back(shadows.count(origin_in_general_position(view.camera.position, shadows.light())));
   const double fans = watch.lap();
   std::optional<PaperStages>& stages = frame.stages;
-  if (in_stages()) stages.emplace(*scene_, options_, airs_, frame.shadows, view.camera, execution.threads);
+  if (in_stages()) stages.emplace(*scene_, options_, airlight_terms_, frame.shadows, view.camera, execution.threads);
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);

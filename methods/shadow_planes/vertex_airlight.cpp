@@ -21,8 +21,8 @@ Rgb mix(const std::vector<Rgb>& values, const std::array<int, 3>& vertex, const 
 
 }  // namespace
 
-VertexAirlight::VertexAirlight(const Air& air, const scene::Light& light, const Point3& camera)
-    : air_(air), light_(light), camera_(camera) {}
+VertexAirlight::VertexAirlight(const AirlightTerm& term, const scene::Light& light, const Point3& camera)
+    : air_(term), light_(light), camera_(camera) {}
 
 Rgb VertexAirlight::gamma(const Vertex& vertex) const {
   const Vec3 way = vertex.at_infinity ? vertex.place : Vec3(vertex.place - camera_);

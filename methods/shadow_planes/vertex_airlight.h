@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "methods/shadow_planes/air.h"
+#include "methods/shadow_planes/airlight_term.h"
 #include "methods/shadow_planes/media_boundary.h"
 #include "methods/shadow_planes/plane_mesh.h"
 #include "scene/renderer.h"
@@ -14,7 +14,7 @@ namespace airlight::shadow_planes {
 // within 1e-6 of the light's distance, since Gamma is infinite behind it.
 class VertexAirlight {
  public:
-  VertexAirlight(const Air&, const scene::Light&, const Point3& camera);  // keeps references to the first two
+  VertexAirlight(const AirlightTerm&, const scene::Light&, const Point3& camera);  // keeps references to the first two
 
   // On all threads. Meshes that are not in `within` are left out.
   void evaluate_surfaces(const std::vector<scene::Surface>&, const Box& within, int threads);
@@ -34,7 +34,7 @@ class VertexAirlight {
   template <class VertexOf>
   std::vector<Rgb> evaluate(std::size_t count, int threads, VertexOf&&);
 
-  const Air& air_;
+  const AirlightTerm& air_;
   const scene::Light& light_;
   Point3 camera_;
   std::size_t count_ = 0;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "gpu/program.h"
-#include "gpu/shadow_planes/airs_on_device.h"
+#include "gpu/shadow_planes/airlight_terms_on_device.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/shader_folder.h"
 #include "tests/methods/shadow_planes/vectors.h"
@@ -55,13 +55,13 @@ TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][sh
     options.stretch = 3;
     options.printed_phases = true;
     const auto shared = std::make_shared<const scene::Scene>(scene);
-    const gpu::AirsOnDevice airs(*context, shared, options);
-    REQUIRE(airs.count() == 1);
-    const auto definitions = airs.definitions(0, 0);
+    const gpu::AirlightTermsOnDevice airlight_terms(*context, shared, options);
+    REQUIRE(airlight_terms.count() == 1);
+    const auto definitions = airlight_terms.definitions(0, 0);
     auto& program = programs[definitions];
     if (!program) program = std::make_unique<gpu::Program>(*context, "test.comp", definitions);
     const gpu::Buffer radiance(*context, "radiance", 4);
-    airs.bind(*program, 0, 0);
+    airlight_terms.bind(*program, 0, 0);
     radiance.bind(0);
     program->set_double("from_place", x0);
     program->set_double("to_place", std::min(x1, 1e37));

@@ -100,9 +100,8 @@ void seal_journal(const std::filesystem::path& path) {
   std::istringstream in(bytes_of(path));
   std::string sealed;
   for (std::string line; std::getline(in, line);)
-    sealed += line.size() < 33
-                  ? line + "\n"
-                  : airlight::content_key(std::string_view(line).substr(33)) + line.substr(32) + "\n";
+    sealed += line.size() < 33 ? line + "\n"
+                               : airlight::content_key(std::string_view(line).substr(33)) + line.substr(32) + "\n";
   std::ofstream(path, std::ios::binary) << sealed;
 }
 

@@ -8,12 +8,12 @@ namespace airlight::shadow_planes {
 // a direction that is no scene's own. A camera in the plane of an edge and the light, as in scenes that are made by
 // hand, would be on either side of it as rounding has it, ray by ray; counted and crossed from here it is on one.
 // The step is 900 roundings of the distance: one of 9 (2e-15) was enough in the scenes that showed it.
-inline Point3 general_origin(const Point3& origin, const Point3& light) {
+inline Point3 origin_in_general_position(const Point3& origin, const Point3& light) {
   const double step = 2e-13 * (origin - light).norm() + 4e-15 * (origin.norm() + light.norm());
   return origin + step * Vec3(0.5377, 0.3171, 0.7812);
 }
-inline Ray general_ray(const Ray& ray, const Point3& light) {
-  return {general_origin(ray.origin, light), ray.direction};
+inline Ray ray_in_general_position(const Ray& ray, const Point3& light) {
+  return {origin_in_general_position(ray.origin, light), ray.direction};
 }
 
 }  // namespace airlight::shadow_planes

@@ -8,11 +8,11 @@
 
 namespace airlight::shadow_planes {
 
-using Air = std::variant<LitAirlight, PaperMedium>;
+using AirlightTerm = std::variant<LitAirlight, PaperMedium>;
 
 // Their sum is the airlight. bounded = exact: one, of all media; paper: one for each.
-inline std::vector<Air> airs(const std::vector<scene::Medium>& media, const Options& options) {
-  std::vector<Air> result;
+inline std::vector<AirlightTerm> airlight_terms(const std::vector<scene::Medium>& media, const Options& options) {
+  std::vector<AirlightTerm> result;
   if (options.bounded == Options::Bounded::exact && !media.empty()) result.emplace_back(LitAirlight(media, options));
   if (options.bounded == Options::Bounded::paper)
     for (const scene::Medium& medium : media) {
@@ -25,8 +25,8 @@ inline std::vector<Air> airs(const std::vector<scene::Medium>& media, const Opti
 }
 
 // L [W/m^2/sr] of a point or spot light over a lit part of the ray, which may be infinite.
-inline Rgb airlight(const Air& air, const scene::Light& light, const Ray& ray, Interval lit) {
-  return std::visit([&](const auto& a) { return Rgb(a(light, ray, lit)); }, air);
+inline Rgb airlight(const AirlightTerm& term, const scene::Light& light, const Ray& ray, Interval lit) {
+  return std::visit([&](const auto& a) { return Rgb(a(light, ray, lit)); }, term);
 }
 
 }  // namespace airlight::shadow_planes

@@ -1,4 +1,4 @@
-#include "gpu/shadow_planes/airs_on_device.h"
+#include "gpu/shadow_planes/airlight_terms_on_device.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +62,8 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
 
 }  // namespace
 
-AirsOnDevice::AirsOnDevice(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options)
+AirlightTermsOnDevice::AirlightTermsOnDevice(Context& context, const std::shared_ptr<const scene::Scene>& scene,
+                                             const Options& options)
     : context_(context),
       scene_(scene),
       options_(options),
@@ -74,18 +75,19 @@ AirsOnDevice::AirsOnDevice(Context& context, const std::shared_ptr<const scene::
                    [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); }))
     return;
   if (options.bounded == Options::Bounded::exact)
-    airs_.push_back(make(0, scene->media.size() > 1 || !whole(scene->media.front()), false));
+    airlight_terms_.push_back(make(0, scene->media.size() > 1 || !whole(scene->media.front()), false));
   else
-    for (std::size_t i = 0; i < scene->media.size(); ++i) airs_.push_back(make(int(i), false, !whole(scene->media[i])));
+    for (std::size_t i = 0; i < scene->media.size(); ++i)
+      airlight_terms_.push_back(make(int(i), false, !whole(scene->media[i])));
 }
 
-AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const {
-  Air air;
-  air.medium = medium;
-  air.bounded = bounded;
-  air.paper = paper;
+AirlightTermsOnDevice::AirlightTerm AirlightTermsOnDevice::make(int medium, bool bounded, bool paper) const {
+  AirlightTerm term;
+  term.medium = medium;
+  term.bounded = bounded;
+  term.paper = paper;
   const scene::Medium& of = scene_->media[medium];
-  if (paper) air.mean_distance = shadow_planes::mean_distance(of.region);
+  if (paper) term.mean_distance = shadow_planes::mean_distance(of.region);
   std::vector<float> numbers;
   if (options_.evaluator == Options::Evaluator::rule) {
     numbers = rule_nodes(options_.nodes, options_.stretch, bounded);
@@ -93,33 +95,33 @@ AirsOnDevice::Air AirsOnDevice::make(int medium, bool bounded, bool paper) const
     const auto phase = shadow_planes::phase_form(of.phase, options_.printed_phases);
     const auto rows = options_.annex ? shadow_planes::printed_in_a(phase)
                                      : shadow_planes::coefficients_in_a(phase, options_.degree, paper);
-    air.degree = int(rows.size()) - 1;
+    term.degree = int(rows.size()) - 1;
     for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
   }
-  air.evaluator = std::make_unique<Buffer>(context_, "evaluator", numbers);
-  return air;
+  term.evaluator = std::make_unique<Buffer>(context_, "evaluator", numbers);
+  return term;
 }
 
-const scene::Region* AirsOnDevice::region(int air) const {
-  return airs_[air].paper ? &scene_->media[airs_[air].medium].region : nullptr;
+const scene::Region* AirlightTermsOnDevice::region(int term) const {
+  return airlight_terms_[term].paper ? &scene_->media[airlight_terms_[term].medium].region : nullptr;
 }
 
-std::map<std::string, std::string> AirsOnDevice::definitions(int light, int air) const {
+std::map<std::string, std::string> AirlightTermsOnDevice::definitions(int light, int term) const {
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  return {{"BOUNDED", flag(air >= 0 && airs_[air].bounded)},
+  return {{"BOUNDED", flag(term >= 0 && airlight_terms_[term].bounded)},
           {"GREY", flag(grey_)},
-          {"PAPER_MEDIUM", flag(air >= 0 && airs_[air].paper)},
+          {"PAPER_MEDIUM", flag(term >= 0 && airlight_terms_[term].paper)},
           {"POLYNOMIAL", flag(options_.evaluator == Options::Evaluator::polynomial)},
           {"POWER", std::to_string(options_.stretch)},
           {"SPOT", flag(std::holds_alternative<scene::SpotLight>(scene_->lights[light]))}};
 }
 
-void AirsOnDevice::bind_media(LinkedProgram& program) const {
+void AirlightTermsOnDevice::bind_media(LinkedProgram& program) const {
   media_.bind(8);
   program.set("media_count", int(scene_->media.size()));
 }
 
-void AirsOnDevice::bind(LinkedProgram& program, int index, int air) const {
+void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) const {
   bind_media(program);
   const scene::Light& light = scene_->lights[index];
   program.set_double("light", scene::ball(light)->center);
@@ -128,8 +130,8 @@ void AirsOnDevice::bind(LinkedProgram& program, int index, int air) const {
     program.set_double("cos_inner", std::cos(spot->inner_angle));
     program.set_double("cos_outer", std::cos(spot->outer_angle));
   }
-  if (air < 0) return;
-  const Air& of = airs_[air];
+  if (term < 0) return;
+  const AirlightTerm& of = airlight_terms_[term];
   of.evaluator->bind(5);
   program.set("air_medium", of.medium);
   if (of.paper) program.set("mean_distance", of.mean_distance);
