@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000353413:0.0118137]
+set xrange [0.000359023:0.0111079]
 set logscale y
 set format y "%g"
 set yrange [0.000137106:0.375714]
@@ -32,12 +32,8 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
      data index 14 using 2:5 with linespoints lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "S3 extrapolated, GPU", \
      data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle, \
-     data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "VS2", \
-     data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle, \
-     data index 18 using 2:5 with linespoints lc rgb "#A5AA99" pt 15 ps 0.7 lw 1.6 title "VS2, GPU", \
-     data index 18 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#A5AA99" pt 0 lw 0.8 notitle, \
-     data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
-     data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
+     data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "ray marcher", \
+     data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_time.f100.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \
@@ -56,9 +52,5 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
      data index 14 using 2:5 with linespoints lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "S3 extrapolated, GPU", \
      data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle, \
-     data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "VS2", \
-     data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle, \
-     data index 18 using 2:5 with linespoints lc rgb "#A5AA99" pt 15 ps 0.7 lw 1.6 title "VS2, GPU", \
-     data index 18 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#A5AA99" pt 0 lw 0.8 notitle, \
-     data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
-     data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
+     data index 16 using 2:5 with linespoints lc rgb "#80BA5A" pt 12 ps 0.7 lw 1.6 title "ray marcher", \
+     data index 16 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#80BA5A" pt 0 lw 0.8 notitle

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000505741:0.242918]
+set xrange [0.000512363:0.21953]
 set logscale y
 set format y "%g"
 set yrange [6.81114e-07:2.14041]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000545588:0.1223]
+set xrange [0.000525117:0.118076]
 set logscale y
 set format y "%g"
 set yrange [6.92992e-07:1.87584]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00412564:0.0336028]
+set xrange [0.00410902:0.033437]
 set logscale y
 set format y "%g"
 set yrange [6.57976e-08:0.118358]
