@@ -181,7 +181,7 @@ void RowKeeper::say(const Row& row, const char* how) const {
   for (const std::string& word : {row.scene, row.method, row.setting})
     if (!word.empty()) line += " " + word;
   line += ": ";
-  if (!row.note.empty()) line += row.note;
+  if (!row.note.empty()) line += row.note + (row.measures.empty() ? "" : ", ");
   if (!row.measures.empty()) line += fmt::format("{} {}, ", row.measures[0].name, text(row.measures[0]));
   if (row.runs > 0) line += fmt::format("{:.3g} s", row.seconds.value);
   fmt::print("  {}\n", line);

@@ -225,8 +225,6 @@ std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const sce
   const Options options = shadow_planes::read_options(settings);
   if (options.evaluator == Options::Evaluator::polynomial && options.degree > most_degree)
     reasons.push_back(fmt::format("degree = {}: single precision takes {} at most", options.degree, most_degree));
-  if (options.evaluator == Options::Evaluator::polynomial && options.centred)
-    reasons.push_back("centred = true is for the CPU");
   if (scene.media.size() > most_media)
     reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_media));
   return reasons;

@@ -93,10 +93,10 @@ double LitAirlight::polynomial(double extinction, const LightFromRay& light, Int
   if (!(light.h > 0)) return 0;
   const double begin = std::atan2(lit.lo - light.T, light.h);
   const double end = std::isfinite(lit.hi) ? std::atan2(lit.hi - light.T, light.h) : 0.5 * pi;
-  const double centre = options_.centred ? 0.5 * (begin + end) : 0, a = extinction * light.h;
+  const double a = extinction * light.h;
   const std::vector<double> c =
-      options_.annex ? printed_coefficients(phase_, a) : taylor_coefficients(phase_, a, options_.degree, centre);
-  return polynomial_airlight(c, centre, extinction, 1, 1, light.T, light.h, begin, end);
+      options_.annex ? printed_coefficients(phase_, a) : taylor_coefficients(phase_, a, options_.degree);
+  return polynomial_airlight(c, 0, extinction, 1, 1, light.T, light.h, begin, end);
 }
 
 }  // namespace airlight::shadow_planes

@@ -13,7 +13,6 @@ std::vector<scene::SettingSpec> setting_specs() {
       scene::integer_setting("nodes", "64", 1, 1024, "of the rule"),
       scene::integer_setting("stretch", "6", 1, 16, "m of the rule's map"),
       scene::integer_setting("degree", "4", 0, 60, "of the polynomial"),
-      scene::flag_setting("centred", false, "the polynomial about the middle of each lit part, not about theta = 0"),
       scene::flag_setting("annex", false,
                           "the polynomial with the coefficients that the annex prints, errors included"),
       scene::choice_setting("shadows", "counted", {"none", "counted", "signed_sum", "stencil"},
@@ -48,7 +47,6 @@ Options read_options(const scene::Settings& settings) {
   o.nodes = int(settings.integer("nodes"));
   o.stretch = int(settings.integer("stretch"));
   o.degree = int(settings.integer("degree"));
-  o.centred = settings.flag("centred");
   o.annex = settings.flag("annex");
   o.shadows = settings.choice<Options::Shadows>("shadows");
   o.edge_split = int(settings.integer("edge_split"));
@@ -85,9 +83,8 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
         std::any_of(scene.media.begin(), scene.media.end(), around_camera))
       reasons.push_back(fmt::format("light {} is at the camera inside a medium: its airlight is infinite", i));
   const bool paper = options.bounded == Options::Bounded::paper;
-  if (options.evaluator == Options::Evaluator::rule && (options.annex || options.centred))
-    reasons.push_back(fmt::format("{} = true is of the polynomial, expected evaluator = polynomial",
-                                  options.annex ? "annex" : "centred"));
+  if (options.evaluator == Options::Evaluator::rule && options.annex)
+    reasons.push_back("annex = true is of the polynomial, expected evaluator = polynomial");
   if (options.frame_buffer && options.shadows != Options::Shadows::stencil &&
       options.evaluation != Options::Evaluation::vertices)
     reasons.push_back(
@@ -104,8 +101,6 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
     if (options.annex && scene.media.size() == 1 &&
         std::holds_alternative<scene::HenyeyGreenstein>(scene.media.front().phase))
       reasons.push_back("annex = true: the annex has no coefficients for Henyey-Greenstein");
-    if (options.annex && options.centred)
-      reasons.push_back("annex = true: its coefficients are about theta = 0, expected centred = false");
   }
   if (paper)
     for (std::size_t i = 0; i < scene.media.size(); ++i)

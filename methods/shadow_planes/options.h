@@ -15,7 +15,6 @@ struct Options {
   int nodes = 64;        // of the rule
   int stretch = 6;       // m of its map
   int degree = 4;        // of the polynomial
-  bool centred = false;  // expanded about the middle of the lit part, not about theta = 0
   bool annex = false;    // the printed coefficients
   // How lit parts come about: by counting surfaces; each plane adding or subtracting (wrong where shadows overlap); the
   // paper's planes, back to front by the middles of their edges, with a stencil (wrong where that is not their order).

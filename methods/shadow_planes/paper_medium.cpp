@@ -77,9 +77,8 @@ double PaperMedium::part(double k, const LightFromRay& from, double x_in, Interv
   const double T = from.T, h = std::max(from.h, 1e-120 * std::min(std::abs(lit.lo - T), std::abs(lit.hi - T)));
   if (options_.evaluator == Options::Evaluator::polynomial) {
     const double begin = std::atan2(lit.lo - T, h), end = std::atan2(lit.hi - T, h);
-    const double centre = options_.centred ? 0.5 * (begin + end) : 0;
-    return k / (4 * pi * h) * std::exp(-k * (T + R_ - x_in + h * std::tan(centre))) *
-           integrate_polynomial(bounded_coefficients(phase_, k * h, options_.degree, centre), centre, begin, end);
+    return k / (4 * pi * h) * std::exp(-k * (T + R_ - x_in)) *
+           integrate_polynomial(bounded_coefficients(phase_, k * h, options_.degree), 0, begin, end);
   }
   if (!(h > 0)) return infinity;
   const auto lit_phase = [&](double q, double v, double w) {

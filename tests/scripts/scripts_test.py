@@ -123,6 +123,16 @@ class Figures(Tree):
         self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.6,"))
         self.objects("methods/PAGE.md:5: found 0.012 to 0.50, expected 0.012 to 0.60")
 
+    def test_lines_stay_short(self):
+        words = "many words " * 12
+        self.write("methods/PAGE.md", f"- {words}0.1,\n  0.2 and {words[:-1]}\n")
+        self.write("methods/PAGE.figures", "[g/e rel_l2]\n{[one, large|S|8]}, {[one, large|S|16]} and many\n")
+        self.run_script("figures")
+        page = self.read("methods/PAGE.md")
+        self.assertTrue(all(len(line) <= 140 for line in page.split("\n")), page)
+        self.assertTrue(all(line.startswith("  ") for line in page.split("\n")[1:-1]), page)
+        self.assertEqual(self.run_script("figures", "--check")[0], 0)
+
     def test_a_changed_page(self):
         self.write("methods/PAGE.md", self.read("methods/PAGE.md").replace(".333", ".334"))
         self.objects("methods/PAGE.md:8: found .334, expected .333")
