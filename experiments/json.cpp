@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <vector>
 
+#include "experiments/json_value.h"
 #include "scene/error.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
+
+template class nlohmann::basic_json<>;
 
 namespace airlight::experiments {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "experiments/json_value.h"
 #include "scene/math/types.h"
 
 namespace airlight::test {

@@ -1,11 +1,11 @@
 // One line of a script: a JSON object, read key by key, so that every mistake is told in the same words:
 //   SCRIPT:LINE: paint: a = -1, expected a number > 0
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/json_value.h"
 #include "scene/load/values.h"
 #include "scene/math/types.h"
 

@@ -40,11 +40,11 @@ struct CompareOptions {
 int compare(const CompareOptions&);
 
 struct ConvertOptions {
-  std::string in, out;
+  std::vector<std::string> files;  // in, out, in, out, ...
   std::string layer = "mean";
   double exposure = 0;
 };
-// One layer as PNG (8-bit sRGB) or PFM (linear floats).
+// One layer of each file as PNG (8-bit sRGB) or PFM (linear floats).
 int convert(const ConvertOptions&);
 
 struct ExplainOptions {

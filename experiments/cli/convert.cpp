@@ -9,14 +9,19 @@
 #include "scene/film.h"
 
 namespace airlight::experiments::cli {
+namespace {
 
-int convert(const ConvertOptions& options) {
-  const std::string kind = std::filesystem::path(options.out).extension().string();
-  if (kind != ".png" && kind != ".pfm") throw Error(fmt::format("{}: expected a name in .png or .pfm", options.out));
-  const scene::Film film = scene::read_exr(options.in);
-  if (kind == ".png") {
-    scene::write_png(options.out, film, options.layer, options.exposure);
-    return 0;
+std::string kind_of(const std::string& out) {
+  const std::string kind = std::filesystem::path(out).extension().string();
+  if (kind != ".png" && kind != ".pfm") throw Error(fmt::format("{}: expected a name in .png or .pfm", out));
+  return kind;
+}
+
+void convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
+  const scene::Film film = scene::read_exr(in);
+  if (kind_of(out) == ".png") {
+    scene::write_png(out, film, options.layer, options.exposure);
+    return;
   }
   static_assert(std::endian::native == std::endian::little);
   const std::vector<float>& values = film.layer(options.layer);
@@ -24,7 +29,14 @@ int convert(const ConvertOptions& options) {
   const std::size_t row = std::size_t(film.width) * 3;
   for (int y = film.height - 1; y >= 0; --y)  // rows from bottom to top
     bytes.append(reinterpret_cast<const char*>(values.data() + row * std::size_t(y)), row * sizeof(float));
-  scene::write_file_atomically(options.out, bytes);
+  scene::write_file_atomically(out, bytes);
+}
+
+}  // namespace
+
+int convert(const ConvertOptions& options) {
+  for (std::size_t i = 0; i < options.files.size(); i += 2) kind_of(options.files[i + 1]);
+  for (std::size_t i = 0; i < options.files.size(); i += 2) convert(options.files[i], options.files[i + 1], options);
   return 0;
 }
 

@@ -172,15 +172,15 @@ int dispatch(int argc, char** argv) {
   });
 
   ConvertOptions convert_options;
-  c = command(app, "convert", "a layer of an OpenEXR file as PNG or PFM");
-  c->add_option("IN", convert_options.in, "OpenEXR file");
-  c->add_option("OUT", convert_options.out, ".png (8-bit sRGB) or .pfm (linear floats)");
+  c = command(app, "convert", "a layer of OpenEXR files as PNG or PFM");
+  c->add_option("FILES", convert_options.files,
+                "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); more pairs may follow");
   c->add_option("--layer", convert_options.layer, "default mean");
   c->add_option("--exposure", convert_options.exposure, "of a PNG, in powers of two");
   c->final_callback([&] {
     action = [&] {
-      require(convert_options.in, "IN");
-      require(convert_options.out, "OUT");
+      require(convert_options.files.empty() ? "" : convert_options.files.front(), "IN");
+      require(convert_options.files.size() % 2 == 0 ? convert_options.files.back() : "", "OUT");
       check_exposure(convert_options.exposure);
       return convert(convert_options);
     };

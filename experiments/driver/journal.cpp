@@ -7,10 +7,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "experiments/folders.h"
 #include "experiments/json.h"
+#include "experiments/json_value.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
 

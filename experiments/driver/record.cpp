@@ -1,8 +1,7 @@
-#include <nlohmann/json.hpp>
-
 #include "experiments/build_info.h"
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/tables.h"
+#include "experiments/json_value.h"
 #include "experiments/machine.h"
 
 namespace airlight::experiments {

@@ -3,7 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+
+#include "experiments/json_value.h"
 
 namespace airlight::experiments {
 using nlohmann::json;

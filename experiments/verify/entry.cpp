@@ -4,8 +4,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "experiments/json_value.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::verification {

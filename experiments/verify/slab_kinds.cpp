@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "experiments/json_value.h"
 #include "experiments/verify/monte_carlo.h"
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"

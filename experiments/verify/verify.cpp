@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "experiments/interrupt.h"
 #include "experiments/json.h"
+#include "experiments/json_value.h"
 #include "experiments/verify/check.h"
 #include "scene/error.h"
 #include "scene/settings.h"

@@ -31,6 +31,13 @@ double stretch(const DisplacedSphere& s, const Vec3& u) {
   return r;
 }
 
+// v turned as the unit vector `from` is turned into the unit vector `to` the shortest way; they are not opposite. Rodrigues'
+// formula: Eigen's quaternion of two vectors would bring in a singular value decomposition.
+Vec3 turned(const Vec3& from, const Vec3& to, const Vec3& v) {
+  const Vec3 axis = from.cross(to);  // times the sine
+  return from.dot(to) * v + axis.cross(v) + axis.dot(v) / (1 + from.dot(to)) * axis;
+}
+
 // The curve through the points at s in [0, 1]; outer control points are mirrored.
 Point3 on_curve(const std::vector<Point3>& path, double s) {
   const int last = int(path.size()) - 1;
@@ -100,8 +107,7 @@ TriangleMesh make_tube(const Tube& tube) {
         (on_curve(tube.path, std::min(1.0, s + h)) - on_curve(tube.path, std::max(0.0, s - h))).normalized());
     if (!tangents[k].allFinite() || !(tangents[k].norm() > 0.5))
       throw Error("tube turns back on itself in a point, expected a smooth curve");
-    Vec3 side = k == 0 ? tangents[0].unitOrthogonal()
-                       : Vec3(Eigen::Quaterniond::FromTwoVectors(tangents[k - 1], tangents[k]) * sides[k - 1]);
+    const Vec3 side = k == 0 ? tangents[0].unitOrthogonal() : turned(tangents[k - 1], tangents[k], sides[k - 1]);
     sides.push_back((side - side.dot(tangents[k]) * tangents[k]).normalized());
   }
   TriangleMesh mesh;

@@ -1,8 +1,8 @@
 // Experiments through the driver: what is written, kept, computed anew and refused.
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include "experiments/driver/run.h"
+#include "experiments/json_value.h"
 #include "scene/content_key.h"
 #include "tests/experiments/small_project.h"
 

@@ -1,10 +1,10 @@
 // Experiments of kind "numbers": what probes find goes through tables, gates, plots, records and resuming like pictures.
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "experiments/driver/plan.h"
 #include "experiments/driver/run.h"
+#include "experiments/json_value.h"
 #include "experiments/probes.h"
 #include "experiments/verify/check.h"
 #include "methods/fogshop/fogshop.h"

@@ -1,11 +1,11 @@
 // Rows, their records and their journals, worked by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "experiments/driver/journal.h"
 #include "experiments/driver/outcome.h"
 #include "experiments/driver/tables.h"
+#include "experiments/json_value.h"
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "experiments/json_value.h"
 #include "experiments/verify/check.h"
 #include "experiments/verify/monte_carlo.h"
 #include "experiments/verify/verify.h"

@@ -26,12 +26,12 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "experiments/cli/program.h"
+#include "experiments/json_value.h"
 #include "scene/content_key.h"
 
 namespace {
