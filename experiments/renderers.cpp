@@ -6,6 +6,7 @@
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
+#include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
@@ -23,6 +24,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<gpu::FogshopGpu>());
     list.push_back(std::make_unique<shadow_planes::ShadowPlanes>());
     list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
+    list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
     return list;
   }();
   return renderers;

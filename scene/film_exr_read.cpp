@@ -13,6 +13,7 @@
 #include <set>
 
 #include "scene/error.h"
+#include "scene/exr_header.h"
 #include "scene/film.h"
 #include "scene/printable.h"
 
@@ -24,8 +25,9 @@ constexpr int max_side = 1 << 16;  // pixels; also bounds the library's table of
 // Text from the file, fit for one line of a message.
 std::string shown(const std::string& text) { return printable(text, 200); }
 
-// Walks the attributes (name, type, size, value) before OpenEXR does, which would allocate any size it is told.
-void check_attributes(const std::string& path) {
+}  // namespace
+
+void check_exr_attributes(const std::string& path) {
   std::error_code failure;
   const auto status = std::filesystem::status(path, failure);
   if (!std::filesystem::exists(status)) throw Error(fmt::format("{}: no such file", path));
@@ -62,6 +64,8 @@ void check_attributes(const std::string& path) {
     file.seekg(length, std::ios::cur);
   }
 }
+
+namespace {
 
 struct Layout {
   Imath::Box2i window;
@@ -162,7 +166,7 @@ Film decode(const std::string& path, std::size_t max_bytes) {
 }  // namespace
 
 Film read_exr(const std::string& path, std::size_t max_bytes) {
-  check_attributes(path);
+  check_exr_attributes(path);
   try {
     return decode(path, max_bytes);
   } catch (const Error&) {

@@ -2,37 +2,19 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/exr_memory.h"
 #include "scene/film.h"
 
 namespace airlight::scene {
 namespace {
-
-class MemoryStream : public Imf::OStream {
- public:
-  MemoryStream() : Imf::OStream("film") {}
-  void write(const char bytes[], int n) override {
-    bytes_.resize(std::max(bytes_.size(), position_ + std::size_t(n)));
-    std::memcpy(bytes_.data() + position_, bytes, std::size_t(n));
-    position_ += std::size_t(n);
-  }
-  uint64_t tellp() override { return position_; }
-  void seekp(uint64_t position) override { position_ = position; }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-  std::size_t position_ = 0;
-};
 
 // OpenEXR stores names as zero-terminated text of at most 255 characters, the channel's letter included.
 void check_name(const std::string& path, const std::string& what, const std::string& name) {

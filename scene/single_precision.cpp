@@ -73,6 +73,10 @@ void look_at(Reasons& r, const DensityField& field) {
       [&](const GridPointer& grid) {
         r.size("voxel", grid->voxel_size);
         r.box(support(*grid));
+      },
+      [&](const FogmapPointer& fog) {
+        r.size("cell", fog->cell);
+        for (const auto& [x, z] : ground_corners(*fog)) r.place({x, 0, z});
       });
 }
 

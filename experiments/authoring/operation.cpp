@@ -9,6 +9,7 @@
 
 #include "scene/error.h"
 #include "scene/printable.h"
+#include "scene/read_file.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments::authoring {
@@ -194,6 +195,35 @@ std::optional<Operation> Operation::table(const std::string& key) const {
   if (!has(key)) return std::nullopt;
   if (!json_.at(key).is_object()) expected(key, "an object");
   return Operation(json_.at(key), where_ + ": " + key, 0);
+}
+
+void for_each_operation(const std::string& path, const std::function<void()>& check,
+                        const std::function<bool(Operation, int line)>& body) {
+  const std::string content = scene::read_whole_file(path);
+  int number = 0;
+  bool going_on = true;
+  for (std::size_t begin = 0; going_on && begin < content.size();) {
+    const std::size_t end = std::min(content.find('\n', begin), content.size());
+    const std::string line = content.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const std::size_t text = line.find_first_not_of(" \t\r");
+    if (text == std::string::npos || line[text] == '#') continue;
+    check();
+    const std::string where = fmt::format("{}:{}", path, number);
+    at_operation(where, [&] { going_on = body(Operation(line, where), number); });
+  }
+}
+
+void at_operation(const std::string& where, const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& e) {
+    // What an operation itself complains about does not know where it stands.
+    const std::string what = e.what();
+    if (what.compare(0, where.size(), where) == 0) throw;
+    throw Error(fmt::format("{}: {}", where, what), e.exit_code());
+  }
 }
 
 }  // namespace airlight::experiments::authoring

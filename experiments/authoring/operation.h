@@ -1,6 +1,7 @@
 // One line of a script: a JSON object, read key by key, so that every mistake is told in the same words:
 //   SCRIPT:LINE: paint: a = -1, expected a number > 0
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,5 +53,13 @@ class Operation {
   nlohmann::json json_;
   std::string where_;
 };
+
+// Calls body(operation, line) for every operation of a script, in order, until it returns false; empty lines and lines that
+// begin with # are passed over. `check` is called before each and may throw to stop.
+void for_each_operation(const std::string& path, const std::function<void()>& check,
+                        const std::function<bool(Operation, int line)>& body);
+
+// Calls body; puts `where` ("SCRIPT:LINE") in front of an Error that does not begin with it.
+void at_operation(const std::string& where, const std::function<void()>& body);
 
 }  // namespace airlight::experiments::authoring

@@ -12,7 +12,6 @@
 #include "methods/fogshop/authoring/frames.h"
 #include "methods/fogshop/authoring/paint.h"
 #include "scene/error.h"
-#include "scene/read_file.h"
 
 namespace airlight::experiments::authoring {
 namespace {
@@ -258,27 +257,11 @@ class Run {
 }  // namespace
 
 Authored run_script(const std::string& path, const std::function<void()>& check) {
-  const std::string content = airlight::scene::read_whole_file(path);
   Run run(path, check);
-  int number = 0;
-  for (std::size_t begin = 0; begin < content.size();) {
-    const std::size_t end = std::min(content.find('\n', begin), content.size());
-    const std::string line = content.substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
-    const std::size_t text = line.find_first_not_of(" \t\r");
-    if (text == std::string::npos || line[text] == '#') continue;
-    check();
-    const std::string where = fmt::format("{}:{}", path, number);
-    try {
-      run.line(Operation(line, where), number);
-    } catch (const Error& e) {
-      // What an operation itself complains about does not know where it stands.
-      const std::string what = e.what();
-      if (what.compare(0, where.size(), where) == 0) throw;
-      throw Error(fmt::format("{}: {}", where, what), e.exit_code());
-    }
-  }
+  for_each_operation(path, check, [&](Operation op, int line) {
+    run.line(std::move(op), line);
+    return true;
+  });
   return run.result();
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "experiments/authoring/fogmap_script.h"
 #include "experiments/authoring/write_scene.h"
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
@@ -12,6 +13,14 @@ namespace airlight::experiments::cli {
 int author(const AuthorOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".toml")
     throw Error(fmt::format("{}: expected a name in .toml", options.out));
+  if (authoring::draws_fogmap(options.script)) {
+    const authoring::DrawnFogmap drawn = authoring::run_fogmap_script(options.script, check_interrupted);
+    const std::string map = authoring::write(drawn, options.script, options.out);
+    for (const auto& done : drawn.done)
+      fmt::print("line {:<4} {:<9} sum {:.6g}, greatest {:.6g}\n", done.line, done.operation, done.sum, done.greatest);
+    fmt::print("{}: {} x {} pixels in {}\n", options.out, drawn.canvas.width(), drawn.canvas.height(), map);
+    return 0;
+  }
   const authoring::Authored authored = authoring::run_script(options.script, check_interrupted);
   const authoring::SceneFiles files = authoring::scene_files(authored, options.script, options.out);
   authoring::write(files, options.out);

@@ -1,5 +1,7 @@
 #include "experiments/driver/toml_values.h"
 
+#include <fmt/format.h>
+
 #include <sstream>
 
 namespace airlight::experiments {
@@ -28,6 +30,8 @@ void flatten(const toml::table& table, const std::string& prefix, Pairs& out) {
 
 std::string plain(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto number = node.value_exact<double>())
+    return fmt::format("{}", *number);  // shortest: 0.3, not 0.29999999999999999
   return quoted(node);
 }
 

@@ -32,6 +32,19 @@ Check read_spot(const Value&);
 Check read_shadow(const Value&);
 Check read_bounded(const Value&);
 
+// wavelet_kinds.cpp
+Check read_sequence(const Value&);
+Check read_family(const Value&);
+Check read_basis(const Value&);
+Check read_analysis_1d(const Value&);
+Check read_analysis_2d(const Value&);
+Check read_restriction_1d(const Value&);
+Check read_projection_1d(const Value&);
+Check read_fogmap_depth(const Value&);
+Check read_multiresolution(const Value&);
+Check read_composite(const Value&);
+Check read_reject(const Value&);
+
 // sampling_kinds.cpp
 Check read_sampling(const Value&);
 Check read_random_numbers(const Value&);

@@ -104,25 +104,19 @@ Kinds compensated_ray_marching() {
 }
 
 Kinds wavelet_fog() {
-  const std::map<std::string, std::vector<std::string>> fields = {
-      {"sequence",
-       {"chui_wang_q", "chui_wang_q_offset", "degree", "p", "p_offset", "restriction", "restriction_offset"}},
-      {"family", {"degree", "family", "offsets", "p", "p_tilde", "q", "q_tilde"}},
-      {"basis", {"degree", "expected", "u"}},
-      {"analysis1d", {"c", "expected", "family", "levels"}},
-      {"restrict1d", {"c", "degree", "expected"}},
-      {"l2proj1d", {"c", "degree", "expected"}},
-      {"analysis2d", {"c", "expected", "family", "levels"}},
-      {"optical_depth",
-       {"A", "B", "cell", "coef", "degree", "expected", "height", "origin", "profile", "sigma", "width"}},
-      {"multires",
-       {"A", "B", "cell", "coef", "degree", "expected", "family", "height", "levels", "mu", "origin", "profile"}},
-      {"composite", {"L_P", "L_fog", "expected", "optical_depth"}},
-      {"reject", {"coef", "degree", "expected", "height", "width"}},
+  return {
+      {"sequence", read_sequence},
+      {"family", read_family},
+      {"basis", read_basis},
+      {"analysis1d", read_analysis_1d},
+      {"analysis2d", read_analysis_2d},
+      {"restrict1d", read_restriction_1d},
+      {"l2proj1d", read_projection_1d},
+      {"optical_depth", read_fogmap_depth},
+      {"multires", read_multiresolution},
+      {"composite", read_composite},
+      {"reject", read_reject},
   };
-  Kinds kinds;
-  for (const auto& [kind, list] : fields) kinds[kind] = waiting("wavelet fog", list);
-  return kinds;
 }
 
 Kinds legendre_fluids() {

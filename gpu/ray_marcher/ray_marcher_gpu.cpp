@@ -177,7 +177,7 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
         [&](const scene::GaussianSum& sum) {
           for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
         },
-        [&](const scene::GridPointer&) { grid = true; });
+        [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {});
   }
   if (options.exact_shadow && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/ray_marcher/shapes.h"
+#include "scene/error.h"
 
 namespace airlight::gpu {
 namespace {
@@ -83,7 +84,8 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
           d.size = {grid.size[0], grid.size[1], grid.size[2]};
           d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
           values += samples(grid), bricks += grid.free_distance.size(), ++grids;
-        });
+        },
+        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); });
     data.push_back(d);
   }
   return data;

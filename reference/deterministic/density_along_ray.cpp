@@ -192,6 +192,35 @@ class GridAlongRay final : public DensityAlongRay {
   double total_ = 0;
 };
 
+// A fogmap: exact integrals, kept at the places where a new piece begins.
+class FogmapAlongRay final : public DensityAlongRay {
+ public:
+  FogmapAlongRay(Interval extent, const scene::Fogmap& fog, const Ray& ray)
+      : DensityAlongRay(extent), fog_(fog), ray_(ray), cuts_(scene::smooth_between(fog, ray, extent)) {
+    cuts_.insert(cuts_.begin(), extent.lo);
+    before_.push_back(0);
+    for (std::size_t i = 0; i + 1 < cuts_.size(); ++i)
+      before_.push_back(before_[i] + scene::density_integral(fog_, ray_, {cuts_[i], cuts_[i + 1]}));
+  }
+  double density(double t) const override { return scene::density(fog_, ray_.at(t)); }
+  double integral(double t) const override {
+    if (!(t > extent_.lo)) return 0;
+    t = std::min(t, extent_.hi);
+    const std::size_t i = std::size_t(std::upper_bound(cuts_.begin(), cuts_.end(), t) - cuts_.begin()) - 1;
+    return before_[i] + scene::density_integral(fog_, ray_, {cuts_[i], t});
+  }
+  void add_features(std::vector<Feature>& features) const override {
+    for (const double cut : cuts_) features.push_back({cut, 0});
+    features.push_back({extent_.hi, 0});
+  }
+  bool fine() const override { return cuts_.size() > 12; }
+
+ private:
+  const scene::Fogmap& fog_;
+  Ray ray_;
+  std::vector<double> cuts_, before_;  // where a piece begins, and the integral up to there
+};
+
 // Gaussians of which some are negative: no sum of single integrals, since the density is clamped at 0. Slower.
 class ClampedGaussiansAlongRay final : public DensityAlongRay {
  public:
@@ -235,7 +264,8 @@ std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const G
         if (table->size() == 0 && table->constant == 0) return nullptr;
         return std::make_unique<GaussiansAlongRay>(inside, *table, ray, cull, medium.sigma_t.maxCoeff());
       },
-      [&](const GridPointer& grid) -> Result { return std::make_unique<GridAlongRay>(inside, *grid, ray); });
+      [&](const GridPointer& grid) -> Result { return std::make_unique<GridAlongRay>(inside, *grid, ray); },
+      [&](const scene::FogmapPointer& fog) -> Result { return std::make_unique<FogmapAlongRay>(inside, *fog, ray); });
 }
 
 }  // namespace airlight::deterministic

@@ -27,6 +27,16 @@ void add_box(const LightPlane& plane, const std::array<Point3, 8>& corner, std::
       if (const int j = i | (1 << axis); j != i) add_edge(plane, corner[i], corner[j], t);
 }
 
+// In the order of `corners`: bit 0 and bit 2 on the ground, bit 1 the height.
+std::array<Point3, 8> upright_corners(const std::vector<std::pair<double, double>>& ground, double lo, double hi) {
+  std::array<Point3, 8> result;
+  for (int i = 0; i < 8; ++i) {
+    const auto& [x, z] = ground[(i & 1) | (i >> 1 & 2)];
+    result[i] = {x, i & 2 ? hi : lo, z};
+  }
+  return result;
+}
+
 std::array<Point3, 8> corners(const Point3& lo, const Point3& hi) {
   std::array<Point3, 8> corner;
   for (int i = 0; i < 8; ++i)
@@ -143,6 +153,11 @@ void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vecto
         auto corner = corners(Point3::Constant(-margin), grid->size.cast<double>() + Vec3::Constant(margin - 1));
         for (Point3& c : corner) c = scene::sample_to_world(*grid, c);
         add_box(plane, corner, t);
+      },
+      [&](const scene::FogmapPointer& fog) {
+        const Box box = scene::bounding_box(medium);
+        if (!box.empty() && std::isfinite(box.lo[1]) && std::isfinite(box.hi[1]))
+          add_box(plane, upright_corners(scene::ground_corners(*fog), box.lo[1], box.hi[1]), t);
       });
 }
 

@@ -45,6 +45,10 @@ Cost cost(const scene::Medium& medium) {
       [](const scene::GridPointer& grid) {
         const double voxels = grid->size.cast<double>().sum();  // met by a ray at most
         return Cost{voxels / 2, voxels};                        // panels of a shorter rule
+      },
+      [](const scene::FogmapPointer& fog) {
+        const double cells = double(fog->map.range().size[0]) + fog->map.range().size[1];
+        return Cost{cells / 2, cells};
       });
 }
 

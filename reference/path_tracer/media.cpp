@@ -117,6 +117,22 @@ void prepare_grid(TrackedMedium& tracked, const scene::VoxelGrid& grid, const Op
                                      [&](const Box& cell) { return scene::density_bounds_at_samples(grid, cell).hi; });
 }
 
+// Columns of 4 x 4 cells of the map, in sixteen layers where the height matters.
+void prepare_fogmap(TrackedMedium& tracked, const scene::Fogmap& fog, const Options& options) {
+  const Box box = scene::bounding_box(*tracked.medium);
+  const auto bound = [&](const Box& cell) { return scene::density_bounds(fog, cell).hi; };
+  if (box.empty() || !(box.size().array() > 0).all()) return;
+  if (!(box.size().array() < infinity).all()) {  // no height to put a grid on
+    tracked.majorants.outside = round_up(options.majorant_scale * bound(box));
+    return;
+  }
+  const bool level = std::holds_alternative<scene::SameAtAllHeights>(fog.profile);
+  const Eigen::Vector3i cells(cells_along(box.size()[0], 4 * fog.cell, options),
+                              cells_along(level ? 1 : 16, 1, options),
+                              cells_along(box.size()[2], 4 * fog.cell, options));
+  tracked.majorants = make_supergrid(box, cells, options.majorant_scale, bound);
+}
+
 // Cells around the Gaussians, sixteen along each side.
 void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, const Options& options) {
   const scene::Medium& medium = *tracked.medium;
@@ -155,7 +171,8 @@ TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
         tracked.constant = uniform.density;
       },
       [&](const scene::GaussianSum& sum) { prepare_gaussians(tracked, sum, options); },
-      [&](const scene::GridPointer& grid) { prepare_grid(tracked, *grid, options); });
+      [&](const scene::GridPointer& grid) { prepare_grid(tracked, *grid, options); },
+      [&](const scene::FogmapPointer& fog) { prepare_fogmap(tracked, *fog, options); });
   return tracked;
 }
 

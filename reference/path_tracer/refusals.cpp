@@ -41,7 +41,7 @@ double terms_of(const scene::DensityField& field) {
   return scene::match(
       field, [](const scene::Homogeneous&) { return 0.0; },
       [](const scene::GaussianSum& sum) { return double(sum.gaussians.size()); },
-      [](const scene::GridPointer&) { return 0.0; });
+      [](const scene::GridPointer&) { return 0.0; }, [](const scene::FogmapPointer&) { return 0.0; });
 }
 
 // Terms of density that a render sums up, to an order of magnitude: one for each Gaussian at each collision. Paths
@@ -77,7 +77,8 @@ Majorants majorants(const scene::Scene& scene, const Options& options) {
   for (const scene::Medium& medium : scene.media) {
     const bool counted = scene::match(
         medium.field, [](const scene::Homogeneous&) { return false; }, [](const scene::GaussianSum&) { return true; },
-        [&](const scene::GridPointer&) { return options.supergrid_cells > 0; });
+        [&](const scene::GridPointer&) { return options.supergrid_cells > 0; },
+        [&](const scene::FogmapPointer&) { return options.supergrid_cells > 0; });
     if (!counted) continue;
     ++all.media;
     all.cells += cells;

@@ -70,7 +70,8 @@ void set_varied(Layer& layer) {
       [&](const scene::GridPointer& grid) {
         layer.varies = true;
         layer.grid = make_grid_field(*grid);
-      });
+      },
+      [&](const scene::FogmapPointer&) { layer.varies = true; });
   if (!layer.varies) return;
   layer.varied = box;
   const Box inside = intersect(box, bounding_box(*layer.medium));

@@ -28,7 +28,8 @@ double length_unit(const scene::Scene& scene) {
     unit = std::min(unit, scene::match(
                               medium.field, [](const scene::Homogeneous&) { return infinity; },
                               [](const scene::GaussianSum&) { return infinity; },
-                              [](const scene::GridPointer& grid) { return grid->voxel_size; }));
+                              [](const scene::GridPointer& grid) { return grid->voxel_size; },
+                              [](const scene::FogmapPointer& fog) { return fog->cell; }));
   return unit == infinity ? 1 : unit;
 }
 

@@ -52,6 +52,11 @@ void ContentHash::add(const std::vector<float>& values) {
   bytes(values.data(), values.size() * sizeof(float));
 }
 
+void ContentHash::add(const std::vector<double>& values) {
+  add(std::int64_t(values.size()));
+  for (const double value : values) add(value);
+}
+
 std::string ContentHash::digits() const {
   const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);

@@ -26,6 +26,7 @@ class ContentHash {
   void add(const Box&);
   // Its length, then its values.
   void add(const std::vector<float>&);
+  void add(const std::vector<double>&);
 
   std::string digits() const;  // 32 hex digits
 

@@ -78,6 +78,30 @@ void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) {
   hash.add(grid->values);
 }
 
+void add(ContentHash&, const SameAtAllHeights&) {}
+
+void add(ContentHash& hash, const Layers& layers) {
+  hash.add(layers.heights);
+  hash.add(layers.factors);
+}
+
+void add(ContentHash& hash, const ExponentialFall& fall) {
+  hash.add(fall.base);
+  hash.add(fall.scale_height);
+}
+
+void add(ContentHash& hash, const std::shared_ptr<const Fogmap>& fog) {
+  hash.add(fog->map.degree());
+  for (int axis = 0; axis < 2; ++axis) {
+    hash.add(fog->map.range().lo[axis]);
+    hash.add(fog->map.range().size[axis]);
+  }
+  hash.add(fog->map.coefficients());
+  for (const double value : {fog->x0, fog->z0, fog->cell, fog->cos_turn, fog->sin_turn}) hash.add(value);
+  hash.add(int(fog->profile.index()));
+  std::visit([&](const auto& profile) { add(hash, profile); }, fog->profile);
+}
+
 void add(ContentHash&, const Unbounded&) {}
 
 void add(ContentHash& hash, const Sphere& sphere) {

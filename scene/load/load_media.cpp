@@ -59,7 +59,8 @@ DensityField read_field(const DensityField& kind, TableReader& reader, const std
         return Homogeneous{reader.number("density", density_range, 1)};
       },
       [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
-      [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); });
+      [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); },
+      [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); });
 }
 
 }  // namespace
@@ -80,6 +81,10 @@ Medium read_medium(TableReader reader, const std::string& folder) {
   medium.albedo = reader.color("albedo", share, Rgb::Ones());
   if (const auto phase = reader.table("phase")) medium.phase = read_phase(*phase);
   if (const auto region = reader.table("region")) medium.region = read_region(*region);
+  if (const Box box = bounding_box(medium);
+      std::holds_alternative<FogmapPointer>(medium.field) && !(box.size().array() < infinity).all())
+    reader.fail(reader.has("region") ? "region" : "",
+                "a fogmap without an end in height, expected a region that bounds it");
   return medium;
 }
 

@@ -69,4 +69,15 @@ void require_near(const TableReader& reader, const std::string& key, const Voxel
   }
 }
 
+void require_near(const TableReader& reader, const std::string& key, const Fogmap& fog) {
+  if (!length.contains(fog.cell))
+    reader.fail(key, fmt::format("cells come to be {:.6g} m wide, expected {}", fog.cell, length.words()));
+  for (const auto& [x, z] : ground_corners(fog))
+    if (!near({x, 0, z}))
+      reader.fail(key,
+                  fmt::format("a corner of the map comes to lie at x = {:.6g}, z = {:.6g} m, expected coordinates in "
+                              "[{:.6g}, {:.6g}]",
+                              x, z, -greatest_length, greatest_length));
+}
+
 }  // namespace airlight::scene::load

@@ -49,8 +49,9 @@ void require_extinction(const TableReader&, const Medium&);
 void require_resolved(const TableReader&, const Scene&, const Medium&);
 // The brightest texel of a map, scaled.
 void require_radiance(const TableReader&, const EnvironmentLight&);
-// Places of a mesh, of the corners of a grid.
+// Places of a mesh, of the corners of a grid, of a map on the ground.
 void require_near(const TableReader&, const std::string& key, const TriangleMesh&);
 void require_near(const TableReader&, const std::string& key, const VoxelGrid&);
+void require_near(const TableReader&, const std::string& key, const Fogmap&);
 
 }  // namespace airlight::scene::load

@@ -44,7 +44,8 @@ double density(const DensityField& field, const Point3& x) {
   return match(
       field, [](const Homogeneous& uniform) { return uniform.density; },
       [&](const GaussianSum& sum) { return density(sum, x); },
-      [&](const GridPointer& grid) { return density(*grid, x); });
+      [&](const GridPointer& grid) { return density(*grid, x); },
+      [&](const FogmapPointer& fog) { return density(*fog, x); });
 }
 
 Interval density_bounds(const DensityField& field, const Box& box) {
@@ -54,20 +55,23 @@ Interval density_bounds(const DensityField& field, const Box& box) {
         return Interval{uniform.density, uniform.density};
       },
       [&](const GaussianSum& sum) { return density_bounds(sum, box); },
-      [&](const GridPointer& grid) { return density_bounds(*grid, box); });
+      [&](const GridPointer& grid) { return density_bounds(*grid, box); },
+      [&](const FogmapPointer& fog) { return density_bounds(*fog, box); });
 }
 
 double density_integral(const DensityField& field, const Ray& ray, Interval t) {
   return match(
       field, [&](const Homogeneous& uniform) { return uniform.density > 0 ? uniform.density * t.length() : 0; },
       [&](const GaussianSum& sum) { return density_integral(sum, ray, t); },
-      [&](const GridPointer& grid) { return density_integral(*grid, ray, t); });
+      [&](const GridPointer& grid) { return density_integral(*grid, ray, t); },
+      [&](const FogmapPointer& fog) { return density_integral(*fog, ray, t); });
 }
 
 Interval extent(const DensityField& field, const Ray& ray, Interval t) {
   return match(
       field, [&](const Homogeneous&) { return t; }, [&](const GaussianSum& sum) { return extent(sum, ray, t); },
-      [&](const GridPointer& grid) { return extent(*grid, ray, t); });
+      [&](const GridPointer& grid) { return extent(*grid, ray, t); },
+      [&](const FogmapPointer& fog) { return extent(*fog, ray, t); });
 }
 
 Box support(const DensityField& field) {
@@ -78,13 +82,14 @@ Box support(const DensityField& field) {
 double constant_part(const DensityField& field) {
   return match(
       field, [](const Homogeneous& uniform) { return uniform.density; },
-      [](const GaussianSum& sum) { return sum.constant; }, [](const GridPointer&) { return 0.0; });
+      [](const GaussianSum& sum) { return sum.constant; }, [](const GridPointer&) { return 0.0; },
+      [](const FogmapPointer&) { return 0.0; });
 }
 
 Box varied_support(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return Box{}; }, [](const GaussianSum& sum) { return support(sum); },
-      [](const GridPointer& grid) { return support(*grid); });
+      [](const GridPointer& grid) { return support(*grid); }, [](const FogmapPointer& fog) { return support(*fog); });
 }
 
 std::optional<double> homogeneous_density(const DensityField& field) {
@@ -92,7 +97,8 @@ std::optional<double> homogeneous_density(const DensityField& field) {
   return match(
       field, [](const Homogeneous& uniform) -> Density { return uniform.density; },
       [](const GaussianSum&) -> Density { return std::nullopt; },
-      [](const GridPointer&) -> Density { return std::nullopt; });
+      [](const GridPointer&) -> Density { return std::nullopt; },
+      [](const FogmapPointer&) -> Density { return std::nullopt; });
 }
 
 double greatest_density(const DensityField& field) {
@@ -105,13 +111,14 @@ double greatest_density(const DensityField& field) {
       },
       [](const GridPointer& grid) -> double {
         return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
-      });
+      },
+      [](const FogmapPointer& fog) { return density_bounds(*fog, bounding_box(Unbounded{})).hi; });
 }
 
 std::string field_name(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return "homogeneous"; }, [](const GaussianSum&) { return "gaussians"; },
-      [](const GridPointer&) { return "grid"; });
+      [](const GridPointer&) { return "grid"; }, [](const FogmapPointer&) { return "fogmap"; });
 }
 
 bool extinguishes(const Medium& medium) {
@@ -119,7 +126,8 @@ bool extinguishes(const Medium& medium) {
   return match(
       medium.field, [](const Homogeneous& uniform) { return uniform.density > 0; },
       [](const GaussianSum& sum) { return sum.constant > 0 || !sum.gaussians.empty(); },
-      [](const GridPointer& grid) { return !support(*grid).empty(); });
+      [](const GridPointer& grid) { return !support(*grid).empty(); },
+      [](const FogmapPointer& fog) { return !support(*fog).empty(); });
 }
 
 std::string label(const std::vector<Medium>& media, std::size_t i) {

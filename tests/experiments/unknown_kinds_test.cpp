@@ -29,7 +29,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   scene.media[0].field = scene::GridPointer(grid);
   scene.lights = {scene::DirectionalLight{}};
   scene::finish(scene);
-  int fogshop = 0, shadow_planes = 0, others = 0;
+  int fogshop = 0, shadow_planes = 0, wavelet_fog = 0, others = 0;
   for (const auto& renderer : experiments::all_renderers()) {
     const std::string name = renderer->name();
     CAPTURE(name);
@@ -42,6 +42,9 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
       ++shadow_planes;
       CHECK(has(reasons, "medium 'smoke' is grid, expected homogeneous"));
       CHECK(has(reasons, "light 0 is directional, expected point or spot"));
+    } else if (name.starts_with("wavelet_fog")) {
+      ++wavelet_fog;
+      CHECK(has(reasons, "medium 'smoke' is grid, expected fogmap"));
     } else {
       ++others;
       CHECK(reasons.empty());
@@ -49,5 +52,6 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   }
   CHECK(fogshop == 2);
   CHECK(shadow_planes == 2);
+  CHECK(wavelet_fog == 1);
   CHECK(others == 4);
 }

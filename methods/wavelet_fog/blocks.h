@@ -1,0 +1,40 @@
+// What is known of blocks of 2^l x 2^l cells: whether anything is there at all, and how far the coarser grid is off. Rays
+// pass empty blocks at once and read coarse grids where the error allows.
+#pragma once
+#include <vector>
+
+#include "methods/wavelet_fog/levels.h"
+
+namespace airlight::wavelet_fog {
+
+class Blocks {
+ public:
+  // Of the map and its coarser grids; errors only where asked for.
+  Blocks(const Levels&, int most_level, bool errors);
+
+  int most_level() const { return int(level_.size()) - 1; }
+  // The level of the largest block around the cell in which there is nothing; -1 if there is something in the cell.
+  int empty_level(int i, int j) const;
+  // The coarsest level whose grid differs from the map by at most `most` in the whole block around the cell.
+  int level_within(int i, int j, double most) const;
+
+ private:
+  struct Level {
+    int lo[2], size[2];           // blocks
+    std::vector<float> greatest;  // |coefficient| that reaches the block
+    std::vector<float> error;     // of grid l, over the block: greatest |c - P^l c_l|
+  };
+  const Level& at(int level) const { return level_[level]; }
+  static std::size_t index(const Level&, int level, int i, int j);
+  std::vector<Level> level_;
+};
+
+// Integral of f h over t, which ends, with empty blocks passed at once; exact. Ends once the sum exceeds `enough`.
+double skipped_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
+                     double enough, Visits&);
+
+// The same by blocks of the coarsest level that is off by at most `most` [per metre of t].
+double bounded_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
+                     double most, double enough, Visits&);
+
+}  // namespace airlight::wavelet_fog

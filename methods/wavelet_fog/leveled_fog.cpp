@@ -1,0 +1,126 @@
+#include "methods/wavelet_fog/leveled_fog.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::wavelet_fog {
+namespace {
+
+constexpr int empty_blocks = 3;                                 // blocks of 2, 4, 8 cells
+const char* const families[] = {"haar", "cdf22", "cdf33", ""};  // by degree; there is none of degree 3
+
+using Variant = Options::Variant;
+
+double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
+  return std::ldexp(o.near * fog.cell, level);
+}
+
+}  // namespace
+
+LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
+    : medium_(&medium),
+      fog_(std::get<scene::FogmapPointer>(medium.field).get()),
+      options_(options),
+      levels_(make_levels(fog_->map, families[fog_->map.degree()], options.coarse,
+                          uses_levels(options.variant) ? options.levels : 0, options.variant == Variant::paper)) {
+  if (options.variant == Variant::skip || options.variant == Variant::polar)
+    blocks_.emplace(levels_, empty_blocks, false);
+  if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
+  const double thinnest = medium.sigma_t.minCoeff();
+  enough_ = options.termination > 0 && thinnest > 0 ? -std::log(options.termination) / thinnest : infinity;
+}
+
+double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
+  const Options& o = options_;
+  scene::MapLine line = line_over(*fog_, ray);
+  scene::HeightProfile faded;
+  if (o.fade > 0) {  // along the ray the vertical distance from the eye only grows
+    faded = scene::ExponentialFall{0, o.fade};
+    line.y = 0;
+    line.dy = std::abs(line.dy);
+  }
+  const scene::HeightProfile& profile = o.fade > 0 ? faded : fog_->profile;
+  // The finest grid ends where the medium does; coarser ones reach beyond, within the region.
+  const Interval way = scene::extent(*medium_, ray, {0, length});
+  const Interval inside = scene::clip(medium_->region, ray, {0, length});
+  if (inside.empty() || (way.empty() && !uses_levels(o.variant))) return 0;
+  const double reach = length_in_box(levels_, line, length);
+  const auto part = [&](int level, double from, double to) {
+    return integral_of_level(levels_.grid[level], level, profile, line, intersect(inside, {from, to}), visits);
+  };
+  switch (o.variant) {
+    case Variant::direct:
+      return part(0, 0, length);
+    case Variant::polar:  // rays that are not from the eye
+    case Variant::skip:
+      return skipped_depth(levels_, *blocks_, profile, line, way, enough_, visits);
+    case Variant::paper:
+      return summed_depth(levels_, profile, line, inside, reach, o.mu, visits);
+    case Variant::tele:
+      return telescoped_depth(levels_, profile, line, inside, reach, o.mu, visits);
+    case Variant::dist: {
+      double sum = 0, from = 0;
+      for (int level = 0; level <= levels_.count() && from < length && sum <= enough_; ++level) {
+        const double to = level == levels_.count() ? length : std::min(length, level_up_to(o, *fog_, level));
+        sum += part(level, from, to);
+        from = to;
+      }
+      return sum;
+    }
+    case Variant::bound: {
+      // The error is shared out over the way in the fog, in the thickest channel.
+      const double thickest = medium_->sigma_t.maxCoeff();
+      if (way.empty() || !(thickest > 0)) return 0;
+      return bounded_depth(levels_, *blocks_, profile, line, way, o.tolerance / (thickest * way.length()), enough_,
+                           visits);
+    }
+  }
+  return 0;
+}
+
+PolarTable LeveledFog::polar_table(const Point3& eye, const scene::Execution& execution) const {
+  const scene::MapLine line = line_over(*fog_, {eye, Vec3::UnitX()});
+  return {fog_->map,
+          line.u,
+          line.v,
+          options_.angles,
+          options_.radial_step,
+          std::holds_alternative<scene::Layers>(fog_->profile),
+          execution};
+}
+
+double LeveledFog::column(const PolarTable& table, const Ray& ray, double length, Visits& visits) const {
+  constexpr double upright = 1e-3;  // cells over the ground below which the table has nothing to say
+  const Interval t = scene::extent(*medium_, ray, {0, length});
+  if (t.empty()) return 0;
+  const scene::MapLine line = line_over(*fog_, ray);
+  const double across = std::hypot(line.du, line.dv);  // cells over the ground per metre
+  if (!(across * t.length() > upright)) return column(ray, length, visits);
+  const auto upto = [&](double at) {
+    ++visits.cells;
+    return table.at(line.du, line.dv, at * across);
+  };
+  if (std::holds_alternative<scene::SameAtAllHeights>(fog_->profile))
+    return (upto(t.hi).f - (t.lo > 0 ? upto(t.lo).f : 0)) / across;
+  // Between knots the factor is alpha + beta s.
+  std::vector<double> cuts{t.lo};
+  if (line.dy != 0)
+    for (const double height : height_breaks(fog_->profile))
+      if (const double cut = (height - line.y) / line.dy; cut > t.lo && cut < t.hi) cuts.push_back(cut);
+  cuts.push_back(t.hi);
+  std::sort(cuts.begin(), cuts.end());
+  double sum = 0;
+  PolarTable::Moments from = t.lo > 0 ? upto(t.lo) : PolarTable::Moments();
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const PolarTable::Moments to = upto(cuts[i + 1]);
+    const double a = cuts[i] + 0.25 * (cuts[i + 1] - cuts[i]), b = cuts[i + 1] - 0.25 * (cuts[i + 1] - cuts[i]);
+    const double fa = factor_at(fog_->profile, line.y + a * line.dy),
+                 fb = factor_at(fog_->profile, line.y + b * line.dy);
+    const double beta = b > a ? (fb - fa) / ((b - a) * across) : 0, alpha = fa - beta * a * across;
+    sum += alpha * (to.f - from.f) + beta * (to.s_f - from.s_f);
+    from = to;
+  }
+  return sum / across;
+}
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,41 @@
+// Settings of the method.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "methods/wavelet_fog/levels.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+
+namespace airlight::wavelet_fog {
+
+struct Options {
+  // How a ray's optical depth comes about.
+  enum class Variant {
+    paper,   // approximation and details of any sign, summed, details up to distances (section 4.3)
+    tele,    // the same by one grid at a time
+    dist,    // levels by absolute distance: no seams where the object behind changes
+    direct,  // the map itself
+    skip,    // the map itself, empty blocks passed at once
+    bound,   // per block the coarsest level that keeps the error below the tolerance
+    polar,   // integrals from the eye tabulated by angle and distance, once per frame
+  };
+  Variant variant = Variant::skip;
+  Coarse coarse = Coarse::wavelet;
+  int levels = 3;
+  double mu = 0.6;
+  double near = 16;          // [cells] the finest level of `dist` ends there, each coarser one twice as far
+  double tolerance = 0.03;   // of `bound`, in optical depth
+  int angles = 1024;         // of `polar`
+  double radial_step = 0.5;  // of `polar` [cells]
+  double termination = 0;    // transmittance below which a ray ends; 0: never
+  double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
+};
+// Those that read coarse grids.
+bool uses_levels(Options::Variant);
+std::vector<scene::SettingSpec> setting_specs();
+Options read_options(const scene::Settings&);
+// Why the method cannot render the scene with these settings, a line each; empty: it can.
+std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,90 @@
+#include "methods/wavelet_fog/polar_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace airlight::wavelet_fog {
+namespace {
+
+using scene::MapLine;
+using scene::SplineMap;
+
+// Of a point to the farthest corner of the support [cells].
+double farthest(const SplineMap& map, double u, double v) {
+  const double x = std::max(std::abs(map.support_lo(0) - u), std::abs(map.support_hi(0) - u));
+  const double y = std::max(std::abs(map.support_lo(1) - v), std::abs(map.support_hi(1) - v));
+  return std::hypot(x, y);
+}
+
+// From 0 at t = 0 to 1 at t = 1 with these values and slopes at the ends, on [0, 1].
+double hermite(double t, double a, double slope_a, double b, double slope_b) {
+  const double w = 1 - t;
+  return w * w * ((1 + 2 * t) * a + t * slope_a) + t * t * ((1 + 2 * w) * b - w * slope_b);
+}
+
+double catmull_rom(double t, const double (&p)[4]) {
+  return p[1] +
+         0.5 * t * (p[2] - p[0] + t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
+}
+
+}  // namespace
+
+PolarTable::PolarTable(const SplineMap& map, double u, double v, int angles, double step, bool with_first_moment,
+                       const scene::Execution& execution)
+    : angles_(angles),
+      steps_(int(std::ceil(farthest(map, u, v) / step)) + 1),
+      step_(step),
+      first_moment_(with_first_moment),
+      entries_(std::size_t(angles) * (steps_ + 1)) {
+  const double reach = steps_ * step;
+  const scene::HeightProfile one = scene::SameAtAllHeights{}, distance = scene::Layers{{0, reach}, {0, reach}};
+  std::mutex mutex;
+  scene::parallel_rows(angles, execution, [&](int i) {
+    const double angle = 2 * pi * i / angles;
+    const MapLine line{u, v, 0, std::cos(angle), std::sin(angle), 1};
+    const Interval inside = clip(map, line, {0, reach});
+    Entry* entry = entries_.data() + std::size_t(i) * (steps_ + 1);
+    Entry sum{0, 0, map.at(u, v)};
+    entry[0] = sum;
+    long cells = 0;
+    for (int k = 0; k < steps_; ++k) {
+      const Interval part = intersect(inside, {k * step, (k + 1) * step});
+      if (!part.empty()) {
+        sum.f += scene::integral(map, one, line, part, &cells);
+        if (first_moment_) sum.s_f += scene::integral(map, distance, line, part);
+      }
+      sum.value = map.at(u + (k + 1) * step * line.du, v + (k + 1) * step * line.dv);
+      entry[k + 1] = sum;
+    }
+    const std::lock_guard lock(mutex);
+    cells_ += cells;
+  });
+}
+
+PolarTable::Moments PolarTable::on_spoke(int angle, double r) const {
+  const Entry* entry = entries_.data() + std::size_t((angle + angles_) % angles_) * (steps_ + 1);
+  const double place = r / step_;
+  if (place >= steps_) return {entry[steps_].f, entry[steps_].s_f};
+  const int k = int(place);
+  const double t = place - k;
+  const Entry &a = entry[k], &b = entry[k + 1];
+  Moments m{hermite(t, a.f, step_ * a.value, b.f, step_ * b.value), 0};
+  if (first_moment_) m.s_f = hermite(t, a.s_f, step_ * step_ * k * a.value, b.s_f, step_ * step_ * (k + 1) * b.value);
+  return m;
+}
+
+PolarTable::Moments PolarTable::at(double du, double dv, double r) const {
+  const double turn = std::atan2(dv, du) / (2 * pi), place = (turn < 0 ? turn + 1 : turn) * angles_;
+  const int i = int(place);
+  double f[4], s_f[4];
+  for (int k = 0; k < 4; ++k) {
+    const Moments m = on_spoke(i + k - 1, r);
+    f[k] = m.f;
+    s_f[k] = m.s_f;
+  }
+  const double t = place - i;
+  return {catmull_rom(t, f), first_moment_ ? catmull_rom(t, s_f) : 0};
+}
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,42 @@
+// Integrals of the map from the eye, by angle and distance over the ground, tabulated once per frame: where the height's
+// factor is 1 or made of straight lines, every ray from the eye is a lookup.
+//
+// Along a ray f depends on the place over the ground alone, so that its integral from the eye is that of the horizontal
+// ray, stretched. A factor alpha + beta s, s the distance over the ground, takes the integral of s f as well.
+#pragma once
+#include <vector>
+
+#include "scene/media/spline_map.h"
+#include "scene/renderer.h"
+
+namespace airlight::wavelet_fog {
+
+class PolarTable {
+ public:
+  struct Moments {
+    double f = 0;    // integral of f ds [cells]
+    double s_f = 0;  // of s f ds [cells^2]; 0 unless asked for
+  };
+  // From (u, v) of the map. `angles` around the eye, a distance of `step` cells between entries.
+  PolarTable(const scene::SplineMap&, double u, double v, int angles, double step, bool with_first_moment,
+             const scene::Execution&);
+
+  // Up to r cells in the direction (du, dv), of any length but 0. Cubic in the angle (Catmull and Rom) and in the distance
+  // (Hermite, by the map's own values).
+  Moments at(double du, double dv, double r) const;
+  long cells() const { return cells_; }  // visited for the table
+
+ private:
+  struct Entry {
+    double f, s_f, value;  // integrals up to here, and the map here
+  };
+  Moments on_spoke(int angle, double r) const;
+
+  int angles_, steps_;
+  double step_;
+  bool first_moment_;
+  long cells_ = 0;
+  std::vector<Entry> entries_;  // [angle][distance]
+};
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,134 @@
+// Decomposition and levels: exact reconstruction, the identities that the variants stand on.
+#include "methods/wavelet_fog/decomposition.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "methods/wavelet_fog/blocks.h"
+
+using namespace airlight;
+using namespace airlight::wavelet_fog;
+
+namespace {
+
+Coefficients random_map(int width, int height, unsigned seed, double empty = 0) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Coefficients c{{{0, 0}, {width, height}}, std::vector<double>(std::size_t(width) * height)};
+  for (double& value : c.values) value = uniform(random);
+  // Patches of 5 x 5 without fog.
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i) {
+      std::mt19937_64 patch(seed + 7919u * unsigned(i / 5) + 104729u * unsigned(j / 5));
+      if (uniform(patch) < empty) c.values[std::size_t(j) * width + i] = 0;
+    }
+  return c;
+}
+
+// Hills of fog, wide enough for coarse grids, between flat ground without any.
+Coefficients hills(int side, double phase) {
+  Coefficients c{{{0, 0}, {side, side}}, {}};
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i)
+      c.values.push_back(std::max(0.0, std::sin(0.13 * i + phase) * std::sin(0.11 * j + 2 * phase)));
+  return c;
+}
+
+scene::MapLine random_line(std::mt19937_64& random, double size) {
+  std::uniform_real_distribution<double> u(-0.2 * size, 1.2 * size), h(-1, 3);
+  const double angle = std::uniform_real_distribution<double>(0, 2 * pi)(random);
+  return {u(random), u(random), h(random), std::cos(angle), std::sin(angle), 0.3 * h(random)};
+}
+
+const std::string families[] = {"haar", "cdf22", "cdf33"};
+
+}  // namespace
+
+TEST_CASE("wavelets: reconstruction is exact for any size and depth", "[wavelet_fog]") {
+  for (const std::string& name : families)
+    for (const auto& [width, height] :
+         std::vector<std::pair<int, int>>{{1, 1}, {1, 17}, {7, 5}, {64, 64}, {255, 129}, {512, 512}})
+      for (int levels = 1; levels <= 6; ++levels) {
+        const Coefficients c = random_map(width, height, 3);
+        const Coefficients back = reconstruct(decompose(c, family(name), levels), family(name));
+        REQUIRE(back.values.size() == c.values.size());
+        double error = 0;
+        for (std::size_t i = 0; i < c.values.size(); ++i)
+          error = std::max(error, std::abs(back.values[i] - c.values[i]));
+        CAPTURE(name, width, height, levels);
+        REQUIRE(error <= 4e-15);
+      }
+}
+
+TEST_CASE("wavelets: coarse grids keep the mass, restricted and clamped ones their sign", "[wavelet_fog]") {
+  for (int degree = 0; degree <= 3; ++degree) {
+    const Coefficients c = random_map(33, 20, 8, 0.5);
+    const double mass = std::accumulate(c.values.begin(), c.values.end(), 0.0);
+    for (const Coefficients& coarse : approximations(c, restriction(degree), 3))
+      CHECK(*std::min_element(coarse.values.begin(), coarse.values.end()) >= 0);
+    const auto sums = approximations(c, restriction(degree), 3);
+    CHECK(std::accumulate(sums[3].values.begin(), sums[3].values.end(), 0.0) * 64 == Approx(mass).epsilon(1e-13));
+    if (degree == 3) continue;
+    const auto analysed = approximations(c, family(families[degree]).p_tilde, 3);
+    const double kept = std::accumulate(analysed[3].values.begin(), analysed[3].values.end(), 0.0);
+    const Coefficients positive = clamped(analysed[3]);
+    CHECK(*std::min_element(positive.values.begin(), positive.values.end()) >= 0);
+    CHECK(std::accumulate(positive.values.begin(), positive.values.end(), 0.0) == Approx(kept).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("wavelet fog: levels summed equal one grid at a time, and the map where all count", "[wavelet_fog]") {
+  std::mt19937_64 random(4);
+  for (int degree = 0; degree <= 2; ++degree)
+    for (const Coarse coarse : {Coarse::wavelet, Coarse::restricted})
+      for (const double mu : {1.0, 0.7, 0.2, 0.0}) {
+        const Coefficients c = random_map(40, 40, 21 + degree, 0.5);
+        const scene::SplineMap map(degree, c.range, c.values);
+        const Levels levels = make_levels(map, families[degree], coarse, 3, true);
+        const scene::HeightProfile profile = scene::ExponentialFall{0, 1.5};
+        for (int i = 0; i < 60; ++i) {
+          const scene::MapLine line = random_line(random, 40);
+          const double length = length_in_box(levels, line, 70);
+          Visits visits;
+          const Interval all{0, infinity};
+          const double sum = summed_depth(levels, profile, line, all, length, mu, visits);
+          const double one = telescoped_depth(levels, profile, line, all, length, mu, visits);
+          CAPTURE(degree, mu, i);
+          REQUIRE(one == Approx(sum).epsilon(1e-12).margin(1e-13));
+          if (mu == 1)
+            REQUIRE(one == Approx(scene::integral(map, profile, line, {0, length})).epsilon(1e-12).margin(1e-13));
+        }
+      }
+}
+
+TEST_CASE("wavelet fog: skipping is exact, bounds keep their tolerance", "[wavelet_fog]") {
+  std::mt19937_64 random(9);
+  for (int degree = 0; degree <= 2; ++degree) {
+    const Coefficients c = hills(64, 0.3 + degree);
+    const scene::SplineMap map(degree, c.range, c.values);
+    const Levels levels = make_levels(map, families[degree], Coarse::wavelet, 4, false);
+    const Blocks blocks(levels, 4, true);
+    const scene::HeightProfile profile = scene::Layers{{0, 1, 3}, {1, 0.5, 0.1}};
+    Visits exact, skipped;
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const scene::MapLine line = random_line(random, 64);
+      const Interval t{0, 90};
+      Visits visits;
+      const double direct = integral_of_level(map, 0, profile, line, t, exact);
+      REQUIRE(skipped_depth(levels, blocks, profile, line, t, infinity, skipped) ==
+              Approx(direct).epsilon(1e-12).margin(1e-13));
+      for (const double tolerance : {0.3, 0.03, 0.001}) {
+        const double bounded =
+            bounded_depth(levels, blocks, profile, line, t, tolerance / t.length(), infinity, visits);
+        REQUIRE(std::abs(bounded - direct) <= tolerance);
+        worst = std::max(worst, std::abs(bounded - direct) / tolerance);
+      }
+    }
+    CHECK(skipped.cells < 0.6 * exact.cells);
+    CHECK(worst > 1e-3);  // coarse grids were read
+  }
+}
