@@ -11,6 +11,38 @@ const char* const families[] = {"haar", "cdf22", "cdf33", ""};  // by degree; th
 
 using Variant = Options::Variant;
 
+// Directions over the map that a view holds. Where it looks straight up or down anywhere, all of them; else they are widest
+// at its rim.
+PolarTable::Fan fan_of(const scene::Fogmap& fog, const scene::View& view) {
+  const PolarTable::Fan all{0, 2 * pi};
+  const auto azimuth = [&](const Vec3& direction) {
+    const scene::MapLine line = line_over(fog, {view.camera.position, direction});
+    return std::atan2(line.dv, line.du);
+  };
+  const auto ray = [&](double x, double y) {
+    return scene::camera_ray(view.camera, x, y, view.width, view.height).direction;
+  };
+  const Vec3& forward = view.camera.forward;
+  if (std::hypot(forward[0], forward[2]) < 1e-6) return all;
+  const double middle = azimuth(forward);
+  double least = 0, most = 0, before = 0;
+  bool first = true, around = false;
+  const auto look = [&](double x, double y) {
+    double turn = std::remainder(azimuth(ray(x, y)) - middle, 2 * pi);
+    around = around || (!first && std::abs(turn - before) > 0.5 * pi);  // the rim runs around a pole
+    first = false;
+    before = turn;
+    least = std::min(least, turn);
+    most = std::max(most, turn);
+  };
+  for (int x = 0; x <= view.width; ++x) look(x, 0);
+  for (int y = 0; y <= view.height; ++y) look(view.width, y);
+  for (int x = view.width; x >= 0; --x) look(x, view.height);
+  for (int y = view.height; y >= 0; --y) look(0, y);
+  constexpr double margin = 1e-6;
+  return around || most - least > 1.9 * pi ? all : PolarTable::Fan{middle + least - margin, most - least + 2 * margin};
+}
+
 double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
   return std::ldexp(o.near * fog.cell, level);
 }
@@ -78,12 +110,15 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
   return 0;
 }
 
-PolarTable LeveledFog::polar_table(const Point3& eye, const scene::Execution& execution) const {
-  const scene::MapLine line = line_over(*fog_, {eye, Vec3::UnitX()});
+PolarTable LeveledFog::polar_table(const scene::View& view, const scene::Execution& execution) const {
+  const scene::MapLine line = line_over(*fog_, {view.camera.position, Vec3::UnitX()});
+  const PolarTable::Fan fan = fan_of(*fog_, view);
+  const int angles = fan.span == 2 * pi ? 2 * options_.angles : options_.angles;
   return {fog_->map,
           line.u,
           line.v,
-          options_.angles,
+          fan,
+          angles,
           options_.radial_step,
           std::holds_alternative<scene::Layers>(fog_->profile),
           execution};

@@ -18,7 +18,8 @@ class LeveledFog {
   double column(const Ray&, double length, Visits&) const;
   // The same of a ray from the eye that the table was made for.
   double column(const PolarTable&, const Ray&, double length, Visits&) const;
-  PolarTable polar_table(const Point3& eye, const scene::Execution&) const;
+  // Of a perspective view, over the directions in it.
+  PolarTable polar_table(const scene::View&, const scene::Execution&) const;
   const scene::Medium& medium() const { return *medium_; }
 
  private:

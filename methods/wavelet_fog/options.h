@@ -26,7 +26,7 @@ struct Options {
   double mu = 0.6;
   double near = 16;          // [cells] the finest level of `dist` ends there, each coarser one twice as far
   double tolerance = 0.03;   // of `bound`, in optical depth
-  int angles = 1024;         // of `polar`
+  int angles = 512;          // of `polar`
   double radial_step = 0.5;  // of `polar` [cells]
   double termination = 0;    // transmittance below which a ray ends; 0: never
   double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all

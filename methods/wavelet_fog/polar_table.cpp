@@ -30,18 +30,20 @@ double catmull_rom(double t, const double (&p)[4]) {
 
 }  // namespace
 
-PolarTable::PolarTable(const SplineMap& map, double u, double v, int angles, double step, bool with_first_moment,
-                       const scene::Execution& execution)
-    : angles_(angles),
+PolarTable::PolarTable(const SplineMap& map, double u, double v, const Fan& fan, int angles, double step,
+                       bool with_first_moment, const scene::Execution& execution)
+    : fan_(fan),
+      angles_(angles + 3),
       steps_(int(std::ceil(farthest(map, u, v) / step)) + 1),
+      spacing_(fan.span / angles),
       step_(step),
       first_moment_(with_first_moment),
-      entries_(std::size_t(angles) * (steps_ + 1)) {
+      entries_(std::size_t(angles_) * (steps_ + 1)) {
   const double reach = steps_ * step;
   const scene::HeightProfile one = scene::SameAtAllHeights{}, distance = scene::Layers{{0, reach}, {0, reach}};
   std::mutex mutex;
-  scene::parallel_rows(angles, execution, [&](int i) {
-    const double angle = 2 * pi * i / angles;
+  scene::parallel_rows(angles_, execution, [&](int i) {
+    const double angle = fan_.first + (i - 1) * spacing_;
     const MapLine line{u, v, 0, std::cos(angle), std::sin(angle), 1};
     const Interval inside = clip(map, line, {0, reach});
     Entry* entry = entries_.data() + std::size_t(i) * (steps_ + 1);
@@ -63,7 +65,7 @@ PolarTable::PolarTable(const SplineMap& map, double u, double v, int angles, dou
 }
 
 PolarTable::Moments PolarTable::on_spoke(int angle, double r) const {
-  const Entry* entry = entries_.data() + std::size_t((angle + angles_) % angles_) * (steps_ + 1);
+  const Entry* entry = entries_.data() + std::size_t(std::clamp(angle, 0, angles_ - 1)) * (steps_ + 1);
   const double place = r / step_;
   if (place >= steps_) return {entry[steps_].f, entry[steps_].s_f};
   const int k = int(place);
@@ -75,8 +77,10 @@ PolarTable::Moments PolarTable::on_spoke(int angle, double r) const {
 }
 
 PolarTable::Moments PolarTable::at(double du, double dv, double r) const {
-  const double turn = std::atan2(dv, du) / (2 * pi), place = (turn < 0 ? turn + 1 : turn) * angles_;
-  const int i = int(place);
+  double angle = std::fmod(std::atan2(dv, du) - fan_.first, 2 * pi);
+  if (angle < 0) angle += 2 * pi;
+  const double place = angle / spacing_ + 1;
+  const int i = std::min(int(place), angles_ - 2);
   double f[4], s_f[4];
   for (int k = 0; k < 4; ++k) {
     const Moments m = on_spoke(i + k - 1, r);

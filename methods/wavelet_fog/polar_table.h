@@ -17,11 +17,15 @@ class PolarTable {
     double f = 0;    // integral of f ds [cells]
     double s_f = 0;  // of s f ds [cells^2]; 0 unless asked for
   };
-  // From (u, v) of the map. `angles` around the eye, a distance of `step` cells between entries.
-  PolarTable(const scene::SplineMap&, double u, double v, int angles, double step, bool with_first_moment,
+  // Directions over the map: from angle `first` [rad, of (cos, sin) along u and v] over `span`, 2 pi for all.
+  struct Fan {
+    double first = 0, span = 0;
+  };
+  // From (u, v) of the map. `angles` over the fan, a distance of `step` cells between entries.
+  PolarTable(const scene::SplineMap&, double u, double v, const Fan&, int angles, double step, bool with_first_moment,
              const scene::Execution&);
 
-  // Up to r cells in the direction (du, dv), of any length but 0. Cubic in the angle (Catmull and Rom) and in the distance
+  // Up to r cells in the direction (du, dv), of any length but 0, in the fan. Cubic in the angle (Catmull and Rom) and in the distance
   // (Hermite, by the map's own values).
   Moments at(double du, double dv, double r) const;
   long cells() const { return cells_; }  // visited for the table
@@ -32,7 +36,9 @@ class PolarTable {
   };
   Moments on_spoke(int angle, double r) const;
 
+  Fan fan_;
   int angles_, steps_;
+  double spacing_;  // of angles; the first spoke lies one before the fan
   double step_;
   bool first_moment_;
   long cells_ = 0;

@@ -113,7 +113,7 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
   std::vector<PolarTable> tables;
   if (options_.variant == Options::Variant::polar) {
     if (view.camera.kind != scene::Camera::Kind::perspective) throw Error("variant = polar is for perspective cameras");
-    for (const LeveledFog& fog : fogs_) tables.push_back(fog.polar_table(view.camera.position, execution));
+    for (const LeveledFog& fog : fogs_) tables.push_back(fog.polar_table(view, execution));
     result.times.push_back({"polar tables", watch.lap()});
   }
   std::mutex mutex;

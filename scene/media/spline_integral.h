@@ -129,7 +129,7 @@ double integral_of_degree(const SplineMap& map, const HeightProfile& profile, co
           // The factor's straight line, from its values a quarter inside: at a knot it has two slopes.
           const double t0 = part.lo + 0.25 * part.length(), t1 = part.hi - 0.25 * part.length();
           const double f0 = factor_at(profile, line.y + t0 * line.dy), f1 = factor_at(profile, line.y + t1 * line.dy);
-          const double slope = line.dy == 0 ? 0 : (f1 - f0) / (t1 - t0);
+          const double slope = t1 > t0 ? (f1 - f0) / (t1 - t0) : 0;  // a part may be shorter than rounding
           if (f0 > 0 || f1 > 0) linear(part, f0 - slope * t0, slope);
         });
       },

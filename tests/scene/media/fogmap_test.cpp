@@ -124,6 +124,10 @@ TEST_CASE("fogmaps: upright rays, edges and endless heights", "[media][fogmap]")
   CHECK(density_integral(fog, {{20, 0, 2}, -Vec3::UnitY()}, {0, infinity}) == 0);
   // 2000 scale heights down, seen from above: only the end weighs.
   CHECK(density_integral(fog, {{2, 1001, 2}, -Vec3::UnitY()}, {0, 1000}) == Approx(0.5).epsilon(1e-13));
+  // Parts of a ray shorter than rounding, at a knot: no 0 / 0.
+  fog.profile = Layers{{0, 1}, {1, 0.5}};
+  const Ray slanted{{1.5, 1 - 1e-9, 1.5}, Vec3(0.6, 1e-9, 0.8).normalized()};
+  for (double t = 1; t < 1 + 1e-13; t += 1e-15) CHECK(density_integral(fog, slanted, {t, t + 4e-16}) >= 0);
   // Along a grid line, and exactly on the border: degree 0 belongs to the cell above.
   fog.map = SplineMap(0, {{0, 0}, {2, 2}}, {1, 2, 4, 8});
   fog.profile = SameAtAllHeights{};
