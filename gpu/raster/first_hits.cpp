@@ -18,9 +18,8 @@ void FirstHits::find(const scene::View& view, const Buffer& distances, const Buf
   if (bytes > distances.bytes() || (primitives && bytes > primitives->bytes()))
     throw Error(fmt::format("gpu: {} x {} rays do not fit into {} bytes", columns, rows, distances.bytes()));
   const Use use(context_);
-  Program& program = context_.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", "8"},
-                                                                 {"LOCAL_SIZE_Y", "8"},
-                                                                 {"PRIMITIVES", primitives ? "1" : "0"}});
+  Program& program = context_.program(
+      "raster/first_hits.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}, {"PRIMITIVES", primitives ? "1" : "0"}});
   set_view(program, view);
   program.set("columns", columns);
   program.set("rows", rows);

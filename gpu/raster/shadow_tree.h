@@ -16,7 +16,6 @@ class ShadowTree {
 
   int solids() const { return solids_; }  // of the scene: spheres and planes, which are not in the tree
 
-
  private:
   struct Data;
   static Data data(const scene::Scene&);

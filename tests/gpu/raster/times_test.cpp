@@ -42,29 +42,30 @@ TEST_CASE("times of the raster pass", "[.][times]") {
 TEST_CASE("times of first hits", "[.][times]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
-  for (const char* name :
-       {"fogshop/table1/gargoyle", "fogshop/table1/box", "fogshop/table1/terrain", "fogshop/table1/city",
-        "fogshop/table1/motorcycle", "shadow_planes/fig1", "shadow_planes/fig7", "shadow_planes/fig7_shade",
-        "shadow_planes/fig8a", "shadow_planes/fig8b", "shadow_planes/fig8c", "shadow_planes/media"}) {
-    const scene::Scene scene =
-        scene::load_scene(fmt::format("{}/experiments/scenes/{}.toml", AIRLIGHT_SOURCE_DIR, name),
-                          {{"film.width", "800"}, {"film.height", "600"}});
-    const gpu::FirstHits traced(*context, scene);
-    gpu::RasterHits raster(*context, scene);
-    const gpu::Buffer distances(*context, "distances", 480000 * 4), primitives(*context, "primitives", 480000 * 4);
-    std::map<std::string, double> best;
-    for (int n = 0; n < 7; ++n) {
-      gpu::StageTimer timer(*context);
-      traced.find(view_of(scene), distances, &primitives);
-      timer.stage("traced");
-      const auto& image = raster.draw(view_of(scene));
-      image.read_distances(distances, 0);
-      image.read_primitives(primitives, 0);
-      timer.stage("raster");
-      for (const auto& t : timer.times())
-        if (const auto at = best.try_emplace(t.name, t.seconds).first; t.seconds < at->second) at->second = t.seconds;
+  for (const int width : {100, 800})
+    for (const char* name :
+         {"fogshop/table1/gargoyle", "fogshop/table1/box", "fogshop/table1/terrain", "fogshop/table1/city",
+          "fogshop/table1/motorcycle", "shadow_planes/fig1", "shadow_planes/fig7", "shadow_planes/fig7_shade",
+          "shadow_planes/fig8a", "shadow_planes/fig8b", "shadow_planes/fig8c", "shadow_planes/media"}) {
+      const scene::Scene scene =
+          scene::load_scene(fmt::format("{}/experiments/scenes/{}.toml", AIRLIGHT_SOURCE_DIR, name),
+                            {{"film.width", std::to_string(width)}, {"film.height", std::to_string(width * 3 / 4)}});
+      const gpu::FirstHits traced(*context, scene);
+      gpu::RasterHits raster(*context, scene);
+      const gpu::Buffer distances(*context, "distances", 480000 * 4), primitives(*context, "primitives", 480000 * 4);
+      std::map<std::string, double> best;
+      for (int n = 0; n < 7; ++n) {
+        gpu::StageTimer timer(*context);
+        traced.find(view_of(scene), distances, &primitives);
+        timer.stage("traced");
+        const auto& image = raster.draw(view_of(scene));
+        image.read_distances(distances, 0);
+        image.read_primitives(primitives, 0);
+        timer.stage("raster");
+        for (const auto& t : timer.times())
+          if (const auto at = best.try_emplace(t.name, t.seconds).first; t.seconds < at->second) at->second = t.seconds;
+      }
+      fmt::print("{:4} {:<28} {:7} triangles  traced {:7.2f} ms  raster {:7.2f} ms\n", width, name,
+                 traced.surfaces().triangles(), 1e3 * best["traced"], 1e3 * best["raster"]);
     }
-    fmt::print("{:<28} {:7} triangles  traced {:7.2f} ms  raster {:7.2f} ms\n", name, traced.surfaces().triangles(),
-               1e3 * best["traced"], 1e3 * best["raster"]);
-  }
 }
