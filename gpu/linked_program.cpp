@@ -21,7 +21,7 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
     : context_(context) {
   const Use use(context_);
   const Gl& gl = context_.gl();
-  id_ = gl.CreateProgram();
+  id_ = Handle(context, gl.CreateProgram(), [](const Gl& gl, GLuint id) { gl.DeleteProgram(id); });
   ShaderSource source;
   GLint ok = 0;
   char log[4096] = {};
@@ -29,33 +29,25 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
     source = shader_source(file, definitions);
     text_ += source.text;
     files_ += (files_.empty() ? "gpu/" : ", gpu/") + file;
-    const GLuint shader = gl.CreateShader(stage);
+    const Handle shader(context, gl.CreateShader(stage), [](const Gl& gl, GLuint id) { gl.DeleteShader(id); });
     const char* text = source.text.c_str();
     gl.ShaderSource(shader, 1, &text, nullptr);
     gl.CompileShader(shader);
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
     if (!ok) {
       gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-      gl.DeleteShader(shader);
-      gl.DeleteProgram(id_);
       throw Error(refusal("gpu/" + file, "refused", context_, log, source));
     }
-    gl.AttachShader(id_, shader);
-    gl.DeleteShader(shader);  // lives on in the program
+    gl.AttachShader(id_, shader);  // lives on in the program
   }
   gl.LinkProgram(id_);
   gl.GetProgramiv(id_, GL_LINK_STATUS, &ok);
   if (!ok) {
     gl.GetProgramInfoLog(id_, sizeof log, nullptr, log);
-    gl.DeleteProgram(id_);
     throw Error(refusal(files_, "not linked", context_, log, source));
   }
   context_.check("compiling " + files_);
-}
-
-LinkedProgram::~LinkedProgram() {
-  const Use use(context_);
-  context_.gl().DeleteProgram(id_);
+  context_.label(GL_PROGRAM, id_, files_);
 }
 
 int LinkedProgram::location(const std::string& name) {

@@ -16,7 +16,6 @@ class LinkedProgram {
   // the compiler or the linker objects.
   LinkedProgram(Context&, const std::vector<std::pair<GLenum, std::string>>& stages,
                 const std::map<std::string, std::string>& definitions);
-  ~LinkedProgram();
   LinkedProgram(const LinkedProgram&) = delete;
 
   // A name that no stage mentions is an error; one that the compiler removed is not.
@@ -33,7 +32,7 @@ class LinkedProgram {
  protected:
   Context& context_;
   std::string files_;  // for messages: "gpu/a.vert, gpu/a.frag"
-  GLuint id_ = 0;
+  Handle id_;
 
  private:
   int location(const std::string& name);

@@ -7,7 +7,8 @@ namespace airlight::gpu {
 class Program : public LinkedProgram {
  public:
   // Compiles gpu/<file> (shader_source.h). Throws Error with file and line if the compiler objects. Shaders declare
-  // their local size with LOCAL_SIZE_X, _Y, _Z of the definitions, 1 where not given; their product is at most 128.
+  // their local size with LOCAL_SIZE_X, _Y, _Z of the definitions, 1 where not given. Throws Unavailable if the
+  // device has no such groups.
   Program(Context&, const std::string& file, const std::map<std::string, std::string>& definitions);
 
   // Runs enough work groups for `x` * `y` * `z` invocations, then a barrier for everything that follows. Throws Error
