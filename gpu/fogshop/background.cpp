@@ -4,7 +4,7 @@
 
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 namespace {
 
 enum Kind { constant, map, harmonics };  // as fogshop/background.comp
@@ -17,11 +17,12 @@ std::vector<float> coefficients(const std::vector<Rgb>& sh) {
 
 }  // namespace
 
-Background::Background(Context& context, const scene::Scene& scene) : context_(context) {
+Background::Background(Context& context, const scene::Scene& scene, const FogOnDevice& fog) : context_(context) {
+  const Use use(context_);
   for (const scene::Light& light : scene.lights) {
     const auto* e = std::get_if<scene::EnvironmentLight>(&light);
     if (!e) continue;
-    Light l{constant, 1, 0, 0, e->scale, e->to_map, nullptr};
+    Light l{constant, 1, 0, 0, e->scale, e->to_map, nullptr, nullptr};
     if (e->map) {
       l.kind = map;
       l.width = e->map->width;
@@ -32,18 +33,20 @@ Background::Background(Context& context, const scene::Scene& scene) : context_(c
       l.order = int(std::lround(std::sqrt(double(e->sh.size()))));
       l.values = std::make_unique<Buffer>(context, "environment harmonics", coefficients(e->sh));
     }
+    l.program = &fog.program("fogshop/background.comp", {{"LOCAL_SIZE_X", "8"},
+                                                         {"LOCAL_SIZE_Y", "8"},
+                                                         {"KIND", std::to_string(l.kind)},
+                                                         {"SH_ORDER", std::to_string(l.order)}});
     lights_.push_back(std::move(l));
   }
 }
 
-void Background::draw(FogOnDevice& fog, const scene::View& view, const Buffer* distances, const Buffer* pixels,
+void Background::draw(const FogOnDevice& fog, const scene::View& view, const Buffer* distances, const Buffer* pixels,
                       const Buffer& surface) {
   const Use use(context_);
   for (const Light& light : lights_) {
-    Program& p = fog.program("fogshop/background.comp", {{"LOCAL_SIZE_X", "8"},
-                                                         {"LOCAL_SIZE_Y", "8"},
-                                                         {"KIND", std::to_string(light.kind)},
-                                                         {"SH_ORDER", std::to_string(light.order)}});
+    Program& p = *light.program;
+    fog.use(p);
     fog.bind();
     if (distances) distances->bind(3);
     if (pixels) pixels->bind(6);
@@ -63,4 +66,4 @@ void Background::draw(FogOnDevice& fog, const scene::View& view, const Buffer* d
   }
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog
