@@ -1,5 +1,6 @@
 // A compute program: a shader file with definitions, its uniforms by name, its dispatch.
 #pragma once
+#include "gpu/buffer.h"
 #include "gpu/linked_program.h"
 
 namespace airlight::gpu {
@@ -16,10 +17,16 @@ class Program : public LinkedProgram {
   // dispatches().
   void dispatch(int x, int y = 1, int z = 1);
 
+  // The same with three numbers of groups that the device has left at `offset` of a buffer.
+  void dispatch_indirect(const Buffer& groups, std::size_t offset);
+
   // Of all programs of this process so far.
   static long dispatches();
 
  private:
+  template <class Dispatch>
+  void run(Dispatch);
+
   int local_[3];
 };
 

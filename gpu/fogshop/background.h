@@ -1,8 +1,8 @@
 // The environment behind everything, in shaders: radiance of the scene's environment lights through the medium.
 #pragma once
-#include <memory>
 #include <vector>
 
+#include "gpu/environment_lights.h"
 #include "gpu/fogshop/fog_on_device.h"
 
 namespace airlight::gpu::fog {
@@ -19,15 +19,8 @@ class Background {
             const Buffer& surface);
 
  private:
-  struct Light {
-    int kind, order, width, height;
-    Rgb scale;
-    Mat3 to_map;
-    std::unique_ptr<Buffer> values;
-    Program* program;
-  };
-  Context& context_;
-  std::vector<Light> lights_;
+  EnvironmentLights lights_;
+  std::vector<Program*> programs_;  // one each
 };
 
 }  // namespace airlight::gpu::fog
