@@ -76,8 +76,6 @@ class PreparedFogshopGpu final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  std::unique_ptr<Buffer> low_resolution_distances(const View&, const Execution&) const;
-
   std::shared_ptr<const Scene> scene_;
   fogshop::Model model_;
   fogshop::Plan plan_;
@@ -106,24 +104,7 @@ std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
   return stages;
 }
 
-// d_vp of the low pixels [m]. A film whose sides the factor divides is the same view with fewer pixels; else the last
-// blocks reach beyond its edge, and Embree answers.
-std::unique_ptr<Buffer> PreparedFogshopGpu::low_resolution_distances(const View& view,
-                                                                     const Execution& execution) const {
-  const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
-  const std::size_t count = std::size_t(low.low_width()) * low.low_height();
-  if (view.width % low.factor == 0 && view.height % low.factor == 0) {
-    auto result = std::make_unique<Buffer>(context_, "low distances", count * 4);
-    first_hits_->draw({view.camera, low.low_width(), low.low_height()}).read_distances(*result, 0);
-    return result;
-  }
-  std::vector<float> values;
-  for (const double t : low_distances(*scene_, view, low, execution))
-    values.push_back(t < far_away ? float(t) : far_away);
-  return std::make_unique<Buffer>(context_, "low distances", values);
-}
-
-scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
+scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution&) const {
   if (model_.options.source_radius == 0) require_lights_apart(*scene_, view, 1e-9, "fogshop_gpu");
   const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
@@ -135,19 +116,17 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   StageTimer timer(context_);
   const auto layer = [&](const char* name) { return std::make_unique<Buffer>(context_, name, pixels * 12); };
 
-  // Section 5.4, step 1: distances, by a raster pass.
+  // Section 5.4, step 1: distances.
   std::unique_ptr<Buffer> distances, low_distances, primitives, image, surface, scattered;
   if (first_hits_) {
-    const HitImage& hits = first_hits_->draw(view);
     distances = std::make_unique<Buffer>(context_, "distances", pixels * 4);
-    hits.read_distances(*distances, 0);
-    if (shading_) {
-      primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
-      hits.read_primitives(*primitives, 0);
-    }
+    if (shading_) primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
+    first_hits_->find(view, *distances, primitives.get());
     timer.stage("distances");
     if (needs_.low_resolution) {
-      low_distances = low_resolution_distances(view, execution);
+      const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
+      low_distances = std::make_unique<Buffer>(context_, "low distances", 4 * low.low_width() * low.low_height());
+      first_hits_->find(view, *low_distances, nullptr, {low.factor, 0});
       timer.stage("distances, low resolution");
     }
   }

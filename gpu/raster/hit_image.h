@@ -1,10 +1,9 @@
 // The framebuffer of a raster pass: distance and normal, surface and primitive of every pixel, a float depth buffer.
 #pragma once
 #include "gpu/buffer.h"
+#include "gpu/raster/first_hits.h"  // far_away
 
 namespace airlight::gpu {
-
-inline constexpr float far_away = 1e37f;  // [m] as the shaders: nothing is hit
 
 class HitImage {
  public:

@@ -1,6 +1,7 @@
 #include "gpu/raster/occluders.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace airlight::gpu {
@@ -30,7 +31,9 @@ class Builder {
   }
 
  private:
-  static std::array<float, 4> corner(const Point3& p) { return {float(p[0]), float(p[1]), float(p[2]), 0}; }
+  static std::array<float, 4> corner(const Point3& p, int number = 0) {
+    return {float(p[0]), float(p[1]), float(p[2]), std::bit_cast<float>(number)};
+  }
 
   void build(int begin, int end) {
     Box box, centers;
@@ -42,13 +45,13 @@ class Builder {
     const std::size_t self = out_.nodes.size();
     OccluderNode node{};
     for (int a = 0; a < 3; ++a) node.lo[a] = float(box.lo[a] - slack_), node.hi[a] = float(box.hi[a] + slack_);
-    node.leaf = end - begin <= most_in_leaf ? 8 * begin + (end - begin) : -1;
+    const bool is_leaf = end - begin <= most_in_leaf;
+    if (is_leaf) node.leaf = 8 * begin + (end - begin);
     out_.nodes.push_back(node);
-    if (node.leaf >= 0) {
+    if (is_leaf) {
       for (int i = begin; i < end; ++i) {
         const auto& c = triangles_[order_[i]].corner;
-        out_.triangles.push_back({corner(c[0]), corner(c[1]), corner(c[2])});
-        out_.order.push_back(order_[i]);
+        out_.triangles.push_back({corner(c[0], order_[i]), corner(c[1]), corner(c[2])});
       }
     } else {
       int axis = 0;
@@ -57,6 +60,7 @@ class Builder {
       std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                        [&](int a, int b) { return triangles_[a].center()[axis] < triangles_[b].center()[axis]; });
       build(begin, middle);
+      out_.nodes[self].leaf = -1 - (4 * int(out_.nodes.size()) + axis);
       build(middle, end);
     }
     out_.nodes[self].behind = int(out_.nodes.size());

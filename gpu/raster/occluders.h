@@ -11,10 +11,10 @@ struct OccluderNode {
   std::array<float, 3> lo;
   int behind;  // the node that follows when this one is missed
   std::array<float, 3> hi;
-  int leaf;  // 8 * first triangle + their number; -1 for a branch
+  int leaf;  // 8 * first triangle + their number; of a branch -1 - (4 * second child + axis of the cut), the first follows
 };
 struct OccluderTriangle {
-  std::array<float, 4> a, b, c;
+  std::array<float, 4> a, b, c;  // a[3]: bits of its number among all triangles of the scene
 };
 struct OccluderSolid {
   std::array<float, 3> place;
@@ -25,7 +25,6 @@ struct OccluderSolid {
 struct Occluders {
   std::vector<OccluderNode> nodes;  // depth first
   std::vector<OccluderTriangle> triangles;
-  std::vector<int> order;  // of each of them the number among all triangles of the scene
   std::vector<OccluderSolid> solids;
 };
 

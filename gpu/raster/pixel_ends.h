@@ -14,8 +14,7 @@ class PixelEnds {
   // Keeps the scene by reference.
   explicit PixelEnds(const scene::Scene&);
 
-  // `primitive` as HitImage::read_primitives numbers them (triangles in their order, then solids, then balls; -1:
-  // nothing), `distance` [m] as read_distances.
+  // `primitive` and `distance` [m] as FirstHits::find leaves them.
   scene::RayEnd at(int primitive, float distance, const Ray&) const;
 
  private:

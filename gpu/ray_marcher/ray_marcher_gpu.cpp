@@ -65,7 +65,7 @@ std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   std::vector<scene::Stage> stages = describe_stages(plan_);
   const std::string grids = device_ ? device_->grids().description() : "";
   stages.insert(stages.begin(), {{"distances", bool(first_hits_),
-                                  first_hits_ ? "where camera rays end, by a raster pass" : "nothing ends a ray"},
+                                  first_hits_ ? "where camera rays end, by a tree of boxes" : "nothing ends a ray"},
                                  {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
   return stages;
 }
@@ -112,11 +112,9 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
 
   std::unique_ptr<Buffer> distances, primitives;
   if (first_hits_) {
-    const HitImage& hits = first_hits_->draw(view);
     distances = std::make_unique<Buffer>(context_, "distances", film.pixels() * 4);
     primitives = std::make_unique<Buffer>(context_, "primitives", film.pixels() * 4);
-    hits.read_distances(*distances, 0);
-    hits.read_primitives(*primitives, 0);
+    first_hits_->find(view, *distances, primitives.get());
     timer.stage("distances");
   }
   std::fill(transmittance.begin(), transmittance.end(), 1.0f);

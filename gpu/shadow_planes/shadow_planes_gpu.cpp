@@ -178,7 +178,8 @@ scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Executi
   LitPicture picture(context_, view, silhouettes_ != nullptr);
   if (first_hits_) {
     picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
-    first_hits_->draw(view).read_primitives(*picture.primitives, 0);
+    const Buffer distances(context_, "distances", pixels * 4);
+    first_hits_->find(view, distances, picture.primitives.get());
     timer.stage("distances");
   }
   double vertices = 0;

@@ -5,6 +5,8 @@
 
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/raster/light_distances.h"
+#include "gpu/raster/raster_hits.h"
+#include "gpu/timer.h"
 #include "methods/fogshop/surface_pass.h"
 #include "tests/gpu/device.h"
 #include "tests/scene/geometry_scenes.h"
@@ -29,6 +31,21 @@ TEST_CASE("times of the raster pass", "[.][times]") {
     for (int n = 0; n < 5; ++n)
       for (const auto& t : prepared->render(view_of(scene), {}).times)
         if (const auto at = best.try_emplace(t.name, t.seconds).first; t.seconds < at->second) at->second = t.seconds;
+    const gpu::FirstHits traced(*context, scene);
+    gpu::RasterHits raster(*context, scene);
+    const std::size_t bytes = std::size_t(scene.width) * scene.height * 4;
+    const gpu::Buffer distances(*context, "distances", bytes), primitives(*context, "primitives", bytes);
+    for (int n = 0; n < 5; ++n) {
+      gpu::StageTimer timer(*context);
+      traced.find(view_of(scene), distances, &primitives);
+      timer.stage("first hits, traced");
+      const auto& image = raster.draw(view_of(scene));
+      image.read_distances(distances, 0);
+      image.read_primitives(primitives, 0);
+      timer.stage("first hits, raster");
+      for (const auto& t : timer.times())
+        if (const auto at = best.try_emplace(t.name, t.seconds).first; t.seconds < at->second) at->second = t.seconds;
+    }
     const auto start = std::chrono::steady_clock::now();
     fogshop::first_hits(scene, view_of(scene), {});
     best["Embree, first hits"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
