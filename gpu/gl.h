@@ -27,6 +27,7 @@ namespace airlight::gpu {
   X(PFNGLPROGRAMUNIFORM3FPROC, ProgramUniform3f) X(PFNGLPROGRAMUNIFORMMATRIX3FVPROC, ProgramUniformMatrix3fv)        \
   X(PFNGLPROGRAMUNIFORM1DPROC, ProgramUniform1d) X(PFNGLPROGRAMUNIFORM3DPROC, ProgramUniform3d)                      \
   X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute) X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                              \
+  X(PFNGLDISPATCHCOMPUTEINDIRECTPROC, DispatchComputeIndirect)                                                       \
   /* buffers */                                                                                                      \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers) X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                  \
   X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage) X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)              \

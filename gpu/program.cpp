@@ -49,7 +49,19 @@ void Program::dispatch(int x, int y, int z) {
   const Gl& gl = context_.gl();
   gl.UseProgram(id_);
   gl.DispatchCompute(groups[0], groups[1], groups[2]);
-  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+  finish();
+}
+
+void Program::dispatch_indirect(const Buffer& groups, std::size_t offset) {
+  const Gl& gl = context_.gl();
+  gl.UseProgram(id_);
+  groups.bind_as(GL_DISPATCH_INDIRECT_BUFFER);
+  gl.DispatchComputeIndirect(GLintptr(offset));
+  finish();
+}
+
+void Program::finish() {
+  context_.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
   ++dispatch_count;
   ++context_.traffic().dispatches;
   context_.check_closely(files_);

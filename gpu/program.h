@@ -1,5 +1,6 @@
 // A compute program: a shader file with definitions, its uniforms by name, its dispatch.
 #pragma once
+#include "gpu/buffer.h"
 #include "gpu/linked_program.h"
 
 namespace airlight::gpu {
@@ -16,10 +17,16 @@ class Program : public LinkedProgram {
   // dispatches().
   void dispatch(int x, int y = 1, int z = 1);
 
+  // The same with as many work groups, three unsigned numbers, as a buffer has from byte `offset` on: only the device
+  // knows them, and the one who wrote them kept them within its limits.
+  void dispatch_indirect(const Buffer& groups, std::size_t offset);
+
   // Of all programs of this process so far.
   static long dispatches();
 
  private:
+  void finish();
+
   int local_[3];
 };
 
