@@ -46,22 +46,20 @@ void Program::dispatch(int x, int y, int z) {
       throw Error(fmt::format("{}: {} work groups, {} offers at most {}", files_, groups[axis], context_.renderer(),
                               context_.limits().groups[axis]));
   }
-  const Gl& gl = context_.gl();
-  gl.UseProgram(id_);
-  gl.DispatchCompute(groups[0], groups[1], groups[2]);
-  finish();
+  run([&](const Gl& gl) { gl.DispatchCompute(groups[0], groups[1], groups[2]); });
 }
 
 void Program::dispatch_indirect(const Buffer& groups, std::size_t offset) {
-  const Gl& gl = context_.gl();
-  gl.UseProgram(id_);
   groups.bind_as(GL_DISPATCH_INDIRECT_BUFFER);
-  gl.DispatchComputeIndirect(GLintptr(offset));
-  finish();
+  run([&](const Gl& gl) { gl.DispatchComputeIndirect(GLintptr(offset)); });
 }
 
-void Program::finish() {
-  context_.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
+template <class Dispatch>
+void Program::run(Dispatch dispatch) {
+  const Gl& gl = context_.gl();
+  gl.UseProgram(id_);
+  dispatch(gl);
+  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
   ++dispatch_count;
   ++context_.traffic().dispatches;
   context_.check_closely(files_);

@@ -17,15 +17,15 @@ class Program : public LinkedProgram {
   // dispatches().
   void dispatch(int x, int y = 1, int z = 1);
 
-  // The same with as many work groups, three unsigned numbers, as a buffer has from byte `offset` on: only the device
-  // knows them, and the one who wrote them kept them within its limits.
+  // The same with three numbers of groups that the device has left at `offset` of a buffer.
   void dispatch_indirect(const Buffer& groups, std::size_t offset);
 
   // Of all programs of this process so far.
   static long dispatches();
 
  private:
-  void finish();
+  template <class Dispatch>
+  void run(Dispatch);
 
   int local_[3];
 };

@@ -5,11 +5,14 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/solids.glsl"
 #include "raster/tree.glsl"
 
-layout(std430, binding = 0) writeonly buffer Distances { float distances[]; };
-#if PRIMITIVES
+layout(std430, binding = 0) buffer Distances { float distances[]; };
 layout(std430, binding = 1) writeonly buffer Primitives { int primitives[]; };
+uniform int columns, rows, block, first_ray, keeps_primitives;
+#if RESUMES
+// Groups of each dispatch; then of each ray its next node and what it has met so far.
+layout(std430, binding = 2) buffer Unfinished { int unfinished[]; };
+uniform int dispatch, dispatches, nodes_at_once;
 #endif
-uniform int columns, rows, block, first_ray;
 uniform int triangle_count, ball_count;  // balls of lights come behind the other solids
 
 struct First {
@@ -60,12 +63,26 @@ void main() {
   if (at.x >= columns || at.y >= rows) return;
   dvec3 origin, direction, normal;
   view_ray(double(block) * (dvec2(at) + 0.5LF), origin, direction);
+  int place = at.y * columns + at.x, node = 0;
   First best = First(1e37, -1);
-  for (int i = 0; i < solid_count + ball_count; ++i) keep_nearer(best, meet_solid(solids[i], origin, direction, normal), triangle_count + i);
+#if RESUMES
+  int kept = 3 * dispatches + 2 * place;
+  if (dispatch > 0) {
+    node = unfinished[kept];
+    best = First(distances[first_ray + place], unfinished[kept + 1]);
+  }
+#endif
+  if (node == 0)
+    for (int i = 0; i < solid_count + ball_count; ++i)
+      keep_nearer(best, meet_solid(solids[i], origin, direction, normal), triangle_count + i);
 
   TreeRay ray = tree_ray_of(origin, direction);
   dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
-  for (int node = 0; node < tree_nodes;) {
+#if RESUMES
+  for (int n = 0; n < nodes_at_once && node < tree_nodes; ++n) {
+#else
+  while (node < tree_nodes) {
+#endif
     bool met = meets_box(ray, node, best.t * (1 + 1e-6));
     int leaf = tree[4 * node + 1].w;
     if (met && leaf >= 0)
@@ -75,9 +92,12 @@ void main() {
       }
     node = next_node(ray, node, leaf, met);
   }
-  int place = first_ray + at.y * columns + at.x;
-  distances[place] = best.t;
-#if PRIMITIVES
-  primitives[place] = best.primitive;
+#if RESUMES
+  unfinished[kept] = node;
+  unfinished[kept + 1] = best.primitive;
+  if (node < tree_nodes && dispatch + 1 < dispatches)
+    for (int a = 0; a < 3; ++a) unfinished[3 * (dispatch + 1) + a] = int(gl_NumWorkGroups[a]);
 #endif
+  distances[first_ray + place] = best.t;
+  if (keeps_primitives != 0) primitives[first_ray + place] = best.primitive;
 }

@@ -2,37 +2,84 @@
 
 #include <fmt/format.h>
 
-#include "gpu/program.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
+namespace {
 
-FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls)
-    : context_(context), surfaces_(context, scene, with_balls), tree_(context, scene) {}
+constexpr int tile = 8;
+// llvmpipe ends loops after 65535 iterations (gpu/README.md). A ray is at a node once at most, and with up to four
+// triangles there; the rest is for solids.
+constexpr int nodes_at_once = 12000, most_solids = 5000;
+
+}  // namespace
+
+FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls, Way way)
+    : context_(context), surfaces_(context, scene, with_balls), tree_(context, scene) {
+  if (way == Way::raster) {
+    raster_ = std::make_unique<RasterPass>(context);
+    return;
+  }
+  if (context.software()) {
+    if (surfaces_.solids().size() > most_solids)
+      throw Unavailable(fmt::format("gpu: {} spheres and planes, {} takes {} at most", surfaces_.solids().size(),
+                                    context.renderer(), most_solids));
+    dispatches_ = std::max(1, (tree_.nodes() + nodes_at_once - 1) / nodes_at_once);
+  }
+  program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(tile)},
+                                                         {"LOCAL_SIZE_Y", std::to_string(tile)},
+                                                         {"RESUMES", dispatches_ > 1 ? "1" : "0"}});
+}
 
 void FirstHits::find(const scene::View& view, const Buffer& distances, const Buffer* primitives,
                      const HitGrid& grid) const {
-  const int columns = grid.columns(view), rows = grid.rows(view);
-  const std::size_t bytes = (grid.first + std::size_t(columns) * rows) * 4;
+  const std::size_t rays = std::size_t(grid.columns(view)) * grid.rows(view), bytes = (grid.first + rays) * 4;
   if (bytes > distances.bytes() || (primitives && bytes > primitives->bytes()))
-    throw Error(fmt::format("gpu: {} x {} rays do not fit into {} bytes", columns, rows, distances.bytes()));
+    throw Error(
+        fmt::format("gpu: {} rays from place {} do not fit into {} bytes", rays, grid.first, distances.bytes()));
   const Use use(context_);
-  Program& program = context_.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", "8"},
-                                                                 {"LOCAL_SIZE_Y", "8"},
-                                                                 {"PRIMITIVES", primitives ? "1" : "0"}});
+  if (raster_)
+    raster_->find(surfaces_, view, distances, primitives, grid);
+  else
+    trace(view, distances, primitives, grid);
+}
+
+void FirstHits::trace(const scene::View& view, const Buffer& distances, const Buffer* primitives,
+                      const HitGrid& grid) const {
+  const int columns = grid.columns(view), rows = grid.rows(view);
+  Program& program = *program_;
   set_view(program, view);
   program.set("columns", columns);
   program.set("rows", rows);
   program.set("block", grid.block);
   program.set("first_ray", int(grid.first));
   program.set("triangle_count", surfaces_.triangles());
+  program.set("ball_count", int(surfaces_.solids().size()) - tree_.solids());
+  program.set("keeps_primitives", primitives != nullptr);
   surfaces_.bind();
   tree_.bind(program);
-  program.set("ball_count", int(surfaces_.solids().size()) - tree_.solids());
   distances.bind(0);
-  if (primitives) primitives->bind(1);
-  program.dispatch(columns, rows);
+  (primitives ? *primitives : distances).bind(1);
+  if (dispatches_ == 1) {
+    program.dispatch(columns, rows);
+    return;
+  }
+  // Groups of the dispatches, which each finds for the next; then where every ray is.
+  const std::size_t bytes = 4 * (3 * std::size_t(dispatches_) + 2 * std::size_t(columns) * rows);
+  if (!unfinished_ || unfinished_->bytes() < bytes)
+    unfinished_ = std::make_unique<Buffer>(context_, "unfinished rays", bytes, Contents::undefined);
+  unfinished_->clear();
+  unfinished_->bind(2);
+  program.set("dispatches", dispatches_);
+  program.set("nodes_at_once", nodes_at_once);
+  for (int i = 0; i < dispatches_; ++i) {
+    program.set("dispatch", i);
+    if (i == 0)
+      program.dispatch(columns, rows);
+    else
+      program.dispatch_indirect(*unfinished_, 12 * std::size_t(i));
+  }
 }
 
 }  // namespace airlight::gpu

@@ -50,7 +50,11 @@ ShadowTree::Data ShadowTree::data(const scene::Scene& scene) {
 ShadowTree::ShadowTree(Context& context, const scene::Scene& scene) : ShadowTree(context, data(scene)) {}
 
 ShadowTree::ShadowTree(Context& context, const Data& data)
-    : nodes_(data.nodes), solids_(data.solids), middle_(data.middle), reach_(data.reach), tree_(context, "tree of surfaces", data.words) {}
+    : nodes_(data.nodes),
+      solids_(data.solids),
+      middle_(data.middle),
+      reach_(data.reach),
+      tree_(context, "tree of surfaces", data.words) {}
 
 void ShadowTree::bind(LinkedProgram& program) const {
   tree_.bind(14);

@@ -14,8 +14,8 @@ class ShadowTree {
   // Binds 14, sets its uniforms.
   void bind(LinkedProgram&) const;
 
+  int nodes() const { return nodes_; }
   int solids() const { return solids_; }  // of the scene: spheres and planes, which are not in the tree
-
 
  private:
   struct Data;

@@ -41,11 +41,12 @@ inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const s
   return (got - n).norm() < 1e-4 && std::abs(pixel.distance - t) <= 1e-4 * end.t;
 }
 
-inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view) {
+inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view,
+                         FirstHits::Way way = FirstHits::Way::tree) {
   const Use use(context);
   const std::size_t pixels = std::size_t(view.width) * view.height;
   const Buffer distances(context, "distances", pixels * 4), primitives(context, "primitives", pixels * 4);
-  FirstHits(context, scene).find(view, distances, &primitives);
+  FirstHits(context, scene, true, way).find(view, distances, &primitives);
   const auto distance = distances.download<float>();
   const auto primitive = primitives.download<int>();
   const PixelEnds ends(scene);

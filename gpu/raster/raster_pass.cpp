@@ -1,9 +1,8 @@
-#include "gpu/raster/raster_hits.h"
+#include "gpu/raster/raster_pass.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/raster_program.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
@@ -22,12 +21,18 @@ Interval seen_range(double x, double z, double r, bool perspective) {
   return {(x * z - root) / below, (x * z + root) / below};
 }
 
+// Of the film in what the rays cover, to each side.
+struct Share {
+  double x, y;
+};
+
 // The rectangle of each solid in the image, a pixel wider, -1 to 1, y downwards.
-std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, const View& view) {
+std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, const View& view, const HitGrid& grid,
+                                             const Share& share) {
   const Camera& camera = view.camera;
   const HalfFilm half = half_film(view);
-  const auto place = [](double v, double half_size, double pixel) {
-    return float(std::clamp(v / half_size + pixel, -1.0, 1.0));
+  const auto place = [](double v, double half_size, double share, double pixel) {
+    return float(std::clamp((v / half_size + 1) * share - 1 + pixel, -1.0, 1.0));
   };
   std::vector<std::array<float, 4>> result;
   for (const Solid& s : solids) {
@@ -40,58 +45,71 @@ std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, c
     const double z = to.dot(camera.forward);
     const Interval x = seen_range(to.dot(camera.right), z, s.radius, perspective);
     const Interval y = seen_range(-to.dot(camera.up), z, s.radius, perspective);
-    const double px = 2.0 / view.width, py = 2.0 / view.height;
-    result.push_back(
-        {place(x.lo, half.x, -px), place(y.lo, half.y, -py), place(x.hi, half.x, px), place(y.hi, half.y, py)});
+    const double px = 2.0 / grid.columns(view), py = 2.0 / grid.rows(view);
+    result.push_back({place(x.lo, half.x, share.x, -px), place(y.lo, half.y, share.y, -py),
+                      place(x.hi, half.x, share.x, px), place(y.hi, half.y, share.y, py)});
   }
   return result;
 }
 
 }  // namespace
 
-RasterHits::RasterHits(Context& context, const scene::Scene& scene, bool with_balls)
-    : context_(context), surfaces_(context, scene, with_balls) {
+RasterPass::RasterPass(Context& context)
+    : context_(context), mesh_(context.raster_program("raster/mesh")), solid_(context.raster_program("raster/solid")) {
   if (context.limits().vertex_storage_blocks < 3 || context.limits().fragment_storage_blocks < 3)
     throw Unavailable("gpu: the vertex shaders of " + context.renderer() + " read no storage buffers");
 }
 
-const HitImage& RasterHits::draw(const View& view) {
-  const Use use(context_);
+HitImage& RasterPass::image(int width, int height) {
   // Two sizes are kept: a low resolution is drawn beside the film's.
   const auto found = std::find_if(images_.begin(), images_.end(), [&](const std::unique_ptr<HitImage>& image) {
-    return image->width() == view.width && image->height() == view.height;
+    return image->width() == width && image->height() == height;
   });
   if (found != images_.end()) {
     std::rotate(images_.begin(), found, found + 1);
   } else {
-    images_.insert(images_.begin(), std::make_unique<HitImage>(context_, view.width, view.height));
+    images_.insert(images_.begin(), std::make_unique<HitImage>(context_, width, height));
     images_.resize(std::min<std::size_t>(images_.size(), 2));
   }
-  const HitImage& image = *images_.front();
-  const double extent = surfaces_.extent(view.camera.position);
+  return *images_.front();
+}
+
+void RasterPass::find(const SurfacesOnDevice& surfaces, const View& view, const Buffer& distances,
+                      const Buffer* primitives, const HitGrid& grid) {
+  const HitImage& image = this->image(grid.columns(view), grid.rows(view));
+  const double extent = surfaces.extent(view.camera.position);
   const HalfFilm half = half_film(view);
-  const Buffer rectangle_buffer(context_, "rectangles", rectangles(surfaces_.solids(), view));
-  surfaces_.bind();
-  rectangle_buffer.bind(13);
+  const Share share{view.width / (double(grid.block) * image.width()),
+                    view.height / (double(grid.block) * image.height())};
+  const auto places = rectangles(surfaces.solids(), view, grid, share);
+  if (!rectangles_ || rectangles_->bytes() != places.size() * sizeof(places[0]))
+    rectangles_ = std::make_unique<Buffer>(context_, "rectangles", places.size() * sizeof(places[0]));
+  rectangles_->upload(places);
+  surfaces.bind();
+  rectangles_->bind(13);
   image.begin();
-  for (const SurfacesOnDevice::Run& run : surfaces_.runs()) {
-    RasterProgram& program = context_.raster_program(run.mesh ? "raster/mesh" : "raster/solid");
+  for (const SurfacesOnDevice::Run& run : surfaces.runs()) {
+    RasterProgram& program = run.mesh ? mesh_ : solid_;
     set_view(program, view);
+    program.set("block", grid.block);
     program.set_double("depth_scale", std::ldexp(1.0, -std::min(120, std::ilogb(extent) + 41)));
     if (run.mesh) {
       program.set_double("view_across", Vec3(view.camera.right / half.x));
       program.set_double("view_upwards", Vec3(view.camera.up / half.y));
       program.set_double("view_extent", extent);
+      program.set_double("share_x", share.x);
+      program.set_double("share_y", share.y);
       program.set("first_triangle", run.first);
       program.draw(3L * run.count);
     } else {
-      program.set("triangle_count", surfaces_.triangles());
+      program.set("triangle_count", surfaces.triangles());
       program.set("first_solid", run.first);
       program.draw(6, run.count);
     }
   }
   image.end();
-  return image;
+  image.copy_distances(distances, 4 * grid.first);
+  if (primitives) image.copy_primitives(*primitives, 4 * grid.first);
 }
 
 }  // namespace airlight::gpu
