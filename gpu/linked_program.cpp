@@ -47,6 +47,7 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
     throw Error(refusal(files_, "not linked", context_, log, source));
   }
   context_.check("compiling " + files_);
+  for (const auto& [stage, file] : stages) dump_shader(shader_source(file, definitions));
   context_.label(GL_PROGRAM, id_, files_);
 }
 
