@@ -1,19 +1,9 @@
-// Does a ray cross a triangle? scene/geometry/ray_primitive.cpp, with its exact signs: what passes through a shared edge crosses one of
-// two triangles on every device.
-
-// a b and what rounding took from it: Dekker 1971, because not every device has a fused multiply-add of doubles.
-dvec2 exact_product(double a, double b) {
-  const double split = 134217729.0LF;  // 2^27 + 1
-  precise double p = a * b, sa = split * a, sb = split * b;
-  precise double a_high = sa - (sa - a), b_high = sb - (sb - b), a_low = a - a_high, b_low = b - b_high;
-  precise double rest = ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low;
-  return dvec2(p, rest);
-}
+// Does a ray cross a triangle? scene/geometry/ray_primitive.cpp: what passes through a shared edge crosses one of two triangles,
+// because both compute the edge as it stands, but for the sign. Rays in general position need no exact products.
 
 // Twice the area of (0, p, q); `side` is its sign, on a tie that after moving the origin by (e, e^2), e -> 0.
 double edge_function(dvec3 p, dvec3 q, out int side) {
-  dvec2 left = exact_product(p.x, q.y), right = exact_product(p.y, q.x);
-  precise double value = (left.x - right.x) + (left.y - right.y);
+  precise double left = p.x * q.y, right = p.y * q.x, value = left - right;
   side = value != 0 ? (value > 0 ? 1 : -1) : p.y != q.y ? (p.y > q.y ? 1 : -1) : int(q.x > p.x) - int(q.x < p.x);
   return value;
 }
