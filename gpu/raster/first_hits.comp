@@ -76,7 +76,7 @@ void main() {
     for (int i = 0; i < solid_count + ball_count; ++i)
       keep_nearer(best, meet_solid(solids[i], origin, direction, normal), triangle_count + i);
 
-  TreeRay ray = tree_ray_of(origin, direction);
+  TreeRay ray = tree_ray_of(vec3(origin - tree_middle), vec3(direction));
   dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
 #if RESUMES
   for (int n = 0; n < nodes_at_once && node < tree_nodes; ++n) {

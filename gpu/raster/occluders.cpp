@@ -120,21 +120,11 @@ class Builder {
 Occluders make_occluders(const std::vector<scene::Surface>& surfaces, const Point3& middle) {
   Occluders occluders;
   std::vector<std::array<Point3, 3>> triangles;
-  const auto float3 = [](const Vec3& v) { return std::array<float, 3>{float(v[0]), float(v[1]), float(v[2])}; };
-  for (const scene::Surface& surface : surfaces) {
-    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&surface.shape)) {
+  for (const scene::Surface& surface : surfaces)
+    if (const auto* mesh = std::get_if<scene::TriangleMesh>(&surface.shape))
       for (const auto& t : mesh->triangles)
         triangles.push_back(
             {mesh->vertices[t[0]] - middle, mesh->vertices[t[1]] - middle, mesh->vertices[t[2]] - middle});
-    } else if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) {
-      occluders.solids.push_back({float3(sphere->center - middle), float(sphere->radius), {0, 0, 0}, 0});
-    } else {
-      const auto& plane = std::get<scene::Plane>(surface.shape);
-      // The point of the plane nearest to the middle: the one given may be far away.
-      const Vec3 near = plane.normal * plane.normal.dot(plane.point - middle);
-      occluders.solids.push_back({float3(near), 0, float3(plane.normal), 0});
-    }
-  }
   if (!triangles.empty()) Builder(triangles, occluders);
   return occluders;
 }

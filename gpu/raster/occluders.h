@@ -1,4 +1,4 @@
-// Surfaces as shaders test shadow rays against them: ray_marcher/occluders.glsl, raster/shadow_tree.glsl.
+// Triangles as shaders test rays against them: raster/tree.glsl.
 #pragma once
 #include <array>
 #include <vector>
@@ -16,16 +16,9 @@ struct OccluderNode {
 struct OccluderTriangle {
   std::array<float, 4> a, b, c;  // a[3]: bits of its number among all triangles of the scene
 };
-struct OccluderSolid {
-  std::array<float, 3> place;
-  float radius;  // 0: a plane
-  std::array<float, 3> normal;
-  float unused;
-};
 struct Occluders {
   std::vector<OccluderNode> nodes;  // depth first
   std::vector<OccluderTriangle> triangles;
-  std::vector<OccluderSolid> solids;
 };
 
 // Positions relative to `middle`. Branches are cut at the median of the centres along the longest side; at most 4

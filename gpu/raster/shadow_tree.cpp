@@ -35,7 +35,9 @@ ShadowTree::Data ShadowTree::data(const scene::Scene& scene) {
   if (const Box box = scene.geometry->bounds(); !box.empty()) data.middle = box.center();
   const Occluders occluders = make_occluders(scene.surfaces, data.middle);
   data.nodes = int(occluders.nodes.size());
-  data.solids = int(occluders.solids.size());
+  data.solids = int(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), [](const scene::Surface& surface) {
+    return !std::holds_alternative<scene::TriangleMesh>(surface.shape);
+  }));
   if (data.nodes == 0) return data;
   data.words.resize(16 * occluders.nodes.size() + 12 * occluders.triangles.size());
   for (int i = 0; i < data.nodes; ++i) std::memcpy(&data.words[16 * i], &occluders.nodes[i], sizeof(OccluderNode));

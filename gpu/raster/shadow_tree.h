@@ -14,6 +14,7 @@ class ShadowTree {
   // Binds 14, sets its uniforms.
   void bind(LinkedProgram&) const;
 
+  const Point3& middle() const { return middle_; }  // [m]
   int nodes() const { return nodes_; }
   int solids() const { return solids_; }  // of the scene: spheres and planes, which are not in the tree
 

@@ -17,20 +17,21 @@ struct TreeRay {
   ivec3 axis;            // z: the largest component of the direction; handedness kept
   vec2 shear;            // that turns the ray into that axis: Woop, Benthin and Wald 2013
 };
-TreeRay tree_ray_of(dvec3 origin, dvec3 direction) {
+// From `origin`, relative to the middle.
+TreeRay tree_ray_of(vec3 origin, vec3 direction) {
   TreeRay ray;
-  ray.origin = vec3(origin - tree_middle);
+  ray.origin = origin;
   ray.octant = 0;
+  vec3 m = abs(origin), size = abs(direction);
   for (int a = 0; a < 3; ++a) {
-    ray.inverse[a] = float(1 / (abs(direction[a]) < 1e-20LF ? 1e-20LF : direction[a]));
+    ray.inverse[a] = 1 / (size[a] < 1e-20 ? 1e-20 : direction[a]);
     if (ray.inverse[a] < 0) ray.octant |= 1 << a;
   }
-  vec3 m = abs(ray.origin), size = vec3(abs(direction));
   ray.rounding = 1e-6 * (max(m.x, max(m.y, m.z)) + tree_reach);
   int z = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
   ray.axis = ivec3((z + 1) % 3, (z + 2) % 3, z);
   if (direction[z] < 0) ray.axis.xy = ray.axis.yx;
-  ray.shear = vec2(direction[ray.axis.x] / direction[z], direction[ray.axis.y] / direction[z]);
+  ray.shear = vec2(direction[ray.axis.x], direction[ray.axis.y]) / direction[z];
   return ray;
 }
 

@@ -9,30 +9,17 @@ uniform int light_count, balls;  // the first `balls` of the lights are point an
 #include "ray_marcher/light.glsl"
 #include "ray_marcher/columns.glsl"
 #include "ray_marcher/spacing.glsl"
+#if OCCLUDERS
 #include "ray_marcher/occluders.glsl"
+#endif
+#include "ray_marcher/pixel.glsl"
+#include "ray_marcher/rounds.glsl"
 
-// A dispatch does a limited amount of work for each pixel and leaves here where to go on.
-struct Pixel {
-  vec3 airlight;
-  uint steps;  // density evaluations on the camera ray
-  vec3 transmittance;  // while a march is under way: its optical depth so far
-  uint shadow_rays;
-  uint shadow_steps;
-  uint occlusion_rays;
-  int march;  // that is under way; balls + 1: finished
-  int part;
-  float step_;
-  int light;
-  float from, width_;  // of what is under way of a step, in shares of it
-};
 layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
-layout(std430, binding = 10) buffer Progress { uint unfinished, work_done; };  // pixels; work of all / 256
-uniform int first_tile, tile_columns;  // of this dispatch; of the image
-uniform int first_row;                 // of the pixels in their buffer
+uniform int tile_columns;  // of the image
+uniform int first_row;     // of the band
 uniform int has_distances;
 uniform float darkest;  // a ray ends at that optical depth
-uniform int budget;     // iterations of loops, roughly
 
 vec3 airlight = vec3(0);
 uint step_count = 0, shadow_ray_count = 0, occlusion_ray_count = 0;
@@ -43,7 +30,7 @@ int at_part, at_light;
 float at_step;
 float at_from, at_width;  // within the step: divided where it is deep
 vec3 depth;
-bool ended;
+bool ended = false;
 
 // A dispatch does one light at one step at least, however many iterations that takes.
 bool moved = false;
@@ -270,23 +257,26 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
 }
 
 void main() {
-  int tile = first_tile + int(gl_WorkGroupID.x);
+  int tile = tile_of_group();
   ivec2 at = ivec2(tile % tile_columns, tile / tile_columns) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) +
              ivec2(gl_LocalInvocationID.xy);
+  int place = at.y * width + at.x;
+  at.y += first_row;
   if (at.x >= width || at.y >= height) return;
-  int place = (at.y - first_row) * width + at.x;
-  int resumed = pixels[place].march;
+  Pixel pixel = Pixel(vec3(0), 0u, vec3(0), 0u, 0u, 0u, 0, 0, 0, 0, 0, 1);
+  if (round_ > 0) pixel = pixels[place];
+  int resumed = pixel.march;
   if (resumed > balls) return;
   vec3 origin, direction;
   camera_ray(vec2(at) + 0.5, origin, direction);
   float t_end = has_distances != 0 ? distances[at.y * width + at.x] : far_away;
   for (int i = 0; i < BALL_WORDS; ++i) own_marches[i] = 0u;
-  at_part = pixels[place].part;
-  at_step = pixels[place].step_;
-  at_light = pixels[place].light;
-  at_from = pixels[place].from;
-  at_width = pixels[place].width_ > 0 ? pixels[place].width_ : 1;
-  depth = pixels[place].transmittance;
+  at_part = pixel.part;
+  at_step = pixel.step_;
+  at_light = pixel.light;
+  at_from = pixel.from;
+  at_width = pixel.width_;
+  depth = pixel.transmittance;
 
   // A light that grades the ray around itself has a march of its own. The common march, last, serves the transmittance and
   // every other light. One loop for both: compilers copy what is called into every place it is called from.
@@ -308,25 +298,16 @@ void main() {
     at_width = 1;
     depth = vec3(0);
   }
-  vec3 result = vec3(depth);
+  vec3 result = depth;
   if (done) {
-    result = vec3(exp(-depth));
+    result = exp(-depth);
     for (int c = 0; c < 3; ++c)
       if (ended || never_ends[c]) result[c] = 0;
   } else {
-    atomicAdd(unfinished, 1u);
+    leave_to_next_round(tile);
   }
-  atomicAdd(work_done, work >> 8);
-  pixels[place].transmittance = result;
-  pixels[place].march = done ? balls + 1 : now;
-  pixels[place].part = at_part;
-  pixels[place].step_ = at_step;
-  pixels[place].light = at_light;
-  pixels[place].from = at_from;
-  pixels[place].width_ = at_width;
-  pixels[place].airlight += airlight;
-  pixels[place].steps += step_count;
-  pixels[place].shadow_rays += shadow_ray_count;
-  pixels[place].shadow_steps += shadow_step_count;
-  pixels[place].occlusion_rays += occlusion_ray_count;
+  pixels[place] =
+      Pixel(pixel.airlight + airlight, pixel.steps + step_count, result, pixel.shadow_rays + shadow_ray_count,
+            pixel.shadow_steps + shadow_step_count, pixel.occlusion_rays + occlusion_ray_count, done ? balls + 1 : now,
+            done ? 0 : at_part, at_step, done ? 0 : at_light, at_from, at_width);
 }

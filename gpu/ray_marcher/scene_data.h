@@ -48,6 +48,13 @@ struct LightData {
   float cos_outer;
 };
 
+struct SolidData {
+  Float3 place;  // of a sphere's centre, or of a point of a plane
+  float radius;  // 0: a plane
+  Float3 normal;
+  float unused;
+};
+
 // Centre of the finite regions and supports; of the camera if there are none.
 Point3 middle_of(const ray_marcher::Plan&);
 
@@ -59,6 +66,7 @@ std::vector<float> brick_data(const ray_marcher::Plan&);
 std::vector<float> grid_data(const ray_marcher::Plan&);
 // Slice z of one grid, x fastest: padded samples.
 void grid_slice(const ray_marcher::GridField&, int z, std::vector<float>& values);
+std::vector<SolidData> solid_data(const ray_marcher::Plan&, const Point3& middle);
 std::vector<LightData> light_data(const ray_marcher::Plan&, const Point3& middle);
 
 }  // namespace airlight::gpu
