@@ -24,9 +24,11 @@ vec3 shape_towards(vec3 w) {
   float x = column - first, y = clamp(row - above, 0.0, 1.0);
   return mix(mix(value_at(top + left), value_at(top + right), x), mix(value_at(bottom + left), value_at(bottom + right), x), y);
 #elif KIND == 2
-  evaluate_sh(w);
   vec3 sum = vec3(0);
-  for (int i = 0; i < sh_order * sh_order; ++i) sum += sh[i] * value_at(i);
+  for (ShPair y = first_pair(w); y.m < sh_order; next_pair(y, w)) {
+    int i = y.l * (y.l + 1);
+    sum += y.plus * value_at(i + y.m) + y.minus * value_at(i - y.m);
+  }
   return sum;
 #else
   return vec3(1);

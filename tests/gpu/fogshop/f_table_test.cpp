@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "gpu/fogshop/fog_on_device.h"
 #include "gpu/fogshop/fogshop_gpu.h"
-#include "gpu/fogshop/passes.h"
 #include "gpu/program.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/scene.h"
@@ -34,13 +34,16 @@ double on_device(gpu::Context& context, const fogshop::FTable& table, const fogs
   model.options.variant = fogshop::Options::Variant::paper;
   model.fog.sum.constant = beta;
   model.lights.push_back({Point3(light.h, 0, light.along), Rgb::Ones(), {}, nullptr});
-  gpu::FogOnDevice device(context, model);
-  device.upload_f_table(table);
-  gpu::StageTimer timer(context);
+  fogshop::Needs needs{};
+  needs.airlight = needs.f_table = true;
+  model.f_table = std::make_unique<fogshop::FTable>(table);
+  gpu::fog::FogOnDevice device(context, model, needs);
+  gpu::Frame frame(context);
+  frame.begin({});
   const scene::View one{scene::look_at(Point3::Zero(), Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
   const gpu::Buffer distance(context, "distances",
                              std::vector<float>{d_vp < gpu::far_away ? float(d_vp) : gpu::far_away});
-  return device.airlight(one, &distance, timer)->download<float>().at(0);
+  return device.airlight(one, &distance, frame).download<float>().at(0);
 }
 
 }  // namespace

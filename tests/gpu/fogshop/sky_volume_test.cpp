@@ -114,7 +114,7 @@ TEST_CASE("fogshop: sky volume by many beams on the device", "[gpu]") {
   const long before = gpu::Program::dispatches();
   const scene::Film b = render(gpu::FogshopGpu(), scene, many).film;
   CHECK(gpu::Program::dispatches() - before ==
-        5 + 5);  // tiles, airlight, the environment's, background, composition; nodes
+        6 + 5);  // tiles, reach, the environment's by two passes, background, composition; nodes
   CHECK(quantile(render(fogshop::Fogshop(), scene, many).film, b, "airlight", 1) < 1e-4);
   std::get<scene::GaussianSum>(scene->media[0].field).gaussians.resize(1);  // a cube
   finish(*scene);
@@ -130,7 +130,7 @@ TEST_CASE("fogshop: a sky volume that nothing needs costs no dispatch", "[gpu]")
     return gpu::Program::dispatches() - before;
   };
   const ScenePointer scene = cloud();
-  CHECK(dispatches(scene) == 6);  // the nodes, tiles, airlight, the environment's, background, composition
+  CHECK(dispatches(scene) == 7);  // the nodes, tiles, reach, the environment's by two, background, composition
   const gpu::FogshopGpu method;
   const Pairs given{{"environment_airlight", "volume"}};
   const auto prepared = method.prepare(scene, {method.settings(), given}, {1, {}});

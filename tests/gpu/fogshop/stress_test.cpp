@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/fog_on_device.h"
 #include "gpu/program.h"
 #include "methods/fogshop/surface_psf.h"
 #include "tests/gpu/device.h"
@@ -35,16 +35,20 @@ RayAnswer one_ray(gpu::Context& context, const Options& options, const Fog& fog,
   model.fog = fog;
   model.gaussians = make_arrays(fog.sum.gaussians, options.cull, options.depth_threshold).arrays;
   if (light) model.lights.push_back({*light, Rgb::Ones(), {}, nullptr});
-  gpu::FogOnDevice device(context, model);
-  if (light && model.paper()) {
+  Needs needs{};
+  needs.airlight = true;
+  needs.center_depths = light && model.paper() && model.gaussians.count > 0;
+  gpu::fog::FogOnDevice device(context, model, needs);
+  if (needs.center_depths) {
     device.fill_light_depths();
     device.fill_view_depths(view);
   }
-  gpu::StageTimer timer(context);
+  gpu::Frame frame(context);
+  frame.begin({});
   const scene::View one{scene::look_at(view, view + Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
   const gpu::Buffer distance(context, "distances",
                              std::vector<float>{length < gpu::far_away ? float(length) : gpu::far_away});
-  return device.airlight(one, &distance, timer)->download<RayAnswer>().at(0);
+  return device.airlight(one, &distance, frame).download<RayAnswer>().at(0);
 }
 
 }  // namespace
@@ -147,17 +151,14 @@ TEST_CASE("limits of the NPSF on the device", "[gpu]") {
   }
 }
 
-// Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its table and by its series far away.
+// Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its fit and by its series far away.
 TEST_CASE("average depth under extreme inputs on the device", "[gpu]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
-layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
-uniform int has_scattered;
-#include "common/reflection.glsl"
-#include "fogshop/harmonics.glsl"
+#include "fogshop/average_depth.glsl"
 layout(std430, binding = 1) readonly buffer Distances { float distance_of[]; };
 layout(std430, binding = 3) writeonly buffer Depths { float depth_of[]; };
 void main() {
@@ -165,24 +166,16 @@ void main() {
   depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
 }
 )");
-  gpu::Program program(*context, "test.comp",
-                       {{"SH_ORDER", "4"}, {"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"TRANSFER", "0"}});
-  std::vector<float> table;
-  for (const AverageDepthNode& node : average_depth_nodes())
-    table.insert(table.end(), {float(node.value), float(node.slope)});
+  gpu::Program program(*context, "test.comp", {{"ERF_COUNT", "0"}, {"COLOURED", "0"}});
   // At the origin, width 1, half_depth so that the sum is average_depth(u).
   const gpu::Buffer gaussian(*context, "Gaussian",
-                             std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0}),
-      tables(*context, "tables", table);
+                             std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0});
   const std::vector<float> u = {0, 1e-6f, 0.3f, 1, 3, 9.99f, 10, 10.01f, 1e3f, 1e6f, 1e15f, 1e25f};
   const gpu::Buffer distances(*context, "distances", u), depths(*context, "depths", u.size() * 4);
   gaussian.bind(0);
   distances.bind(1);
   depths.bind(3);
-  tables.bind(9);
   program.set("gaussian_count", 1);
-  program.set("average_at", 0);
-  program.set("average_nodes", int(average_depth_nodes().size()));
   program.dispatch(int(u.size()));
   const std::vector<float> got = depths.download<float>();
   for (std::size_t i = 0; i < u.size(); ++i) {
