@@ -8,7 +8,7 @@
 #include "methods/shadow_planes/phase_form.h"
 #include "methods/shadow_planes/polynomial.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 namespace {
 
 using shadow_planes::extinction_of;
@@ -117,7 +117,7 @@ std::map<std::string, std::string> AirlightTermsOnDevice::definitions(int light,
 }
 
 void AirlightTermsOnDevice::bind_media(LinkedProgram& program) const {
-  media_.bind(8);
+  media_.bind(at::media);
   program.set("media_count", int(scene_->media.size()));
 }
 
@@ -132,7 +132,7 @@ void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) co
   }
   if (term < 0) return;
   const AirlightTerm& of = airlight_terms_[term];
-  of.evaluator->bind(5);
+  of.evaluator->bind(at::evaluator);
   program.set("air_medium", of.medium);
   if (of.paper) program.set("mean_distance", of.mean_distance);
   if (options_.evaluator == Options::Evaluator::polynomial)
@@ -141,4 +141,4 @@ void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) co
     program.set("rule_nodes", options_.nodes);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -1,24 +1,18 @@
-// Where the list of every sector begins: sums of the counts before it, which become 0. One work group.
+// Where the list of every sector begins and ends, in no order: a work group takes room for its sectors.
 layout(local_size_x = LOCAL_SIZE_X) in;
 
-layout(std430, binding = 1) buffer SectorCounts { int sector_count[]; };
-layout(std430, binding = 3) writeonly buffer Starts { int starts[]; };  // and the end of the last
-uniform int total_sectors;
+layout(std430, binding = AT_SECTORS) buffer Sectors { int listed, sector_count[]; };
+layout(std430, binding = AT_STARTS) writeonly buffer Starts { ivec2 sector_list[]; };
 
-shared int sums[LOCAL_SIZE_X];
+shared int of_group, first_of_group;
 
 void main() {
-  int thread = int(gl_LocalInvocationID.x), share = (total_sectors + LOCAL_SIZE_X - 1) / LOCAL_SIZE_X;
-  int first = min(total_sectors, thread * share), last = min(total_sectors, first + share), sum = 0;
-  for (int i = first; i < last; ++i) sum += sector_count[i];
-  sums[thread] = sum;
+  int sector = int(gl_GlobalInvocationID.x);
+  if (gl_LocalInvocationID.x == 0) of_group = 0;
   barrier();
-  int start = 0;
-  for (int i = 0; i < thread; ++i) start += sums[i];
-  for (int i = first; i < last; ++i) {
-    starts[i] = start;
-    start += sector_count[i];
-    sector_count[i] = 0;
-  }
-  if (thread == LOCAL_SIZE_X - 1) starts[total_sectors] = start;
+  int count = sector < FAN_SECTORS ? sector_count[sector] : 0, before = count > 0 ? atomicAdd(of_group, count) : 0;
+  barrier();
+  if (gl_LocalInvocationID.x == 0) first_of_group = of_group > 0 ? atomicAdd(listed, of_group) : 0;
+  barrier();
+  if (sector < FAN_SECTORS) sector_list[sector] = first_of_group + before + ivec2(0, count);
 }

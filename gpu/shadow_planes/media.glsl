@@ -10,7 +10,7 @@ struct Medium {
   Phase phase;
   int unused;
 };
-layout(std430, binding = 8) readonly buffer Media { Medium media[]; };
+layout(std430, binding = AT_MEDIA) readonly buffer Media { Medium media[]; };
 uniform int media_count;
 uniform int air_medium;  // the one in question, where it is one alone
 

@@ -1,0 +1,68 @@
+// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/context.h"
+#include "gpu/program.h"
+
+namespace airlight::gpu::planes {
+
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials). What no
+// shader has at the same time shares a number, so that the largest needs 16.
+namespace at {
+enum Binding {
+  edges = 0,
+  primitives = 1,
+  materials = 2,
+  starts = 3,
+  lists = 4,
+  evaluator = 5,
+  pixels = 6,
+  states = 7,
+  media = 8,
+  tables = 9,
+  light_state = 13,
+  values = 14,
+  counters = 15,
+  // silhouette.comp, counts.comp
+  mesh_vertices = 1,
+  mesh_triangles = 2,
+  mesh_numbers = 3,
+  mesh_edges = 4,
+  mesh_sides = 5,
+  sectors = 1,  // fan.comp
+  // composition.comp
+  airlight_layer = 0,
+  transmittance_layer = 3,
+  surface_layer = 4,
+  mean_layer = 5,
+  // evaluate.comp
+  cases = 0,
+  integrals = 1,
+};
+}  // namespace at
+
+constexpr int edges_per_group = 64;  // of indirect dispatches
+constexpr int most_hits = 32;        // crossings that a pixel gathers at a time
+
+// The layout of light_state.glsl, without left_out.
+struct LightStateData {
+  unsigned edge_groups[3], plane_groups[3];
+  int edge_count, count_at_camera;
+};
+
+// The layout of counters.glsl, with the first of resume_groups.
+struct CountersData {
+  unsigned lit_parts, crossings, gatherings_after_first, loops_were_cut, values_missing, unused[3], unfinished[4];
+};
+
+// All of the above, and the fan's (methods/shadow_planes/edge_fan.h).
+std::map<std::string, std::string> shared_definitions();
+
+// A program of this folder: `file` without folder and .comp, the definitions, a work group of x times y invocations. Looked up
+// by its text, so it is kept by those who need it in every frame.
+Program& program(Context&, const std::string& file, int x, int y = 1,
+                 std::map<std::string, std::string> definitions = {});
+
+}  // namespace airlight::gpu::planes
