@@ -14,15 +14,6 @@ namespace {
 using shadow_planes::extinction_of;
 using shadow_planes::Options;
 
-// The layout of media.glsl.
-struct MediumData {
-  double lo[3], hi[3];
-  float extinction[3], albedo[3];
-  int region, phase;
-  float g, scale, width;
-  int unused;
-};
-
 // What a region is made of, as media.glsl.
 struct RegionNumbers {
   int kind;
