@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "methods/shadow_planes/edge_fan.h"
+#include "methods/shadow_planes/phase_form.h"
 #include "scene/error.h"
 
 namespace airlight::gpu::planes {
@@ -17,6 +18,16 @@ std::map<std::string, std::string> shared_definitions() {
                                                     {"FAN_SECTORS", std::to_string(EdgeFan::total_sectors())},
                                                     {"FAN_MARGIN", fmt::format("{:e}LF", EdgeFan::margin)},
                                                     {"FAN_LEAST_ACROSS", fmt::format("{:e}LF", EdgeFan::least_across)}};
+  const auto number = [&](const char* name, auto kind) { definitions[name] = std::to_string(int(kind)); };
+  number("REGION_UNBOUNDED", RegionKind::unbounded);
+  number("REGION_BOX", RegionKind::box);
+  number("REGION_SPHERE", RegionKind::sphere);
+  number("REGION_SLAB", RegionKind::slab);
+  using Phase = shadow_planes::PhaseForm::Kind;
+  number("PHASE_ISOTROPIC", Phase::isotropic);
+  number("PHASE_RAYLEIGH", Phase::rayleigh);
+  number("PHASE_HAZY", Phase::hazy);
+  number("PHASE_HENYEY_GREENSTEIN", Phase::henyey_greenstein);
   const std::pair<const char*, int> bindings[] = {{"EDGES", at::edges},
                                                   {"PRIMITIVES", at::primitives},
                                                   {"STARTS", at::starts},

@@ -44,6 +44,7 @@ enum Binding {
 };
 }  // namespace at
 
+enum class RegionKind { unbounded, box, sphere, slab };
 constexpr int edges_per_group = 64;  // of indirect dispatches
 constexpr int sectors_per_group = 1024;
 constexpr int most_hits = 32;  // crossings that a pixel gathers at a time
@@ -81,7 +82,7 @@ struct CountersData {
   unsigned lit_parts, crossings, gatherings_after_first, loops_were_cut, values_missing, unused[3], unfinished[4];
 };
 
-// All of the above, and the fan's (methods/shadow_planes/edge_fan.h).
+// All of the above, the fan's and phase functions' numbers (methods/shadow_planes/edge_fan.h, phase_form.h).
 std::map<std::string, std::string> shared_definitions();
 
 // A program of this folder: `file` without folder and .comp, the definitions, a work group of x times y invocations. Looked up
