@@ -21,6 +21,8 @@ namespace airlight::gpu {
   X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(PFNGLATTACHSHADERPROC, AttachShader)                                    \
   X(PFNGLLINKPROGRAMPROC, LinkProgram) X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                        \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                          \
+  X(PFNGLGETPROGRAMRESOURCEINDEXPROC, GetProgramResourceIndex)                                                        \
+  X(PFNGLGETPROGRAMRESOURCEIVPROC, GetProgramResourceiv)                                                              \
   X(PFNGLUSEPROGRAMPROC, UseProgram) X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                              \
   X(PFNGLGETPROGRAMINTERFACEIVPROC, GetProgramInterfaceiv)                                                           \
   X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i) X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                      \

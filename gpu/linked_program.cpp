@@ -77,6 +77,16 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
   context_.label(GL_PROGRAM, id_, files_);
 }
 
+std::optional<LinkedProgram::Place> LinkedProgram::place_of(const std::string& variable) const {
+  const Gl& gl = context_.gl();
+  const GLuint index = gl.GetProgramResourceIndex(id_, GL_BUFFER_VARIABLE, variable.c_str());
+  if (index == GL_INVALID_INDEX) return std::nullopt;
+  const GLenum wanted[2] = {GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE};
+  GLint found[2] = {0, 0};
+  gl.GetProgramResourceiv(id_, GL_BUFFER_VARIABLE, index, 2, wanted, 2, nullptr, found);
+  return Place{found[0], found[1]};
+}
+
 int LinkedProgram::location(const std::string& name) {
   const auto known = locations_.find(name);
   if (known != locations_.end()) return known->second;

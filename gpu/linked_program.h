@@ -1,6 +1,7 @@
 // What compute and raster programs have in common: compiled stages linked together, and uniforms by name.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,13 @@ class LinkedProgram {
   void set(const std::string& name, const Mat3& value);
   void set_double(const std::string& name, double value);       // a uniform double
   void set_double(const std::string& name, const Vec3& value);  // a uniform dvec3
+
+  // Where the driver has a variable of a storage block, "edges[0].a[0]": bytes from the block's beginning, and between
+  // the elements of the block's array that it is in (0: in none). Nothing where the compiler removed it.
+  struct Place {
+    int offset, stride;
+  };
+  std::optional<Place> place_of(const std::string& variable) const;
 
  protected:
   Context& context_;

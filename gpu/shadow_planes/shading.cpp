@@ -12,8 +12,9 @@ LitPicture::LitPicture(Frame& frame, const scene::View& v, bool hits, bool cross
     : view(v),
       distances(hits ? &frame.buffers.get("distances", std::size_t(v.width) * v.height * 4) : nullptr),
       primitives(hits ? &frame.buffers.get("primitives", std::size_t(v.width) * v.height * 4) : nullptr),
-      pixels(frame.buffers.get("light of pixels", std::size_t(v.width) * v.height * 32)),
-      states(frame.buffers.get("states of pixels", crossings ? std::size_t(v.width) * v.height * 48 : 48)),
+      pixels(frame.buffers.get("light of pixels", sizeof(LitPixelData) * v.width * v.height)),
+      states(
+          frame.buffers.get("states of pixels", sizeof(StateData) * (crossings ? std::size_t(v.width) * v.height : 1))),
       counters(frame.buffers.get("counters", sizeof(CountersData) + 16 * std::size_t(dispatches))) {
   counters.clear();
 }

@@ -49,10 +49,9 @@ Silhouettes::Silhouettes(Context& context, const Arrays& arrays, int plane_rows,
 
 void Silhouettes::find(const Point3& light, LightEdges& found) const {
   const Use use(context_);
-  constexpr std::size_t edge_bytes = 96;
   if (!found.edges) {
-    found.edges =
-        std::make_unique<Buffer>(context_, "silhouette", edge_bytes * std::size_t(mesh_edges_), Contents::undefined);
+    found.edges = std::make_unique<Buffer>(context_, "silhouette", sizeof(EdgeData) * std::size_t(mesh_edges_),
+                                           Contents::undefined);
     found.state = std::make_unique<Buffer>(context_, "state of a light",
                                            sizeof(LightStateData) + (left_out_ ? 4 * std::size_t(mesh_edges_) : 0));
   }

@@ -29,14 +29,10 @@ Counted compare(gpu::Context& context, const std::shared_ptr<const scene::Scene>
   gpu::planes::LightEdges edges;
   silhouettes.find(light, edges);
   const std::size_t pixels = std::size_t(view.width) * view.height;
-  struct State {  // state.glsl
-    double last_key, from;
-    float sum[4];
-    int last_origin, m, unfinished, m_origin;
-  };
-  const gpu::Buffer states(context, "states", pixels * sizeof(State)), counters(context, "counters", 64);
+  using gpu::planes::StateData;
+  const gpu::Buffer states(context, "states", pixels * sizeof(StateData)), counters(context, "counters", 64);
   counts.find(view, light, edges, states, counters);
-  const std::vector<State> found = states.download<State>();
+  const std::vector<StateData> found = states.download<StateData>();
   Counted result;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
