@@ -145,6 +145,7 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
   gl_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
   limits_.storage_block = std::size_t(bytes);
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &limits_.storage_blocks);
+  gl_.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &limits_.storage_bindings);
   for (GLuint axis = 0; axis < 3; ++axis)
     gl_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits_.groups[axis]);
   gl_.GetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &limits_.invocations);

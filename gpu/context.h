@@ -19,7 +19,8 @@ class RasterProgram;
 // What a shader may count on; checked by those who need more than OpenGL's minimum.
 struct Limits {
   std::size_t storage_block = 0;  // bytes of one storage buffer
-  int storage_blocks = 0;         // bound in one compute shader
+  int storage_blocks = 0;         // in one compute shader; OpenGL promises 8
+  int storage_bindings = 0;       // numbers of their bindings; likewise
   int groups[3] = {0, 0, 0};      // work groups of a dispatch
   int invocations = 0;            // of a work group
   int shared_memory = 0;          // bytes

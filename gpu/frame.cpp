@@ -84,6 +84,11 @@ void Download::fetch(scene::Film& film) {
   }
 }
 
+std::vector<scene::StageTime>& host_times_of_last_frame() {
+  static std::vector<scene::StageTime> times;
+  return times;
+}
+
 void Frame::begin(const scene::Execution& execution) {
   const Use use(context_);
   before_ = context_.traffic();
@@ -99,6 +104,7 @@ void Frame::finish(scene::Rendering& rendering) {
     download.copy();
   }
   rendering.times = timer.times();
+  host_times_of_last_frame() = timer.host_times();
   const auto start = std::chrono::steady_clock::now();
   download.fetch(rendering.film);
   if (download.wants_any())  // what the host adds to the device's copies

@@ -82,6 +82,10 @@ class Download {
   const char* mapped_ = nullptr;
 };
 
+// What the processor spent on each stage of the frame that finished last, the wait left out: for tests and profiles, no
+// counter, for counters are the same in every run. Under Use.
+std::vector<scene::StageTime>& host_times_of_last_frame();
+
 class Frame {
  public:
   explicit Frame(Context& context) : buffers(context), timer(context), download(context), context_(context) {}

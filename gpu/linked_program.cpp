@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <regex>
+
 #include "gpu/shader_source.h"
 #include "scene/error.h"
 
@@ -12,6 +15,25 @@ std::string refusal(const std::string& files, const char* what, Context& context
                     const ShaderSource& source) {
   context.forget_errors();  // the same words again
   return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
+}
+
+// What a driver may have meant by its refusal; empty if the shader stays within the device's storage blocks. Counts what
+// stands in the text, also in branches that definitions left out.
+std::string beyond_storage(const std::string& file, GLenum stage, const std::string& text, const Context& context) {
+  static const std::regex block(R"(layout\s*\([^)]*binding\s*=\s*(\d+)\s*\)[^;{]*\bbuffer\b)");
+  const Limits& limits = context.limits();
+  int blocks = 0, greatest = 0;
+  for (std::sregex_iterator found(text.begin(), text.end(), block), end; found != end; ++found, ++blocks)
+    greatest = std::max(greatest, std::stoi((*found)[1]));
+  const int offered = stage == GL_COMPUTE_SHADER  ? limits.storage_blocks
+                      : stage == GL_VERTEX_SHADER ? limits.vertex_storage_blocks
+                                                  : limits.fragment_storage_blocks;
+  if (blocks > offered)
+    return fmt::format("gpu/{} has {} storage blocks, {} offers {}", file, blocks, context.renderer(), offered);
+  if (greatest >= limits.storage_bindings)
+    return fmt::format("gpu/{} binds a storage block to number {}, {} offers {}", file, greatest, context.renderer(),
+                       limits.storage_bindings);
+  return {};
 }
 
 }  // namespace
@@ -25,9 +47,11 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
   ShaderSource source;
   GLint ok = 0;
   char log[4096] = {};
+  std::string beyond;
   for (const auto& [stage, file] : stages) {
     source = shader_source(file, definitions);
     text_ += source.text;
+    if (beyond.empty()) beyond = beyond_storage(file, stage, source.text, context);
     files_ += (files_.empty() ? "gpu/" : ", gpu/") + file;
     const Handle shader(context, gl.CreateShader(stage), [](const Gl& gl, GLuint id) { gl.DeleteShader(id); });
     const char* text = source.text.c_str();
@@ -35,6 +59,7 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
     gl.CompileShader(shader);
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
     if (!ok) {
+      if (!beyond.empty()) throw Unavailable("gpu: " + beyond);
       gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
       throw Error(refusal("gpu/" + file, "refused", context_, log, source));
     }
@@ -43,6 +68,7 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
   gl.LinkProgram(id_);
   gl.GetProgramiv(id_, GL_LINK_STATUS, &ok);
   if (!ok) {
+    if (!beyond.empty()) throw Unavailable("gpu: " + beyond);
     gl.GetProgramInfoLog(id_, sizeof log, nullptr, log);
     throw Error(refusal(files_, "not linked", context_, log, source));
   }

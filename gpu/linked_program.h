@@ -13,7 +13,7 @@ namespace airlight::gpu {
 class LinkedProgram {
  public:
   // Compiles gpu/<file> of each stage (shader_source.h) with the same definitions. Throws Error with file and line if
-  // the compiler or the linker objects.
+  // the compiler or the linker objects, Unavailable in one line if for more storage blocks than the device has.
   LinkedProgram(Context&, const std::vector<std::pair<GLenum, std::string>>& stages,
                 const std::map<std::string, std::string>& definitions);
   LinkedProgram(const LinkedProgram&) = delete;

@@ -1,6 +1,7 @@
 #include "gpu/timer.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace airlight::gpu {
 
@@ -16,6 +17,7 @@ void StageTimer::restart() {
   running_.clear();
   names_.clear();
   marks_ = 0;
+  host_.clear();
   mark();
 }
 
@@ -26,6 +28,7 @@ void StageTimer::mark() {
     ++context_.traffic().allocations;
   }
   context_.gl().QueryCounter(queries_[marks_++], GL_TIMESTAMP);
+  host_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
 void StageTimer::begin(const std::string& name) {
@@ -54,12 +57,23 @@ std::vector<scene::StageTime> StageTimer::times() {
   const Use use(context_);
   end();
   context_.wait();
-  std::vector<GLuint64> at(marks_);
-  for (std::size_t i = 0; i < marks_; ++i) context_.gl().GetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &at[i]);
+  std::vector<double> at;
+  GLuint64 first = 0, now = 0;
+  for (std::size_t i = 0; i < marks_; ++i) {
+    context_.gl().GetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &now);
+    if (i == 0) first = now;
+    at.push_back(1e-9 * double(now - first));
+  }
   context_.check("reading timestamps");
+  return by_stage(at);
+}
+
+std::vector<scene::StageTime> StageTimer::host_times() const { return by_stage(host_); }
+
+std::vector<scene::StageTime> StageTimer::by_stage(const std::vector<double>& at) const {
   std::vector<scene::StageTime> result;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double seconds = 1e-9 * double(at[i + 1] - at[i]);
+    const double seconds = at[i + 1] - at[i];
     const auto same = std::find_if(result.begin(), result.end(), [&](const auto& t) { return t.name == names_[i]; });
     if (same == result.end())
       result.push_back({names_[i], seconds});

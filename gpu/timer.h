@@ -23,14 +23,18 @@ class StageTimer {
   void stage(const std::string& name);
   // Ends the running stage and waits for the device. Seconds per stage, in the order of their first call.
   std::vector<scene::StageTime> times();
+  // After times(): what the processor spent between the same marks, the wait left out.
+  std::vector<scene::StageTime> host_times() const;
 
  private:
+  std::vector<scene::StageTime> by_stage(const std::vector<double>& at) const;
   void mark();
   void end();
 
   Context& context_;
   std::vector<GLuint> queries_;  // all there are; as many marks are in use
   std::size_t marks_ = 0;
+  std::vector<double> host_;  // [s] of the marks on the processor's clock
   std::vector<std::string> names_;
   std::string running_;
 };

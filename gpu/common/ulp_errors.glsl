@@ -7,11 +7,13 @@ float ulps_off(float v) {
 }
 vec2 ulps_off(vec2 v) { return vec2(ulps_off(v.x), ulps_off(v.y)); }
 vec3 ulps_off(vec3 v) { return vec3(ulps_off(v.xy), ulps_off(v.z)); }
+vec4 ulps_off(vec4 v) { return vec4(ulps_off(v.xy), ulps_off(v.zw)); }
 
 #define WITH_ERRORS(name, exact)                          \
   float name(float x) { return ulps_off(exact(x)); }      \
   vec2 name(vec2 x) { return ulps_off(exact(x)); }        \
-  vec3 name(vec3 x) { return ulps_off(exact(x)); }
+  vec3 name(vec3 x) { return ulps_off(exact(x)); }        \
+  vec4 name(vec4 x) { return ulps_off(exact(x)); }
 WITH_ERRORS(exp_off, exp)
 WITH_ERRORS(log_off, log)
 WITH_ERRORS(sqrt_off, sqrt)

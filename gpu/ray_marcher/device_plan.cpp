@@ -111,6 +111,7 @@ void PlanOnDevice::bind(Program& p) const {
   grids_.bind();
   bricks_.bind(3);
   lights_.bind(4);
+  p.set("layer_count", int(plan_.layers.size()));
   p.set("skip_empty", o.skip_empty);
   p.set("exact_shadow", o.exact_shadow);
   p.set("shadow_steps", o.shadow_steps);

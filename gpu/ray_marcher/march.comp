@@ -40,8 +40,10 @@ bool out_of_budget() { return moved && work > uint(budget); }
 float mean_over_step(float x) { return x > 0 ? -exp_minus_one(-x) / x : 1; }
 bool all_above(vec3 x, float limit) { return all(greaterThan(x, vec3(limit))); }
 
+LIST(float, density_here, LAYERS);  // of each layer at a step
+
 // What a step sends to the camera of one light's radiance; x as for incidence().
-void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float length_, vec3 amount[LAYERS]) {
+void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float length_, vec3 weight) {
   Light light = lights[l];
   Incidence from = incidence(light, a, x, direction, length_);
   if (from.strength == 0) return;
@@ -52,35 +54,31 @@ void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float lengt
 #endif
   ++shadow_ray_count;
   vec3 to_light = vec3(0);
-  for (int k = 0; k < LAYERS; ++k)
+  for (int k = 0; k < layer_count; ++k)
     to_light += layers[k].sigma_t * column_of(k, point, from.to_light, from.distance);
   vec3 arrives = from.strength * exp(-to_light);
   vec3 less = from.to_light - direction, more = from.to_light + direction;
   float minus = 0.5 * dot(less, less), plus = 0.5 * dot(more, more);
-  for (int k = 0; k < LAYERS; ++k)
-    airlight += light.colour * layers[k].albedo *
-                (amount[k] * arrives * phase_value(layers[k].phase, layers[k].g, minus, plus));
+  for (int k = 0; k < layer_count; ++k)
+    airlight += light.colour * layers[k].albedo * layers[k].sigma_t * density_here[MINE(k)] *
+                (weight * arrives * phase_value(layers[k].phase, layers[k].g, minus, plus));
 }
 
 // One step of a part, at t, and at x behind the light of an own march. Adds to the optical depth. False: no budget left,
 // lights from at_light on have still to be done.
 bool march_step(Part part, vec3 origin, vec3 direction, float t, float x, float length_, int own) {
   vec3 point = origin + t * direction;
-  vec3 extinction = vec3(0), amount[LAYERS];
+  vec3 extinction = vec3(0);
   work += uint(4 * LAYERS);
-  for (int k = 0; k < LAYERS; ++k) {
+  for (int k = 0; k < layer_count; ++k) {
     float density = (part.in_constant >> k & 1u) != 0u ? layers[k].constant : 0;
     if ((part.in_varied >> k & 1u) != 0u) density += varied_density(k, point);
-    amount[k] = layers[k].sigma_t * density;
-    extinction += amount[k];
+    density_here[MINE(k)] = density;
+    extinction += layers[k].sigma_t * density;
   }
   vec3 of_step = extinction * length_;
   vec3 weight = exp(-depth) * vec3(mean_over_step(of_step.x), mean_over_step(of_step.y), mean_over_step(of_step.z)) * length_;
-  bool any_scatters = false;
-  for (int k = 0; k < LAYERS; ++k) {
-    amount[k] *= weight;
-    any_scatters = any_scatters || amount[k] != vec3(0);
-  }
+  bool any_scatters = extinction * weight != vec3(0);
   int begin = own < 0 ? 0 : own, end = any_scatters ? (own < 0 ? light_count : own + 1) : begin;
   for (int l = max(begin, at_light); l < end; ++l) {
     if (own < 0 && l < balls && (own_marches[l >> 5] >> (l & 31) & 1u) != 0u) continue;
@@ -89,7 +87,7 @@ bool march_step(Part part, vec3 origin, vec3 direction, float t, float x, float 
       return false;
     }
     Approach a = approach(lights[l], origin, direction);
-    scatter(l, a, own < 0 ? t - a.t : x, point, direction, length_, amount);
+    scatter(l, a, own < 0 ? t - a.t : x, point, direction, length_, weight);
     moved = true;
   }
   at_light = 0;
@@ -105,7 +103,7 @@ const float least_width = 1.0 / 16777216;
 
 vec3 extinction_at(Part part, vec3 point) {
   vec3 sum = vec3(0);
-  for (int k = 0; k < LAYERS; ++k) {
+  for (int k = 0; k < layer_count; ++k) {
     float density = (part.in_constant >> k & 1u) != 0u ? layers[k].constant : 0;
     if ((part.in_varied >> k & 1u) != 0u) density += varied_density(k, point);
     sum += density * layers[k].sigma_t;
@@ -121,7 +119,7 @@ bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
 }
 bool may_be_deep(Part part, float length_) {
   vec3 most = vec3(0);
-  for (int k = 0; k < LAYERS; ++k) {
+  for (int k = 0; k < layer_count; ++k) {
     if ((part.in_constant >> k & 1u) != 0u) most += layers[k].constant * layers[k].sigma_t;
     if ((part.in_varied >> k & 1u) != 0u) most += layers[k].most_varied * layers[k].sigma_t;
   }
@@ -173,7 +171,7 @@ float free_run(int k, vec3 start, vec3 delta, float i) {
 // The same for all grids of a part: > 0 steps that must be taken, < 0 steps that may be left out.
 float grids_run(Part part, vec3 start, vec3 delta, float i) {
   float taken = 0, free = 1e9;
-  for (int k = 0; k < LAYERS; ++k) {
+  for (int k = 0; k < layer_count; ++k) {
     if ((part.in_varied >> k & 1u) == 0u) continue;
     float run = free_run(k, to_local(layers[k].field_frame, start), rotate_to_local(layers[k].field_frame, delta), i);
     if (run < 0)
@@ -185,7 +183,7 @@ float grids_run(Part part, vec3 start, vec3 delta, float i) {
 }
 
 bool grids_alone(Part part) {
-  for (int k = 0; k < LAYERS; ++k)
+  for (int k = 0; k < layer_count; ++k)
     if ((part.in_varied >> k & 1u) != 0u && layers[k].field != field_grid) return false;
   return part.in_constant == 0u;
 }
@@ -200,14 +198,14 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
     float share = measure(part);
     float n = step_length > 0 ? clamp(ceil(share / step_length), 1, 1048576)
                               : max(1, floor(float(steps) * (share / total) + 0.5));
-    bool even = part.zone == 0 && part.rate == 0;
+    bool even = !part.zone && !part.grows;
     float h = (part.hi - part.lo) / n, until = n;
 #if GRIDS
     bool skips = skip_empty != 0 && even && grids_alone(part) && !may_be_deep(part, h);
     if (skips) until = at_step;
 #endif
     // Around the light from it, otherwise from the beginning of the part.
-    float base = part.zone != 0 ? seen.t : part.lo, fall = exp_minus_one(-0.5 * part.rate * (part.hi - part.lo));
+    float base = part.zone ? seen.t : part.lo, fall = exp_minus_one(-0.5 * growth * (part.hi - part.lo));
     for (; at_step < n; ++at_step) {
       if (out_of_budget()) return false;
       ++work;
@@ -230,10 +228,10 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
             end[e] = part.lo - base;
           else if (i == n)
             end[e] = part.hi - base;
-          else if (part.zone != 0)
+          else if (part.zone)
             end[e] = seen.h * stretch(mix(part.u_lo, part.u_hi, s));
           else
-            end[e] = -(2 / part.rate) * log_one_plus(s * fall);
+            end[e] = -(2 / growth) * log_one_plus(s * fall);
         }
         middle = 0.5 * (end[0] + end[1]);
         length_ = end[1] - end[0];
@@ -241,7 +239,7 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
       }
       ended = all_above(depth, darkest);
       if (ended) return true;
-      float x = part.zone != 0 ? middle : (base - seen.t) + middle;
+      float x = part.zone ? middle : (base - seen.t) + middle;
       if (may_be_deep(part, length_)) {
         float half_length = 0.5 * length_;
         if (!march_deep_step(part, origin, direction, base + middle - half_length, x - half_length, length_, own))

@@ -6,6 +6,7 @@
 
 #include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/device_plan.h"
+#include "gpu/ray_marcher/scene_data.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
@@ -141,6 +142,8 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
+  if (scene.media.size() > most_layers)
+    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_layers));
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {

@@ -13,6 +13,8 @@ namespace airlight::gpu {
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
 
+inline constexpr std::size_t most_layers = 15;  // bits of spacing.glsl
+
 struct LayerData {
   Float3 sigma_t;
   float constant;

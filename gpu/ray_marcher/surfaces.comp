@@ -31,7 +31,7 @@ vec3 transmittance_to(int own, dvec3 point, vec3 towards, dvec3 to_light, double
   if (primitive_blocks(own, true, point, to_light, distance_) || tree_blocks(own, point, to_light, distance_)) return vec3(0);
   ++shadow_ray_count;
   vec3 depth = vec3(0);
-  for (int k = 0; k < LAYERS; ++k)
+  for (int k = 0; k < layer_count; ++k)
     depth += layers[k].sigma_t * column_of(k, vec3(point - middle), towards, float(min(distance_, 1e37LF)));
   return exp(-depth);
 }

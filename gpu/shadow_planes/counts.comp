@@ -57,7 +57,7 @@ bool is_crossed(int triangle, Shear shear, dvec3 y, double end) {
 int crossed_triangles(dvec3 y, double end, int node, int last) {
   int sum = 0;
   dvec3 direction = y / end;
-  TreeRay ray = tree_ray_of(light, direction);
+  TreeRay ray = tree_ray_of(vec3(light - tree_middle), vec3(direction));
   ray.octant = 0;
   Shear shear = shear_of(direction);
   float until = float(end) * (1 + 1e-6);

@@ -24,7 +24,7 @@ void FanOnDevice::fill(const scene::Camera& camera, const Point3& light, const L
   sectors_.bind(at::sectors);
   bind(*count_);
   edges.dispatch(*count_);
-  begin_->dispatch(EdgeFan::total_sectors());
+  begin_->dispatch((EdgeFan::total_sectors() + sectors_per_group - 1) / sectors_per_group * 128);
   bind(*list_);
   edges.dispatch(*list_);
 }

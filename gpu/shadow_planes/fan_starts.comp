@@ -7,12 +7,19 @@ layout(std430, binding = AT_STARTS) writeonly buffer Starts { ivec2 sector_list[
 shared int of_group, first_of_group;
 
 void main() {
-  int sector = int(gl_GlobalInvocationID.x);
+  int first = int(gl_WorkGroupID.x) * SECTORS_PER_GROUP + int(gl_LocalInvocationID.x), count = 0;
+  int last = min(FAN_SECTORS, (int(gl_WorkGroupID.x) + 1) * SECTORS_PER_GROUP);
   if (gl_LocalInvocationID.x == 0) of_group = 0;
   barrier();
-  int count = sector < FAN_SECTORS ? sector_count[sector] : 0, before = count > 0 ? atomicAdd(of_group, count) : 0;
+  for (int sector = first; sector < last; sector += LOCAL_SIZE_X) count += sector_count[sector];
+  int begin = count > 0 ? atomicAdd(of_group, count) : 0;
   barrier();
   if (gl_LocalInvocationID.x == 0) first_of_group = of_group > 0 ? atomicAdd(listed, of_group) : 0;
   barrier();
-  if (sector < FAN_SECTORS) sector_list[sector] = first_of_group + before + ivec2(0, count);
+  begin += first_of_group;
+  for (int sector = first; sector < last; sector += LOCAL_SIZE_X) {
+    int end = begin + sector_count[sector];
+    sector_list[sector] = ivec2(begin, end);
+    begin = end;
+  }
 }

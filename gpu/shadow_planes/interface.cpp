@@ -10,6 +10,7 @@ using shadow_planes::EdgeFan;
 
 std::map<std::string, std::string> shared_definitions() {
   std::map<std::string, std::string> definitions = {{"EDGES_PER_GROUP", std::to_string(edges_per_group)},
+                                                    {"SECTORS_PER_GROUP", std::to_string(sectors_per_group)},
                                                     {"MOST_HITS", std::to_string(most_hits)},
                                                     {"FAN_LEVELS", std::to_string(EdgeFan::levels)},
                                                     {"FAN_SECTORS", std::to_string(EdgeFan::total_sectors())},
@@ -33,6 +34,7 @@ std::map<std::string, std::string> shared_definitions() {
                                                   {"MESH_EDGES", at::mesh_edges},
                                                   {"MESH_SIDES", at::mesh_sides},
                                                   {"SECTORS", at::sectors},
+                                                  {"DISTANCES", at::distances},
                                                   {"AIRLIGHT_LAYER", at::airlight_layer},
                                                   {"TRANSMITTANCE_LAYER", at::transmittance_layer},
                                                   {"SURFACE_LAYER", at::surface_layer},

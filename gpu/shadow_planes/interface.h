@@ -33,6 +33,7 @@ enum Binding {
   mesh_sides = 5,
   sectors = 1,  // fan.comp
   // composition.comp
+  distances = 1,
   airlight_layer = 0,
   transmittance_layer = 3,
   surface_layer = 4,
@@ -44,7 +45,8 @@ enum Binding {
 }  // namespace at
 
 constexpr int edges_per_group = 64;  // of indirect dispatches
-constexpr int most_hits = 32;        // crossings that a pixel gathers at a time
+constexpr int sectors_per_group = 1024;
+constexpr int most_hits = 32;  // crossings that a pixel gathers at a time
 
 // The layout of light_state.glsl, without left_out.
 struct LightStateData {

@@ -76,10 +76,13 @@ void shade(ivec2 pixel, int place) {
   if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit.airlight.rgb;  // that of all lights
   vec3 in_air = airlight_of(ray, end, primitive, m, state, m_end, work);
 #if CROSSINGS
-  states[place] = state;
   if (resume == 0) atomicAdd(crossing_total, uint(work.crossings));
-  atomicAdd(gathering_total, uint(work.gatherings));
-  if (state.unfinished != 0) unfinished_here = true;
+  if (work.gatherings != 0) atomicAdd(gathering_total, uint(work.gatherings));
+  states[place].unfinished = state.unfinished;
+  if (state.unfinished != 0) {
+    states[place] = state;
+    unfinished_here = true;
+  }
 #endif
   atomicAdd(part_sum, uint(work.parts));
   if (state.unfinished != 0) return;

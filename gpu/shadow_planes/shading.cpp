@@ -8,9 +8,10 @@ namespace airlight::gpu::planes {
 
 using shadow_planes::Options;
 
-LitPicture::LitPicture(Frame& frame, const scene::View& v, bool with_primitives, bool crossings, int dispatches)
+LitPicture::LitPicture(Frame& frame, const scene::View& v, bool hits, bool crossings, int dispatches)
     : view(v),
-      primitives(with_primitives ? &frame.buffers.get("primitives", std::size_t(v.width) * v.height * 4) : nullptr),
+      distances(hits ? &frame.buffers.get("distances", std::size_t(v.width) * v.height * 4) : nullptr),
+      primitives(hits ? &frame.buffers.get("primitives", std::size_t(v.width) * v.height * 4) : nullptr),
       pixels(frame.buffers.get("light of pixels", std::size_t(v.width) * v.height * 32)),
       states(frame.buffers.get("states of pixels", crossings ? std::size_t(v.width) * v.height * 48 : 48)),
       counters(frame.buffers.get("counters", sizeof(CountersData) + 16 * std::size_t(dispatches))) {
@@ -118,8 +119,7 @@ void PlaneShading::add(LitPicture& picture, int index, int term, const Edges& li
 void PlaneShading::compose(const LitPicture& picture, const Layers& layers) const {
   const Use use(context_);
   Program& p = composition_;
-  if (picture.primitives) picture.primitives->bind(at::primitives);
-  if (surfaces_) surfaces_->bind();
+  if (picture.distances) picture.distances->bind(at::distances);
   picture.pixels.bind(at::pixels);
   airlight_terms_.bind_media(p);
   layers.airlight.bind(at::airlight_layer);
@@ -127,8 +127,7 @@ void PlaneShading::compose(const LitPicture& picture, const Layers& layers) cons
   layers.surface.bind(at::surface_layer);
   layers.mean.bind(at::mean_layer);
   set_view(p, picture.view);
-  p.set("triangle_count", surfaces_ ? surfaces_->triangles() : 0);
-  p.set("has_primitives", picture.primitives != nullptr);
+  p.set("has_distances", picture.distances != nullptr);
   p.set("lights", !picture.empty);
   p.set("ambient", options_.ambient ? scene_->ambient_in_scatter : Rgb::Zero());
   p.dispatch(picture.view.width, picture.view.height);

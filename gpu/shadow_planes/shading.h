@@ -14,13 +14,13 @@ namespace airlight::gpu::planes {
 // What lights leave in a picture, in a frame's buffers.
 struct LitPicture {
   // Clears the counters. `crossings`: edges are crossed; `dispatches`: of lights and airs, those that go on included.
-  LitPicture(Frame&, const scene::View&, bool primitives, bool crossings, int dispatches);
+  LitPicture(Frame&, const scene::View&, bool hits, bool crossings, int dispatches);
   scene::View view;
-  const Buffer* primitives;       // of the first hits; null: there are none
-  const Buffer &pixels, &states;  // the layouts of pixels.glsl, state.glsl
-  Buffer& counters;               // that of counters.glsl
-  int next_groups = 1;            // of its resume_groups, the first that no dispatch writes yet
-  bool empty = true;              // nothing is in the pixels yet
+  const Buffer *distances, *primitives;  // of the first hits; null: there are none
+  const Buffer &pixels, &states;         // the layouts of pixels.glsl, state.glsl
+  Buffer& counters;                      // that of counters.glsl
+  int next_groups = 1;                   // of its resume_groups, the first that no dispatch writes yet
+  bool empty = true;                     // nothing is in the pixels yet
 };
 
 class PlaneShading {

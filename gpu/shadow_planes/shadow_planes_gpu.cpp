@@ -27,7 +27,7 @@ constexpr int most_degree = 16, most_media = 32;  // single precision; bits of a
 
 class PreparedShadowPlanesGpu final : public scene::Prepared {
  public:
-  PreparedShadowPlanesGpu(std::shared_ptr<const Scene>, const Options&);
+  PreparedShadowPlanesGpu(std::shared_ptr<const Scene>, const Options&, FirstHits::Way);
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
@@ -35,7 +35,7 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  void prepare();
+  void prepare(FirstHits::Way);
   void find_silhouettes() const;  // of every light
   const SurfacesOnDevice* surfaces_on_device() const { return first_hits_ ? &first_hits_->surfaces() : nullptr; }
   int shaded_airs() const { return int(scene_->lights.size()) * std::max(1, airlight_terms_.count()); }
@@ -61,23 +61,24 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
-PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options)
+PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options,
+                                                 FirstHits::Way way)
     : scene_(std::move(scene)),
       options_(options),
       context_(Context::get()),
       airlight_terms_(context_, scene_, options),
       frame_(context_) {
-  prepare();
+  prepare(way);
 }
 
-void PreparedShadowPlanesGpu::prepare() {
+void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
   const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
   const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
                                  [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
   StageTimer timer(context_);
   if (surfaces || balls) {
     timer.begin("upload");
-    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+    first_hits_ = std::make_unique<FirstHits>(context_, *scene_, true, way);
   }
   shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airlight_terms_, surfaces_on_device());
   if (lit && surfaces) {
@@ -174,7 +175,7 @@ void PreparedShadowPlanesGpu::draw(const View& view) const {
   LitPicture picture(frame_, view, first_hits_ != nullptr, silhouettes_ != nullptr, shaded_airs() * rounds_);
   if (first_hits_) {
     frame_.timer.begin("distances");
-    first_hits_->find(view, frame_.buffers.get("distances", pixels * 4), picture.primitives);
+    first_hits_->find(view, *picture.distances, picture.primitives);
   }
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) add_light(int(l), picture);
   frame_.timer.begin("composition");
@@ -243,6 +244,9 @@ std::vector<scene::SettingSpec> ShadowPlanesGpu::settings() const {
     if (setting.name == "nodes") setting.fallback = "16";
     if (setting.name == "stretch") setting.fallback = "3";
   }
+  settings.push_back(scene::choice_setting("first_hits", "tree", {"tree", "raster"},
+                                           "what ends camera rays; raster: by the rasteriser, faster on some devices, "
+                                           "to 1/256 pixel at silhouettes"));
   return settings;
 }
 
@@ -260,7 +264,9 @@ std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const sce
 std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                     const scene::Settings& settings,
                                                                     const Execution&) const {
-  return std::make_unique<PreparedShadowPlanesGpu>(std::move(scene), shadow_planes::read_options(settings));
+  return std::make_unique<PreparedShadowPlanesGpu>(
+      std::move(scene), shadow_planes::read_options(settings),
+      settings.text("first_hits") == "raster" ? FirstHits::Way::raster : FirstHits::Way::tree);
 }
 
 }  // namespace airlight::gpu

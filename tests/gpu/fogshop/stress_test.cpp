@@ -81,7 +81,7 @@ TEST_CASE("depths under extreme inputs on the device", "[gpu]") {
                                grey_fog({{gaussian(c.a, c.c, c.b)}, 0, infinity}), Point3::Zero(), c.d, nullptr)
                            .depth;
     // The error function is good to 3.3e-7. The depth of a step of 1e-15 is lost in its rounding.
-    CHECK(std::abs(got - c.expected) <= 3.3e-7 * c.c * std::sqrt(pi) / c.a);
+    CHECK(std::abs(got - c.expected) <= (3.3e-7 + gpu::test::injected_error()) * c.c * std::sqrt(pi) / c.a);
   }
 }
 
@@ -98,8 +98,9 @@ TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]"
     slices.boxes = true;
     const Line ray{c.view, Vec3::UnitZ(), c.d};
     const double got = one_ray(*context, slices, fog, c.view, c.d, &c.light).airlight[0];
-    CHECK(std::abs(got / c.expected - 1) <= 1e-3);
-    CHECK(std::abs(got / fogshop_test::ray_airlight(slices, fog, c.light, Rgb::Ones(), ray)[0] - 1) <= 1e-3);
+    const double bound = 1e-3 + 1e4 * gpu::test::injected_error();
+    CHECK(std::abs(got / c.expected - 1) <= bound);
+    CHECK(std::abs(got / fogshop_test::ray_airlight(slices, fog, c.light, Rgb::Ones(), ray)[0] - 1) <= bound);
     // The paper's variant has its own answer; what is below 1e-38 is 0.
     const Options paper = exact(Options::Variant::paper, 8);
     const double ours = one_ray(*context, paper, fog, c.view, c.d, &c.light).airlight[0];
@@ -132,7 +133,7 @@ TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[
     options.source_radius = c.radius;
     const double got =
         one_ray(*context, options, grey_fog({{}, c.beta, infinity}), Point3::Zero(), c.d_vp, &light).airlight[0];
-    CHECK(std::abs(got - c.expected) <= 5e-7 * c.expected);
+    CHECK(std::abs(got - c.expected) <= (5e-7 + 2 * gpu::test::injected_error()) * c.expected);
   }
 }
 

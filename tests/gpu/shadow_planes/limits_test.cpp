@@ -44,7 +44,7 @@ TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_plan
   const auto scene = plates(60);
   compare(scene, {});
   compare(scene, {{"shadows", "signed_sum"}});
-  compare(scene, {{"shadows", "stencil"}});
+  compare(scene, {{"shadows", "stencil"}}, 2e-5, 1.5e-5);
   const scene::Rendering many = render(gpu::ShadowPlanesGpu(), scene, {});
   CHECK(many.counters.at("gatherings_beyond_32") > 100);
   CHECK(many.counters.at("crossings") == render(shadow_planes::ShadowPlanes(), scene, {}).counters.at("crossings"));
@@ -80,23 +80,8 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
                                                                            {"surface.0.boxes", "16641"},
                                                                            {"surface.0.columns", "129"},
                                                                            {"surface.0.lot", "0.0775193798"}}));
-  const scene::Film cpu = render(shadow_planes::ShadowPlanes(), scene, {}).film;
-  const scene::Rendering gpu = render(gpu::ShadowPlanesGpu(), scene, {});
-  CHECK(gpu.counters.at("gatherings_beyond_32") > 100);
-  CHECK(gpu::test::p99(cpu, gpu.film, "airlight") < 1e-5);
-  // Boxes are smaller than pixels: a few show another one, and only these differ.
-  const std::vector<float>&a = cpu.layer("airlight"), &b = gpu.film.layer("airlight");
-  const std::vector<float>&t = cpu.layer("transmittance"), &u = gpu.film.layer("transmittance");
-  const float most = *std::max_element(a.begin(), a.end());
-  int others = 0;
-  for (std::size_t i = 0; i < a.size(); i += 3) {
-    CAPTURE(i / 3, a[i], b[i], t[i], u[i]);
-    if (std::abs(t[i] - u[i]) > 1e-5f)
-      ++others;
-    else
-      CHECK(std::abs(a[i] - b[i]) < 1e-4f * (a[i] + 0.01f * most));
-  }
-  CHECK(others < 20);  // measured: 12 of 768
+  compare(scene, {});
+  CHECK(render(gpu::ShadowPlanesGpu(), scene, {}).counters.at("gatherings_beyond_32") > 100);
   if (!context->software()) return;
   const auto media = scene_of("shadow_planes/media", 16, 12);
   for (const Pairs& given :
