@@ -9,6 +9,7 @@ namespace airlight::gpu::fog {
 namespace {
 
 constexpr int tile = 8;                                     // pixels, to both sides; a tile is a work group
+constexpr int nodes_each = 32, slices_each = 8;             // an invocation: shares.comp, slice_depths.comp
 constexpr std::size_t strip_bytes = std::size_t(64) << 20;  // of the lists, and of what the passes of variant S hand on
 const Definitions square = {{"LOCAL_SIZE_X", std::to_string(tile)}, {"LOCAL_SIZE_Y", std::to_string(tile)}};
 
@@ -158,14 +159,14 @@ void FogOnDevice::compute_strip(const Grid& grid, const Strip& strip, Frame& fra
   if (programs_.stretch) run(programs_.stretch);
   if (programs_.paper) run(programs_.paper);
   if (sliced()) {
-    run(programs_.shares, blocks(RayValues{o.slices, int(model_.lights.size())}.nodes(), 32));
+    run(programs_.shares, blocks(RayValues{o.slices, int(model_.lights.size())}.nodes(), nodes_each));
     run(programs_.edges);
-    run(programs_.slice_depths, blocks(o.slices, 8));
+    run(programs_.slice_depths, blocks(o.slices, slices_each));
     run(programs_.slice_light);
   }
   if (!sky_) return;
   frame.timer.begin("environment");
-  run(programs_.even_depths, blocks(o.slices, 8));
+  run(programs_.even_depths, blocks(o.slices, slices_each));
   run(programs_.sky_light);
 }
 

@@ -9,13 +9,13 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/noise.glsl"
 
 #define EACH_OF_EIGHT(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
-const bool coloured = COLOURED != 0 && EVEN == 0;
+const int slices_each = 8;  // as gpu/fogshop/airlight.cpp
 
 void main() {
   ivec2 pixel = pixel_of_strip();
   int count = near_count();
   if (count < 0) return;
-  int ray = ray_of_strip(), first_slice = 8 * int(gl_WorkGroupID.z);
+  int ray = ray_of_strip(), first_slice = slices_each * int(gl_WorkGroupID.z);
   bool wanted = pixel.x < grid_width;
   float lo = wanted ? ray_value[value_at(EVEN != 0 ? reach_from : slices_from, ray)] : 0;
   float hi = wanted ? ray_value[value_at(EVEN != 0 ? reach_to : slices_to, ray)] : 0;

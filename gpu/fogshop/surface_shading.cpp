@@ -83,7 +83,7 @@ void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
     p.dispatch(group * cells_ * lights, cells_);
   };
   std::vector<int> begins;
-  for (cells_ = 64; begins.empty(); cells_ /= 2) {
+  for (cells_ = 32; begins.empty(); cells_ /= 2) {
     const int count = lights * cells_ * cells_;
     const Buffer numbers(context_, "numbers of Gaussians by direction", std::size_t(count) * 4);
     run(*programs[0], numbers);

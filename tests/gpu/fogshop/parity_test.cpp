@@ -91,7 +91,7 @@ TEST_CASE("fogshop: many Gaussians and slices on the device", "[gpu]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const auto scene = scene_named("count_967");
-  const Pairs many{{"K", "128"}};
+  const Pairs many{{"K", "256"}};
   CHECK(p99(picture(fogshop::Fogshop(), scene, many), picture(gpu::FogshopGpu(), scene, many), "airlight") < 2.2e-6);
   const Pairs exact{{"K", "128"}, {"light_depth", "exact"}};
   if (context->software())

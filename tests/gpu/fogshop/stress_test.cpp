@@ -91,7 +91,7 @@ TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]"
   for (const fogshop_test::StressCase& c : fogshop_test::stress_cases) {
     const Fog fog = grey_fog({{c.gaussian()}, 0, infinity});
     INFO(c.expected);
-    // With the 128 slices that a shader has room for, what is left of K^-4 is below 2e-4. The nearest light, 1e-4 from
+    // With 128 slices, what is left of K^-4 is below 2e-4. The nearest light, 1e-4 from
     // the ray, shines on slices so short that their depths have four digits.
     Options slices = exact(Options::Variant::slices, 128);
     slices.extrapolate = true;
