@@ -6,12 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "gpu/material_tables.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 namespace {
 
 constexpr std::size_t band_bytes = std::size_t(64) << 20;  // of the pixels' state that is on the device at once
@@ -233,4 +232,4 @@ bool PlanOnDevice::unfinished(const Download& download) const {
   return march_rounds_.unfinished(download) || surface_rounds_.unfinished(download);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

@@ -4,13 +4,14 @@
 
 #include "gpu/environment_lights.h"
 #include "gpu/frame.h"
+#include "gpu/material_tables.h"
 #include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/grids_on_device.h"
 #include "gpu/ray_marcher/rounds.h"
 #include "reference/ray_marcher/plan.h"
 #include "scene/renderer.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 // Layers of a film on the device, 3 floats a pixel, and what ends its rays. Null: nothing does.
 struct MarchedFilm {
@@ -36,7 +37,7 @@ class PlanOnDevice {
   bool unfinished(const Download&) const;
 
  private:
-  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage, const FirstHits*, const struct MaterialTables&);
+  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage, const FirstHits*, const MaterialTables&);
   struct Band {
     int first_row, rows;
     const Buffer& pixels;
@@ -62,4 +63,4 @@ class PlanOnDevice {
   Rounds march_rounds_, surface_rounds_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

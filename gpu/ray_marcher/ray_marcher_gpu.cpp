@@ -17,6 +17,8 @@
 namespace airlight::gpu {
 namespace {
 
+using marcher::GridStorage;
+using marcher::PlanOnDevice;
 using ray_marcher::Plan;
 using scene::Execution;
 using scene::Scene;
@@ -76,7 +78,8 @@ bool PreparedMarchGpu::draw(const View& view, const Execution& execution, bool l
   frame_.begin(execution);
   const auto layer = [&](const char* name) -> Buffer& { return frame_.buffers.get(name, 12 * pixels); };
   Buffer& totals = frame_.buffers.get("totals", 8 * sizeof(unsigned));
-  MarchedFilm film{nullptr, nullptr, layer(names[0]), layer(names[1]), layer(names[2]), layer(names[3]), totals};
+  marcher::MarchedFilm film{nullptr,         nullptr,         layer(names[0]), layer(names[1]),
+                            layer(names[2]), layer(names[3]), totals};
   if (first_hits_) {
     film.distances = &frame_.buffers.get("distances", 4 * pixels);
     film.primitives = &frame_.buffers.get("primitives", 4 * pixels);
@@ -142,8 +145,8 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
-  if (scene.media.size() > most_layers)
-    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_layers));
+  if (scene.media.size() > marcher::most_layers)
+    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), marcher::most_layers));
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {

@@ -4,7 +4,7 @@
 
 #include "scene/renderer.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 namespace {
 
 constexpr int software_budget = 3000, budget = 100000;     // iterations of loops, about
@@ -56,4 +56,4 @@ bool Rounds::unfinished(const Download& download) const {
   return false;
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

@@ -10,7 +10,7 @@
 #include "gpu/frame.h"
 #include "gpu/program.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 class Rounds {
  public:
@@ -43,4 +43,4 @@ class Rounds {
   std::vector<Band> bands_;  // of this frame
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

@@ -5,7 +5,7 @@
 
 #include "reference/ray_marcher/shapes.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 namespace {
 
 using ray_marcher::Frame;
@@ -155,4 +155,4 @@ std::vector<LightData> light_data(const ray_marcher::Plan& plan, const Point3& m
   return data;
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

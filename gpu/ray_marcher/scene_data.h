@@ -8,7 +8,7 @@
 
 #include "reference/ray_marcher/plan.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
@@ -71,4 +71,4 @@ void grid_slice(const ray_marcher::GridField&, int z, std::vector<float>& values
 std::vector<SolidData> solid_data(const ray_marcher::Plan&, const Point3& middle);
 std::vector<LightData> light_data(const ray_marcher::Plan&, const Point3& middle);
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

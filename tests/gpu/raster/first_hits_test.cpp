@@ -182,6 +182,36 @@ TEST_CASE("triangles seen from their edge are met within their reach", "[gpu][ra
   CHECK(outside == 0);
 }
 
+// Sixty thousand hairs, each from one side of a ball to the other: a ray is in nearly all their boxes, and at more nodes of
+// the tree than llvmpipe goes through loops.
+TEST_CASE("rays go on in a next dispatch where loops would end", "[gpu][raster]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  scene::Random random;
+  scene::TriangleMesh hairs;
+  for (int i = 0; i < 60000; ++i) {
+    const Vec3 end = random.direction(), other = (0.3 * random.direction() - end).normalized();
+    hairs.vertices.insert(hairs.vertices.end(), {end, other, end + 1e-6 * random.direction()});
+    hairs.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  Scene scene =
+      made("hairs", {scene::surface_of(hairs), scene::surface_of(scene::make_box({{-2, -1.5, -3}, {1.5, 1.5, -2}}))},
+           scene::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}));
+  const Agreement a = compare(*context, scene, {scene.camera, 16, 12});
+  CAPTURE(a.first);
+  CHECK(a.hits > 20);
+  CHECK(a.wrong == 0);
+  CHECK(a.moved == 0);
+  if (!context->software()) return;
+  const scene::View view{scene.camera, 16, 12};
+  const gpu::FirstHits pass(*context, scene);
+  CHECK(pass.tree().nodes() > 2 * 12000);
+  const gpu::Buffer distances(*context, "distances", 16 * 12 * 4);
+  const long before = gpu::Program::dispatches();
+  pass.find(view, distances);
+  CHECK(gpu::Program::dispatches() - before > 2);
+}
+
 TEST_CASE("first hits that do not fit into a buffer are refused in one line", "[gpu][raster]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "gpu/raster/first_hits.h"
-#include "gpu/raster/pixel_ends.h"
 #include "scene/scene.h"
+#include "tests/gpu/raster/pixel_ends.h"
 
 namespace airlight::gpu::test {
 
