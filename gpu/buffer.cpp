@@ -3,12 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "scene/error.h"
 
 namespace airlight::gpu {
 
-Buffer::Buffer(Context& context, const std::string& name, std::size_t bytes)
+bool poisoned() {
+  static const bool set = [] {
+    const char* variable = std::getenv("AIRLIGHT_GPU_POISON");
+    return variable && *variable;
+  }();
+  return set;
+}
+
+Buffer::Buffer(Context& context, const std::string& name, std::size_t bytes, Contents contents)
     : context_(&context), name_(name), bytes_(bytes) {
   const Limits& limits = context.limits();
   if (bytes > limits.storage_block)
@@ -17,26 +26,38 @@ Buffer::Buffer(Context& context, const std::string& name, std::size_t bytes)
                                   double(limits.storage_block) / (1 << 20)));
   const Use use(context);
   const Gl& gl = context.gl();
-  gl.CreateBuffers(1, &id_);
+  GLuint id = 0;
+  gl.CreateBuffers(1, &id);
+  id_ = Handle(context, id, [](const Gl& gl, GLuint id) { gl.DeleteBuffers(1, &id); });
   gl.NamedBufferStorage(id_, GLsizeiptr(std::max<std::size_t>(4, bytes)), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  ++context.traffic().allocations;
   context.check("making buffer '" + name + "'");
-  gl.ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  context.label(GL_BUFFER, id_, name);
+  if (contents == Contents::zeros) clear();
+  if (contents == Contents::undefined && poisoned()) poison();
 }
 
-Buffer::~Buffer() {
-  const Use use(*context_);
-  context_->gl().DeleteBuffers(1, &id_);
-}
-
-void Buffer::bind(int binding) const { context_->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), id_); }
+void Buffer::bind(int binding) const { bind_as(GL_SHADER_STORAGE_BUFFER, binding); }
 
 void Buffer::bind_as(GLenum target) const { context_->gl().BindBuffer(target, id_); }
+
+void Buffer::bind_as(GLenum target, int binding) const { context_->gl().BindBufferBase(target, GLuint(binding), id_); }
+
+void Buffer::clear() { fill(0); }
+
+void Buffer::poison() { fill(~0u); }
+
+void Buffer::fill(GLuint word) {
+  const Use use(*context_);
+  context_->gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
 
 void Buffer::write(const void* data, std::size_t bytes) {
   if (bytes > bytes_) throw Error(fmt::format("gpu: buffer '{}' holds {} bytes, {} were given", name_, bytes_, bytes));
   if (bytes == 0) return;
   const Use use(*context_);
   context_->gl().NamedBufferSubData(id_, 0, GLsizeiptr(bytes), data);
+  context_->traffic().bytes_up += long(bytes);
   context_->check("filling buffer '" + name_ + "'");
 }
 
@@ -44,7 +65,15 @@ void Buffer::read(void* data, std::size_t bytes) const {
   if (bytes == 0) return;
   const Use use(*context_);
   context_->gl().GetNamedBufferSubData(id_, 0, GLsizeiptr(bytes), data);
+  context_->traffic().bytes_down += long(bytes);
+  ++context_->traffic().syncs;
   context_->check("reading buffer '" + name_ + "'");
+}
+
+void Buffer::copy_to(GLuint buffer, std::size_t offset, std::size_t bytes) const {
+  if (bytes > bytes_) throw Error(fmt::format("gpu: buffer '{}' holds {} bytes, not {}", name_, bytes_, bytes));
+  const Use use(*context_);
+  context_->gl().CopyNamedBufferSubData(id_, buffer, 0, GLintptr(offset), GLsizeiptr(bytes));
 }
 
 }  // namespace airlight::gpu

@@ -29,6 +29,23 @@ void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, co
   if (errors.size() < 8) errors.emplace_back(text, length < 0 ? std::char_traits<char>::length(text) : length);
 }
 
+std::string name_of_error(GLenum code) {
+  switch (code) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_CONTEXT_LOST:
+      return "GL_CONTEXT_LOST";
+    default:
+      return fmt::format("error {:#x}", code);
+  }
+}
+
 std::string key_of(std::string file, const std::map<std::string, std::string>& definitions) {
   for (const auto& [name, value] : definitions) file += fmt::format(" {}={}", name, value);
   return file;
@@ -56,7 +73,7 @@ bool Context::device_was_chosen() { return wish() != "auto" && wish() != "none";
 Attempt Context::attempt(const Place& place, std::unique_ptr<EglContext>& context) {
   Attempt result{place, {}, {}, {}, {}};
   try {
-    context = Egl::get().make_context(place);
+    context = Egl::get().make_context(place, debug_wanted());
     context->make_current();
     const auto get_string = reinterpret_cast<PFNGLGETSTRINGPROC>(context->function("glGetString"));
     const auto text = [&](GLenum name) {
@@ -118,15 +135,20 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
     : attempt_(std::move(attempt)), egl_(std::move(egl)) {
   egl_->make_current();
   load_gl([&](const char* name) { return egl_->function(name); }, gl_);  // what it lacks, attempt() has told
-  gl_.Enable(GL_DEBUG_OUTPUT);
-  gl_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  gl_.DebugMessageCallback(on_message, &errors_);
+  debugging_ = debug_wanted();
+  if (debugging_) {
+    gl_.Enable(GL_DEBUG_OUTPUT);
+    gl_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    gl_.DebugMessageCallback(on_message, &errors_);
+  }
   GLint64 bytes = 0;
   gl_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
   limits_.storage_block = std::size_t(bytes);
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &limits_.storage_blocks);
+  gl_.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &limits_.storage_bindings);
   for (GLuint axis = 0; axis < 3; ++axis)
     gl_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits_.groups[axis]);
+  gl_.GetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &limits_.invocations);
   gl_.GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &limits_.shared_memory);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.texture_size_3d);
   gl_.GetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &limits_.texture_units);
@@ -144,19 +166,52 @@ std::string Context::description() const {
 bool Context::software() const { return attempt_.place.software; }
 
 void Context::check(const std::string& what) {
-  if (errors_.empty()) return;
-  const std::string first = errors_.front();
+  const GLenum code = gl_.GetError();
+  if (code == GL_NO_ERROR && errors_.empty()) return;
+  const std::string words = errors_.empty() ? name_of_error(code) : errors_.front();
+  forget_errors();
+  if (code == GL_OUT_OF_MEMORY) throw Unavailable(fmt::format("gpu: {}: {} is out of memory", what, attempt_.renderer));
+  throw Error(fmt::format("gpu: {} failed on {}: {}", what, attempt_.renderer, words));
+}
+
+// A lost context answers GL_CONTEXT_LOST for ever.
+void Context::forget_errors() {
+  for (int i = 0; i < 8 && gl_.GetError() != GL_NO_ERROR; ++i) {
+  }
   errors_.clear();
-  throw Error(fmt::format("gpu: {} failed on {}: {}", what, attempt_.renderer, first));
+}
+
+void Context::wait() {
+  const Use use(*this);
+  ++traffic_.syncs;
+  const GLsync fence = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  while (gl_.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000) == GL_TIMEOUT_EXPIRED) {
+  }
+  gl_.DeleteSync(fence);
+  check("waiting for the device");
+}
+
+void Context::label(GLenum kind, GLuint id, const std::string& name) {
+  if (debugging_) gl_.ObjectLabel(kind, id, GLsizei(name.size()), name.c_str());
+}
+
+void Context::begin_group(const std::string& name) {
+  if (debugging_) gl_.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(name.size()), name.c_str());
+}
+
+void Context::end_group() {
+  if (debugging_) gl_.PopDebugGroup();
 }
 
 Program& Context::program(const std::string& file, const std::map<std::string, std::string>& definitions) {
+  ++traffic_.look_ups;
   auto& program = programs_[key_of(file, definitions)];
   if (!program) program = std::make_unique<Program>(*this, file, definitions);
   return *program;
 }
 
 RasterProgram& Context::raster_program(const std::string& name, const std::map<std::string, std::string>& definitions) {
+  ++traffic_.look_ups;
   auto& program = raster_programs_[key_of(name, definitions)];
   if (!program) program = std::make_unique<RasterProgram>(*this, name, definitions);
   return *program;

@@ -4,10 +4,12 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/egl.h"
 #include "gpu/gl.h"
+#include "gpu/traffic.h"
 
 namespace airlight::gpu {
 
@@ -17,8 +19,10 @@ class RasterProgram;
 // What a shader may count on; checked by those who need more than OpenGL's minimum.
 struct Limits {
   std::size_t storage_block = 0;  // bytes of one storage buffer
-  int storage_blocks = 0;         // bound in one compute shader
+  int storage_blocks = 0;         // in one compute shader; OpenGL promises 8
+  int storage_bindings = 0;       // numbers of their bindings; likewise
   int groups[3] = {0, 0, 0};      // work groups of a dispatch
+  int invocations = 0;            // of a work group
   int shared_memory = 0;          // bytes
   int texture_size_3d = 0, texture_size = 0;
   int texture_units = 0;                                       // of a compute shader
@@ -48,13 +52,29 @@ class Context {
   bool software() const;  // llvmpipe and its like: its times are not those of a GPU
   const Limits& limits() const { return limits_; }
   const Gl& gl() const { return gl_; }
+  // All that this context has done so far. Under Use, as the calls that it counts.
+  Traffic& traffic() { return traffic_; }
 
-  // Throws Error with the driver's words if a call has failed since the last check. `what` names the work done.
+  // Throws Error with the driver's words if a call has failed since the last check, Unavailable if for want of memory.
+  // `what` names the work done. Without a debug context drivers say little: the name of the error.
   void check(const std::string& what);
+  // For calls of which a frame does many: checks with a debug context only; the frame's end checks in any case.
+  void check_closely(const std::string& what) {
+    if (debugging_) check(what);
+  }
   // For those who tell the failure in words of their own.
-  void forget_errors() { errors_.clear(); }
+  void forget_errors();
+  // Until the device has done all it was told.
+  void wait();
 
-  // Compute programs by file name and definitions, compiled once (program.h).
+  // The variable AIRLIGHT_GPU_DEBUG is set: a debug context, whose driver explains every error at once.
+  bool debugging() const { return debugging_; }
+  // Names for debuggers; nothing without a debug context.
+  void label(GLenum kind, GLuint id, const std::string& name);
+  void begin_group(const std::string& name);
+  void end_group();
+
+  // Compute programs by file name and definitions, compiled once (program.h). Each call is a look-up.
   Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});
   // The same for gpu/<name>.vert and gpu/<name>.frag (raster_program.h).
   RasterProgram& raster_program(const std::string& name, const std::map<std::string, std::string>& definitions = {});
@@ -70,6 +90,8 @@ class Context {
   std::unique_ptr<EglContext> egl_;
   Gl gl_;
   Limits limits_;
+  Traffic traffic_;
+  bool debugging_ = false;
   std::vector<std::string> errors_;
   std::map<std::string, std::unique_ptr<Program>> programs_;
   std::map<std::string, std::unique_ptr<RasterProgram>> raster_programs_;
@@ -87,6 +109,32 @@ class Use {
 
  private:
   std::unique_lock<std::recursive_mutex> lock_;
+};
+
+// Owns a GL object: deleted with this, also where a constructor throws after making it.
+class Handle {
+ public:
+  using Delete = void (*)(const Gl&, GLuint);
+  Handle() = default;
+  Handle(Context& context, GLuint id, Delete remove) : context_(&context), id_(id), remove_(remove) {}
+  Handle(Handle&& other) noexcept { *this = std::move(other); }
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(id_, other.id_);
+    std::swap(remove_, other.remove_);
+    return *this;
+  }
+  ~Handle() {
+    if (!id_) return;
+    const Use use(*context_);
+    remove_(context_->gl(), id_);
+  }
+  operator GLuint() const { return id_; }
+
+ private:
+  Context* context_ = nullptr;
+  GLuint id_ = 0;
+  Delete remove_ = nullptr;
 };
 
 }  // namespace airlight::gpu

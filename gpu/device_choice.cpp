@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace airlight::gpu {
 namespace {
@@ -26,6 +27,11 @@ bool fits(const Attempt& attempt, const std::string& wanted) {
   if (is_number(wanted)) return attempt.place.name == "device " + wanted;
   return attempt.place.name == wanted || small_letters(attempt.vendor).find(wanted) != std::string::npos ||
          small_letters(attempt.renderer).find(wanted) != std::string::npos;
+}
+
+bool debug_wanted() {
+  const char* variable = std::getenv("AIRLIGHT_GPU_DEBUG");
+  return variable && *variable && std::string(variable) != "0";
 }
 
 std::string refusal(const std::vector<Attempt>& attempts, const std::string& wish) {

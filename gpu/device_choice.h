@@ -17,6 +17,9 @@ bool fits(const Attempt&, const std::string& wish);
 // One line: no place fulfils the wish, and what there is.
 std::string refusal(const std::vector<Attempt>&, const std::string& wish);
 
+// The variable AIRLIGHT_GPU_DEBUG is set, and not to 0: contexts are debug contexts.
+bool debug_wanted();
+
 // Fetches the entry points of gl.h into `gl`. What a context lacks, empty if nothing: entry points, or OpenGL 4.5. It
 // must be current. `function` is eglGetProcAddress, which may answer for functions that a driver has not: so the
 // version is asked for as well.

@@ -92,7 +92,7 @@ std::vector<Place> Egl::places() const {
   return all;
 }
 
-std::unique_ptr<EglContext> Egl::make_context(const Place& place) const {
+std::unique_ptr<EglContext> Egl::make_context(const Place& place, bool debug) const {
   const auto fail = [&](const char* step) { throw Unavailable(fmt::format("{}: {}: {}", place.name, step, error())); };
   std::unique_ptr<EglContext> result(new EglContext(*this));
   result->display_ = f_->get_platform_display(place.device ? EGL_PLATFORM_DEVICE_EXT : EGL_PLATFORM_SURFACELESS_MESA,
@@ -114,7 +114,7 @@ std::unique_ptr<EglContext> Egl::make_context(const Place& place) const {
                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                EGL_CONTEXT_OPENGL_DEBUG,
-                               EGL_TRUE,
+                               debug ? EGL_TRUE : EGL_FALSE,
                                EGL_NONE};
   result->context_ = f_->create_context(result->display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   if (result->context_ == EGL_NO_CONTEXT) fail("eglCreateContext(OpenGL 4.5 core)");

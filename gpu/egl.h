@@ -56,7 +56,7 @@ class Egl {
   std::vector<Place> places() const;
 
   // Throws Unavailable that names the step which failed and EGL's error.
-  std::unique_ptr<EglContext> make_context(const Place&) const;
+  std::unique_ptr<EglContext> make_context(const Place&, bool debug) const;
 
  private:
   friend class EglContext;

@@ -11,7 +11,9 @@ namespace airlight::gpu {
   X(PFNGLGETINTEGERVPROC, GetIntegerv) X(PFNGLGETINTEGER64VPROC, GetInteger64v)                                      \
   X(PFNGLGETINTEGERI_VPROC, GetIntegeri_v) X(PFNGLENABLEPROC, Enable)                                                \
   X(PFNGLGETERRORPROC, GetError)                                                                                     \
-  X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback)                                                             \
+  X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback) X(PFNGLOBJECTLABELPROC, ObjectLabel)                        \
+  X(PFNGLPUSHDEBUGGROUPPROC, PushDebugGroup) X(PFNGLPOPDEBUGGROUPPROC, PopDebugGroup)                                \
+  X(PFNGLFENCESYNCPROC, FenceSync) X(PFNGLCLIENTWAITSYNCPROC, ClientWaitSync) X(PFNGLDELETESYNCPROC, DeleteSync)     \
   /* programs */                                                                                                     \
   X(PFNGLCREATESHADERPROC, CreateShader) X(PFNGLSHADERSOURCEPROC, ShaderSource)                                      \
   X(PFNGLCOMPILESHADERPROC, CompileShader) X(PFNGLGETSHADERIVPROC, GetShaderiv)                                      \
@@ -19,16 +21,21 @@ namespace airlight::gpu {
   X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(PFNGLATTACHSHADERPROC, AttachShader)                                    \
   X(PFNGLLINKPROGRAMPROC, LinkProgram) X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                        \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                          \
+  X(PFNGLGETPROGRAMRESOURCEINDEXPROC, GetProgramResourceIndex)                                                        \
+  X(PFNGLGETPROGRAMRESOURCEIVPROC, GetProgramResourceiv)                                                              \
   X(PFNGLUSEPROGRAMPROC, UseProgram) X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                              \
+  X(PFNGLGETPROGRAMINTERFACEIVPROC, GetProgramInterfaceiv)                                                           \
   X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i) X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                      \
   X(PFNGLPROGRAMUNIFORM3FPROC, ProgramUniform3f) X(PFNGLPROGRAMUNIFORMMATRIX3FVPROC, ProgramUniformMatrix3fv)        \
   X(PFNGLPROGRAMUNIFORM1DPROC, ProgramUniform1d) X(PFNGLPROGRAMUNIFORM3DPROC, ProgramUniform3d)                      \
   X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute) X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                              \
+  X(PFNGLDISPATCHCOMPUTEINDIRECTPROC, DispatchComputeIndirect)                                                       \
   /* buffers */                                                                                                      \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers) X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                  \
   X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage) X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)              \
   X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData) X(PFNGLCLEARNAMEDBUFFERDATAPROC, ClearNamedBufferData)    \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase) X(PFNGLBINDBUFFERPROC, BindBuffer)                                      \
+  X(PFNGLCOPYNAMEDBUFFERSUBDATAPROC, CopyNamedBufferSubData) X(PFNGLMAPNAMEDBUFFERRANGEPROC, MapNamedBufferRange)    \
   /* raster passes */                                                                                                \
   X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers) X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)              \
   X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)                                                       \

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <regex>
+
 #include "gpu/shader_source.h"
 #include "scene/error.h"
 
@@ -14,6 +17,25 @@ std::string refusal(const std::string& files, const char* what, Context& context
   return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
 }
 
+// What a driver may have meant by its refusal; empty if the shader stays within the device's storage blocks. Counts what
+// stands in the text, also in branches that definitions left out.
+std::string beyond_storage(const std::string& file, GLenum stage, const std::string& text, const Context& context) {
+  static const std::regex block(R"(layout\s*\([^)]*binding\s*=\s*(\d+)\s*\)[^;{]*\bbuffer\b)");
+  const Limits& limits = context.limits();
+  int blocks = 0, greatest = 0;
+  for (std::sregex_iterator found(text.begin(), text.end(), block), end; found != end; ++found, ++blocks)
+    greatest = std::max(greatest, std::stoi((*found)[1]));
+  const int offered = stage == GL_COMPUTE_SHADER  ? limits.storage_blocks
+                      : stage == GL_VERTEX_SHADER ? limits.vertex_storage_blocks
+                                                  : limits.fragment_storage_blocks;
+  if (blocks > offered)
+    return fmt::format("gpu/{} has {} storage blocks, {} offers {}", file, blocks, context.renderer(), offered);
+  if (greatest >= limits.storage_bindings)
+    return fmt::format("gpu/{} binds a storage block to number {}, {} offers {}", file, greatest, context.renderer(),
+                       limits.storage_bindings);
+  return {};
+}
+
 }  // namespace
 
 LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenum, std::string>>& stages,
@@ -21,41 +43,48 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
     : context_(context) {
   const Use use(context_);
   const Gl& gl = context_.gl();
-  id_ = gl.CreateProgram();
+  id_ = Handle(context, gl.CreateProgram(), [](const Gl& gl, GLuint id) { gl.DeleteProgram(id); });
   ShaderSource source;
   GLint ok = 0;
   char log[4096] = {};
+  std::string beyond;
   for (const auto& [stage, file] : stages) {
     source = shader_source(file, definitions);
     text_ += source.text;
+    if (beyond.empty()) beyond = beyond_storage(file, stage, source.text, context);
     files_ += (files_.empty() ? "gpu/" : ", gpu/") + file;
-    const GLuint shader = gl.CreateShader(stage);
+    const Handle shader(context, gl.CreateShader(stage), [](const Gl& gl, GLuint id) { gl.DeleteShader(id); });
     const char* text = source.text.c_str();
     gl.ShaderSource(shader, 1, &text, nullptr);
     gl.CompileShader(shader);
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
     if (!ok) {
+      if (!beyond.empty()) throw Unavailable("gpu: " + beyond);
       gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-      gl.DeleteShader(shader);
-      gl.DeleteProgram(id_);
       throw Error(refusal("gpu/" + file, "refused", context_, log, source));
     }
-    gl.AttachShader(id_, shader);
-    gl.DeleteShader(shader);  // lives on in the program
+    gl.AttachShader(id_, shader);  // lives on in the program
   }
   gl.LinkProgram(id_);
   gl.GetProgramiv(id_, GL_LINK_STATUS, &ok);
   if (!ok) {
+    if (!beyond.empty()) throw Unavailable("gpu: " + beyond);
     gl.GetProgramInfoLog(id_, sizeof log, nullptr, log);
-    gl.DeleteProgram(id_);
     throw Error(refusal(files_, "not linked", context_, log, source));
   }
   context_.check("compiling " + files_);
+  for (const auto& [stage, file] : stages) dump_shader(shader_source(file, definitions));
+  context_.label(GL_PROGRAM, id_, files_);
 }
 
-LinkedProgram::~LinkedProgram() {
-  const Use use(context_);
-  context_.gl().DeleteProgram(id_);
+std::optional<LinkedProgram::Place> LinkedProgram::place_of(const std::string& variable) const {
+  const Gl& gl = context_.gl();
+  const GLuint index = gl.GetProgramResourceIndex(id_, GL_BUFFER_VARIABLE, variable.c_str());
+  if (index == GL_INVALID_INDEX) return std::nullopt;
+  const GLenum wanted[2] = {GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE};
+  GLint found[2] = {0, 0};
+  gl.GetProgramResourceiv(id_, GL_BUFFER_VARIABLE, index, 2, wanted, 2, nullptr, found);
+  return Place{found[0], found[1]};
 }
 
 int LinkedProgram::location(const std::string& name) {

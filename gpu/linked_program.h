@@ -1,6 +1,7 @@
 // What compute and raster programs have in common: compiled stages linked together, and uniforms by name.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,10 +14,9 @@ namespace airlight::gpu {
 class LinkedProgram {
  public:
   // Compiles gpu/<file> of each stage (shader_source.h) with the same definitions. Throws Error with file and line if
-  // the compiler or the linker objects.
+  // the compiler or the linker objects, Unavailable in one line if for more storage blocks than the device has.
   LinkedProgram(Context&, const std::vector<std::pair<GLenum, std::string>>& stages,
                 const std::map<std::string, std::string>& definitions);
-  ~LinkedProgram();
   LinkedProgram(const LinkedProgram&) = delete;
 
   // A name that no stage mentions is an error; one that the compiler removed is not.
@@ -30,10 +30,17 @@ class LinkedProgram {
   void set_double(const std::string& name, double value);       // a uniform double
   void set_double(const std::string& name, const Vec3& value);  // a uniform dvec3
 
+  // Where the driver has a variable of a storage block, "edges[0].a[0]": bytes from the block's beginning, and between
+  // the elements of the block's array that it is in (0: in none). Nothing where the compiler removed it.
+  struct Place {
+    int offset, stride;
+  };
+  std::optional<Place> place_of(const std::string& variable) const;
+
  protected:
   Context& context_;
   std::string files_;  // for messages: "gpu/a.vert, gpu/a.frag"
-  GLuint id_ = 0;
+  Handle id_;
 
  private:
   int location(const std::string& name);

@@ -13,13 +13,16 @@ std::atomic<long> dispatch_count{0};
 
 const char* const size_names[] = {"LOCAL_SIZE_X", "LOCAL_SIZE_Y", "LOCAL_SIZE_Z"};
 
-std::map<std::string, std::string> with_sizes(const std::string& file, std::map<std::string, std::string> definitions) {
+std::map<std::string, std::string> with_sizes(Context& context, const std::string& file,
+                                              std::map<std::string, std::string> definitions) {
   int invocations = 1;
   for (const char* name : size_names) {
     definitions.try_emplace(name, "1");
     invocations *= std::stoi(definitions[name]);
   }
-  if (invocations > 128) throw Error("gpu/" + file + ": more than 128 invocations in a group");
+  if (invocations > context.limits().invocations)
+    throw Unavailable(fmt::format("gpu/{}: {} invocations in a group, {} offers at most {}", file, invocations,
+                                  context.renderer(), context.limits().invocations));
   return definitions;
 }
 
@@ -28,8 +31,8 @@ std::map<std::string, std::string> with_sizes(const std::string& file, std::map<
 long Program::dispatches() { return dispatch_count; }
 
 Program::Program(Context& context, const std::string& file, const std::map<std::string, std::string>& definitions)
-    : LinkedProgram(context, {{GL_COMPUTE_SHADER, file}}, with_sizes(file, definitions)) {
-  const auto all = with_sizes(file, definitions);
+    : LinkedProgram(context, {{GL_COMPUTE_SHADER, file}}, with_sizes(context, file, definitions)) {
+  const auto all = with_sizes(context, file, definitions);
   for (int axis = 0; axis < 3; ++axis) local_[axis] = std::stoi(all.at(size_names[axis]));
 }
 
@@ -43,12 +46,23 @@ void Program::dispatch(int x, int y, int z) {
       throw Error(fmt::format("{}: {} work groups, {} offers at most {}", files_, groups[axis], context_.renderer(),
                               context_.limits().groups[axis]));
   }
+  run([&](const Gl& gl) { gl.DispatchCompute(groups[0], groups[1], groups[2]); });
+}
+
+void Program::dispatch_indirect(const Buffer& groups, std::size_t offset) {
+  groups.bind_as(GL_DISPATCH_INDIRECT_BUFFER);
+  run([&](const Gl& gl) { gl.DispatchComputeIndirect(GLintptr(offset)); });
+}
+
+template <class Dispatch>
+void Program::run(Dispatch dispatch) {
   const Gl& gl = context_.gl();
   gl.UseProgram(id_);
-  gl.DispatchCompute(groups[0], groups[1], groups[2]);
+  dispatch(gl);
   gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
   ++dispatch_count;
-  context_.check(files_);
+  ++context_.traffic().dispatches;
+  context_.check_closely(files_);
 }
 
 }  // namespace airlight::gpu

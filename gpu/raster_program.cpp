@@ -26,7 +26,8 @@ void RasterProgram::draw(long vertices, int instances) {
   gl.BindVertexArray(0);
   gl.DeleteVertexArrays(1, &nothing);
   ++draw_count;
-  context_.check(files_);
+  ++context_.traffic().draws;
+  context_.check_closely(files_);
 }
 
 }  // namespace airlight::gpu

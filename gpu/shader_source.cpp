@@ -33,7 +33,7 @@ void append(const std::string& file, const std::string& from, ShaderSource& sour
   const int number = int(source.files.size());
   source.files.push_back(file);
   std::istringstream lines(text_of(file, from));
-  source.text += fmt::format("#line 1 {}\n", number);
+  source.text += fmt::format("#line 1 {}  // gpu/{}\n", number, file);
   int at = 0;
   for (std::string line; std::getline(lines, line);) {
     ++at;
@@ -44,7 +44,7 @@ void append(const std::string& file, const std::string& from, ShaderSource& sour
     const std::size_t open = line.find('"'), close = line.rfind('"');
     if (open == close) throw Error(fmt::format("gpu/{}:{}: expected #include \"file\"", file, at));
     append(line.substr(open + 1, close - open - 1), fmt::format("gpu/{}:{}: ", file, at), source);
-    source.text += fmt::format("#line {} {}\n", at + 1, number);
+    source.text += fmt::format("#line {} {}  // gpu/{}\n", at + 1, number, file);
   }
 }
 
@@ -55,7 +55,29 @@ ShaderSource shader_source(const std::string& file, const std::map<std::string, 
   source.text = "#version 450 core\n";
   for (const auto& [name, value] : definitions) source.text += fmt::format("#define {} {}\n", name, value);
   append(file, "", source);
+  if (const char* ulps = std::getenv("AIRLIGHT_GPU_ULPS"); ulps && *ulps) {
+    ShaderSource errors;
+    append("common/ulp_errors.glsl", "", errors);
+    const std::size_t at = source.text.find("#line 1 0");
+    source.text.insert(at, fmt::format("#define ULP_ERRORS {}\n{}", ulps, errors.text));
+  }
   return source;
+}
+
+void dump_shader(const ShaderSource& source) {
+  const char* folder = std::getenv("AIRLIGHT_DUMP_SHADERS");
+  if (!folder || !*folder) return;
+  scene::load::ContentHash hash;
+  hash.tag(source.text);
+  const std::filesystem::path file = source.files.front();
+  std::string name = (file.parent_path() / file.stem()).generic_string();
+  std::replace(name.begin(), name.end(), '/', '-');
+  std::filesystem::create_directories(folder);
+  const auto path =
+      std::filesystem::path(folder) / (name + "-" + hash.digits().substr(0, 12) + file.extension().string());
+  std::ofstream stream(path, std::ios::binary);
+  stream << source.text;
+  if (!stream.flush()) throw Error(fmt::format("{} cannot be written (AIRLIGHT_DUMP_SHADERS)", path.string()));
 }
 
 std::string foreign_shaders() {

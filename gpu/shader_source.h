@@ -13,8 +13,14 @@ struct ShaderSource {
 };
 
 // `file` is relative to gpu/, e.g. "common/erf.glsl"; `#include "..."` likewise, each file at most once. `version` and
-// `definitions` stand in front. Throws Error (file, line, what was found) where an include leads nowhere.
+// `definitions` stand in front, and common/ulp_errors.glsl where the variable AIRLIGHT_GPU_ULPS is set. Throws Error
+// (file, line, what was found) where an include leads nowhere.
 ShaderSource shader_source(const std::string& file, const std::map<std::string, std::string>& definitions);
+
+// Where the variable AIRLIGHT_DUMP_SHADERS names a folder: writes the text there, once for each variant, under the name
+// of its file, what of its content tells variants apart, and the ending of its stage (scripts/check_shaders reads them).
+// Throws Error if it cannot.
+void dump_shader(const ShaderSource&);
 
 // A compiler's message with names of files in place of their numbers: "gpu/common/erf.glsl:12: ...".
 std::string with_file_names(const std::string& message, const ShaderSource&);

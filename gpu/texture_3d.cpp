@@ -20,28 +20,21 @@ Texture3D::Texture3D(Context& context, const std::string& name, const std::array
   const Use use(context);
   const Gl& gl = context.gl();
   context.check("what came before texture '" + name + "'");
-  gl.CreateTextures(GL_TEXTURE_3D, 1, &id_);
+  GLuint id = 0;
+  gl.CreateTextures(GL_TEXTURE_3D, 1, &id);
+  id_ = Handle(context, id, [](const Gl& gl, GLuint id) { gl.DeleteTextures(1, &id); });
+  ++context.traffic().allocations;
   gl.TextureStorage3D(id_, 1, format == Format::r32f ? GL_R32F : GL_RGBA32F, size[0], size[1], size[2]);
   const GLenum error = gl.GetError();
   if (error == GL_OUT_OF_MEMORY) {
     context.forget_errors();  // the same in the driver's words
-    gl.DeleteTextures(1, &id_);
     throw Unavailable(fmt::format("gpu: texture '{}' of {} texels needs {:.1f} MiB: {} is out of memory", name,
                                   dimensions, double(bytes()) / (1 << 20), context.renderer()));
   }
-  try {
-    context.check("making texture '" + name + "'");
-  } catch (...) {
-    gl.DeleteTextures(1, &id_);
-    throw;
-  }
+  context.check("making texture '" + name + "'");
+  context.label(GL_TEXTURE, id_, name);
   gl.TextureParameteri(id_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl.TextureParameteri(id_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-}
-
-Texture3D::~Texture3D() {
-  const Use use(context_);
-  context_.gl().DeleteTextures(1, &id_);
 }
 
 std::size_t Texture3D::bytes() const { return slice_values() * size_[2] * sizeof(float); }
@@ -66,6 +59,7 @@ void Texture3D::write(int z, int depth, const float* values) {
   const Use use(context_);
   context_.gl().TextureSubImage3D(id_, 0, 0, 0, z, size_[0], size_[1], depth,
                                   format_ == Format::r32f ? GL_RED : GL_RGBA, GL_FLOAT, values);
+  context_.traffic().bytes_up += long(slice_values() * depth * sizeof(float));
   context_.check("filling texture '" + name_ + "'");
 }
 
@@ -77,6 +71,8 @@ std::vector<float> Texture3D::download() const {
     context_.gl().GetTextureSubImage(id_, 0, 0, 0, z, size_[0], size_[1], 1, format_ == Format::r32f ? GL_RED : GL_RGBA,
                                      GL_FLOAT, GLsizei(slice_values() * sizeof(float)),
                                      values.data() + z * slice_values());
+  context_.traffic().bytes_down += long(bytes());
+  ++context_.traffic().syncs;
   context_.check("reading texture '" + name_ + "'");
   return values;
 }

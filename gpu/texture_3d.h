@@ -22,7 +22,6 @@ class Texture3D {
   // `name` is for messages; `size` in texels, x fastest, >= 1 each. The contents are undefined. Throws Unavailable in
   // one line if a side passes GL_MAX_3D_TEXTURE_SIZE or the device has no room.
   Texture3D(Context&, const std::string& name, const std::array<int, 3>& size, Format = Format::r32f);
-  ~Texture3D();
   Texture3D(const Texture3D&) = delete;
 
   const std::array<int, 3>& size() const { return size_; }
@@ -46,7 +45,7 @@ class Texture3D {
   std::string name_;
   std::array<int, 3> size_;
   Format format_;
-  GLuint id_ = 0;
+  Handle id_;
 };
 
 }  // namespace airlight::gpu

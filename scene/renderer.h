@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,11 +29,14 @@ inline View view_of(const Scene& scene) { return {scene.camera, scene.width, sce
 
 // How to run: threads (0: as many as the machine has), and a callback with the fraction done in [0, 1], called from any
 // thread, that returns false to stop; a stopped render throws Interrupted, or keeps what it has where the renderer says
-// so. With a store, what is dear to make is looked for there first, and kept.
+// so. With a store, what is dear to make is looked for there first, and kept. `layers` are the film's layers that are
+// wanted, all where it is nothing: what others a renderer on the CPU makes is its own matter, one on a device leaves them
+// there, and with an empty set its times are those of pictures that nobody reads back.
 struct Execution {
   int threads = 0;
   std::function<bool(double fraction)> progress;
   const ContentStore* store = nullptr;
+  std::optional<std::set<std::string>> layers = {};
 };
 
 struct Interrupted : std::runtime_error {

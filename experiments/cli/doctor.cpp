@@ -9,6 +9,7 @@
 #include "experiments/probes.h"
 #include "experiments/renderers.h"
 #include "gpu/context.h"
+#include "gpu/kernel_drivers.h"
 #include "scene/error.h"
 
 namespace airlight::experiments::cli {
@@ -18,10 +19,12 @@ namespace {
 void graphics() {
   const auto line = [](const std::string& text) { fmt::print("  graphics   {}\n", text); };
   try {
-    for (const gpu::Attempt& a : gpu::Context::try_everything())
+    const std::vector<gpu::Attempt> attempts = gpu::Context::try_everything();
+    for (const gpu::Attempt& a : attempts)
       line(a.failure.empty() ? fmt::format("{}: {}{}, {}, OpenGL {}", a.place.name, a.renderer,
                                            a.place.software ? " (software renderer)" : "", a.vendor, a.version)
                              : a.failure);
+    for (const std::string& driver : gpu::drivers_without_egl(attempts)) line(driver);
     const gpu::Context& context = gpu::Context::get();
     const gpu::Limits& l = context.limits();
     line("chosen: " + context.description());

@@ -97,6 +97,27 @@ class MovingLights {
   std::shared_ptr<const scene::Scene> here_, there_;
 };
 
+// A device's frame is complete there: what is timed reads nothing back.
+scene::Execution as_timed(scene::Execution execution, const Row& row) {
+  if (!row.device.empty()) execution.layers.emplace();
+  return execution;
+}
+
+// [s] The stage "download" of renders that read everything back: of the first, or the median of more where they are short.
+std::optional<double> download_seconds(const TimingRule& rule, const scene::Rendering& first, double seconds,
+                                       const std::function<scene::Rendering()>& again) {
+  const auto of = [](const scene::Rendering& rendering) {
+    for (const scene::StageTime& stage : rendering.times)
+      if (stage.name == download_stage) return std::optional(stage.seconds);
+    return std::optional<double>();
+  };
+  std::vector<double> found;
+  const double allowed = std::min(0.25, rule.budget / 4);
+  for (double spent = seconds; of(first) && found.size() < 5 && spent < allowed; spent += seconds)
+    found.push_back(*of(again()));
+  return found.empty() ? of(first) : median(found);
+}
+
 // Prepares and renders once; the errors and the picture are those of that render.
 MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, const PlannedRow& planned, Row row,
                  const scene::Execution& execution) {
@@ -104,22 +125,36 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
   const MethodCase& m = *planned.method;
   const std::shared_ptr<scene::Prepared> prepared = prepare(e, *judged, planned, execution, row.prepare_seconds);
   row.device = planned.renderer->device();
-  if (!row.device.empty()) prepared->render(judged->view, execution);  // drivers compile shaders at first use
+  const scene::Execution timed = as_timed(execution, row);
+  if (!row.device.empty()) prepared->render(judged->view, timed);  // drivers compile shaders at first use
   const auto moving = m.moving_lights ? std::make_shared<MovingLights>(prepared, judged->planned.scene) : nullptr;
-  const double start = steady_seconds();
-  scene::Rendering rendering =
-      moving ? moving->render(judged->view, execution) : prepared->render(judged->view, execution);
-  const double first = (steady_seconds() - start) / (moving ? 2 : 1);
-  check_interrupted();
+  double first = 0;
+  const auto render = [&](const scene::Execution& how) {
+    const double start = steady_seconds();
+    scene::Rendering rendering = moving ? moving->render(judged->view, how) : prepared->render(judged->view, how);
+    first = (steady_seconds() - start) / (moving ? 2 : 1);
+    check_interrupted();
+    return rendering;
+  };
+  scene::Rendering rendering = render(execution);
   row.counters = rendering.counters;
+  std::vector<scene::StageTime> stages = rendering.times;
+  std::optional<double> download;
+  if (!row.device.empty()) {
+    download = download_seconds(e.timing, rendering, first, [&] { return render(execution); });
+    const scene::Rendering frame = render(timed);
+    stages = frame.times;
+    for (const auto& [name, value] : frame.counters) row.counters[name] = value;
+  }
   if (m.layer != e.layer) rendering.film.layers[e.layer] = rendering.film.layer(m.layer);
   if (judged->reference) row.measures = compare(e, m, rendering.film, judged->reference->film, judged->masks);
   row.image = keeper.name() + "/" + file_name(row.scene) + "/" +
               file_name(row.setting.empty() ? row.method : row.method + "_" + row.setting);
   row.exposure = judged->reference ? judged->exposure : exposure_of(rendering.film, e.layer);
   keep_picture(keeper.images(), row.image, rendering.film, m.layer, row.exposure);
-  return {row, first, rendering.times, [prepared, moving, judged](const scene::Execution& execution) {
-            return moving ? moving->again(judged->view, execution) : prepared->render(judged->view, execution).times;
+  return {row, first, stages, download, [prepared, moving, judged, row](const scene::Execution& execution) {
+            const scene::Execution timed = as_timed(execution, row);
+            return moving ? moving->again(judged->view, timed) : prepared->render(judged->view, timed).times;
           }};
 }
 

@@ -17,6 +17,7 @@ struct MadeRow {
   Row row;
   double first = 0;                      // [s] of the run that the figures are from
   std::vector<scene::StageTime> stages;  // of that run
+  std::optional<double> download = {};   // [s] of a picture that a device made: a stage that the timed runs have not
   std::function<std::vector<scene::StageTime>(const scene::Execution&)> again = {};
 };
 

@@ -71,6 +71,8 @@ json to_json(const Row& row) {
   return j;
 }
 
+bool is_processor(const std::string& device) { return device.find("no GPU") != std::string::npos; }
+
 Row row_from_json(const json& j) {
   Row row;
   const auto text = [&](const char* name, std::string& out) { j.at(name).get_to(out); };

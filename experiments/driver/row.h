@@ -37,6 +37,12 @@ struct Row {
   double exposure = 0;
 };
 
+// The stage of a device's row that its time of one render leaves out: layers of the film on their way to the host.
+inline constexpr const char* download_stage = "download";
+
+// Whether a row's device is a software renderer, whose times are not those of a GPU.
+bool is_processor(const std::string& device);
+
 nlohmann::json to_json(const Row&);
 Row row_from_json(const nlohmann::json&);
 

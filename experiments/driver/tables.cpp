@@ -41,7 +41,14 @@ std::string device_text(const Row& row) {
   if (row.runs == 0) return "";
   if (row.device.empty()) return "CPU";
   const std::string name = row.device.substr(0, std::min(row.device.find(" ("), row.device.find(',')));
-  return row.device.find("no GPU") == std::string::npos ? name : name + ", no GPU";
+  return is_processor(row.device) ? name + ", no GPU" : name;
+}
+
+// [s] Nothing where no layer came from a device.
+std::optional<double> download(const Row& row) {
+  for (const auto& [name, seconds] : row.stages)
+    if (name == download_stage) return seconds;
+  return std::nullopt;
 }
 
 bool any(const Outcome& outcome, bool (*has)(const Row&)) {
@@ -64,6 +71,8 @@ std::vector<Cells> summary(const Outcome& outcome) {
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
   const bool images = outcome.experiment.kind == "images";
   if (timed) head.push_back(images ? "time of one render" : "time of one");
+  const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
+  if (downloads) head.push_back("download");
   if (timed && images) head.push_back("prepared once in");
   const bool compared = timed && !outcome.experiment.metrics.empty();
   const std::vector<bool> best = on_front(outcome);
@@ -84,6 +93,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
       line.push_back(found == row.measures.end() ? "" : text(*found));
     }
     if (timed) line.push_back(time_text(row));
+    if (downloads) line.push_back(download(row) ? duration(*download(row)) : "");
     if (timed && images) line.push_back(row.runs ? duration(row.prepare_seconds) : "");
     if (compared) line.push_back(best[i] ? "yes" : "");
     if (device) line.push_back(device_text(row));
@@ -165,6 +175,8 @@ std::string table_csv(const Outcome& outcome) {
   for (const std::string& metric : outcome.experiment.metrics)
     for (const char* suffix : {"", "_low", "_high", "_noise_floor"}) head.push_back(metric + suffix);
   head.insert(head.end(), {"seconds", "seconds_low", "seconds_high", "seconds_mad", "runs", "prepare_seconds"});
+  const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
+  if (downloads) head.push_back("download_seconds");
   for (const std::string& counter : counters) head.push_back("counter." + counter);
   head.push_back("note");
   std::string out = csv_line(head);
@@ -185,6 +197,7 @@ std::string table_csv(const Outcome& outcome) {
     else
       line.insert(line.end(), {number(row.seconds.value), number(row.seconds.low), number(row.seconds.high),
                                number(row.mad), std::to_string(row.runs), number(row.prepare_seconds)});
+    if (downloads) line.push_back(download(row) ? number(*download(row)) : "");
     for (const std::string& counter : counters) {
       const auto found = row.counters.find(counter);
       line.push_back(found == row.counters.end() ? "" : number(found->second));
@@ -246,6 +259,10 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
         "precomputation apart.\n";
   else
     out += "- Figures with [95 % interval by ranks] where they are medians of several runs.\n";
+  if (any(outcome, [](const Row& r) { return download(r).has_value(); }))
+    out +=
+        "- A device's render ends when the frame is complete there, and no layer is read back; download: what reading back "
+        "all layers adds.\n";
   if (any(outcome, [](const Row& r) { return r.runs > 0; }))
     out += "- front: no other row of the scene is both faster and closer in the first metric, beyond the intervals.\n";
   out += fmt::format("- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n", e.profile, machine.cpu,

@@ -14,12 +14,18 @@ constexpr double short_job = 0.01;  // [s]
 class Runs {
  public:
   Runs(const TimingRule& rule, const TimedJob& job, bool alone, const Clock& clock)
-      : rule_(rule), job_(job), clock_(clock), rerun_(!alone && job.first < short_job), spent_(job.first) {
+      : rule_(rule),
+        job_(job),
+        clock_(clock),
+        rerun_(!alone && job.first < short_job),
+        alone_(alone),
+        spent_(job.first) {
     wanted_ = job.first > 1 ? std::min(rule.runs, 5) : rule.runs;
     certain_ = rule.budget > 0 && least_runs * job.first < 1 ? least_runs : 0;
   }
 
   void warm_up() {
+    warm_for(job_.warm_up);
     std::vector<double> times;
     double last_median = job_.first;
     for (double warmed = job_.first; warmed < rule_.least_seconds; warmed += times.back()) {
@@ -36,7 +42,10 @@ class Runs {
   }
 
   void run() {
-    if (rerun_) once();
+    if (!alone_ && job_.warm_up > 0)
+      warm_for(0.05 * job_.warm_up);
+    else if (rerun_)
+      once();
     const ProcessorTime before = processor_time();
     times_.push_back(once());
     const ProcessorTime after = processor_time();
@@ -55,6 +64,12 @@ class Runs {
   }
 
  private:
+  void warm_for(double seconds) {
+    const double before = spent_;
+    for (const double start = clock_(); clock_() - start < seconds;) once();
+    spent_ = before;
+  }
+
   double once() {
     const double start = clock_();
     job_.run();
@@ -66,7 +81,7 @@ class Runs {
   const TimingRule& rule_;
   const TimedJob& job_;
   const Clock& clock_;
-  bool rerun_;
+  bool rerun_, alone_;
   double spent_, ran_ = 0, waited_ = 0;
   int wanted_ = 0, certain_ = 0;
   std::vector<double> times_;

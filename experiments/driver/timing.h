@@ -21,6 +21,7 @@ struct Timing {
 struct TimedJob {
   double first = 0;  // [s] of a run that was made already
   std::function<void()> run;
+  double warm_up = 0;  // [s] at least, beside the budget: processors that raise their clock only under load
 };
 
 // Runs that are made whatever the budget, unless it is 0, where all of them take less than a second: fewer have no
@@ -35,7 +36,8 @@ double steady_seconds();
 // begins with the next job. The `first` run counts as warm-up, and as the only run if the budget allows no other. Rule,
 // for each job: warm up until the rule's time is spent or the median of the last runs moves less than 1 %, then `runs`
 // (5 where one takes longer than a second), fewer if the budget ends, but `least_runs` of short ones. Beside others, a
-// job of less than 10 ms is run once more, untimed, before each timed run: the others have taken its caches.
+// job of less than 10 ms is run once more, untimed, before each timed run: the others have taken its caches. A job with a
+// `warm_up` of its own is run until that is spent, and beside others for a twentieth of it before each timed run.
 std::vector<Timing> time_runs(const TimingRule&, const std::vector<TimedJob>&, const Clock& = steady_seconds);
 Timing time_runs(const TimingRule&, double first, const std::function<void()>& job);
 

@@ -162,8 +162,8 @@ Timed errors_and_times(gpu::Context& context, const Evaluator& e, int cases, int
   constexpr std::size_t at_once = 1 << 18;  // enough to keep a device busy
   const auto parts = random_parts(cases);
   const bool polynomial = e.form == Evaluator::Form::polynomial;
-  const gpu::DeviceEvaluator evaluator{{}, polynomial, e.terms, polynomial ? 3 : stretch_of(e.terms)};
-  std::vector<gpu::EvaluatorCase> input;
+  const gpu::planes::DeviceEvaluator evaluator{{}, polynomial, e.terms, polynomial ? 3 : stretch_of(e.terms)};
+  std::vector<gpu::planes::EvaluatorCase> input;
   while (input.size() < at_once)
     for (const auto& on : parts)
       input.push_back({float(on.extinction), float(on.h), float(on.begin - on.T), float(on.length)});

@@ -8,7 +8,10 @@ struct Material {
   ivec4 table;    // tabulated: its place, polar angles, azimuthal angles
   ivec4 places;   // in harmonics: its place, entries; lobe of Sun et al., -1: none
 };
-layout(std430, binding = 2) readonly buffer Materials { Material materials[]; };  // by surface
+#ifndef MATERIALS_BINDING
+#define MATERIALS_BINDING 2
+#endif
+layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { Material materials[]; };  // by surface
 
 float angle_between(vec3 a, vec3 b) { return angle_of(length(cross(a, b)), dot(a, b)); }
 

@@ -1,42 +1,14 @@
 // The environment behind the medium: Zhou et al. 2007, Eq. 29 with L_p = L_in, added to every pixel whose ray nothing ends.
-// One environment light at a time; KIND 0 is a constant, 1 a map, 2 spherical harmonics of SH_ORDER bands (scene/environment.h).
+// One environment light at a time.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "fogshop/fog.glsl"
-#include "common/angle.glsl"
-#if KIND == 2
-#include "common/spherical_harmonics.glsl"
-#endif
+#include "common/environment.glsl"
 
 layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
 layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };  // airlight, T(v,p)
 layout(std430, binding = 7) buffer Surface { float surface_layer[]; };
-layout(std430, binding = 9) readonly buffer Values { float values[]; };  // texels or coefficients, rgb
-uniform int has_distances, has_airlight, map_width, map_height;
-uniform vec3 scale;
-uniform mat3 to_map;  // of directions
-
-vec3 value_at(int i) { return vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]); }
-
-vec3 radiance(vec3 w) {
-#if KIND == 1
-  // Bilinear between texel centres, around the world and up to the poles: scene/lat_long.h.
-  float column = (0.5 + angle_of(w.x, -w.z) / (2 * pi)) * float(map_width) - 0.5;
-  float row = angle_of(length(w.xz), w.y) / pi * float(map_height) - 0.5;
-  float first = clamp(floor(column), -1.0, float(map_width - 1)), above = clamp(floor(row), -1.0, float(map_height - 1));
-  int left = first < 0 ? map_width - 1 : int(first), right = left + 1 == map_width ? 0 : left + 1;
-  int top = max(int(above), 0) * map_width, bottom = min(int(above) + 1, map_height - 1) * map_width;
-  float x = column - first, y = clamp(row - above, 0.0, 1.0);
-  return mix(mix(value_at(top + left), value_at(top + right), x), mix(value_at(bottom + left), value_at(bottom + right), x), y);
-#elif KIND == 2
-  evaluate_sh(w);
-  vec3 sum = vec3(0);
-  for (int i = 0; i < sh_order * sh_order; ++i) sum += sh[i] * value_at(i);
-  return sum;
-#else
-  return vec3(1);
-#endif
-}
+uniform int has_distances, has_airlight;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -46,6 +18,6 @@ void main() {
   dvec3 origin, direction;
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
   vec3 visible = has_airlight != 0 ? transmittance_of(pixels[place].w) : vec3(1);
-  vec3 seen = visible * scale * radiance(to_map * vec3(direction));
+  vec3 seen = visible * environment_radiance(vec3(direction));
   for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] += seen[c];
 }

@@ -9,7 +9,7 @@ layout(std430, binding = 9) readonly buffer Light { vec4 light[]; };      // sqr
 layout(std430, binding = 10) readonly buffer Bands { float bands[]; };    // g_l, [depth][l]
 layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
 uniform int has_distances, everywhere;
-const float far_away = 1e37;  // [m]: an infinite ray
+#include "common/far_away.glsl"
 uniform vec3 hue;
 uniform int band_depths;                         // 1: the same for every depth
 uniform float log_least_depth, log_depth_range;  // of the table
@@ -28,14 +28,14 @@ void main() {
   if (everywhere == 0 && has_distances != 0 && distances[index] < far_away) return;  // something ends the ray
   vec3 origin, direction;
   camera_ray(vec2(pixel) + 0.5, origin, direction);
-  evaluate_sh(direction);
   // The tiny number keeps the logarithm finite; below the table's first depth the place is its first anyway.
   vec3 T = pixels[index].w * hue, sum = vec3(0);
   vec3 place = clamp((log(max(T, 1e-30)) - log_least_depth) / log_depth_range, 0, 1) * (band_depths - 1);
-  for (int l = 0; l < sh_order; ++l) {
-    vec3 value = vec3(0);
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += light[i].rgb * sh[i];
-    sum += value * vec3(band(l, place.r), band(l, place.g), band(l, place.b));
+  vec3 weight[SH_ORDER];
+  for (int l = 0; l < sh_order; ++l) weight[l] = vec3(band(l, place.r), band(l, place.g), band(l, place.b));
+  for (ShPair y = first_pair(direction); y.m < sh_order; next_pair(y, direction)) {
+    int i = y.l * (y.l + 1);
+    sum += weight[y.l] * (y.plus * light[i + y.m].rgb + y.minus * light[i - y.m].rgb);
   }
   pixels[index].rgb += max(sum * T * exp(-T), vec3(0));
 }

@@ -2,13 +2,13 @@
 #include <array>
 #include <cmath>
 
-#include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/fog_on_device.h"
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 
 void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lighting) {
-  const Use use(context_);
+  const Use use_context(context_);
   std::vector<std::array<float, 4>> light;
   for (int l = 0; l < lighting.order(); ++l)
     for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
@@ -20,13 +20,15 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
   band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
   bands_ = lighting.order();
   band_depths_ = lighting.bands().depths();
+  programs_.environment = &context_.program(
+      "fogshop/environment.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}, {"SH_ORDER", std::to_string(bands_)}});
 }
 
-void FogOnDevice::add_environment(const scene::View& view, bool has_distances, StageTimer& timer) {
+void FogOnDevice::add_environment(const scene::View& view, bool has_distances, Frame& frame) {
+  frame.timer.begin("environment");
   light_->bind(9);
   band_table_->bind(10);
-  Program& p = context_.program("fogshop/environment.comp",
-                                {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}, {"SH_ORDER", std::to_string(bands_)}});
+  Program& p = *programs_.environment;
   using Table = fogshop::PsfBands;
   set_camera(p, view);
   p.set("hue", model_.fog.hue);
@@ -37,7 +39,6 @@ void FogOnDevice::add_environment(const scene::View& view, bool has_distances, S
   p.set("log_least_depth", std::log(Table::least_depth));
   p.set("log_depth_range", std::log(Table::greatest_depth / Table::least_depth));
   p.dispatch(view.width, view.height);
-  timer.stage("environment");
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

@@ -1,6 +1,6 @@
 // The medium: a constant plus Gaussians (Zhou et al. 2007, Eqs. 6, 7), and Eq. 31 for one of them along a ray.
 #include "common/pi.glsl"
-const float far_away = 1e37;  // [m] and beyond: an infinite ray
+#include "common/far_away.glsl"
 
 struct Gaussian {
   vec3 center;           // [m]
@@ -62,16 +62,24 @@ struct Crossing {
   float a, depth;
   Place start;  // of the line
 };
+// How far from a line a Gaussian is [m^2]: not |q|^2 - m^2, which loses all digits far away.
+float square_beside(Gaussian g, vec3 origin, vec3 direction) {
+  vec3 q = g.center - origin, p = q - dot(q, direction) * direction;
+  return dot(p, p);
+}
+float depth_beside(Gaussian g, vec3 origin, vec3 direction) {
+  return g.half_depth * exp(-g.a * g.a * square_beside(g, origin, direction));
+}
+// Without its depth and the start of the line, 0 both.
+Crossing cross_geometry(Gaussian g, vec3 origin, vec3 direction, float length_) {
+  float middle = dot(g.center - origin, direction);
+  float chord_squared = g.radius_squared - square_beside(g, origin, direction), chord = sqrt(max(chord_squared, 0));
+  bool met = chord_squared >= 0 && middle + chord >= 0 && middle - chord <= length_;
+  return Crossing(met, middle, chord, g.a, 0, Place(0, 0));
+}
 Crossing cross_line(Gaussian g, vec3 origin, vec3 direction, float length_) {
-  Crossing c;
-  vec3 q = g.center - origin;
-  c.middle = dot(q, direction);
-  vec3 p = q - c.middle * direction;  // not |q|^2 - m^2, which loses all digits far away
-  float pp = dot(p, p), chord_squared = g.radius_squared - pp;
-  c.chord = sqrt(max(chord_squared, 0));
-  c.met = chord_squared >= 0 && c.middle + c.chord >= 0 && c.middle - c.chord <= length_;
-  c.a = g.a;
-  c.depth = g.half_depth * exp(-g.a * g.a * pp);
+  Crossing c = cross_geometry(g, origin, direction, length_);
+  c.depth = depth_beside(g, origin, direction);
   c.start = place_at(-g.a * c.middle);
   return c;
 }
@@ -79,18 +87,11 @@ Place place_at(Crossing c, float t) { return place_at(c.a * (t - c.middle)); }
 // Optical depth over [0, t].
 float depth_at(Crossing c, float t) { return c.depth * erf_between(c.start, place_at(c, t)); }
 
-// Optical depth of the Gaussians between two points, each cut off at its radius.
-float depth_between(vec3 from, vec3 to, int without) {
-  float length_ = length(to - from), sum = 0;
-  vec3 direction = length_ > 0 ? (to - from) / length_ : vec3(0, 0, 1);
-  for (int i = 0; i < gaussian_count; ++i) {
-    Gaussian g = gaussians[i];
-    vec3 q = g.center - from, p = q - dot(q, direction) * direction;
-    if (dot(p, p) > g.radius_squared || i == without) continue;  // most, before any exponential
-    Crossing c = cross_line(g, from, direction, length_);
-    if (c.met) sum += depth_at(c, length_);
-  }
-  return sum;
+// Optical depth of a Gaussian between two points, cut off at its radius.
+float depth_between(Gaussian g, vec3 from, vec3 direction, float length_) {
+  if (square_beside(g, from, direction) > g.radius_squared) return 0;  // most, before any exponential
+  Crossing c = cross_line(g, from, direction, length_);
+  return c.met ? depth_at(c, length_) : 0;
 }
 
 // Of a depth where the hue is 1; a channel that the medium does not dim stays 1 however deep it is.

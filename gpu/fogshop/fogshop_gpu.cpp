@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/buffer.h"
 #include "gpu/fogshop/background.h"
-#include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/fog_on_device.h"
 #include "gpu/fogshop/surface_shading.h"
-#include "gpu/raster_program.h"
-#include "gpu/timer.h"
+#include "gpu/raster/first_hits.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
@@ -19,6 +17,9 @@
 
 namespace airlight::gpu {
 namespace {
+
+// Steps of nodes from each light are unrolled in the shaders.
+constexpr std::size_t most_lights = 16;
 
 using scene::Execution;
 using scene::Scene;
@@ -32,11 +33,14 @@ class PreparedFogshopGpu final : public scene::Prepared {
       : scene_(std::move(scene)),
         model_(fogshop::make_model(*scene_, options)),
         plan_(fogshop::make_plan(*scene_, model_)),
+        casts_shadows_(needs_.surfaces && fog::casts_shadows(*scene_, model_)),
         context_(Context::get()),
-        fog_(context_, model_),
-        map_side_(map_side) {
+        map_side_(map_side),
+        frame_(context_),
+        fog_(context_, model_, needs_) {
+    StageTimer& timer = frame_.timer;
+    if (needs_.f_table) timer.stage("table of F");
     if (needs_.distances) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-    StageTimer timer(context_);
     if (needs_.light_maps) {
       fog_.fill_light_maps();
       timer.stage("light maps");
@@ -44,10 +48,6 @@ class PreparedFogshopGpu final : public scene::Prepared {
     if (needs_.center_depths) {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
-    }
-    if (needs_.f_table) {
-      fog_.upload_f_table(fogshop::FTable());
-      timer.stage("table of F");
     }
     lighting_ = fogshop::make_lighting(*scene_, options, needs_, execution,
                                        [&](const std::string& stage) { timer.stage(stage); });
@@ -57,13 +57,13 @@ class PreparedFogshopGpu final : public scene::Prepared {
       timer.stage("sky volume");
     }
     if (needs_.environment) {
-      background_ = std::make_unique<Background>(context_, *scene_);
+      background_ = std::make_unique<fog::Background>(context_, *scene_, fog_);
       timer.stage("background");
     }
     if (needs_.surfaces) {
-      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_);
+      shading_ = std::make_unique<fog::SurfaceShading>(context_, *scene_, model_, lighting_, fog_);
       timer.stage("tables of surfaces");
-      if (casts_shadows(*scene_, model_)) {
+      if (casts_shadows_) {
         shading_->fill_light_distances(map_side);
         timer.stage("light-distance maps");
       }
@@ -76,25 +76,33 @@ class PreparedFogshopGpu final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  std::unique_ptr<Buffer> low_resolution_distances(const View&, const Execution&) const;
+  // What a frame leaves on the device, null where the scene has no such thing.
+  struct Picture {
+    const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
+  };
+  void find_distances(const View&, Picture&) const;
+  void find_airlight(const View&, Picture&) const;
+  void find_surfaces(const View&, Picture&) const;
+  void refuse_cut_loops(const scene::Film&) const;
 
   std::shared_ptr<const Scene> scene_;
   fogshop::Model model_;
   fogshop::Plan plan_;
   const fogshop::Needs& needs_ = plan_.needs;
+  bool casts_shadows_;
   Context& context_;
-  mutable FogOnDevice fog_;
   int map_side_;
+  mutable Frame frame_;
+  mutable fog::FogOnDevice fog_;
   fogshop::SurfaceLighting lighting_;
-  std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
-  std::unique_ptr<SurfaceShading> shading_;  // null: left out
-  std::unique_ptr<Background> background_;   // the same
+  std::unique_ptr<FirstHits> first_hits_;         // null: rays are infinite
+  std::unique_ptr<fog::SurfaceShading> shading_;  // null: left out
+  std::unique_ptr<fog::Background> background_;   // the same
   std::vector<scene::StageTime> times_;
 };
 
 std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
   auto stages = plan_.stages;
-  const bool maps = needs_.surfaces && casts_shadows(*scene_, model_);
   const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
                               : model_.lights.empty()  ? "no point light shines"
                                                        : "a lone plane or sphere casts no shadow";
@@ -102,25 +110,72 @@ std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
                                       model_.lights.size(), model_.lights.size() == 1 ? "" : "s");
   const auto surfaces =
       std::find_if(stages.begin(), stages.end(), [](const scene::Stage& stage) { return stage.name == "surfaces"; });
-  stages.insert(surfaces, {"light-distance maps", maps, maps ? why : why_not});
+  stages.insert(surfaces, {"light-distance maps", casts_shadows_, casts_shadows_ ? why : why_not});
   return stages;
 }
 
-// d_vp of the low pixels [m]. A film whose sides the factor divides is the same view with fewer pixels; else the last
-// blocks reach beyond its edge, and Embree answers.
-std::unique_ptr<Buffer> PreparedFogshopGpu::low_resolution_distances(const View& view,
-                                                                     const Execution& execution) const {
-  const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
-  const std::size_t count = std::size_t(low.low_width()) * low.low_height();
-  if (view.width % low.factor == 0 && view.height % low.factor == 0) {
-    auto result = std::make_unique<Buffer>(context_, "low distances", count * 4);
-    first_hits_->draw({view.camera, low.low_width(), low.low_height()}).read_distances(*result, 0);
-    return result;
+// Section 5.4, step 1: d_vp of every pixel [m], and what is seen there.
+void PreparedFogshopGpu::find_distances(const View& view, Picture& picture) const {
+  if (!first_hits_) return;
+  frame_.timer.begin("distances");
+  const std::size_t bytes = std::size_t(view.width) * view.height * 4;
+  picture.distances = &frame_.buffers.get("distances", bytes);
+  if (shading_) picture.primitives = &frame_.buffers.get("primitives", bytes);
+  first_hits_->find(view, *picture.distances, picture.primitives);
+}
+
+void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const {
+  if (!needs_.airlight) return;
+  if (needs_.center_depths) {
+    frame_.timer.begin("depths to centres");
+    fog_.fill_view_depths(view.camera.position);
   }
-  std::vector<float> values;
-  for (const double t : low_distances(*scene_, view, low, execution))
-    values.push_back(t < far_away ? float(t) : far_away);
-  return std::make_unique<Buffer>(context_, "low distances", values);
+  if (!needs_.low_resolution) {
+    picture.airlight = &fog_.airlight(view, picture.distances, frame_);
+    return;
+  }
+  const fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
+  const Buffer* distances = nullptr;
+  if (first_hits_) {
+    frame_.timer.begin("distances, low resolution");
+    distances = &frame_.buffers.get("low distances", std::size_t(low.low_width()) * low.low_height() * 4);
+    first_hits_->find(view, *distances, nullptr, {low.factor, 0});
+  }
+  picture.airlight = &fog_.low_resolution_airlight(view, picture.distances, distances, frame_);
+}
+
+// Steps 4 and 7: e^-T L_p of Eq. 29.
+void PreparedFogshopGpu::find_surfaces(const View& view, Picture& picture) const {
+  if (!shading_ && !background_) return;
+  const std::size_t bytes = std::size_t(view.width) * view.height * 12;
+  Buffer& surface = frame_.buffers.get("surface", bytes);
+  picture.surface = &surface;
+  if (shading_) {
+    frame_.timer.begin("surfaces");
+    Buffer* scattered = needs_.scattered ? &frame_.buffers.get("reflected_airlight", bytes) : nullptr;
+    shading_->shade(fog_, *first_hits_, view, *picture.primitives, picture.airlight, surface, scattered);
+    if (scattered) frame_.download.add("reflected_airlight", *scattered, bytes);
+  } else {
+    surface.clear();
+  }
+  if (background_) {
+    frame_.timer.begin("background");
+    background_->draw(fog_, view, picture.distances, picture.airlight, surface);
+  }
+  frame_.download.add("surface", surface, bytes);
+}
+
+// The mark of surfaces.comp, which goes into the mean too. How long rays through the tree of surfaces take nobody knows
+// before.
+void PreparedFogshopGpu::refuse_cut_loops(const scene::Film& film) const {
+  if (!shading_ || !context_.software()) return;
+  for (const char* name : {"surface", "mean"})
+    if (const auto layer = film.layers.find(name); layer != film.layers.end())
+      for (const float v : layer->second)
+        if (v <= -far_away)
+          throw Unavailable(fmt::format(
+              "gpu: shadow rays take more loop iterations than {} allows: fewer lights or a coarser mesh expected",
+              context_.renderer()));
 }
 
 scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
@@ -129,74 +184,27 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  const std::size_t pixels = film.pixels();
-  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
   const Use use(context_);
-  StageTimer timer(context_);
-  const auto layer = [&](const char* name) { return std::make_unique<Buffer>(context_, name, pixels * 12); };
-
-  // Section 5.4, step 1: distances, by a raster pass.
-  std::unique_ptr<Buffer> distances, low_distances, primitives, image, surface, scattered;
-  if (first_hits_) {
-    const HitImage& hits = first_hits_->draw(view);
-    distances = std::make_unique<Buffer>(context_, "distances", pixels * 4);
-    hits.read_distances(*distances, 0);
-    if (shading_) {
-      primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
-      hits.read_primitives(*primitives, 0);
-    }
-    timer.stage("distances");
-    if (needs_.low_resolution) {
-      low_distances = low_resolution_distances(view, execution);
-      timer.stage("distances, low resolution");
-    }
-  }
-  if (needs_.airlight) {
-    if (needs_.center_depths) {
-      fog_.fill_view_depths(view.camera.position);
-      timer.stage("depths to centres");
-    }
-    image = needs_.low_resolution ? fog_.low_resolution_airlight(view, distances.get(), low_distances.get(), timer)
-                                  : fog_.airlight(view, distances.get(), timer);
-  }
-  // Steps 4 and 7: L = L_a + e^-T L_p, Eq. 29.
-  if (shading_ || background_) surface = layer("surface");
-  if (shading_) {
-    if (needs_.scattered) scattered = layer("reflected_airlight");
-    shading_->shade(fog_, first_hits_->surfaces(), view, *primitives, image.get(), *surface, scattered.get());
-    timer.stage("surfaces");
-  }
-  if (background_) {
-    background_->draw(fog_, view, distances.get(), image.get(), *surface);
-    timer.stage("background");
-  }
-  if (image || surface) {
-    const auto airlight = layer("airlight"), transmittance = layer("transmittance"), mean = layer("mean");
-    fog_.compose(image.get(), surface.get(), *airlight, *transmittance, *mean);
-    timer.stage("composition");
-    film.layers["airlight"] = airlight->download<float>();
-    film.layers["transmittance"] = transmittance->download<float>();
-    film.layers["mean"] = mean->download<float>();
-  } else {  // no medium, and nothing that shines
+  frame_.begin(execution);
+  Picture picture;
+  find_distances(view, picture);
+  find_airlight(view, picture);
+  find_surfaces(view, picture);
+  if (picture.airlight || picture.surface)
+    fog_.compose(view, picture.airlight, picture.surface, frame_);  // L = L_a + e^-T L_p, Eq. 29
+  frame_.finish(result);
+  if (!picture.airlight && !picture.surface) {  // no medium, and nothing that shines
     film.add("airlight");
     film.add("mean");
-    film.layers["transmittance"].assign(3 * pixels, 1.0f);
+    film.layers["transmittance"].assign(3 * film.pixels(), 1.0f);
   }
-  if (surface) film.layers["surface"] = surface->download<float>();
-  // The mark of surfaces.comp. How long rays through the tree of surfaces take nobody knows before.
-  if (shading_ &&
-      std::any_of(film.layers["surface"].begin(), film.layers["surface"].end(), [](float v) { return v < 0; }))
-    throw Unavailable(fmt::format(
-        "gpu: shadow rays take more loop iterations than {} allows: fewer lights or a coarser mesh expected",
-        context_.renderer()));
-  film.add("surface");
-  if (scattered) film.layers["reflected_airlight"] = scattered->download<float>();
-  timer.stage("read back");
-  result.times = timer.times();
+  if (!picture.surface) film.add("surface");
+  if (execution.layers)
+    for (auto layer = film.layers.begin(); layer != film.layers.end();)
+      layer = execution.layers->count(layer->first) ? std::next(layer) : film.layers.erase(layer);
+  refuse_cut_loops(film);
   if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop_gpu: " + plan_.doubt;
-  result.counters["rays"] = double(pixels);
-  result.counters["dispatches"] = double(Program::dispatches() - dispatches);
-  result.counters["draws"] = double(RasterProgram::draws() - draws);
+  result.counters["rays"] = double(film.pixels());
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
   return result;
@@ -219,9 +227,6 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  const fogshop::Options options = fogshop::read_options(settings);
-  if (options.slices > most_slices)
-    reasons.push_back(fmt::format("K = {}: the shader has room for {} slices", options.slices, most_slices));
   if (scene.lights.size() > most_lights)
     reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
   return reasons;

@@ -1,70 +1,44 @@
-// Light and reflectance in harmonics: Zhou et al. 2007, Eqs. 20 to 27 (methods/fogshop/surface_lighting.h). Needs `tables`.
-#include "common/turn_harmonics.glsl"
+// Light and reflectance in harmonics: Zhou et al. 2007, Eqs. 20 to 27 (methods/fogshop/surface_lighting.h). Needs `tables`. Sums
+// over coefficients run along with the harmonics; only a band is held where it must be turned, all of them only for TRANSFER.
+#include "common/spherical_harmonics.glsl"
+#include "common/turn_band.glsl"
 
-uniform int cosine_at;                                       // bands of the clamped cosine
-uniform int point_bands_at, point_depths;                    // g_l of a point light's PSF, [depth][l]; one depth: for all
-uniform int environment_bands_at, environment_depths;        // of an environment's
-uniform int environment_at;                                  // its radiance L_lm, rgb
-uniform int average_at, average_nodes;                       // of average_depth
-uniform float least_depth, greatest_depth;                   // of the bands, even in log T
-#if TRANSFER
-layout(std430, binding = 13) readonly buffer Transfer { float transfer[]; };  // SH_SIZE for every vertex
-uniform int product_at;  // for every coefficient the first of its (i, j, integral of three), SH_SIZE + 1 of them, then these
-#endif
+const int SH_SIZE = SH_ORDER * SH_ORDER;
+uniform int cosine_at;                                 // bands of the clamped cosine
+uniform int point_bands_at, point_depths;              // g_l of a point light's PSF, [depth][l]; one depth: for all
+uniform int environment_bands_at, environment_depths;  // of an environment's
+uniform int environment_at;                            // its radiance L_lm, rgb
+uniform float least_depth, greatest_depth;             // of the bands, even in log T
+vec3 weight_of[SH_ORDER];                              // of each band, per channel
 
 // Turns g_l of a function about z into the factor of Y_lm of its axis: Eqs. 21 and 23.
 float zonal_factor(int l) { return sqrt(4 * pi / float(2 * l + 1)); }
 
-// B_pv in the world's axes. The place of the function.
-int reflectance_harmonics(Material m, vec3 normal, vec3 to_view) {
+// B_pv: that of Lambert is zonal about the normal; others lie in a table by the angle of view, in axes whose z is the normal and
+// whose x points to the viewer.
+struct Reflected {
+  bool lambert;
+  vec3 diffuse;  // over pi
+  vec3 x, z;
+  int low;      // place of the entry below
+  float share;  // of the one above
+};
+Reflected reflectance_of(Material m, vec3 normal, vec3 to_view) {
   float cosine = dot(normal, to_view);
-  if (!(cosine > 0)) {
-    for (int i = 0; i < sh_order * sh_order; ++i) functions[i] = vec3(0);
-  } else if (m.diffuse.w == 0) {
-    evaluate_sh(normal);
-    for (int l = 0; l < sh_order; ++l) {
-      vec3 factor = m.diffuse.rgb / pi * (zonal_factor(l) * tables[cosine_at + l]);
-      for (int i = l * l; i < (l + 1) * (l + 1); ++i) functions[i] = factor * sh[i];
-    }
-  } else {
-    vec3 aside = to_view - cosine * normal;
-    float sine = length(aside);
-    float place = min(angle_of(sine, cosine) / (0.5 * pi), 1.0) * float(m.places.y - 1);
-    int entry = min(m.places.y - 2, int(place)), low = m.places.x + 3 * SH_SIZE * entry;
-    for (int i = 0; i < sh_order * sh_order; ++i)
-      functions[i] = mix(rgb_at(low + 3 * i), rgb_at(low + 3 * (SH_SIZE + i)), place - float(entry));
-    // At the pole nothing depends on the azimuth.
-    vec3 other = abs(normal.x) < 0.5 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    turn_harmonics(sine > 1e-6 ? aside / sine : normalize(cross(normal, other)), normal);
-  }
-  return 0;
+  if (m.diffuse.w == 0 || !(cosine > 0))
+    return Reflected(true, cosine > 0 ? m.diffuse.rgb / pi : vec3(0), vec3(0), normal, 0, 0);
+  vec3 aside = to_view - cosine * normal, other = abs(normal.x) < 0.5 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+  float sine = length(aside), place = min(angle_of(sine, cosine) / (0.5 * pi), 1.0) * float(m.places.y - 1);
+  int entry = min(m.places.y - 2, int(place));
+  // At the pole nothing depends on the azimuth.
+  vec3 x = sine > 1e-6 ? aside / sine : normalize(cross(normal, other));
+  return Reflected(false, vec3(0), x, normal, m.places.x + 3 * SH_SIZE * entry, place - float(entry));
 }
+// Of a table, in its own axes.
+vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb_at(r.low + 3 * (SH_SIZE + i)), r.share); }
 
 #if TRANSFER
-// The first function times V_p of a mesh; its inner side has none. The place of the product.
-int shadow_harmonics(ivec4 corners, dvec3 point, dvec3 normal) {
-  dvec3 p = mesh_vertex(corners.x) - point, q = mesh_vertex(corners.y) - point, r = mesh_vertex(corners.z) - point;
-  dvec3 face = cross(q - p, r - p);
-  if (!(dot(face, normal) > 0)) return 0;
-  dvec3 areas = dvec3(dot(cross(q, r), face), dot(cross(r, p), face), dot(cross(p, q), face));
-  vec3 weight = vec3(max(areas / dot(face, face), 0.0LF));
-  weight /= weight.x + weight.y + weight.z;
-  for (int i = 0; i < sh_order * sh_order; ++i)
-    sh[i] = weight.x * transfer[corners.x * SH_SIZE + i] + weight.y * transfer[corners.y * SH_SIZE + i] +
-            weight.z * transfer[corners.z * SH_SIZE + i];
-  int terms_at = product_at + SH_SIZE + 1, k = 0;
-  for (int n = 0; n < sh_order * sh_order; ++n) {
-    vec3 sum = vec3(0);
-    for (int end = int(tables[product_at + n + 1]); k < end; ++k) {
-      int i = int(tables[terms_at + 3 * k]), j = int(tables[terms_at + 3 * k + 1]);
-      vec3 both = sh[i] * functions[j];
-      if (i != j) both += sh[j] * functions[i];
-      sum += tables[terms_at + 3 * k + 2] * both;
-    }
-    functions[SH_SIZE + n] = sum;
-  }
-  return SH_SIZE;
-}
+#include "fogshop/transfer.glsl"
 #endif
 
 // Where depths lie among those of the bands.
@@ -84,48 +58,74 @@ vec3 band(int at, int depths, int l, vec3 place) {
 }
 
 // What the medium at depth T from a light scatters onto the surface, reflected, per unit of I/d^2 and albedo: Eq. 25.
-vec3 reflect_point(int reflectance, vec3 to_light, vec3 T) {
-  evaluate_sh(to_light);
+vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
   vec3 place = band_place(T, point_depths), sum = vec3(0);
-  for (int l = 0; l < sh_order; ++l) {
-    vec3 value = vec3(0);
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += sh[i] * functions[reflectance + i];
-    sum += zonal_factor(l) * band(point_bands_at, point_depths, l, place) * value;
+  for (int l = 0; l < sh_order; ++l) weight_of[l] = zonal_factor(l) * band(point_bands_at, point_depths, l, place);
+#if TRANSFER
+  for (ShPair y = first_pair(to_light); y.m < sh_order; next_pair(y, to_light)) {
+    int i = r.low + y.l * (y.l + 1);
+    sum += weight_of[y.l] * (y.plus * functions[i + y.m] + y.minus * functions[i - y.m]);
   }
+#else
+  if (r.lambert) {  // the addition theorem: Legendre polynomials of the angle to the normal
+    float cosine = dot(r.z, to_light), now = 1, before = 0;
+    for (int l = 0; l < sh_order; ++l) {
+      sum += weight_of[l] * (tables[cosine_at + l] / zonal_factor(l) * now);
+      float next = (float(2 * l + 1) * cosine * now - float(l) * before) / float(l + 1);
+      before = now;
+      now = next;
+    }
+    sum *= r.diffuse;
+  } else {
+    vec3 w = vec3(dot(r.x, to_light), dot(cross(r.z, r.x), to_light), dot(r.z, to_light));
+    for (ShPair y = first_pair(w); y.m < sh_order; next_pair(y, w)) {
+      int i = y.l * (y.l + 1);
+      sum += weight_of[y.l] * (y.plus * own_coefficient(r, i + y.m) + y.minus * own_coefficient(r, i - y.m));
+    }
+  }
+#endif
   return sum * max(T, vec3(0)) * exp(-T);
 }
 
-// Depth of the Gaussians around a point, averaged over all directions: Eq. 26.
-float average_depth(vec3 point) {
-  const float end = 10;
-  float sum = 0;
-  for (int i = 0; i < gaussian_count; ++i) {
-    Gaussian g = gaussians[i];
-    float u = g.a * length(g.center - point), f;
-    if (u >= end) {
-      float w = 0.5 / (u * u);
-      f = 0.25 * sqrt(pi) / (u * u) * (1 + w * (1 + w * (3 + w * (15 + w * 105))));
-    } else {
-      float place = u / end * float(average_nodes - 1);
-      int k = min(int(place), average_nodes - 2), at = average_at + 2 * k;
-      float s = place - float(k), r = 1 - s;
-      f = r * r * (tables[at] * (1 + 2 * s) + tables[at + 1] * s) + s * s * (tables[at + 2] * (1 + 2 * r) - tables[at + 3] * r);
-    }
-    sum += g.half_depth * f;
+// L_lm and the reflectance of a band, summed.
+vec3 reflect_band(Reflected r, int l) {
+  vec3 sum = vec3(0);
+#if !TRANSFER
+  for (int i = 0; i <= 2 * l; ++i) band_of[i] = own_coefficient(r, l * l + i);
+  turn_band(l, r.x, r.z);
+#endif
+  for (int i = 0; i <= 2 * l; ++i) {
+    vec3 light = rgb_at(environment_at + 3 * (l * l + i));
+#if TRANSFER
+    sum += light * functions[r.low + l * l + i];
+#else
+    sum += light * band_of[i];
+#endif
   }
-  return 2 / sqrt(pi) * sum;
+  return sum;
 }
 
 // The environment's light that arrives and is reflected, and that which the medium scattered on the way (per unit of albedo):
 // Eq. 27 for the average depth T.
-void reflect_environment(int reflectance, vec3 T, out vec3 direct, out vec3 scattered) {
+void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattered) {
   vec3 place = band_place(T, environment_depths);
   direct = scattered = vec3(0);
-  for (int l = 0; l < sh_order; ++l) {
-    vec3 value = vec3(0);
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) value += rgb_at(environment_at + 3 * i) * functions[reflectance + i];
-    direct += value;
-    if (has_scattered != 0) scattered += zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) * value;
+  for (int l = 0; l < sh_order; ++l)
+    weight_of[l] = has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0);
+  if (TRANSFER == 0 && r.lambert) {
+    for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
+      int at = environment_at + 3 * y.l * (y.l + 1);
+      vec3 light = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
+      vec3 value = zonal_factor(y.l) * tables[cosine_at + y.l] * r.diffuse * light;
+      direct += value;
+      scattered += weight_of[y.l] * value;
+    }
+  } else {
+    for (int l = 0; l < sh_order; ++l) {
+      vec3 value = reflect_band(r, l);
+      direct += value;
+      scattered += weight_of[l] * value;
+    }
   }
   direct = max(direct * exp(-T), vec3(0));
   scattered = max(scattered * max(T, vec3(0)) * exp(-T), vec3(0));

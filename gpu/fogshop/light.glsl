@@ -23,3 +23,15 @@ float map_distance(Light light, int edge) {
   float s = float(edge) / float(map_edges);
   return light.map_near + (light.map_far - light.map_near) * (light.map_near > 0 ? s : s * s);
 }
+
+const float least_h = 1e-9;  // [m] distance of a light from a ray
+
+// A point light seen from a ray: it passes it at distance h [m], at the ray parameter `along` [m].
+struct LightFromRay {
+  float along, h;
+};
+LightFromRay light_from_ray(Light light, vec3 origin, vec3 direction) {
+  vec3 offset = light.position - origin;
+  float along = dot(offset, direction);
+  return LightFromRay(along, length(offset - along * direction));
+}

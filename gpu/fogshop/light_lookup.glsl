@@ -35,16 +35,6 @@ float light_depth(Light light, vec3 x) {
              mix(map_texel(light, i, j + 1, k, fe), map_texel(light, i + 1, j + 1, k, fe), f.x), f.y);
 }
 
-// A point light seen from a ray: it passes it at distance h [m], at the ray parameter `along` [m].
-struct LightFromRay {
-  float along, h;
-};
-LightFromRay light_from_ray(Light light, vec3 origin, vec3 direction) {
-  vec3 offset = light.position - origin;
-  float along = dot(offset, direction);
-  return LightFromRay(along, length(offset - along * direction));
-}
-
 #if F_TABLE
 #include "fogshop/f_table.glsl"
 #else
@@ -59,7 +49,7 @@ float equiangular(float xa, float length_, float soft, float along, float h, flo
   float angle = angle_of(soft * length_, soft * soft + xa * xb), sum = 0;
   for (int k = 0; k < 8; ++k) {
     float s = k < 4 ? 0.5 - gauss_node[k] : 0.5 + gauss_node[k - 4];
-    float tau = tan(s * angle) / soft;
+    float tau = tangent(s * angle) / soft;
     float x = (xa + soft * soft * tau) / (1 - xa * tau);
     sum += gauss_weight[k < 4 ? k : k - 4] * exp(-beta * (along + x + length(vec2(x, h))));
   }

@@ -33,23 +33,16 @@ vec3 bent_direction(Gaussian g, vec3 origin, vec3 direction, vec3 nearest) {
 
 // y' = T_i(v, p) along the bent ray over the unchanged length.
 float bent_depth(Gaussian g, Crossing c, vec3 origin, vec3 direction, float length_) {
-  vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction), q = g.center - origin;
-  float m = dot(q, r);
-  vec3 p = q - m * r;
-  return g.half_depth * exp(-g.a * g.a * dot(p, p)) *
-         erf_between(place_at(-g.a * m), place_at(g.a * (length_ - m)));
+  vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction);
+  float m = dot(g.center - origin, r);
+  return depth_beside(g, origin, r) * erf_between(place_at(-g.a * m), place_at(g.a * (length_ - m)));
 }
 #endif
 
-// A Gaussian as a view ray meets it; with noise its depth is that of the bent ray and its place that of the straight one.
-Crossing cross_view(Gaussian g, vec3 origin, vec3 direction, float length_) {
-  Crossing c = cross_line(g, origin, direction, length_);
+// The depth of a Gaussian as a view ray meets it; with noise that of the bent ray, its place that of the straight one.
+void add_view_depth(Gaussian g, vec3 origin, vec3 direction, float length_, inout Crossing c) {
 #if NOISE
-  if (c.met) {
-    vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction);
-    vec3 q = g.center - origin, p = q - dot(q, r) * r;
-    c.depth = g.half_depth * exp(-g.a * g.a * dot(p, p));
-  }
+  direction = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction);
 #endif
-  return c;
+  c.depth = depth_beside(g, origin, direction);
 }

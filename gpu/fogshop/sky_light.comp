@@ -1,11 +1,11 @@
 // environment_airlight = volume: light of the environment that the Gaussians scatter towards the eye, added to every pixel of
-// a strip (RayAirlight::sky of methods/fogshop). One tile is one work group.
+// a strip (RayAirlight::sky of methods/fogshop), from the depths of slices of equal length.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/pixels.glsl"
-#include "fogshop/near.glsl"
-#include "fogshop/noise.glsl"
+#include "fogshop/tile.glsl"
+#include "fogshop/ray_values.glsl"
 #include "fogshop/sky_volume.glsl"
 
 // J, trilinear; beyond the grid that of its nearest point.
@@ -28,58 +28,20 @@ vec3 opacity_of(vec3 q) {
   return mix(1 - exp(-q), series, lessThan(q, vec3(0.1)));
 }
 
-// Eight at a time, as slices.comp; slices beyond the last are empty.
-#define EIGHT_FROM(k, DO) DO(k) DO(k + 1) DO(k + 2) DO(k + 3) DO(k + 4) DO(k + 5) DO(k + 6) DO(k + 7)
-const int slice_space = (K + 7) / 8 * 8;
-float slice_depth[slice_space];
-
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
-  bool visible = is_computed(pixel);  // the others still help to load
-  vec3 origin, direction;
+  ivec2 pixel = pixel_of_strip();
+  if (near_count() < 0 || pixel.x >= grid_width) return;
+  int ray = ray_of_strip();
+  float lo = ray_value[value_at(reach_from, ray)], hi = ray_value[value_at(reach_to, ray)];
+  if (!(lo < hi)) return;
+  vec3 origin, direction, sum = vec3(0);
   camera_ray(film_position(pixel), origin, direction);
-  float end = visible ? ray_length(pixel) : far_away;
-  int count = near_count();
-  if (count < 0) return;  // the whole tile
-
-  float lo = far_away, hi = -far_away;
-  for (int first = 0; first < count; first += group_size) {
-    int loaded = load_near(first, count);
-    for (int i = 0; i < loaded; ++i) {
-      Crossing c = cross_view(near_block[i], origin, direction, end);
-      if (!c.met) continue;
-      lo = min(lo, c.middle - c.chord);
-      hi = max(hi, c.middle + c.chord);
-    }
-  }
-  lo = max(lo, 0);
-  hi = min(hi, end);
-  bool sliced = visible && lo < hi;
-  if (!sliced) lo = 0, hi = 1;  // the loads below are for all
-
-  // Slices of equal length: their depths, and that before the first.
-  float step_ = (hi - lo) / float(K), depth = 0;
-  for (int k = 0; k < slice_space; ++k) slice_depth[k] = 0;
-  for (int first = 0; first < count; first += group_size) {
-    int loaded = load_near(first, count);
-    for (int i = 0; i < loaded; ++i) {
-      Crossing c = cross_view(near_block[i], origin, direction, end);
-      if (!c.met) continue;
-      Place begin = place_at(c, lo), next;
-      depth += c.depth * erf_between(c.start, begin);
-#define ADD_DEPTH(k)                                              \
-  next = place_at(c, (k) + 1 < K ? lo + step_ * float((k) + 1) : hi); \
-  slice_depth[k] += c.depth * erf_between(begin, next);           \
-  begin = next;
-      for (int k = 0; k < K; k += 8) { EIGHT_FROM(k, ADD_DEPTH) }
-    }
-  }
-  if (!sliced) return;
-  vec3 sum = vec3(0);
-  for (int k = 0; k < K; ++k) {
+  float step_ = (hi - lo) / float(SLICES), before = ray_value[value_at(slices, ray)];
+  for (int k = 0; k < SLICES; ++k) {
     vec3 x = origin + (lo + step_ * (float(k) + 0.5)) * direction;
-    sum += sky_at(x) * exp(-hue * depth) * opacity_of(hue * slice_depth[k]);
-    depth += slice_depth[k];
+    float depth = ray_value[value_at(slices + 1 + k, ray)];
+    sum += sky_at(x) * exp(-hue * before) * opacity_of(hue * depth);
+    before += depth;
   }
   pixels[place_of(pixel)].rgb += sum * albedo;
 }

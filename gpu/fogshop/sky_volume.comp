@@ -19,8 +19,7 @@ float depth_beyond(vec3 from, vec3 direction) {
   float sum = 0;
   for (int i = 0; i < gaussian_count; ++i) {
     Gaussian g = gaussians[i];
-    vec3 q = g.center - from, p = q - dot(q, direction) * direction;
-    if (dot(p, p) > g.radius_squared) continue;  // most, before any exponential
+    if (square_beside(g, from, direction) > g.radius_squared) continue;  // most, before any exponential
     Crossing c = cross_line(g, from, direction, far_away);
     if (c.met) sum += c.depth * erf_between(c.start, nowhere);
   }

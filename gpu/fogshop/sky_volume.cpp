@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/fog_on_device.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 namespace {
 
 // Pairs of beam and Gaussian in one dispatch, all nodes together: a fraction of a second on a GPU.
@@ -41,6 +41,7 @@ SkyVolumeOnDevice::SkyVolumeOnDevice(Context& context, FogOnDevice& fog, const s
       fog.program("fogshop/sky_volume.comp", {{"LOCAL_SIZE_X", "4"}, {"LOCAL_SIZE_Y", "4"}, {"LOCAL_SIZE_Z", "4"}});
   fog.bind();
   beam_buffer.bind(10);
+  fog.use(p);
   use(p);
   const double each = model.gaussians.count + 2.0;  // loop iterations per beam; the one that ends a loop counts
   check_iterations(context, each, "the sky volume");
@@ -60,4 +61,4 @@ void SkyVolumeOnDevice::use(Program& p) const {
   nodes_.bind(7);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

@@ -4,7 +4,7 @@
 #include "gpu/program.h"
 #include "methods/fogshop/model.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 
 class FogOnDevice;
 
@@ -22,4 +22,4 @@ class SkyVolumeOnDevice {
   Buffer nodes_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

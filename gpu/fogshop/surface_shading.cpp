@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 namespace {
 
 std::vector<double> light_places(const fogshop::Model& model) {
@@ -34,7 +35,7 @@ bool casts_shadows(const scene::Scene& scene, const fogshop::Model& model) {
 }
 
 SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, const fogshop::Model& model,
-                               const fogshop::SurfaceLighting& lighting)
+                               const fogshop::SurfaceLighting& lighting, const FogOnDevice& fog)
     : context_(context),
       scene_(scene),
       model_(model),
@@ -49,28 +50,68 @@ SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, cons
   places_.materials.clear();
   places_.values.clear();
   places_.transfer.clear();
+  const Use use(context_);
+  const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+  program_ = &fog.program("fogshop/surfaces.comp", {{"LOCAL_SIZE_X", "8"},
+                                                    {"LOCAL_SIZE_Y", "8"},
+                                                    {"SH_ORDER", std::to_string(model_.options.sh_order)},
+                                                    {"HARMONICS", flag(lighting_.reflectances != nullptr)},
+                                                    {"TRANSFER", flag(lighting_.transfer != nullptr)},
+                                                    {"ENVIRONMENT", flag(lighting_.environment != nullptr)},
+                                                    {"SUN", flag(lighting_.points && lighting_.points->sun())}});
+  if (!model_.lights.empty() && model_.gaussians.count > 0) list_gaussians(fog);
+  check_iterations(context_,
+                   double(model_.lights.size()) * (model_.gaussians.count + 60 + places_.light_iterations) +
+                       places_.iterations + (lighting_.environment ? model_.gaussians.count : 0),
+                   "light on surfaces");
+}
+
+// As many cells as their lists have room for.
+void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
+  constexpr int group = 64;
+  constexpr std::size_t most_bytes = std::size_t(64) << 20;
+  const int lights = int(model_.lights.size());
+  Program* const programs[] = {
+      &fog.program("fogshop/light_lists.comp", {{"LOCAL_SIZE_X", std::to_string(group)}, {"FILL", "0"}}),
+      &fog.program("fogshop/light_lists.comp", {{"LOCAL_SIZE_X", std::to_string(group)}, {"FILL", "1"}})};
+  const auto run = [&](Program& p, const Buffer& buffer) {
+    fog.use(p);
+    fog.bind();
+    buffer.bind(15);
+    p.set("cells", cells_);
+    p.set("light_count", lights);
+    p.dispatch(group * cells_ * lights, cells_);
+  };
+  std::vector<int> begins;
+  for (cells_ = 32; begins.empty(); cells_ /= 2) {
+    const int count = lights * cells_ * cells_;
+    const Buffer numbers(context_, "numbers of Gaussians by direction", std::size_t(count) * 4);
+    run(*programs[0], numbers);
+    const std::vector<int> each = numbers.download<int>();
+    const double all = std::accumulate(each.begin(), each.end(), double(count + 1));
+    if (4 * all > double(most_bytes) && cells_ > 2) continue;
+    begins.assign(1, count + 1);
+    for (const int n : each) begins.push_back(begins.back() + n);
+    lists_ = std::make_unique<Buffer>(context_, "Gaussians by direction", std::size_t(begins.back()) * 4);
+    lists_->upload(begins);
+    run(*programs[1], *lists_);
+    break;
+  }
 }
 
 void SurfaceShading::fill_light_distances(int side) {
   std::vector<Point3> positions;
   for (const fogshop::LightModel& light : model_.lights) positions.push_back(light.position);
   maps_ = std::make_unique<LightDistances>(context_, scene_, positions, side);
-  tree_ = std::make_unique<ShadowTree>(context_, scene_);
 }
 
-void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, const scene::View& view,
+void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const scene::View& view,
                            const Buffer& primitives, const Buffer* pixels, const Buffer& surface,
                            const Buffer* scattered) {
   const Use use(context_);
-  const bool sun = lighting_.points && lighting_.points->sun();
-  const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  Program& p = fog.program("fogshop/surfaces.comp", {{"LOCAL_SIZE_X", "8"},
-                                                     {"LOCAL_SIZE_Y", "8"},
-                                                     {"SH_ORDER", std::to_string(model_.options.sh_order)},
-                                                     {"HARMONICS", flag(lighting_.reflectances != nullptr)},
-                                                     {"TRANSFER", flag(lighting_.transfer != nullptr)},
-                                                     {"ENVIRONMENT", flag(lighting_.environment != nullptr)},
-                                                     {"SUN", flag(sun)}});
+  const SurfacesOnDevice& surfaces = hits.surfaces();
+  Program& p = *program_;
+  fog.use(p);
   fog.bind();
   surfaces.bind();
   materials_.bind(2);
@@ -78,15 +119,17 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   tables_.bind(9);
   if (lighting_.transfer) transfer_.bind(13);
   primitives.bind(1);
+  if (lists_) lists_->bind(15);
   if (maps_) {
     maps_->primitives().bind(5);
-    tree_->bind(p);
+    hits.tree().bind(p);
   }
   if (pixels) pixels->bind(6);
   surface.bind(7);
   if (scattered) scattered->bind(8);
   set_view(p, view);
   p.set("light_count", int(model_.lights.size()));
+  p.set("cells", cells_);
   p.set("triangle_count", surfaces.triangles());
   p.set("loop_count", 3);
   p.set("map_side", maps_ ? maps_->side() : 0);
@@ -103,11 +146,7 @@ void SurfaceShading::shade(FogOnDevice& fog, const SurfacesOnDevice& surfaces, c
   // As Geometry::offset_origin: 32 ulp of the largest coordinate, of what is seen too.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
-  check_iterations(context_,
-                   double(model_.lights.size()) * (model_.gaussians.count + 60 + places_.light_iterations) +
-                       places_.iterations + (lighting_.environment ? model_.gaussians.count : 0),
-                   "light on surfaces");
   p.dispatch(view.width, view.height);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

@@ -5,7 +5,7 @@
 #include "methods/fogshop/triple_product.h"
 #include "scene/math/sh_rotation.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 SurfaceTables::SurfaceTables(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
   add_materials(scene, lighting);
   if (lighting.points && lighting.points->sun()) add_sun(*lighting.points->sun());
@@ -68,10 +68,6 @@ void SurfaceTables::add_harmonics(const fogshop::SurfaceLighting& lighting) {
       uniforms["environment_bands_at"] = add(lighting.environment->bands().values());
       uniforms["environment_depths"] = lighting.environment->bands().depths();
     }
-    const auto& nodes = fogshop::average_depth_nodes();
-    uniforms["average_at"] = int(values.size());
-    uniforms["average_nodes"] = int(nodes.size());
-    for (const fogshop::AverageDepthNode& node : nodes) add(std::vector<double>{node.value, node.slope});
     iterations += size + 4.0 * order;
   }
 }
@@ -101,4 +97,4 @@ void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, in
   iterations += 2.0 * order * order + double(all.size() / 3);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

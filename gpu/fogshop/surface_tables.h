@@ -7,7 +7,7 @@
 #include "gpu/material_tables.h"
 #include "methods/fogshop/surface_lighting.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::fog {
 
 struct SurfaceTables {
   SurfaceTables(const scene::Scene&, const fogshop::SurfaceLighting&);
@@ -28,4 +28,4 @@ struct SurfaceTables {
   void add_transfer(const fogshop::RadianceTransfer&, int order);
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::fog

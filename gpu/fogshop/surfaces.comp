@@ -8,6 +8,8 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/loops_cut.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
+#include "fogshop/light_lists.glsl"
+#include "fogshop/average_depth.glsl"
 
 layout(std430, binding = 9) readonly buffer Tables { float tables[]; };  // all that is precomputed, one after the other
 layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
@@ -40,19 +42,13 @@ void main() {
     if (surface >= 0 && any(greaterThan(materials[surface].diffuse.rgb + materials[surface].specular.rgb, vec3(0)))) {
       if (dot(normal, direction) > 0) normal = -normal;
       dvec3 point = origin + t * direction;
-      // Coverage is good to 1/256 pixel. Where the centre lies beside its triangle the point may be behind the next one, by
-      // as much as the plane runs on over that stretch: shadow rays start beyond it.
-      double lift = nudge;
-      if (primitive < triangle_count && !triangle_contains(triangles[primitive], point)) {
-        double pixel_size = 2 * length(view_up) / double(view_height) * (view_perspective != 0 ? t : 1.0LF);
-        lift = max(lift, pixel_size / 128 / max(abs(dot(normal, direction)), 0.02LF));
-      }
       Material material = materials[surface];
       vec3 n = vec3(normal), to_view = vec3(-direction);
 #if HARMONICS
-      int reflected = reflectance_harmonics(material, n, to_view);
+      Reflected reflected = reflectance_of(material, n, to_view);
 #if TRANSFER
-      if (primitive < triangle_count) reflected = shadow_harmonics(triangles[primitive], point, normal);
+      turn_reflectance(reflected);
+      if (primitive < triangle_count) shadow_reflectance(reflected, triangles[primitive], point, normal);
 #endif
 #endif
       for (int l = 0; l < light_count; ++l) {
@@ -65,11 +61,11 @@ void main() {
         if (cosine > 0) {
           reflectance = brdf(material, n, towards, to_view);
           if (any(greaterThan(reflectance, vec3(0))) &&
-              in_shadow(l, primitive, point + lift * normal, to_light, distance_))
+              in_shadow(l, primitive, point + nudge * normal, to_light, distance_))
             reflectance = vec3(0);
         }
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;
-        float depth = depth_between(lights[l].position, vec3(point), -1) + constant * d;
+        float depth = depth_from_light(l, vec3(point)) + constant * d;
         direct += reflectance * cosine * irradiance * exp(-depth * hue);
 #if SUN
         scattered += irradiance * reflect_sun(material, n, to_view, towards, depth * hue);
@@ -91,5 +87,5 @@ void main() {
     surface_layer[3 * place + c] = visible[c] * (direct[c] + scattered[c]);
     if (has_scattered != 0) scattered_layer[3 * place + c] = visible[c] * scattered[c];
   }
-  if (loops_cut()) surface_layer[3 * place] = -1;  // as no light is: the host refuses the picture
+  if (loops_cut()) surface_layer[3 * place] = -far_away;  // as no light is: the host refuses the picture
 }

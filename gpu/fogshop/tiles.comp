@@ -1,31 +1,38 @@
-// Lists the Gaussians that any ray of a tile may meet, one tile per invocation: as methods/fogshop/airlight_pass.cpp.
-layout(local_size_x = LOCAL_SIZE_X) in;
+// Lists the Gaussians that any ray of a tile may meet, in their order: as methods/fogshop/airlight_pass.cpp, and not those behind
+// what ends all of its rays. A tile is one work group; each invocation tests a stretch of the Gaussians, twice.
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/pixels.glsl"
+#include "fogshop/cone.glsl"
 
 layout(std430, binding = 1) writeonly buffer TileCounts { int tile_count[]; };
 layout(std430, binding = 2) writeonly buffer TileLists { int tile_list[]; };
-uniform int tile_row, tile_rows, tile_columns;
+uniform int tile_row;
+
+const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
+#include "fogshop/ranks.glsl"
+shared uint farthest;  // bits of the greatest length of a ray; 0: no pixel is wanted
 
 void main() {
-  int tile = int(gl_GlobalInvocationID.x);
-  if (tile >= tile_rows * tile_columns) return;
-  ivec2 first_pixel = TILE * ivec2(tile % tile_columns, tile_row + tile / tile_columns);
-  ivec2 last_pixel = min(first_pixel + TILE, ivec2(grid_width, grid_height));
-  if (only_edges != 0) {
-    bool wanted = false;
-    for (int y = first_pixel.y; y < last_pixel.y; ++y)
-      for (int x = first_pixel.x; x < last_pixel.x; ++x) wanted = wanted || is_computed(ivec2(x, y));
-    if (!wanted) {
-      tile_count[tile] = -1;
-      return;
-    }
+  int tile = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x), local = int(gl_LocalInvocationIndex);
+  ivec2 first_pixel = ivec2(gl_WorkGroupID.xy) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
+  ivec2 pixel = first_pixel + ivec2(gl_LocalInvocationID.xy);
+  ivec2 last_pixel = min(first_pixel + ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y), ivec2(grid_width, grid_height));
+  if (local == 0) farthest = 0;
+  barrier();
+  // Positive floats are in the order of their bits; a ray of length 0 is wanted too.
+  if (is_computed(pixel)) atomicMax(farthest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
+  barrier();
+  if (farthest == 0) {
+    if (local == 0) tile_count[tile] = -1;
+    return;
   }
+  float far = uintBitsToFloat(farthest) * 1.0001;
   vec2 first = float(film_step) * vec2(first_pixel), last = float(film_step) * vec2(last_pixel);
   vec3 origin, axis;
   camera_ray(0.5 * (first + last), origin, axis);
-  // How far other rays start from the middle one, and spread per metre; rounding counted against it.
+  // How far other rays start from the middle one, and spread per metre.
   float start = 0, spread = 0;
   for (int corner = 0; corner < 4; ++corner) {
     vec3 o, d;
@@ -33,15 +40,15 @@ void main() {
     start = max(start, length(o - origin));
     spread = max(spread, length(d - axis));
   }
-  spread = spread * 1.0001 + 1e-6;
-  float cosine = sqrt(max(0, 1 - spread * spread));
-  int count = 0;
-  for (int i = 0; i < gaussian_count; ++i) {
-    vec3 q = gaussians[i].center - origin;
-    float m = dot(q, axis), p = length(q - m * axis);
-    float least = m + p * spread / cosine > 0 ? p * cosine - spread * m : length(q);
-    if (spread >= 1 || least <= sqrt(gaussians[i].radius_squared) * 1.0001 + start)
-      tile_list[tile * gaussian_count + count++] = i;
-  }
-  tile_count[tile] = count;
+  Cone cone = cone_of(origin, axis, start, spread);
+
+  int each = (gaussian_count + group_size - 1) / group_size;
+  int begin = local * each, end = min(begin + each, gaussian_count), count = 0;
+  for (int i = begin; i < end; ++i)
+    if (touches(cone, gaussians[i], far)) ++count;
+  int rank = rank_of(local, count), at = tile * gaussian_count + rank;
+  if (count > 0)
+    for (int i = begin; i < end; ++i)
+      if (touches(cone, gaussians[i], far)) tile_list[at++] = i;
+  if (local == group_size - 1) tile_count[tile] = rank + count;
 }

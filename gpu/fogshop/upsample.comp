@@ -9,7 +9,8 @@ layout(std430, binding = 11) readonly buffer LowDistances { float low_distances[
 uniform int width, height, low_width, low_height, factor;
 uniform int find_edges;  // 0: bilinear everywhere
 uniform float open_distance;  // [m] of rays that nothing ends
-const float edge_ratio = 1.1, black = 1e30, far_away = 1e37;
+#include "common/far_away.glsl"
+const float edge_ratio = 1.1, black = 1e30;
 
 float ended(float t) { return t < far_away ? t : open_distance; }
 

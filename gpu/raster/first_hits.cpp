@@ -1,97 +1,85 @@
 #include "gpu/raster/first_hits.h"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
 
-#include "gpu/raster_program.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
 namespace airlight::gpu {
 namespace {
 
-using scene::Camera;
-using scene::View;
-
-// Range of x/z (perspective) or x of a sphere whose centre is at (x, z) in the camera's frame; all if it reaches behind
-// the camera. Tangents of the circle that the sphere is seen as from above.
-Interval seen_range(double x, double z, double r, bool perspective) {
-  if (!perspective) return {x - r, x + r};
-  if (!(z > r * (1 + 1e-6))) return {-infinity, infinity};
-  const double root = r * std::sqrt(x * x + (z - r) * (z + r)), below = (z - r) * (z + r);
-  return {(x * z - root) / below, (x * z + root) / below};
-}
-
-// The rectangle of each solid in the image, a pixel wider, -1 to 1, y downwards.
-std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, const View& view) {
-  const Camera& camera = view.camera;
-  const HalfFilm half = half_film(view);
-  const auto place = [](double v, double half_size, double pixel) {
-    return float(std::clamp(v / half_size + pixel, -1.0, 1.0));
-  };
-  std::vector<std::array<float, 4>> result;
-  for (const Solid& s : solids) {
-    if (s.kind == 0) {
-      result.push_back({-1, -1, 1, 1});
-      continue;
-    }
-    const Vec3 to = Point3(s.point[0], s.point[1], s.point[2]) - camera.position;
-    const bool perspective = camera.kind == Camera::Kind::perspective;
-    const double z = to.dot(camera.forward);
-    const Interval x = seen_range(to.dot(camera.right), z, s.radius, perspective);
-    const Interval y = seen_range(-to.dot(camera.up), z, s.radius, perspective);
-    const double px = 2.0 / view.width, py = 2.0 / view.height;
-    result.push_back(
-        {place(x.lo, half.x, -px), place(y.lo, half.y, -py), place(x.hi, half.x, px), place(y.hi, half.y, py)});
-  }
-  return result;
-}
+constexpr int tile = 8;
+// llvmpipe ends loops after 65535 iterations (gpu/README.md). A ray is at a node once at most, and with up to four
+// triangles there; the rest is for solids.
+constexpr int nodes_at_once = 12000, most_solids = 5000;
 
 }  // namespace
 
-FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls)
-    : context_(context), surfaces_(context, scene, with_balls) {
-  if (context.limits().vertex_storage_blocks < 3 || context.limits().fragment_storage_blocks < 3)
-    throw Unavailable("gpu: the vertex shaders of " + context.renderer() + " read no storage buffers");
+FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls, Way way)
+    : context_(context), surfaces_(context, scene, with_balls), tree_(context, scene) {
+  if (way == Way::raster) {
+    raster_ = std::make_unique<RasterPass>(context);
+    return;
+  }
+  if (context.software()) {
+    if (surfaces_.solids().size() > most_solids)
+      throw Unavailable(fmt::format("gpu: {} spheres and planes, {} takes {} at most", surfaces_.solids().size(),
+                                    context.renderer(), most_solids));
+    dispatches_ = std::max(1, (tree_.nodes() + nodes_at_once - 1) / nodes_at_once);
+  }
+  program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(tile)},
+                                                         {"LOCAL_SIZE_Y", std::to_string(tile)},
+                                                         {"RESUMES", dispatches_ > 1 ? "1" : "0"}});
 }
 
-const HitImage& FirstHits::draw(const View& view) {
+void FirstHits::find(const scene::View& view, const Buffer& distances, const Buffer* primitives,
+                     const HitGrid& grid) const {
+  const std::size_t rays = std::size_t(grid.columns(view)) * grid.rows(view), bytes = (grid.first + rays) * 4;
+  if (bytes > distances.bytes() || (primitives && bytes > primitives->bytes()))
+    throw Error(
+        fmt::format("gpu: {} rays from place {} do not fit into {} bytes", rays, grid.first, distances.bytes()));
   const Use use(context_);
-  // Two sizes are kept: a low resolution is drawn beside the film's.
-  const auto found = std::find_if(images_.begin(), images_.end(), [&](const std::unique_ptr<HitImage>& image) {
-    return image->width() == view.width && image->height() == view.height;
-  });
-  if (found != images_.end()) {
-    std::rotate(images_.begin(), found, found + 1);
-  } else {
-    images_.insert(images_.begin(), std::make_unique<HitImage>(context_, view.width, view.height));
-    images_.resize(std::min<std::size_t>(images_.size(), 2));
-  }
-  const HitImage& image = *images_.front();
-  const double extent = surfaces_.extent(view.camera.position);
-  const HalfFilm half = half_film(view);
-  const Buffer rectangle_buffer(context_, "rectangles", rectangles(surfaces_.solids(), view));
+  if (raster_)
+    raster_->find(surfaces_, view, distances, primitives, grid);
+  else
+    trace(view, distances, primitives, grid);
+}
+
+void FirstHits::trace(const scene::View& view, const Buffer& distances, const Buffer* primitives,
+                      const HitGrid& grid) const {
+  const int columns = grid.columns(view), rows = grid.rows(view);
+  Program& program = *program_;
+  set_view(program, view);
+  program.set("columns", columns);
+  program.set("rows", rows);
+  program.set("block", grid.block);
+  program.set("first_ray", int(grid.first));
+  program.set("triangle_count", surfaces_.triangles());
+  program.set("ball_count", int(surfaces_.solids().size()) - tree_.solids());
+  program.set("keeps_primitives", primitives != nullptr);
   surfaces_.bind();
-  rectangle_buffer.bind(13);
-  image.begin();
-  for (const SurfacesOnDevice::Run& run : surfaces_.runs()) {
-    RasterProgram& program = context_.raster_program(run.mesh ? "raster/mesh" : "raster/solid");
-    set_view(program, view);
-    program.set_double("depth_scale", std::ldexp(1.0, -std::min(120, std::ilogb(extent) + 41)));
-    if (run.mesh) {
-      program.set_double("view_across", Vec3(view.camera.right / half.x));
-      program.set_double("view_upwards", Vec3(view.camera.up / half.y));
-      program.set_double("view_extent", extent);
-      program.set("first_triangle", run.first);
-      program.draw(3L * run.count);
-    } else {
-      program.set("triangle_count", surfaces_.triangles());
-      program.set("first_solid", run.first);
-      program.draw(6, run.count);
-    }
+  tree_.bind(program);
+  distances.bind(0);
+  (primitives ? *primitives : distances).bind(1);
+  if (dispatches_ == 1) {
+    program.dispatch(columns, rows);
+    return;
   }
-  image.end();
-  return image;
+  // Groups of the dispatches, which each finds for the next; then where every ray is.
+  const std::size_t bytes = 4 * (3 * std::size_t(dispatches_) + 2 * std::size_t(columns) * rows);
+  if (!unfinished_ || unfinished_->bytes() < bytes)
+    unfinished_ = std::make_unique<Buffer>(context_, "unfinished rays", bytes, Contents::undefined);
+  unfinished_->clear();
+  unfinished_->bind(2);
+  program.set("dispatches", dispatches_);
+  program.set("nodes_at_once", nodes_at_once);
+  for (int i = 0; i < dispatches_; ++i) {
+    program.set("dispatch", i);
+    if (i == 0)
+      program.dispatch(columns, rows);
+    else
+      program.dispatch_indirect(*unfinished_, 12 * std::size_t(i));
+  }
 }
 
 }  // namespace airlight::gpu

@@ -1,35 +1,46 @@
-// What ends the camera rays, by a raster pass: scene::ray_end for every pixel centre.
+// What ends the camera rays: scene::ray_end for every pixel centre, written into storage buffers on the device.
 //
-// Which surface a pixel shows is decided by the rasteriser, to a fraction of a pixel at silhouettes. Where it is met is
-// computed for the pixel's own ray in double precision, from the triangle's plane or the sphere or plane itself, and
-// kept as floats. Surfaces are two-sided; there is no near plane (raster/mesh.vert) and none farther than which
-// something is lost (raster/hit.glsl). Of surfaces closer to each other than 2^-24 of their distance the first in the
-// scene is taken.
+// Way::tree, a compute shader: boxes and triangles are passed over in single precision, with room for its rounding; what
+// may be met is met in double precision, by the test of scene/geometry/ray_primitive, and kept as a float. So no pixel
+// shows what its centre's ray misses. Of surfaces at one distance, as floats, the first in the scene is taken.
+//
+// Way::raster, a raster pass (raster_pass.h): the rasteriser decides what a pixel shows, to 1/256 pixel at silhouettes;
+// where it is met is computed in double precision too.
+//
+// Either way surfaces are two-sided; there is no near plane, and no far one before 1e37 m.
 #pragma once
-#include <memory>
-#include <vector>
-
-#include "gpu/raster/hit_image.h"
-#include "gpu/raster/surfaces_on_device.h"
-#include "scene/renderer.h"
+#include "gpu/program.h"
+#include "gpu/raster/raster_pass.h"
+#include "gpu/raster/shadow_tree.h"
 
 namespace airlight::gpu {
 
 class FirstHits {
  public:
-  // Throws Unavailable where the device's vertex shaders read no storage buffers.
-  FirstHits(Context&, const scene::Scene&, bool with_balls = true);
+  enum class Way { tree, raster };
+
+  // Throws Unavailable if the surfaces pass the device's limits, or for a raster pass if its vertex shaders read no
+  // storage buffers.
+  FirstHits(Context&, const scene::Scene&, bool with_balls = true, Way = Way::tree);
 
   const SurfacesOnDevice& surfaces() const { return surfaces_; }
+  const ShadowTree& tree() const { return tree_; }
   bool move_balls(const scene::Scene& scene) { return surfaces_.move_balls(scene); }
 
-  // Draws the view. The image is valid until the next call.
-  const HitImage& draw(const scene::View&);
+  // Row 0 first, x fastest: distances along the rays [m] as floats, far_away where nothing is hit, and, unless null,
+  // primitives as ints: triangles in their order, then solids, then balls; -1: nothing. Throws Error if they do not fit.
+  void find(const scene::View&, const Buffer& distances, const Buffer* primitives = nullptr, const HitGrid& = {}) const;
 
  private:
+  void trace(const scene::View&, const Buffer& distances, const Buffer* primitives, const HitGrid&) const;
+
   Context& context_;
   SurfacesOnDevice surfaces_;
-  std::vector<std::unique_ptr<HitImage>> images_;  // of the last two sizes, the latest first
+  ShadowTree tree_;
+  std::unique_ptr<RasterPass> raster_;  // null: by the tree
+  Program* program_ = nullptr;          // for the tree
+  int dispatches_ = 1;                  // that a ray may need, where the device limits loops
+  mutable std::unique_ptr<Buffer> unfinished_;
 };
 
 }  // namespace airlight::gpu

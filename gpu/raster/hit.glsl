@@ -1,17 +1,16 @@
 // What a fragment leaves behind, and the order of fragments.
-layout(location = 0) out vec4 out_hit;      // distance along the ray [m], normal towards the ray
-layout(location = 1) out int out_surface;   // index; -2: a light's ball
-layout(location = 2) out int out_primitive; // triangles in their order, then solids
+layout(location = 0) out float out_distance;  // along the ray [m]
+layout(location = 1) out int out_primitive;   // triangles in their order, then solids
+uniform int block;                            // pixels to the side of what a fragment stands for
 
 // Float depths in (0, 1] keep their relative precision over 126 powers of two; t over a power of two that is 2^40 extents
 // keeps that of t itself from 2^-86 extents on. So there is no near plane to choose, and no far one: what lies beyond counts
 // as hit, after everything nearer.
 uniform double depth_scale;  // a power of two [1/m]
 
-void keep_hit(double t, dvec3 normal, dvec3 direction, int surface, int primitive) {
+void keep_hit(double t, int primitive) {
   if (!(t > 0)) discard;
-  out_hit = vec4(float(min(t, 1e37LF)), vec3(dot(normal, direction) > 0 ? -normal : normal));
-  out_surface = surface;
+  out_distance = float(min(t, 1e37LF));
   out_primitive = primitive;
   gl_FragDepth = min(float(t * depth_scale), 0.99999994);
 }

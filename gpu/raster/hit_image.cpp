@@ -13,15 +13,16 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
                                   context.renderer(), most));
   const Use use(context);
   const Gl& gl = context.gl();
-  const GLenum formats[4] = {GL_RGBA32F, GL_R32I, GL_R32I, GL_DEPTH_COMPONENT32F};
-  const GLenum attachments[4] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_DEPTH_ATTACHMENT};
+  const GLenum formats[3] = {GL_R32F, GL_R32I, GL_DEPTH_COMPONENT32F};
+  const GLenum attachments[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_DEPTH_ATTACHMENT};
   gl.CreateFramebuffers(1, &framebuffer_);
-  gl.CreateTextures(GL_TEXTURE_2D, 4, textures_);
-  for (int i = 0; i < 4; ++i) {
+  gl.CreateTextures(GL_TEXTURE_2D, 3, textures_);
+  for (int i = 0; i < 3; ++i) {
     gl.TextureStorage2D(textures_[i], 1, formats[i], width, height);
     gl.NamedFramebufferTexture(framebuffer_, attachments[i], textures_[i], 0);
   }
-  gl.NamedFramebufferDrawBuffers(framebuffer_, 3, attachments);
+  gl.NamedFramebufferDrawBuffers(framebuffer_, 2, attachments);
+  context.traffic().allocations += 4;
   const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER);
   context.check("making a framebuffer");
   if (status != GL_FRAMEBUFFER_COMPLETE)
@@ -32,7 +33,7 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
 HitImage::~HitImage() {
   const Use use(context_);
   context_.gl().DeleteFramebuffers(1, &framebuffer_);
-  context_.gl().DeleteTextures(4, textures_);
+  context_.gl().DeleteTextures(3, textures_);
 }
 
 void HitImage::begin() const {
@@ -41,7 +42,6 @@ void HitImage::begin() const {
   const GLint none[4] = {-1, -1, -1, -1};
   gl.ClearNamedFramebufferfv(framebuffer_, GL_COLOR, 0, nothing);
   gl.ClearNamedFramebufferiv(framebuffer_, GL_COLOR, 1, none);
-  gl.ClearNamedFramebufferiv(framebuffer_, GL_COLOR, 2, none);
   gl.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, farthest);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   gl.Viewport(0, 0, width_, height_);
@@ -51,30 +51,25 @@ void HitImage::begin() const {
 
 void HitImage::end() const {
   context_.gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
-  context_.check("a raster pass");
+  context_.check_closely("a raster pass");
 }
 
-void HitImage::read(int attachment, GLenum format, GLenum type, std::size_t bytes, const Buffer& buffer,
-                    std::size_t offset) const {
-  if (offset + bytes * width_ * height_ > buffer.bytes())
-    throw Error(fmt::format("gpu: {} x {} pixels do not fit into {} bytes", width_, height_, buffer.bytes()));
+void HitImage::copy(int attachment, GLenum format, GLenum type, const Buffer& buffer, std::size_t offset) const {
   const Gl& gl = context_.gl();
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   gl.NamedFramebufferReadBuffer(framebuffer_, GL_COLOR_ATTACHMENT0 + GLenum(attachment));
   buffer.bind_as(GL_PIXEL_PACK_BUFFER);
-  gl.ReadPixels(0, 0, width_, height_, format, type, reinterpret_cast<void*>(offset));
+  gl.ReadPixels(0, 0, width_, height_, format, type, reinterpret_cast<void*>(offset));  // into the buffer
   gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  context_.check("reading a raster pass");
+  context_.check_closely("copying a raster pass");
 }
 
-void HitImage::read_hits(const Buffer& buffer) const { read(0, GL_RGBA, GL_FLOAT, 16, buffer, 0); }
-void HitImage::read_distances(const Buffer& buffer, std::size_t offset) const {
-  read(0, GL_RED, GL_FLOAT, 4, buffer, offset);
+void HitImage::copy_distances(const Buffer& buffer, std::size_t offset) const {
+  copy(0, GL_RED, GL_FLOAT, buffer, offset);
 }
-void HitImage::read_surfaces(const Buffer& buffer) const { read(1, GL_RED_INTEGER, GL_INT, 4, buffer, 0); }
-void HitImage::read_primitives(const Buffer& buffer, std::size_t offset) const {
-  read(2, GL_RED_INTEGER, GL_INT, 4, buffer, offset);
+void HitImage::copy_primitives(const Buffer& buffer, std::size_t offset) const {
+  copy(1, GL_RED_INTEGER, GL_INT, buffer, offset);
 }
 
 }  // namespace airlight::gpu

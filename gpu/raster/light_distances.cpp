@@ -20,14 +20,12 @@ LightDistances::LightDistances(Context& context, const scene::Scene& scene, cons
       distances_(context, "light-distance maps", positions.size() * 6 * side * side * 4),
       primitives_(context, "light-distance maps, primitives", positions.size() * 6 * side * side * 4) {
   const Use use(context);
-  FirstHits pass(context, scene, false);
-  std::size_t offset = 0;
+  const FirstHits pass(context, scene, false);
+  std::size_t first = 0;
   for (const Point3& position : positions)
     for (int face = 0; face < 6; ++face) {
-      const HitImage& image = pass.draw(face_view(position, face, side));
-      image.read_distances(distances_, offset);
-      image.read_primitives(primitives_, offset);
-      offset += std::size_t(side) * side * 4;
+      pass.find(face_view(position, face, side), distances_, &primitives_, {1, first});
+      first += std::size_t(side) * side;
     }
 }
 

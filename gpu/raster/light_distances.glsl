@@ -1,5 +1,5 @@
 // Shadows by what a light sees, and by all there is (gpu/raster/light_distances.h).
-#include "raster/primitive.glsl"
+#include "raster/shadow_tree.glsl"
 
 layout(std430, binding = 5) readonly buffer LightPrimitives { int light_primitive[]; };
 uniform int map_side;        // texels; 0: there are no maps
@@ -13,32 +13,6 @@ int map_texel_of(vec3 u) {
   ivec2 texel = clamp(ivec2(floor(0.5 * float(map_side) * vec2(1 + across, 1 - upwards))), ivec2(0), ivec2(map_side - 1));
   return ((2 * axis + (negative ? 1 : 0)) * map_side + texel.y) * map_side + texel.x;
 }
-
-// Does it meet the ray in (0, end)? Moeller and Trumbore 1997 for triangles. The origin may lie on it if `own`.
-bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, double end) {
-  dvec3 normal;
-  if (primitive >= triangle_count) {
-    Solid s = solids[primitive - triangle_count];
-    if (own) {  // a plane has no other crossing, a sphere that of the whole chord
-      if (s.kind == 0) return false;
-      dvec3 offset = dvec3(s.point[0], s.point[1], s.point[2]) - origin;
-      double chord = 2 * dot(offset, direction);
-      return chord > 1e-12LF * s.radius && chord < end;
-    }
-    double t = meet_solid(s, origin, direction, normal);
-    return t > 0 && t < end;
-  }
-  if (own) return false;
-  ivec4 corners = triangles[primitive];
-  dvec3 a = mesh_vertex(corners.x), ab = mesh_vertex(corners.y) - a, ac = mesh_vertex(corners.z) - a;
-  dvec3 p = cross(direction, ac), from = origin - a, q = cross(from, ab);
-  double det = dot(ab, p);
-  if (det == 0) return false;
-  double u = dot(from, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
-  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
-}
-
-#include "raster/shadow_tree.glsl"
 
 // Is anything between a point of primitive `own` and the light, `end` metres along `to_light`? The primitives of the nine texels
 // around the direction are tried first: in a shadow one of them is the answer mostly. Then all, by the tree.

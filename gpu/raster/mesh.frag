@@ -8,8 +8,8 @@ flat in int triangle;
 
 void main() {
   dvec3 origin, direction, normal;
-  view_ray(dvec2(gl_FragCoord.xy), origin, direction);
+  view_ray(block * dvec2(gl_FragCoord.xy), origin, direction);
   ivec4 corners = triangles[triangle];
   double t = meet_triangle_plane(corners, origin, direction, view_forward, normal);
-  keep_hit(t, normal, direction, corners.w, triangle);
+  keep_hit(t, triangle);
 }

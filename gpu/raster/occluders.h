@@ -1,4 +1,4 @@
-// Surfaces as shaders test shadow rays against them: ray_marcher/occluders.glsl, raster/shadow_tree.glsl.
+// Triangles as shaders test rays against them: raster/tree.glsl.
 #pragma once
 #include <array>
 #include <vector>
@@ -11,22 +11,14 @@ struct OccluderNode {
   std::array<float, 3> lo;
   int behind;  // the node that follows when this one is missed
   std::array<float, 3> hi;
-  int leaf;  // 8 * first triangle + their number; -1 for a branch
+  int leaf;  // 8 * first triangle + their number; of a branch -1 - (4 * second child + axis of the cut), the first follows
 };
 struct OccluderTriangle {
-  std::array<float, 4> a, b, c;
-};
-struct OccluderSolid {
-  std::array<float, 3> place;
-  float radius;  // 0: a plane
-  std::array<float, 3> normal;
-  float unused;
+  std::array<float, 4> a, b, c;  // a[3]: bits of its number among all triangles of the scene
 };
 struct Occluders {
   std::vector<OccluderNode> nodes;  // depth first
   std::vector<OccluderTriangle> triangles;
-  std::vector<int> order;  // of each of them the number among all triangles of the scene
-  std::vector<OccluderSolid> solids;
 };
 
 // Positions relative to `middle`. Branches are cut at the median of the centres along the longest side; at most 4

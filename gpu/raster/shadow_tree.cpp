@@ -1,5 +1,6 @@
 #include "gpu/raster/shadow_tree.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "gpu/raster/occluders.h"
@@ -8,9 +9,25 @@ namespace airlight::gpu {
 
 struct ShadowTree::Data {
   int nodes = 0, solids = 0;
+  double reach = 0;
   Point3 middle = Point3::Zero();
   std::vector<int> words;
 };
+
+namespace {
+
+// For an octant of directions (bit a: towards lower coordinates), the node that follows when `node` is done with.
+void link(const std::vector<OccluderNode>& nodes, int octant, int node, int next, std::vector<int>& words) {
+  words[16 * node + 8 + octant] = next;
+  if (nodes[node].leaf >= 0) return;
+  const int code = -1 - nodes[node].leaf;
+  int first = node + 1, second = code >> 2;
+  if (octant >> (code & 3) & 1) std::swap(first, second);
+  link(nodes, octant, first, second, words);
+  link(nodes, octant, second, next, words);
+}
+
+}  // namespace
 
 ShadowTree::Data ShadowTree::data(const scene::Scene& scene) {
   Data data;
@@ -18,25 +35,35 @@ ShadowTree::Data ShadowTree::data(const scene::Scene& scene) {
   if (const Box box = scene.geometry->bounds(); !box.empty()) data.middle = box.center();
   const Occluders occluders = make_occluders(scene.surfaces, data.middle);
   data.nodes = int(occluders.nodes.size());
-  data.solids = int(occluders.solids.size());
-  data.words.resize(8 * occluders.nodes.size());
-  static_assert(sizeof(OccluderNode) == 8 * sizeof(int));
-  if (!data.words.empty()) std::memcpy(data.words.data(), occluders.nodes.data(), data.words.size() * sizeof(int));
-  data.words.insert(data.words.end(), occluders.order.begin(), occluders.order.end());
-  data.words.resize((data.words.size() + 3) / 4 * 4);
+  data.solids = int(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), [](const scene::Surface& surface) {
+    return !std::holds_alternative<scene::TriangleMesh>(surface.shape);
+  }));
+  if (data.nodes == 0) return data;
+  data.words.resize(16 * occluders.nodes.size() + 12 * occluders.triangles.size());
+  for (int i = 0; i < data.nodes; ++i) std::memcpy(&data.words[16 * i], &occluders.nodes[i], sizeof(OccluderNode));
+  for (int octant = 0; octant < 8; ++octant) link(occluders.nodes, octant, 0, data.nodes, data.words);
+  static_assert(sizeof(OccluderTriangle) == 12 * sizeof(int));
+  std::memcpy(&data.words[16 * data.nodes], occluders.triangles.data(), 48 * occluders.triangles.size());
+  for (int a = 0; a < 3; ++a)
+    data.reach = std::max({data.reach, -double(occluders.nodes[0].lo[a]), double(occluders.nodes[0].hi[a])});
   return data;
 }
 
 ShadowTree::ShadowTree(Context& context, const scene::Scene& scene) : ShadowTree(context, data(scene)) {}
 
 ShadowTree::ShadowTree(Context& context, const Data& data)
-    : nodes_(data.nodes), solids_(data.solids), middle_(data.middle), tree_(context, "tree of surfaces", data.words) {}
+    : nodes_(data.nodes),
+      solids_(data.solids),
+      middle_(data.middle),
+      reach_(data.reach),
+      tree_(context, "tree of surfaces", data.words) {}
 
 void ShadowTree::bind(LinkedProgram& program) const {
   tree_.bind(14);
   program.set("tree_nodes", nodes_);
-  program.set("solid_count", solids_);
   program.set_double("tree_middle", middle_);
+  program.set("tree_reach", reach_);
+  program.set("solid_count", solids_);
 }
 
 }  // namespace airlight::gpu

@@ -1,35 +1,49 @@
-// Is anything between a point and a light? A tree of boxes over all triangles without a stack (gpu/raster/occluders.h): boxes in
-// single precision, widened by its rounding, triangles in double. Needs primitive_blocks.
-layout(std430, binding = 14) readonly buffer ShadowTree { ivec4 shadow_tree[]; };  // two a node; then numbers of triangles
-uniform int tree_nodes;     // 0: there is no triangle
-uniform dvec3 tree_middle;  // [m] boxes are relative to it
-uniform int solid_count;
+// Is anything between a point and a light? COUNT_NODE, if defined, is done at every node.
+#include "raster/primitive.glsl"
+#include "raster/tree.glsl"
+#ifndef COUNT_NODE
+#define COUNT_NODE
+#endif
 
-int triangle_in_leaf(int k) { return shadow_tree[2 * tree_nodes + (k >> 2)][k & 3]; }
+// Does it meet the ray in (0, end)? Moeller and Trumbore 1997 for triangles. The origin may lie on it if `own`.
+bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, double end) {
+  dvec3 normal;
+  if (primitive >= triangle_count) {
+    Solid s = solids[primitive - triangle_count];
+    if (own) {  // a plane has no other crossing, a sphere that of the whole chord
+      if (s.kind == 0) return false;
+      dvec3 offset = dvec3(s.point[0], s.point[1], s.point[2]) - origin;
+      double chord = 2 * dot(offset, direction);
+      return chord > 1e-12LF * s.radius && chord < end;
+    }
+    double t = meet_solid(s, origin, direction, normal);
+    return t > 0 && t < end;
+  }
+  if (own) return false;
+  ivec4 corners = triangles[primitive];
+  dvec3 a = mesh_vertex(corners.x), ab = mesh_vertex(corners.y) - a, ac = mesh_vertex(corners.z) - a;
+  dvec3 p = cross(direction, ac), from = origin - a, q = cross(from, ab);
+  double det = dot(ab, p);
+  if (det == 0) return false;
+  double u = dot(from, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
+  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
+}
 
 bool tree_blocks(int own, dvec3 point, dvec3 to_light, double end) {
   for (int i = 0; i < solid_count; ++i)
     if (triangle_count + i != own && primitive_blocks(triangle_count + i, false, point, to_light, end)) return true;
-  vec3 origin = vec3(point - tree_middle), inverse;
-  for (int a = 0; a < 3; ++a) inverse[a] = float(1 / (abs(to_light[a]) < 1e-20LF ? 1e-20LF : to_light[a]));
-  vec3 m = abs(origin);
-  float pad = 1e-6 * max(m.x, max(m.y, m.z)), until = float(end) * (1 + 1e-6);
-  for (int i = 0; i < tree_nodes;) {
-    ivec4 low = shadow_tree[2 * i], high = shadow_tree[2 * i + 1];
-    vec3 s = (intBitsToFloat(low.xyz) - pad - origin) * inverse, e = (intBitsToFloat(high.xyz) + pad - origin) * inverse;
-    vec3 first = min(s, e), last = max(s, e);
-    float enter = max(max(first.x, first.y), max(first.z, 0)), leave = min(min(last.x, last.y), min(last.z, until));
-    if (!(enter <= leave)) {
-      i = low.w;
-      continue;
-    }
-    int leaf = high.w;
-    if (leaf >= 0)
+  TreeRay ray = tree_ray_of(vec3(point - tree_middle), vec3(to_light));
+  float until = float(end) * (1 + 1e-6);
+  for (int node = 0; node < tree_nodes;) {
+    COUNT_NODE
+    bool met = meets_box(ray, node, until);
+    int leaf = tree[4 * node + 1].w;
+    if (met && leaf >= 0)
       for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k) {
-        int triangle = triangle_in_leaf(k);
-        if (triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;
+        int triangle = triangle_to_meet(ray, k);
+        if (triangle >= 0 && triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;
       }
-    ++i;
+    node = next_node(ray, node, leaf, met);
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// All surfaces of a scene as raster/shadow_tree.glsl tests shadow rays against them.
+// All triangles of a scene as raster/tree.glsl walks them.
 #pragma once
 #include "gpu/buffer.h"
 #include "gpu/linked_program.h"
@@ -8,11 +8,15 @@ namespace airlight::gpu {
 
 class ShadowTree {
  public:
-  // About 37 bytes a triangle. Throws Unavailable above the device's limits.
+  // About 90 bytes a triangle. Throws Unavailable above the device's limits.
   ShadowTree(Context&, const scene::Scene&);
 
   // Binds 14, sets its uniforms.
   void bind(LinkedProgram&) const;
+
+  const Point3& middle() const { return middle_; }  // [m]
+  int nodes() const { return nodes_; }
+  int solids() const { return solids_; }  // of the scene: spheres and planes, which are not in the tree
 
  private:
   struct Data;
@@ -21,6 +25,7 @@ class ShadowTree {
 
   int nodes_, solids_;
   Point3 middle_;
+  double reach_;
   Buffer tree_;
 };
 

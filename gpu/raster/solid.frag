@@ -8,7 +8,7 @@ flat in int solid;
 
 void main() {
   dvec3 origin, direction, normal;
-  view_ray(dvec2(gl_FragCoord.xy), origin, direction);
+  view_ray(block * dvec2(gl_FragCoord.xy), origin, direction);
   double t = meet_solid(solids[solid], origin, direction, normal);
-  keep_hit(t, normal, direction, solids[solid].surface, triangle_count + solid);
+  keep_hit(t, triangle_count + solid);
 }

@@ -6,14 +6,6 @@ dvec3 mesh_vertex(int i) {
   return dvec3(vertex_coordinate[3 * i], vertex_coordinate[3 * i + 1], vertex_coordinate[3 * i + 2]);
 }
 
-// Is a point of the triangle's plane within it? Rounding counts for it.
-bool triangle_contains(ivec4 corners, dvec3 point) {
-  dvec3 a = mesh_vertex(corners.x), ab = mesh_vertex(corners.y) - a, ac = mesh_vertex(corners.z) - a, ap = point - a;
-  dvec3 n = cross(ab, ac);
-  double all = dot(n, n), v = dot(cross(ap, ac), n), w = dot(cross(ab, ap), n), slack = -1e-9LF * all;
-  return v >= slack && w >= slack && all - v - w >= slack;
-}
-
 // Where a ray meets the plane of a triangle [m], within the triangle's reach: coverage is decided to a fraction of a pixel
 // only, and on a triangle seen from its edge the plane may be met far outside. 0 if the triangle has no area. `normal` has
 // either side.

@@ -4,24 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gpu/ray_marcher/scene_data.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 namespace {
 
-constexpr int tile = 8;                                    // pixels, to both sides; a tile is a work group
-constexpr std::size_t band_bytes = std::size_t(32) << 20;  // of the pixels that are on the device at once
-constexpr double first_tiles = 16;                         // of the first dispatch
-// Iterations of loops that an invocation does in a dispatch, about. llvmpipe ends all loops of eight invocations
-// together after 65535 iterations, silently; on a GPU what counts is that a dispatch does not last.
-constexpr int software_budget = 3000, budget = 100000;
-// Of all invocations of a dispatch, about, in units of 256: a tenth of a second or less.
-constexpr double software_aim = 4e6 / 256, aim = 2e9 / 256;
+constexpr std::size_t band_bytes = std::size_t(64) << 20;  // of the pixels' state that is on the device at once
+constexpr std::size_t pixel_bytes = 64;                    // the layout of pixel.glsl
 constexpr double software_most = 65535;
-constexpr float far_away = 1e37f;  // as layer.glsl
 
 template <class Has>
 bool any_layer(const ray_marcher::Plan& plan, Has has) {
@@ -52,118 +46,190 @@ double iterations_at_once(const ray_marcher::Plan& plan) {
 
 }  // namespace
 
-PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, GridStorage storage)
+PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, GridStorage storage,
+                           const FirstHits* first_hits)
+    : PlanOnDevice(context, plan, storage, first_hits, MaterialTables(*plan.scene)) {}
+
+PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, GridStorage storage,
+                           const FirstHits* first_hits, const MaterialTables& tables)
     : context_(context),
       plan_(plan),
+      first_hits_(first_hits),
       middle_(middle_of(plan)),
       balls_(int(std::count_if(plan.lights.begin(), plan.lights.end(), [](const auto& l) { return bool(ball(l)); }))),
       has_occluders_(plan.scene->geometry && plan.scatters),
-      occluders_(has_occluders_ ? make_occluders(plan.scene->surfaces, middle_) : Occluders{}),
+      reflects_(plan.scene->geometry && !plan.lights.empty()),
       grids_(context, plan, storage),
       layers_(context, "layers", layer_data(plan, middle_, grids_.textures() > 0)),
       gaussians_(context, "Gaussians", gaussian_data(plan)),
       bricks_(context, "maps of empty space", brick_data(plan)),
       lights_(context, "lights", light_data(plan, middle_)),
-      nodes_(context, "boxes of surfaces", occluders_.nodes),
-      triangles_(context, "triangles", occluders_.triangles),
-      solids_(context, "spheres and planes", occluders_.solids) {}
-
-Program& PlanOnDevice::program(const scene::View& view) {
-  const ray_marcher::Options& o = plan_.options;
-  const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  Program& p = context_.program("ray_marcher/march.comp",
-                                {{"LOCAL_SIZE_X", std::to_string(tile)},
-                                 {"LOCAL_SIZE_Y", std::to_string(tile)},
-                                 {"LAYERS", std::to_string(plan_.layers.size())},
-                                 {"GRIDS", flag(any_layer(plan_, [](const auto& l) { return bool(l.grid); }))},
-                                 {"TEXTURES", std::to_string(grids_.textures())},
-                                 {"GAUSSIANS", flag(any_layer(plan_, [](const auto& l) { return bool(l.gaussians); }))},
-                                 {"SKIP", flag(o.skip_empty)},
-                                 {"GRADED", flag(o.graded)},
-                                 {"EXACT_SHADOW", flag(o.exact_shadow)},
-                                 {"OCCLUDERS", flag(has_occluders_)},
-                                 {"BALL_WORDS", std::to_string(balls_ / 32 + 1)}});
-  p.set("node_count", int(occluders_.nodes.size()));
-  p.set("solid_count", int(occluders_.solids.size()));
-  p.set("light_count", plan_.scatters ? int(plan_.lights.size()) : 0);
-  p.set("balls", plan_.scatters ? balls_ : 0);
-  p.set("graded", o.graded);
-  p.set("skip_empty", o.skip_empty);
-  p.set("exact_shadow", o.exact_shadow);
-  p.set("steps", o.steps);
-  p.set("step_length", o.step);
-  p.set("shadow_steps", o.shadow_steps);
-  p.set("shadow_step", o.shadow_step);
-  p.set("horizon", o.horizon);
-  p.set("deepest_step", deepest_step(o));
-  p.set("deepest_shadow_step", deepest_shadow_step(o));
-  p.set("darkest", o.early_exit > 0 ? float(-std::log(o.early_exit)) : far_away);
-  set_camera(p, view, middle_);
-  return p;
-}
-
-std::vector<MarchedPixel> PlanOnDevice::march(const scene::View& view, const Buffer* distances,
-                                              const scene::Execution& execution, StageTimer& timer) {
-  const Use use(context_);
-  if (context_.software() && iterations_at_once(plan_) > software_most)
+      solids_(context, "spheres and planes", solid_data(plan, middle_)),
+      materials_(context, "materials", tables.materials),
+      reflectances_(context, "tables of reflectances", tables.values),
+      environments_(context, *plan.scene),
+      march_rounds_(context, "march"),
+      surface_rounds_(context, "surfaces") {
+  if (context.software() && iterations_at_once(plan) > software_most)
     throw Unavailable(
         fmt::format("gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected fewer shadow steps",
-                    iterations_at_once(plan_), context_.renderer(), software_most));
-  Program& p = program(view);
-  const int columns = (view.width + tile - 1) / tile;
-  const std::size_t tile_row_bytes = std::size_t(columns) * tile * tile * sizeof(MarchedPixel);
-  const int band = int(std::max<std::size_t>(1, band_bytes / tile_row_bytes)) * tile;
+                    iterations_at_once(plan), context.renderer(), software_most));
+  const std::string side = std::to_string(Rounds::tile);
+  const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+  const std::map<std::string, std::string> media{
+      {"LOCAL_SIZE_X", side},
+      {"LOCAL_SIZE_Y", side},
+      {"LAYERS", std::to_string(plan.layers.size())},
+      {"GRIDS", flag(any_layer(plan, [](const auto& l) { return bool(l.grid); }))},
+      {"TEXTURES", std::to_string(grids_.textures())},
+      {"GAUSSIANS", flag(any_layer(plan, [](const auto& l) { return bool(l.gaussians); }))}};
+  auto marching = media;
+  marching.insert({{"OCCLUDERS", flag(has_occluders_)}, {"BALL_WORDS", std::to_string(balls_ / 32 + 1)}});
+  if (!plan.layers.empty()) march_ = &context.program("ray_marcher/march.comp", marching);
+  if (reflects_) {
+    surfaces_ = &context.program("ray_marcher/surfaces.comp", media);
+    if (const Box box = plan.scene->geometry->bounds(); !box.empty())
+      magnitude_ = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
+    for (const scene::Surface& surface : plan.scene->surfaces)
+      if (const auto* plane = std::get_if<scene::Plane>(&surface.shape))
+        magnitude_ = std::max(magnitude_, plane->point.cwiseAbs().maxCoeff());
+  }
+  for (int i = 0; i < environments_.count(); ++i) {
+    auto definitions = environments_.definitions(i);
+    definitions.insert({{"LOCAL_SIZE_X", side}, {"LOCAL_SIZE_Y", side}, {"LAYERS", media.at("LAYERS")}});
+    backgrounds_.push_back(&context.program("ray_marcher/background.comp", definitions));
+  }
+  composition_ = &context.program("ray_marcher/composition.comp", {{"LOCAL_SIZE_X", "64"}});
+}
+
+// What marching and reflecting have in common.
+void PlanOnDevice::bind(Program& p) const {
+  const ray_marcher::Options& o = plan_.options;
   layers_.bind(0);
   gaussians_.bind(1);
   grids_.bind();
   bricks_.bind(3);
   lights_.bind(4);
-  nodes_.bind(7);
-  triangles_.bind(8);
-  solids_.bind(9);
-  p.set("tile_columns", columns);
-  p.set("has_distances", distances != nullptr);
-  if (distances) distances->bind(5);
-
-  p.set("budget", context_.software() ? software_budget : budget);
-  Buffer progress(context_, "progress", 2 * sizeof(unsigned));
-  progress.bind(10);
-
-  // How many tiles a dispatch takes follows from the work that the last one did, not from the clock: dispatches are
-  // counted, and the same picture takes the same number of them. No pixel depends on it.
-  const double tiles = double(columns) * ((view.height + tile - 1) / tile);
-  double tiles_at_once = first_tiles;
-  std::vector<MarchedPixel> image;
-  image.reserve(std::size_t(view.width) * view.height);
-  for (int row = 0; row < view.height; row += band) {
-    const int end_row = std::min(row + band, view.height);
-    const std::size_t begin = std::size_t(row) * view.width, end = std::size_t(end_row) * view.width;
-    const Buffer pixels(context_, "pixels", (end - begin) * sizeof(MarchedPixel));
-    pixels.bind(6);
-    p.set("first_row", row);
-    const int end_tile = (end_row + tile - 1) / tile * columns;
-    for (int first = row / tile * columns; first < end_tile;) {
-      const int most = std::min(end_tile - first, context_.limits().groups[0]);
-      const int count = std::clamp(int(std::min(tiles_at_once, 1e9)), 1, most);
-      p.set("first_tile", first);
-      for (bool done = false; !done;) {
-        progress.upload(std::vector<unsigned>{0, 0});
-        p.dispatch(count * tile, tile);
-        const std::vector<unsigned> after = progress.download<unsigned>();
-        done = after[0] == 0;
-        const double wanted = context_.software() ? software_aim : aim;
-        tiles_at_once = std::clamp(count * wanted / std::max(1u, after[1]), 1.0, 4.0 * count);
-        if (execution.progress && !execution.progress((first + (done ? count : 0)) / tiles))
-          throw scene::Interrupted("interrupted");
-      }
-      first += count;
-    }
-    timer.stage("march");
-    const std::vector<MarchedPixel> strip = pixels.download<MarchedPixel>();
-    image.insert(image.end(), strip.begin(), strip.end());
-    timer.stage("read back");
-  }
-  return image;
+  p.set("layer_count", int(plan_.layers.size()));
+  p.set("skip_empty", o.skip_empty);
+  p.set("exact_shadow", o.exact_shadow);
+  p.set("shadow_steps", o.shadow_steps);
+  p.set("shadow_step", o.shadow_step);
+  p.set("deepest_shadow_step", deepest_shadow_step(o));
 }
 
-}  // namespace airlight::gpu
+void PlanOnDevice::march(const scene::View& view, const MarchedFilm& film, FrameBuffers& buffers, const Band& band) {
+  const ray_marcher::Options& o = plan_.options;
+  Program& p = *march_;
+  bind(p);
+  if (film.distances) film.distances->bind(5);
+  band.pixels.bind(6);
+  if (has_occluders_) {
+    first_hits_->tree().bind(p);
+    solids_.bind(9);
+    p.set("middle_in_tree", Vec3(middle_ - first_hits_->tree().middle()));
+  }
+  p.set("light_count", plan_.scatters ? int(plan_.lights.size()) : 0);
+  p.set("balls", plan_.scatters ? balls_ : 0);
+  p.set("graded", o.graded);
+  p.set("steps", o.steps);
+  p.set("step_length", o.step);
+  p.set("horizon", o.horizon);
+  p.set("deepest_step", deepest_step(o));
+  p.set("darkest", o.early_exit > 0 ? float(-std::log(o.early_exit)) : far_away);
+  set_camera(p, view, middle_);
+  const int columns = (view.width + Rounds::tile - 1) / Rounds::tile;
+  p.set("tile_columns", columns);
+  p.set("first_row", band.first_row);
+  p.set("has_distances", film.distances != nullptr);
+  march_rounds_.run(p, buffers, columns * ((band.rows + Rounds::tile - 1) / Rounds::tile));
+}
+
+void PlanOnDevice::reflect(const scene::View& view, const MarchedFilm& film, FrameBuffers& buffers, const Band& band) {
+  Program& p = *surfaces_;
+  bind(p);
+  film.primitives->bind(5);
+  band.pixels.bind(6);
+  film.surface.bind(7);
+  materials_.bind(8);
+  reflectances_.bind(15);
+  first_hits_->surfaces().bind();
+  first_hits_->tree().bind(p);
+  p.set("triangle_count", first_hits_->surfaces().triangles());
+  p.set("light_count", int(plan_.lights.size()));
+  p.set_double("middle", middle_);
+  // As Geometry::offset_origin.
+  const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
+  p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
+  set_view(p, view);
+  const int columns = (view.width + Rounds::tile - 1) / Rounds::tile;
+  p.set("tile_columns", columns);
+  p.set("first_row", band.first_row);
+  surface_rounds_.run(p, buffers, columns * ((band.rows + Rounds::tile - 1) / Rounds::tile));
+}
+
+void PlanOnDevice::add_environments(const scene::View& view, const MarchedFilm& film, const Band& band) {
+  for (int i = 0; i < environments_.count(); ++i) {
+    Program& p = *backgrounds_[i];
+    if (film.primitives) film.primitives->bind(5);
+    band.pixels.bind(6);
+    film.surface.bind(7);
+    environments_.bind(i, p);
+    set_camera(p, view, middle_);
+    p.set("rows", band.rows);
+    p.set("first_row", band.first_row);
+    p.set("has_primitives", film.primitives != nullptr);
+    p.set("has_surface", reflects_ || i > 0);
+    p.dispatch(view.width, band.rows);
+  }
+}
+
+void PlanOnDevice::compose(const scene::View& view, const MarchedFilm& film, const Band& band, bool counts) {
+  Program& p = *composition_;
+  film.airlight.bind(0);
+  film.transmittance.bind(1);
+  film.mean.bind(2);
+  band.pixels.bind(6);
+  film.surface.bind(7);
+  film.totals.bind(8);
+  p.set("pixel_count", view.width * band.rows);
+  p.set("first_pixel", view.width * band.first_row);
+  p.set("has_media", march_ != nullptr);
+  p.set("has_surface", reflects_ || environments_.count() > 0);
+  p.set("counts", counts && (march_ || reflects_));
+  p.dispatch(view.width * band.rows);
+}
+
+void PlanOnDevice::render(const scene::View& view, const MarchedFilm& film, Frame& frame, bool counts, bool looks,
+                          const std::function<bool(double)>& progress) {
+  const Use use(context_);
+  march_rounds_.begin(looks, progress);
+  surface_rounds_.begin(looks, progress);
+  const std::size_t row_bytes = std::size_t(view.width) * pixel_bytes;
+  const int most_rows = std::max<int>(1, int(band_bytes / row_bytes) / Rounds::tile) * Rounds::tile;
+  for (int row = 0; row < view.height; row += most_rows) {
+    const int rows = std::min(most_rows, view.height - row);
+    const Band band{row, rows, frame.buffers.get("pixels", row_bytes * std::size_t(std::min(most_rows, view.height)))};
+    if (march_) {
+      frame.timer.begin("march");
+      march(view, film, frame.buffers, band);
+    }
+    if (reflects_ || environments_.count() > 0) {
+      frame.timer.begin("surfaces");
+      if (reflects_) reflect(view, film, frame.buffers, band);
+      add_environments(view, film, band);
+    }
+    frame.timer.begin("composition");
+    compose(view, film, band, counts);
+  }
+}
+
+void PlanOnDevice::note(Download& download) const {
+  march_rounds_.note(download);
+  surface_rounds_.note(download);
+}
+bool PlanOnDevice::unfinished(const Download& download) const {
+  return march_rounds_.unfinished(download) || surface_rounds_.unfinished(download);
+}
+
+}  // namespace airlight::gpu::marcher

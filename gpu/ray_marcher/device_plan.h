@@ -1,55 +1,66 @@
-// A plan of the ray marcher on the device, and its dispatches.
+// A plan of the ray marcher on the device: what its shaders read, and their dispatches.
 #pragma once
-#include <array>
 #include <vector>
 
-#include "gpu/buffer.h"
-#include "gpu/program.h"
-#include "gpu/raster/occluders.h"
+#include "gpu/environment_lights.h"
+#include "gpu/frame.h"
+#include "gpu/material_tables.h"
+#include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/grids_on_device.h"
-#include "gpu/timer.h"
+#include "gpu/ray_marcher/rounds.h"
 #include "reference/ray_marcher/plan.h"
 #include "scene/renderer.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
-// What the device makes of a pixel; the layout of march.comp.
-struct MarchedPixel {
-  std::array<float, 3> airlight;  // [W/m^2/sr]
-  unsigned steps;
-  std::array<float, 3> transmittance;
-  unsigned shadow_rays;
-  unsigned shadow_steps;
-  unsigned occlusion_rays;
-  int march, part;
-  float step;
-  int light;
-  float from, width;
+// Layers of a film on the device, 3 floats a pixel, and what ends its rays. Null: nothing does.
+struct MarchedFilm {
+  const Buffer *distances = nullptr, *primitives = nullptr;
+  const Buffer &airlight, &transmittance, &surface, &mean;
+  const Buffer& totals;  // low and high words of steps, shadow rays, shadow steps, occlusion rays
 };
 
 class PlanOnDevice {
  public:
-  // Uploads; keeps the plan by reference. Throws Unavailable where the device has no room for a grid.
-  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage);
+  // Uploads; keeps the plan and the surfaces by reference (null: there are none, nor balls of lights). Throws
+  // Unavailable where the device has no room for a grid.
+  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage, const FirstHits*);
 
   const GridsOnDevice& grids() const { return grids_; }
 
-  // `distances` end the pixels' rays: floats [m], row 0 first; null where all are infinite. The image is done in
-  // dispatches of about a tenth of a second, with progress between them; throws scene::Interrupted if asked to stop.
-  // Requires a layer.
-  std::vector<MarchedPixel> march(const scene::View&, const Buffer* distances, const scene::Execution&, StageTimer&);
+  // Media, surfaces, environment and composition, the stages of frame.timer, in bands of the image whose state fits into
+  // a buffer. `counts`: the totals are wanted. `looks` as in Rounds. Throws scene::Interrupted if `progress` says so.
+  void render(const scene::View&, const MarchedFilm&, Frame&, bool counts, bool looks,
+              const std::function<bool(double)>& progress);
+  // Rounds::note and Rounds::unfinished of all that takes several.
+  void note(Download&) const;
+  bool unfinished(const Download&) const;
 
  private:
-  Program& program(const scene::View&);
+  PlanOnDevice(Context&, const ray_marcher::Plan&, GridStorage, const FirstHits*, const MaterialTables&);
+  struct Band {
+    int first_row, rows;
+    const Buffer& pixels;
+  };
+  void bind(Program&) const;
+  void march(const scene::View&, const MarchedFilm&, FrameBuffers&, const Band&);
+  void reflect(const scene::View&, const MarchedFilm&, FrameBuffers&, const Band&);
+  void add_environments(const scene::View&, const MarchedFilm&, const Band&);
+  void compose(const scene::View&, const MarchedFilm&, const Band&, bool counts);
 
   Context& context_;
   const ray_marcher::Plan& plan_;
+  const FirstHits* first_hits_;
   Point3 middle_;  // of the scene: positions on the device are relative to it
   int balls_;      // point and spot lights
-  bool has_occluders_;
-  Occluders occluders_;
+  bool has_occluders_, reflects_;
+  double magnitude_ = 0;  // largest coordinate of what is seen [m]
   GridsOnDevice grids_;
-  Buffer layers_, gaussians_, bricks_, lights_, nodes_, triangles_, solids_;
+  Buffer layers_, gaussians_, bricks_, lights_, solids_, materials_, reflectances_;
+  EnvironmentLights environments_;
+  Program *march_ = nullptr, *surfaces_ = nullptr, *composition_ = nullptr;  // null: left out
+  std::vector<Program*> backgrounds_;                                        // by environment
+  Rounds march_rounds_, surface_rounds_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

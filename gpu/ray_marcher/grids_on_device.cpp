@@ -5,7 +5,7 @@
 #include "gpu/ray_marcher/scene_data.h"
 #include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 GridsOnDevice::GridsOnDevice(Context& context, const ray_marcher::Plan& plan, GridStorage storage) {
   for (const ray_marcher::Layer& layer : plan.layers)
@@ -46,4 +46,4 @@ void GridsOnDevice::bind() const {
   for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i]->bind(int(i));
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

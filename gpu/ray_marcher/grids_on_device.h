@@ -8,7 +8,7 @@
 #include "gpu/texture_3d.h"
 #include "reference/ray_marcher/plan.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 // automatic: textures on a GPU; on a software renderer, which reads buffers faster, a buffer where it is large enough.
 enum class GridStorage { automatic, buffer, texture };
@@ -29,4 +29,4 @@ class GridsOnDevice {
   std::vector<std::unique_ptr<Texture3D>> textures_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

@@ -50,6 +50,13 @@ layout(std430, binding = 2) readonly buffer GridValues { float grid_value[]; }; 
 layout(std430, binding = 3) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
 #endif
 
+// Loops over layers run to a uniform: unrolled, they make programs as many times as large.
+#if LAYERS > 1
+uniform int layer_count;  // LAYERS
+#else
+const int layer_count = LAYERS;
+#endif
+
 uint work = 0;  // iterations of loops by this invocation, roughly
 
 vec3 to_local(vec4 frame[3], vec3 x) {

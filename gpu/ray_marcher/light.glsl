@@ -27,6 +27,14 @@ Approach approach(Light light, vec3 origin, vec3 direction) {
   return a;
 }
 
+// Of a spot, 1 for the others.
+float falloff(Light light, vec3 to_light) {
+  if (light.kind != light_spot) return 1;
+  float cosine = -dot(to_light, light.axis), width_ = light.cos_inner - light.cos_outer;
+  float u = width_ > 0 ? clamp((cosine - light.cos_outer) / width_, 0, 1) : (cosine > light.cos_outer ? 1 : 0);
+  return u * u * (3 - 2 * u);
+}
+
 struct Incidence {
   vec3 to_light;   // unit
   float distance;  // [m], far_away for a directional light
@@ -43,11 +51,7 @@ Incidence incidence(Light light, Approach a, float x, vec3 direction, float leng
   // The angle under which the light sees the step over h * length. A ray through the light itself stays finite.
   float h = max(a.h, 1e-12 * length_), area = h * length_, half_length = 0.5 * length_;
   result.strength = angle_of(area, h * h + (x - half_length) * (x + half_length)) / area;
-  if (light.kind == light_spot) {
-    float cosine = -dot(result.to_light, light.axis), width_ = light.cos_inner - light.cos_outer;
-    float u = width_ > 0 ? clamp((cosine - light.cos_outer) / width_, 0, 1) : (cosine > light.cos_outer ? 1 : 0);
-    result.strength *= u * u * (3 - 2 * u);
-  }
+  result.strength *= falloff(light, result.to_light);
   return result;
 }
 

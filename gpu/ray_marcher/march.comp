@@ -9,30 +9,17 @@ uniform int light_count, balls;  // the first `balls` of the lights are point an
 #include "ray_marcher/light.glsl"
 #include "ray_marcher/columns.glsl"
 #include "ray_marcher/spacing.glsl"
+#if OCCLUDERS
 #include "ray_marcher/occluders.glsl"
+#endif
+#include "ray_marcher/pixel.glsl"
+#include "ray_marcher/rounds.glsl"
 
-// A dispatch does a limited amount of work for each pixel and leaves here where to go on.
-struct Pixel {
-  vec3 airlight;
-  uint steps;  // density evaluations on the camera ray
-  vec3 transmittance;  // while a march is under way: its optical depth so far
-  uint shadow_rays;
-  uint shadow_steps;
-  uint occlusion_rays;
-  int march;  // that is under way; balls + 1: finished
-  int part;
-  float step_;
-  int light;
-  float from, width_;  // of what is under way of a step, in shares of it
-};
 layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
-layout(std430, binding = 10) buffer Progress { uint unfinished, work_done; };  // pixels; work of all / 256
-uniform int first_tile, tile_columns;  // of this dispatch; of the image
-uniform int first_row;                 // of the pixels in their buffer
+uniform int tile_columns;  // of the image
+uniform int first_row;     // of the band
 uniform int has_distances;
 uniform float darkest;  // a ray ends at that optical depth
-uniform int budget;     // iterations of loops, roughly
 
 vec3 airlight = vec3(0);
 uint step_count = 0, shadow_ray_count = 0, occlusion_ray_count = 0;
@@ -43,128 +30,13 @@ int at_part, at_light;
 float at_step;
 float at_from, at_width;  // within the step: divided where it is deep
 vec3 depth;
-bool ended;
+bool ended = false;
 
 // A dispatch does one light at one step at least, however many iterations that takes.
 bool moved = false;
 bool out_of_budget() { return moved && work > uint(budget); }
 
-// (1 - exp(-x)) / x, 1 at x = 0.
-float mean_over_step(float x) { return x > 0 ? -exp_minus_one(-x) / x : 1; }
-bool all_above(vec3 x, float limit) { return all(greaterThan(x, vec3(limit))); }
-
-// What a step sends to the camera of one light's radiance; x as for incidence().
-void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float length_, vec3 amount[LAYERS]) {
-  Light light = lights[l];
-  Incidence from = incidence(light, a, x, direction, length_);
-  if (from.strength == 0) return;
-  work += uint(4 * LAYERS);
-#if OCCLUDERS
-  ++occlusion_ray_count;
-  if (occluded(point, from.to_light, from.distance)) return;
-#endif
-  ++shadow_ray_count;
-  vec3 to_light = vec3(0);
-  for (int k = 0; k < LAYERS; ++k)
-    to_light += layers[k].sigma_t * column_of(k, point, from.to_light, from.distance);
-  vec3 arrives = from.strength * exp(-to_light);
-  vec3 less = from.to_light - direction, more = from.to_light + direction;
-  float minus = 0.5 * dot(less, less), plus = 0.5 * dot(more, more);
-  for (int k = 0; k < LAYERS; ++k)
-    airlight += light.colour * layers[k].albedo *
-                (amount[k] * arrives * phase_value(layers[k].phase, layers[k].g, minus, plus));
-}
-
-// One step of a part, at t, and at x behind the light of an own march. Adds to the optical depth. False: no budget left,
-// lights from at_light on have still to be done.
-bool march_step(Part part, vec3 origin, vec3 direction, float t, float x, float length_, int own) {
-  vec3 point = origin + t * direction;
-  vec3 extinction = vec3(0), amount[LAYERS];
-  work += uint(4 * LAYERS);
-  for (int k = 0; k < LAYERS; ++k) {
-    float density = (part.in_constant >> k & 1u) != 0u ? layers[k].constant : 0;
-    if ((part.in_varied >> k & 1u) != 0u) density += varied_density(k, point);
-    amount[k] = layers[k].sigma_t * density;
-    extinction += amount[k];
-  }
-  vec3 of_step = extinction * length_;
-  vec3 weight = exp(-depth) * vec3(mean_over_step(of_step.x), mean_over_step(of_step.y), mean_over_step(of_step.z)) * length_;
-  bool any_scatters = false;
-  for (int k = 0; k < LAYERS; ++k) {
-    amount[k] *= weight;
-    any_scatters = any_scatters || amount[k] != vec3(0);
-  }
-  int begin = own < 0 ? 0 : own, end = any_scatters ? (own < 0 ? light_count : own + 1) : begin;
-  for (int l = max(begin, at_light); l < end; ++l) {
-    if (own < 0 && l < balls && (own_marches[l >> 5] >> (l & 31) & 1u) != 0u) continue;
-    if (out_of_budget()) {
-      at_light = l;
-      return false;
-    }
-    Approach a = approach(lights[l], origin, direction);
-    scatter(l, a, own < 0 ? t - a.t : x, point, direction, length_, amount);
-    moved = true;
-  }
-  at_light = 0;
-  moved = true;
-  step_count += uint(bitCount(part.in_varied));
-  depth += of_step;
-  return true;
-}
-
-// Steps that follow the optical depth: reference/ray_marcher/depth.h.
-uniform float deepest_step;
-const float least_width = 1.0 / 16777216;
-
-vec3 extinction_at(Part part, vec3 point) {
-  vec3 sum = vec3(0);
-  for (int k = 0; k < LAYERS; ++k) {
-    float density = (part.in_constant >> k & 1u) != 0u ? layers[k].constant : 0;
-    if ((part.in_varied >> k & 1u) != 0u) density += varied_density(k, point);
-    sum += density * layers[k].sigma_t;
-  }
-  return sum;
-}
-bool is_deep(vec3 before, vec3 greatest, float length_, bool whole) {
-  for (int c = 0; c < 3; ++c) {
-    float own = greatest[c] * length_, most = whole ? 2 : 1;
-    if (before[c] < deepest && own > most * deepest_step) return true;
-  }
-  return false;
-}
-bool may_be_deep(Part part, float length_) {
-  vec3 most = vec3(0);
-  for (int k = 0; k < LAYERS; ++k) {
-    if ((part.in_constant >> k & 1u) != 0u) most += layers[k].constant * layers[k].sigma_t;
-    if ((part.in_varied >> k & 1u) != 0u) most += layers[k].most_varied * layers[k].sigma_t;
-  }
-  return is_deep(vec3(0), most, length_, true);
-}
-
-// A step that may be deep, [t, t + length] behind the light by x, from where it is. False: no budget left.
-bool march_deep_step(Part part, vec3 origin, vec3 direction, float t, float x, float length_, int own) {
-  while (at_from < 1) {
-    if (out_of_budget()) return false;
-    ++work;
-    float lo = at_from * length_, h = at_width * length_, middle = lo + 0.5 * h;
-    vec3 greatest = vec3(0);
-    for (int i = 0; i < 3; ++i)
-      greatest = max(greatest, extinction_at(part, origin + (t + lo + 0.5 * float(i) * h) * direction));
-    if (at_width > least_width && is_deep(depth, greatest, h, at_width == 1)) {
-      at_width *= 0.5;
-      moved = true;
-      continue;
-    }
-    ended = all_above(depth, darkest);
-    if (ended) return true;
-    if (!march_step(part, origin, direction, t + middle, x + middle, h, own)) return false;
-    at_from += at_width;
-    while (at_from < 1 && fract(at_from / (2 * at_width)) == 0) at_width *= 2;
-  }
-  at_from = 0;
-  at_width = 1;
-  return true;
-}
+#include "ray_marcher/step.glsl"
 
 #if GRIDS
 // From step i of a part on, how many steps lie in the free space of a grid; negative: how many may not. `start` and
@@ -186,7 +58,7 @@ float free_run(int k, vec3 start, vec3 delta, float i) {
 // The same for all grids of a part: > 0 steps that must be taken, < 0 steps that may be left out.
 float grids_run(Part part, vec3 start, vec3 delta, float i) {
   float taken = 0, free = 1e9;
-  for (int k = 0; k < LAYERS; ++k) {
+  for (int k = 0; k < layer_count; ++k) {
     if ((part.in_varied >> k & 1u) == 0u) continue;
     float run = free_run(k, to_local(layers[k].field_frame, start), rotate_to_local(layers[k].field_frame, delta), i);
     if (run < 0)
@@ -198,7 +70,7 @@ float grids_run(Part part, vec3 start, vec3 delta, float i) {
 }
 
 bool grids_alone(Part part) {
-  for (int k = 0; k < LAYERS; ++k)
+  for (int k = 0; k < layer_count; ++k)
     if ((part.in_varied >> k & 1u) != 0u && layers[k].field != field_grid) return false;
   return part.in_constant == 0u;
 }
@@ -213,14 +85,14 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
     float share = measure(part);
     float n = step_length > 0 ? clamp(ceil(share / step_length), 1, 1048576)
                               : max(1, floor(float(steps) * (share / total) + 0.5));
-    bool even = part.zone == 0 && part.rate == 0;
+    bool even = !part.zone && !part.grows;
     float h = (part.hi - part.lo) / n, until = n;
 #if GRIDS
     bool skips = skip_empty != 0 && even && grids_alone(part) && !may_be_deep(part, h);
     if (skips) until = at_step;
 #endif
     // Around the light from it, otherwise from the beginning of the part.
-    float base = part.zone != 0 ? seen.t : part.lo, fall = exp_minus_one(-0.5 * part.rate * (part.hi - part.lo));
+    float base = part.zone ? seen.t : part.lo, fall = exp_minus_one(-0.5 * growth * (part.hi - part.lo));
     for (; at_step < n; ++at_step) {
       if (out_of_budget()) return false;
       ++work;
@@ -243,10 +115,10 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
             end[e] = part.lo - base;
           else if (i == n)
             end[e] = part.hi - base;
-          else if (part.zone != 0)
+          else if (part.zone)
             end[e] = seen.h * stretch(mix(part.u_lo, part.u_hi, s));
           else
-            end[e] = -(2 / part.rate) * log_one_plus(s * fall);
+            end[e] = -(2 / growth) * log_one_plus(s * fall);
         }
         middle = 0.5 * (end[0] + end[1]);
         length_ = end[1] - end[0];
@@ -254,7 +126,7 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
       }
       ended = all_above(depth, darkest);
       if (ended) return true;
-      float x = part.zone != 0 ? middle : (base - seen.t) + middle;
+      float x = part.zone ? middle : (base - seen.t) + middle;
       if (may_be_deep(part, length_)) {
         float half_length = 0.5 * length_;
         if (!march_deep_step(part, origin, direction, base + middle - half_length, x - half_length, length_, own))
@@ -270,23 +142,26 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
 }
 
 void main() {
-  int tile = first_tile + int(gl_WorkGroupID.x);
+  int tile = tile_of_group();
   ivec2 at = ivec2(tile % tile_columns, tile / tile_columns) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) +
              ivec2(gl_LocalInvocationID.xy);
+  int place = at.y * width + at.x;
+  at.y += first_row;
   if (at.x >= width || at.y >= height) return;
-  int place = (at.y - first_row) * width + at.x;
-  int resumed = pixels[place].march;
+  Pixel pixel = Pixel(vec3(0), 0u, vec3(0), 0u, 0u, 0u, 0, 0, 0, 0, 0, 1);
+  if (round_ > 0) pixel = pixels[place];
+  int resumed = pixel.march;
   if (resumed > balls) return;
   vec3 origin, direction;
   camera_ray(vec2(at) + 0.5, origin, direction);
   float t_end = has_distances != 0 ? distances[at.y * width + at.x] : far_away;
   for (int i = 0; i < BALL_WORDS; ++i) own_marches[i] = 0u;
-  at_part = pixels[place].part;
-  at_step = pixels[place].step_;
-  at_light = pixels[place].light;
-  at_from = pixels[place].from;
-  at_width = pixels[place].width_ > 0 ? pixels[place].width_ : 1;
-  depth = pixels[place].transmittance;
+  at_part = pixel.part;
+  at_step = pixel.step_;
+  at_light = pixel.light;
+  at_from = pixel.from;
+  at_width = pixel.width_;
+  depth = pixel.transmittance;
 
   // A light that grades the ray around itself has a march of its own. The common march, last, serves the transmittance and
   // every other light. One loop for both: compilers copy what is called into every place it is called from.
@@ -308,25 +183,16 @@ void main() {
     at_width = 1;
     depth = vec3(0);
   }
-  vec3 result = vec3(depth);
+  vec3 result = depth;
   if (done) {
-    result = vec3(exp(-depth));
+    result = exp(-depth);
     for (int c = 0; c < 3; ++c)
       if (ended || never_ends[c]) result[c] = 0;
   } else {
-    atomicAdd(unfinished, 1u);
+    leave_to_next_round(tile);
   }
-  atomicAdd(work_done, work >> 8);
-  pixels[place].transmittance = result;
-  pixels[place].march = done ? balls + 1 : now;
-  pixels[place].part = at_part;
-  pixels[place].step_ = at_step;
-  pixels[place].light = at_light;
-  pixels[place].from = at_from;
-  pixels[place].width_ = at_width;
-  pixels[place].airlight += airlight;
-  pixels[place].steps += step_count;
-  pixels[place].shadow_rays += shadow_ray_count;
-  pixels[place].shadow_steps += shadow_step_count;
-  pixels[place].occlusion_rays += occlusion_ray_count;
+  pixels[place] =
+      Pixel(pixel.airlight + airlight, pixel.steps + step_count, result, pixel.shadow_rays + shadow_ray_count,
+            pixel.shadow_steps + shadow_step_count, pixel.occlusion_rays + occlusion_ray_count, done ? balls + 1 : now,
+            done ? 0 : at_part, at_step, done ? 0 : at_light, at_from, at_width);
 }

@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "gpu/raster/first_hits.h"
-#include "gpu/raster/pixel_ends.h"
-#include "gpu/raster_program.h"
 #include "gpu/ray_marcher/device_plan.h"
+#include "gpu/ray_marcher/scene_data.h"
 #include "reference/ray_marcher/ray_marcher.h"
-#include "reference/ray_marcher/scalar.h"
 #include "reference/ray_marcher/stages.h"
 #include "scene/background.h"
 #include "scene/error.h"
@@ -20,6 +17,8 @@
 namespace airlight::gpu {
 namespace {
 
+using marcher::GridStorage;
+using marcher::PlanOnDevice;
 using ray_marcher::Plan;
 using scene::Execution;
 using scene::Scene;
@@ -35,13 +34,16 @@ bool something_ends_rays(const Scene& scene) {
 
 class PreparedMarchGpu final : public scene::Prepared {
  public:
-  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage)
-      : plan_(std::move(plan)), settings_(std::move(settings)), context_(Context::get()) {
-    StageTimer timer(context_);
-    if (!plan_.layers.empty()) device_ = std::make_unique<PlanOnDevice>(context_, plan_, storage);
-    if (something_ends_rays(*plan_.scene)) first_hits_ = std::make_unique<FirstHits>(context_, *plan_.scene);
-    timer.stage("upload");
-    times_ = timer.times();
+  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage, FirstHits::Way way)
+      : plan_(std::move(plan)), settings_(std::move(settings)), context_(Context::get()), frame_(context_) {
+    frame_.timer.restart();
+    const bool ends = something_ends_rays(*plan_.scene);
+    if (ends) first_hits_ = std::make_unique<FirstHits>(context_, *plan_.scene, true, way);
+    const bool seen = (plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene);
+    if (!plan_.layers.empty() || seen)
+      device_ = std::make_unique<PlanOnDevice>(context_, plan_, storage, first_hits_.get());
+    frame_.timer.stage("upload");
+    times_ = frame_.timer.times();
   }
 
   std::vector<scene::Stage> stages() const override;
@@ -49,102 +51,75 @@ class PreparedMarchGpu final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  void shade_behind(const View&, const Execution&, const std::vector<int>& primitives,
-                    const std::vector<float>& distances, const std::vector<float>& transmittance,
-                    std::vector<float>& surface, ray_marcher::Counters&) const;
+  // False where rounds were too few: the same again, looking.
+  bool draw(const View&, const Execution&, bool looks, scene::Rendering&) const;
 
   Plan plan_;
   std::string settings_;
   Context& context_;
-  std::unique_ptr<PlanOnDevice> device_;   // null: no medium with extinction
+  mutable Frame frame_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
+  std::unique_ptr<PlanOnDevice> device_;   // null: no medium with extinction, and nothing that shines
   std::vector<scene::StageTime> times_;
 };
 
 std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   std::vector<scene::Stage> stages = describe_stages(plan_);
   const std::string grids = device_ ? device_->grids().description() : "";
-  stages.insert(stages.begin(), {{"distances", bool(first_hits_),
-                                  first_hits_ ? "where camera rays end, by a raster pass" : "nothing ends a ray"},
-                                 {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
+  stages.insert(stages.begin(),
+                {{"distances", bool(first_hits_), first_hits_ ? "where camera rays end" : "nothing ends a ray"},
+                 {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
   return stages;
 }
 
-// What surfaces reflect, and the environment, through the media.
-void PreparedMarchGpu::shade_behind(const View& view, const Execution& execution, const std::vector<int>& primitives,
-                                    const std::vector<float>& distances, const std::vector<float>& transmittance,
-                                    std::vector<float>& surface, ray_marcher::Counters& total) const {
-  std::mutex mutex;
-  const PixelEnds ends(*plan_.scene);
-  scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
-    ray_marcher::Counters counters;
-    for (int x = 0; x < view.width; ++x) {
-      const std::size_t i = std::size_t(y) * view.width + x;
-      const Rgb through(transmittance[3 * i], transmittance[3 * i + 1], transmittance[3 * i + 2]);
-      if ((through == 0).all()) continue;
-      const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-      const scene::RayEnd end = primitives.empty() ? scene::RayEnd{} : ends.at(primitives[i], distances[i], ray);
-      if (end.on_ball) continue;
-      const Rgb behind = through * (end.hit ? lit_surface(plan_, *end.hit, ray.direction, counters)
-                                            : scene::background(*plan_.scene, ray.direction));
-      for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(behind[c]);
-    }
-    const std::lock_guard lock(mutex);
-    total.add(counters);
-  });
+bool PreparedMarchGpu::draw(const View& view, const Execution& execution, bool looks, scene::Rendering& result) const {
+  const std::size_t pixels = result.film.pixels();
+  const char* const names[] = {"airlight", "transmittance", "surface", "mean"};
+  frame_.begin(execution);
+  const auto layer = [&](const char* name) -> Buffer& { return frame_.buffers.get(name, 12 * pixels); };
+  Buffer& totals = frame_.buffers.get("totals", 8 * sizeof(unsigned));
+  marcher::MarchedFilm film{nullptr,         nullptr,         layer(names[0]), layer(names[1]),
+                            layer(names[2]), layer(names[3]), totals};
+  if (first_hits_) {
+    film.distances = &frame_.buffers.get("distances", 4 * pixels);
+    film.primitives = &frame_.buffers.get("primitives", 4 * pixels);
+    frame_.timer.begin("distances");
+    first_hits_->find(view, *film.distances, film.primitives);
+  }
+  const bool counts = frame_.download.wants_any();
+  if (counts) totals.clear();
+  device_->render(view, film, frame_, counts, looks, execution.progress);
+  const Buffer* const buffers[] = {&film.airlight, &film.transmittance, &film.surface, &film.mean};
+  for (int i = 0; i < 4; ++i) frame_.download.add(names[i], *buffers[i], 12 * pixels);
+  frame_.download.add_values("totals", totals, totals.bytes());
+  device_->note(frame_.download);
+  frame_.finish(result);
+  if (device_->unfinished(frame_.download)) return false;
+  const std::vector<unsigned> words = frame_.download.values<unsigned>("totals");
+  const char* const counters[] = {"steps", "shadow_rays", "shadow_steps", "occlusion_rays"};
+  for (std::size_t i = 0; 2 * i < words.size(); ++i)
+    result.counters[counters[i]] = double(words[2 * i]) + 4294967296.0 * double(words[2 * i + 1]);
+  return true;
 }
 
 scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& execution) const {
   require_lights_apart(*plan_.scene, view, 1e-9, "ray_marcher_gpu");
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
-  scene::Film& film = result.film;
-  std::vector<float>&mean = film.add("mean"), &airlight = film.add("airlight"), &surface = film.add("surface"),
-  &transmittance = film.add("transmittance");
-  film.metadata = {{"method", "ray_marcher_gpu"},
-                   {"settings", settings_},
-                   {"scene", plan_.scene->name},
-                   {"hash", plan_.scene->hash}};
-  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
   const Use use(context_);
-  StageTimer timer(context_);
-  ray_marcher::Counters counters;
-  counters.rays = static_cast<long long>(film.pixels());
-
-  std::unique_ptr<Buffer> distances, primitives;
-  if (first_hits_) {
-    const HitImage& hits = first_hits_->draw(view);
-    distances = std::make_unique<Buffer>(context_, "distances", film.pixels() * 4);
-    primitives = std::make_unique<Buffer>(context_, "primitives", film.pixels() * 4);
-    hits.read_distances(*distances, 0);
-    hits.read_primitives(*primitives, 0);
-    timer.stage("distances");
+  if (!device_) {  // no medium, and nothing that shines
+    const auto wants = [&](const char* layer) { return !execution.layers || execution.layers->count(layer) != 0; };
+    for (const char* name : {"mean", "airlight", "surface", "transmittance"})
+      if (wants(name)) result.film.layers[name].assign(3 * result.film.pixels(), name[0] == 't' ? 1.0f : 0.0f);
+    result.counters = Traffic().counters();
+    for (const char* name : {"steps", "shadow_rays", "shadow_steps", "occlusion_rays"}) result.counters[name] = 0;
+  } else if (!draw(view, execution, false, result)) {
+    draw(view, execution, true, result);
   }
-  std::fill(transmittance.begin(), transmittance.end(), 1.0f);
-  if (device_) {
-    const std::vector<MarchedPixel> image = device_->march(view, distances.get(), execution, timer);
-    for (std::size_t i = 0; i < image.size(); ++i) {
-      std::copy_n(image[i].airlight.data(), 3, airlight.data() + 3 * i);
-      std::copy_n(image[i].transmittance.data(), 3, transmittance.data() + 3 * i);
-      counters.steps += image[i].steps;
-      counters.shadow_rays += image[i].shadow_rays;
-      counters.shadow_steps += image[i].shadow_steps;
-      counters.occlusion_rays += image[i].occlusion_rays;
-    }
-  }
-  if ((plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene)) {
-    shade_behind(view, execution, primitives ? primitives->download<int>() : std::vector<int>{},
-                 distances ? distances->download<float>() : std::vector<float>{}, transmittance, surface, counters);
-    timer.stage("surfaces");
-  }
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
-  result.times = timer.times();
-  result.counters = {{"rays", double(counters.rays)},
-                     {"steps", double(counters.steps)},
-                     {"shadow_rays", double(counters.shadow_rays)},
-                     {"shadow_steps", double(counters.shadow_steps)},
-                     {"occlusion_rays", double(counters.occlusion_rays)},
-                     {"dispatches", double(Program::dispatches() - dispatches)},
-                     {"draws", double(RasterProgram::draws() - draws)}};
+  result.counters["rays"] = double(result.film.pixels());
+  result.film.metadata = {{"method", "ray_marcher_gpu"},
+                          {"settings", settings_},
+                          {"scene", plan_.scene->name},
+                          {"hash", plan_.scene->hash}};
   return result;
 }
 
@@ -159,6 +134,10 @@ std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
   settings.push_back(scene::choice_setting(
       "grid_storage", "auto", {"auto", "buffer", "texture"},
       "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough"));
+  settings.push_back(
+      scene::choice_setting("first_hits", "tree", {"tree", "raster"},
+                            "what ends camera rays; raster: by the rasteriser, faster on some devices, to "
+                            "1/256 pixel at silhouettes"));
   return settings;
 }
 
@@ -166,6 +145,8 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
+  if (scene.media.size() > marcher::most_layers)
+    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), marcher::most_layers));
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
@@ -190,10 +171,12 @@ std::unique_ptr<scene::Prepared> RayMarcherGpu::prepare_supported(std::shared_pt
                                                                   const Execution&) const {
   const ray_marcher::Options options = ray_marcher::read_options(settings, ray_marcher::length_unit(*scene));
   const std::string& storage = settings.text("grid_storage");
-  return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical(),
-                                            storage == "buffer"    ? GridStorage::buffer
-                                            : storage == "texture" ? GridStorage::texture
-                                                                   : GridStorage::automatic);
+  return std::make_unique<PreparedMarchGpu>(
+      make_plan(std::move(scene), options), settings.canonical(),
+      storage == "buffer"    ? GridStorage::buffer
+      : storage == "texture" ? GridStorage::texture
+                             : GridStorage::automatic,
+      settings.text("first_hits") == "raster" ? FirstHits::Way::raster : FirstHits::Way::tree);
 }
 
 }  // namespace airlight::gpu

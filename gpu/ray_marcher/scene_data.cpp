@@ -6,7 +6,7 @@
 #include "reference/ray_marcher/shapes.h"
 #include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 namespace {
 
 using ray_marcher::Frame;
@@ -128,6 +128,20 @@ std::vector<float> grid_data(const ray_marcher::Plan& plan) {
   return data;
 }
 
+std::vector<SolidData> solid_data(const ray_marcher::Plan& plan, const Point3& middle) {
+  std::vector<SolidData> data;
+  for (const scene::Surface& surface : plan.scene->surfaces) {
+    if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape))
+      data.push_back({float3(Vec3(sphere->center - middle)), float(sphere->radius), {0, 0, 0}, 0});
+    if (const auto* plane = std::get_if<scene::Plane>(&surface.shape)) {
+      // The point of the plane nearest to the middle: the one given may be far away.
+      const Vec3 near = plane->normal * plane->normal.dot(plane->point - middle);
+      data.push_back({float3(near), 0, float3(plane->normal), 0});
+    }
+  }
+  return data;
+}
+
 std::vector<LightData> light_data(const ray_marcher::Plan& plan, const Point3& middle) {
   std::vector<LightData> data;
   // Point and spot lights first: only they may have marches of their own.
@@ -143,4 +157,4 @@ std::vector<LightData> light_data(const ray_marcher::Plan& plan, const Point3& m
   return data;
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

@@ -8,10 +8,12 @@
 
 #include "reference/ray_marcher/plan.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::marcher {
 
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
+
+inline constexpr std::size_t most_layers = 15;  // bits of spacing.glsl
 
 struct LayerData {
   Float3 sigma_t;
@@ -48,6 +50,13 @@ struct LightData {
   float cos_outer;
 };
 
+struct SolidData {
+  Float3 place;  // of a sphere's centre, or of a point of a plane
+  float radius;  // 0: a plane
+  Float3 normal;
+  float unused;
+};
+
 // Centre of the finite regions and supports; of the camera if there are none.
 Point3 middle_of(const ray_marcher::Plan&);
 
@@ -59,6 +68,7 @@ std::vector<float> brick_data(const ray_marcher::Plan&);
 std::vector<float> grid_data(const ray_marcher::Plan&);
 // Slice z of one grid, x fastest: padded samples.
 void grid_slice(const ray_marcher::GridField&, int z, std::vector<float>& values);
+std::vector<SolidData> solid_data(const ray_marcher::Plan&, const Point3& middle);
 std::vector<LightData> light_data(const ray_marcher::Plan&, const Point3& middle);
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::marcher

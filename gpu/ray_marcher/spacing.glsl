@@ -46,34 +46,50 @@ struct Part {
   float lo, hi;     // [m]
   uint in_constant;  // bit k: in the region of layer k, which has a constant
   uint in_varied;    // bit k: where layer k varies
-  float rate;        // > 0: measure exp(-rate (t - lo) / 2) dt
-  int zone;          // 1: around the light, measure proportional to du of the map
+  bool grows;        // measure exp(-growth (t - lo) / 2) dt
+  bool zone;         // around the light, measure proportional to du of the map
   float u_lo, u_hi;  // its ends there
   float weight;      // factor of the measure
 };
 const int most_parts = 4 * LAYERS + 3;
-// One array per member: llvmpipe (Mesa 22.3) writes to the wrong one in an array of structures indexed at run time.
-float part_lo[most_parts], part_hi[most_parts], part_rate[most_parts], part_u_lo[most_parts], part_u_hi[most_parts],
-    part_weight[most_parts];
-uint part_in_constant[most_parts], part_in_varied[most_parts];
-int part_zone[most_parts];
+
+// Lists of an invocation lie in shared memory while 32 KiB are enough: compilers spill thousands of registers over private
+// arrays that are indexed at run time, and llvmpipe (Mesa 22.3) writes to the wrong member of structures in them.
+#if LAYERS * LOCAL_SIZE_X * LOCAL_SIZE_Y <= 320
+#define LIST(type, name, size) shared type name[(size) * LOCAL_SIZE_X * LOCAL_SIZE_Y]
+#define MINE(i) ((i) * LOCAL_SIZE_X * LOCAL_SIZE_Y + int(gl_LocalInvocationIndex))
+#else
+#define LIST(type, name, size) type name[size]
+#define MINE(i) (i)
+#endif
+LIST(float, part_lo, most_parts);
+LIST(float, part_hi, most_parts);
+LIST(uint, part_flags, most_parts);   // in_varied, in_constant << 15, grows << 30, zone << 31
+LIST(float, part_share, most_parts);  // weight; in the zone u_lo
+LIST(float, part_u_hi, most_parts);
 int part_count;
+float growth;       // [1/m]
+float zone_weight;  // of all parts there
 
 Part part_at(int i) {
-  return Part(part_lo[i], part_hi[i], part_in_constant[i], part_in_varied[i], part_rate[i], part_zone[i], part_u_lo[i],
-              part_u_hi[i], part_weight[i]);
+  uint flags = part_flags[MINE(i)];
+  float share = part_share[MINE(i)];
+  bool zone = (flags >> 31) != 0u;
+  return Part(part_lo[MINE(i)], part_hi[MINE(i)], flags >> 15 & 0x7fffu, flags & 0x7fffu, (flags >> 30 & 1u) != 0u, zone, share,
+              part_u_hi[MINE(i)], zone ? zone_weight : share);
 }
-void put_part(int i, Part p) {
-  part_lo[i] = p.lo, part_hi[i] = p.hi, part_in_constant[i] = p.in_constant, part_in_varied[i] = p.in_varied;
-  part_rate[i] = p.rate, part_zone[i] = p.zone, part_u_lo[i] = p.u_lo, part_u_hi[i] = p.u_hi, part_weight[i] = p.weight;
+void put_part(int i, float lo, float hi, uint flags, float share) {
+  part_lo[MINE(i)] = lo, part_hi[MINE(i)] = hi, part_flags[MINE(i)] = flags, part_share[MINE(i)] = share;
 }
+uint constant_at(int i) { return part_flags[MINE(i)] >> 15 & 0x7fffu; }
+bool varies_at(int i) { return (part_flags[MINE(i)] & 0x7fffu) != 0u; }
 
 float deepest;     // reference/ray_marcher/spacing.h
 bvec3 never_ends;  // per channel: the medium behind the last step goes on for ever
 
 float measure(Part p) {
-  float fall = p.rate > 0 ? -exp_minus_one(-0.5 * p.rate * (p.hi - p.lo)) * 2 / p.rate : p.hi - p.lo;
-  return p.weight * (p.zone != 0 ? p.u_hi - p.u_lo : fall);
+  if (p.zone) return p.weight * (p.u_hi - p.u_lo);
+  return p.weight * (p.grows ? -exp_minus_one(-0.5 * growth * (p.hi - p.lo)) * 2 / growth : p.hi - p.lo);
 }
 float measure_of_all() {
   float sum = 0;
@@ -82,61 +98,55 @@ float measure_of_all() {
 }
 
 void cut_ray(vec3 origin, vec3 direction, float t_end) {
-  vec2 extents[2 * LAYERS];
-  uint constant_bit[2 * LAYERS], varied_bit[2 * LAYERS];
-  float cuts[4 * LAYERS];
-  int extent_count = 0, cut_count = 0;
-  for (int k = 0; k < LAYERS; ++k) {
+  // In lists of the parts: cuts stand in front of those that are made of them. Of each layer where its constant is, and where
+  // it varies.
+  int cut_count = 0;
+  for (int k = 0; k < layer_count; ++k) {
     vec2 whole = clip_region(k, origin, direction, vec2(0, t_end));
     for (int varied = 0; varied < 2; ++varied) {
-      if (varied == 0 ? layers[k].constant == 0 : layers[k].field == field_none) continue;
-      vec2 e = whole;
+      vec2 e = (varied == 0 ? layers[k].constant == 0 : layers[k].field == field_none) ? nothing : whole;
       if (varied == 1 && e.x < e.y) e = clip_field(k, origin, direction, e);
-      if (!(e.x < e.y)) continue;
-      extents[extent_count] = e;
-      constant_bit[extent_count] = varied == 0 ? 1u << k : 0u;
-      varied_bit[extent_count++] = varied == 1 ? 1u << k : 0u;
-      for (int end = 0; end < 2; ++end) {
+      part_u_hi[MINE(4 * k + 2 * varied)] = e.x, part_u_hi[MINE(4 * k + 2 * varied + 1)] = e.y;
+      for (int end = 0; end < 2 && e.x < e.y; ++end) {
         float t = end == 0 ? e.x : e.y;
         int at = cut_count++;
-        for (; at > 0 && cuts[at - 1] > t; --at) cuts[at] = cuts[at - 1];
-        cuts[at] = t;
+        for (; at > 0 && part_lo[MINE(at - 1)] > t; --at) part_lo[MINE(at)] = part_lo[MINE(at - 1)];
+        part_lo[MINE(at)] = t;
       }
     }
   }
   part_count = 0;
   for (int i = 0; i + 1 < cut_count; ++i) {
-    if (!(cuts[i] < cuts[i + 1])) continue;
-    uint in_constant = 0u, in_varied = 0u;
-    for (int e = 0; e < extent_count; ++e)
-      if (extents[e].x <= cuts[i] && extents[e].y >= cuts[i + 1])
-        in_constant |= constant_bit[e], in_varied |= varied_bit[e];
-    if ((in_constant | in_varied) != 0u)
-      put_part(part_count++, Part(cuts[i], cuts[i + 1], in_constant, in_varied, 0, 0, 0, 0, 1));
+    float lo = part_lo[MINE(i)], hi = part_lo[MINE(i + 1)];
+    if (!(lo < hi)) continue;
+    uint flags = 0u;
+    for (int k = 0; k < layer_count; ++k)
+      for (int varied = 0; varied < 2; ++varied)
+        if (part_u_hi[MINE(4 * k + 2 * varied)] <= lo && part_u_hi[MINE(4 * k + 2 * varied + 1)] >= hi)
+          flags |= 1u << (varied == 1 ? k : k + 15);
+    if (flags != 0u) put_part(part_count++, lo, hi, flags, 1);
   }
 }
 
-// Extinction of the constant media there, in the least extinct channel that sees any [1/m].
-float constant_rate(uint inside) {
-  vec3 sum = vec3(0);
-  for (int k = 0; k < LAYERS; ++k)
-    if ((inside >> k & 1u) != 0u) sum += layers[k].constant * layers[k].sigma_t;
+// Extinction of constant media in the least extinct channel that sees any [1/m].
+float least_rate(vec3 sum) {
   float least = far_away;
   for (int c = 0; c < 3; ++c)
     if (sum[c] > 0) least = min(least, sum[c]);
   return least == far_away ? 0 : least;
 }
 
-// Cuts the part within which t lies in two. A growing part goes on where it was.
+// Cuts the part within which t lies in two. A growing part goes on where it was. Before there is a zone.
 void split_at(float t) {
   int i = 0;
-  while (i < part_count && !(part_lo[i] < t && t < part_hi[i])) ++i;
+  while (i < part_count && !(part_lo[MINE(i)] < t && t < part_hi[MINE(i)])) ++i;
   if (i == part_count) return;
-  for (int j = part_count; j > i; --j) put_part(j, part_at(j - 1));
+  for (int j = part_count; j > i; --j)
+    put_part(j, part_lo[MINE(j - 1)], part_hi[MINE(j - 1)], part_flags[MINE(j - 1)], part_share[MINE(j - 1)]);
   ++part_count;
-  if (part_rate[i] > 0) part_weight[i + 1] *= exp(-0.5 * part_rate[i] * (t - part_lo[i]));
-  part_hi[i] = t;
-  part_lo[i + 1] = t;
+  if ((part_flags[MINE(i)] >> 30 & 1u) != 0u) part_share[MINE(i + 1)] *= exp(-0.5 * growth * (t - part_lo[MINE(i)]));
+  part_hi[MINE(i)] = t;
+  part_lo[MINE(i + 1)] = t;
 }
 
 // Splits the parts at the zone around the light. False if there is no zone on this ray.
@@ -146,16 +156,15 @@ bool grade_light(Approach light) {
   if (!(radius > light.h)) return false;
   split_at(lo);
   split_at(hi);
-  float weight = light.h * stretch_slope(unstretch(radius / light.h));
+  zone_weight = light.h * stretch_slope(unstretch(radius / light.h));
   bool met = false;
   for (int i = 0; i < part_count; ++i) {
-    if (!(part_lo[i] >= lo && part_hi[i] <= hi)) continue;
+    float from = part_lo[MINE(i)], to = part_hi[MINE(i)];
+    if (!(from >= lo && to <= hi)) continue;
     met = true;
-    part_rate[i] = 0;
-    part_zone[i] = 1;
-    part_u_lo[i] = unstretch((part_lo[i] - light.t) / light.h);
-    part_u_hi[i] = unstretch((part_hi[i] - light.t) / light.h);
-    part_weight[i] = weight;
+    part_flags[MINE(i)] = (part_flags[MINE(i)] & 0x3fffffffu) | 1u << 31;
+    part_share[MINE(i)] = unstretch((from - light.t) / light.h);
+    part_u_hi[MINE(i)] = unstretch((to - light.t) / light.h);
   }
   return met;
 }
@@ -173,32 +182,34 @@ const float deep_lamp = 4;
 bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approach light) {
   never_ends = bvec3(false);
   deepest = 40;
+  growth = zone_weight = 0;
   cut_ray(origin, direction, t_end);
   if (part_count == 0) return false;
   int last = part_count - 1;
-  if (part_hi[last] >= far_away) {
-    for (int k = 0; k < LAYERS; ++k)
-      if ((part_in_constant[last] >> k & 1u) != 0u)
-        for (int c = 0; c < 3; ++c) never_ends[c] = never_ends[c] || layers[k].sigma_t[c] > 0;
-    float rate = constant_rate(part_in_constant[last]);
-    float reach = horizon / rate;
-    float growing = has_light ? light.t : part_lo[last];
+  if (part_hi[MINE(last)] >= far_away) {
+    uint inside = constant_at(last);
+    float from = part_lo[MINE(last)];
     vec3 rates = vec3(0);
-    for (int k = 0; k < LAYERS; ++k)
-      if ((part_in_constant[last] >> k & 1u) != 0u) rates += layers[k].constant * layers[k].sigma_t;
+    for (int k = 0; k < layer_count; ++k)
+      if ((inside >> k & 1u) != 0u) {
+        rates += layers[k].constant * layers[k].sigma_t;
+        for (int c = 0; c < 3; ++c) never_ends[c] = never_ends[c] || layers[k].sigma_t[c] > 0;
+      }
+    float rate = least_rate(rates), reach = horizon / rate, growing = has_light ? light.t : from;
     float most = max(max(rates.x, rates.y), rates.z);
     for (int l = has_light ? balls - 1 : 0; l < balls; ++l) {
       Approach lamp = light;
       if (!has_light) lamp = approach(lights[l], origin, direction);
-      if (rate * (lamp.t - part_lo[last]) > deep_lamp) growing = max(growing, lamp.t);
-      reach = max(reach, beyond_lamp(lamp, part_lo[last], horizon / rate));
-      deepest = max(deepest, min(40 + most * length(vec2(lamp.t - part_lo[last], lamp.h)), 110));
+      if (rate * (lamp.t - from) > deep_lamp) growing = max(growing, lamp.t);
+      reach = max(reach, beyond_lamp(lamp, from, horizon / rate));
+      deepest = max(deepest, min(40 + most * length(vec2(lamp.t - from, lamp.h)), 110));
     }
-    part_hi[last] = part_lo[last] + reach;
+    part_hi[MINE(last)] = from + reach;
     // From there on steps grow.
-    if (graded != 0 && growing < part_hi[last]) {
-      if (growing > part_lo[last]) split_at(growing);
-      part_rate[part_count - 1] = rate;
+    if (graded != 0 && growing < from + reach) {
+      if (growing > from) split_at(growing);
+      growth = rate;
+      part_flags[MINE(part_count - 1)] |= 1u << 30;
     }
   }
   if (graded == 0) return false;
@@ -206,11 +217,11 @@ bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approac
   float varied = 0, constant = 0;
   for (int i = 0; i < part_count; ++i) {
     float share = measure(part_at(i));
-    varied += part_in_varied[i] != 0u ? share : 0;
-    constant += part_in_varied[i] != 0u ? 0 : share;
+    varied += varies_at(i) ? share : 0;
+    constant += varies_at(i) ? 0 : share;
   }
   if (varied > 0 && constant > varied)
     for (int i = 0; i < part_count; ++i)
-      if (part_in_varied[i] == 0u) part_weight[i] = varied / constant;
+      if (!varies_at(i)) part_share[MINE(i)] = varied / constant;
   return has_light && light.h > 0 && grade_light(light);
 }

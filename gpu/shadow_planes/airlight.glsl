@@ -79,26 +79,21 @@ float way_to_light(int m, dvec3 start, vec3 further, vec3 d, float r) {
     end = min(end, middle + sqrt(reach2));
   } else {
     vec3 low, high, speed = -d;
-    int axes = 3;
-    if (kind == region_slab) {
+    if (kind == region_slab) {  // as a box without ends across its normal
       dvec3 normal = region_lo(m), heights = region_hi(m) - dot(normal, start);
       float there = dot(vec3(normal), further);
-      low.x = float(heights.x) - there;
-      high.x = float(heights.y) - there;
-      speed.x = -dot(d, vec3(normal));
-      axes = 1;
+      low = vec3(float(heights.x) - there, -1, -1);
+      high = vec3(float(heights.y) - there, 1, 1);
+      speed = vec3(dot(speed, vec3(normal)), 0, 0);
     } else {
       low = vec3(region_lo(m) - start) - further;
       high = vec3(region_hi(m) - start) - further;
     }
-    for (int axis = 0; axis < axes; ++axis) {
-      if (speed[axis] == 0) {
-        if (low[axis] > 0 || high[axis] < 0) return 0;
-        continue;
-      }
-      begin = max(begin, min(low[axis] / speed[axis], high[axis] / speed[axis]));
-      end = min(end, max(low[axis] / speed[axis], high[axis] / speed[axis]));
-    }
+    bvec3 still = equal(speed, vec3(0));
+    if (any(bvec3(vec3(still) * vec3(greaterThan(max(low, -high), vec3(0)))))) return 0;
+    vec3 a = low / speed, b = high / speed, first = mix(min(a, b), vec3(0), still), last = mix(max(a, b), vec3(r), still);
+    begin = max(begin, max(first.x, max(first.y, first.z)));
+    end = min(end, min(last.x, min(last.y, last.z)));
   }
   return max(end - begin, 0);
 }

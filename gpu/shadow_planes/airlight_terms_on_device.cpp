@@ -8,37 +8,28 @@
 #include "methods/shadow_planes/phase_form.h"
 #include "methods/shadow_planes/polynomial.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 namespace {
 
 using shadow_planes::extinction_of;
 using shadow_planes::Options;
 
-// The layout of media.glsl.
-struct MediumData {
-  double lo[3], hi[3];
-  float extinction[3], albedo[3];
-  int region, phase;
-  float g, scale, width;
-  int unused;
-};
-
 // What a region is made of, as media.glsl.
 struct RegionNumbers {
-  int kind;
+  RegionKind kind;
   Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();
 };
 RegionNumbers numbers(const scene::Region& region) {
   return scene::match(
-      region, [](const scene::Unbounded&) { return RegionNumbers{0}; },
+      region, [](const scene::Unbounded&) { return RegionNumbers{RegionKind::unbounded}; },
       [](const Box& box) {
-        return RegionNumbers{1, box.lo, box.hi};
+        return RegionNumbers{RegionKind::box, box.lo, box.hi};
       },
       [](const scene::Sphere& ball) {
-        return RegionNumbers{2, ball.center, Vec3(ball.radius, 0, 0)};
+        return RegionNumbers{RegionKind::sphere, ball.center, Vec3(ball.radius, 0, 0)};
       },
       [](const scene::Slab& slab) {
-        return RegionNumbers{3, slab.normal, Vec3(slab.lo, slab.hi, 0)};
+        return RegionNumbers{RegionKind::slab, slab.normal, Vec3(slab.lo, slab.hi, 0)};
       });
 }
 
@@ -47,8 +38,8 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
   for (const scene::Medium& medium : scene.media) {
     const shadow_planes::PhaseForm phase = shadow_planes::phase_form(medium.phase, printed);
     const RegionNumbers region = numbers(medium.region);
-    MediumData d{{}, {}, {}, {}, region.kind, int(phase.kind), float(phase.g), float(phase.scale), float(phase.width()),
-                 0};
+    MediumData d{
+        {}, {}, {}, {}, int(region.kind), int(phase.kind), float(phase.g), float(phase.scale), float(phase.width()), 0};
     for (int i = 0; i < 3; ++i) {
       d.lo[i] = region.lo[i];
       d.hi[i] = region.hi[i];
@@ -117,7 +108,7 @@ std::map<std::string, std::string> AirlightTermsOnDevice::definitions(int light,
 }
 
 void AirlightTermsOnDevice::bind_media(LinkedProgram& program) const {
-  media_.bind(8);
+  media_.bind(at::media);
   program.set("media_count", int(scene_->media.size()));
 }
 
@@ -132,7 +123,7 @@ void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) co
   }
   if (term < 0) return;
   const AirlightTerm& of = airlight_terms_[term];
-  of.evaluator->bind(5);
+  of.evaluator->bind(at::evaluator);
   program.set("air_medium", of.medium);
   if (of.paper) program.set("mean_distance", of.mean_distance);
   if (options_.evaluator == Options::Evaluator::polynomial)
@@ -141,4 +132,4 @@ void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) co
     program.set("rule_nodes", options_.nodes);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "gpu/buffer.h"
-#include "gpu/linked_program.h"
+#include "gpu/shadow_planes/interface.h"
 #include "methods/shadow_planes/options.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
 class AirlightTermsOnDevice {
  public:
@@ -23,7 +23,7 @@ class AirlightTermsOnDevice {
 
   // Of a program that includes airlight.glsl or media.glsl; `term` -1: there is no medium.
   std::map<std::string, std::string> definitions(int light, int term) const;
-  // Binds 5 and 8, and 15 if media's regions are seen from the light; sets its uniforms and those of ray.glsl.
+  // Binds media and the evaluator, sets their uniforms and those of ray.glsl.
   void bind(LinkedProgram&, int light, int term) const;
   void bind_media(LinkedProgram&) const;
 
@@ -45,4 +45,4 @@ class AirlightTermsOnDevice {
   std::vector<AirlightTerm> airlight_terms_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -1,28 +1,28 @@
 // The film's layers from what all lights left, seen through the media; the ambient fog where asked for.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
-#include "raster/primitive.glsl"
 #include "shadow_planes/media.glsl"
 
-layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 #include "shadow_planes/pixels.glsl"
-layout(std430, binding = 0) writeonly buffer AirlightLayer { float airlight_layer[]; };
-layout(std430, binding = 3) writeonly buffer TransmittanceLayer { float transmittance_layer[]; };
-layout(std430, binding = 4) writeonly buffer SurfaceLayer { float surface_layer[]; };
-layout(std430, binding = 5) writeonly buffer MeanLayer { float mean_layer[]; };
-uniform int has_primitives;
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer AirlightLayer { float airlight_layer[]; };
+layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer TransmittanceLayer { float transmittance_layer[]; };
+layout(std430, binding = AT_SURFACE_LAYER) writeonly buffer SurfaceLayer { float surface_layer[]; };
+layout(std430, binding = AT_MEAN_LAYER) writeonly buffer MeanLayer { float mean_layer[]; };
+uniform int has_distances, lights;
 uniform vec3 ambient;  // [W/m^2/sr]
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= view_width || pixel.y >= view_height) return;
-  int place = pixel.y * view_width + pixel.x, primitive = has_primitives != 0 ? primitive_of[place] : -1, surface;
-  dvec3 origin, direction, normal;
+  int place = pixel.y * view_width + pixel.x;
+  dvec3 origin, direction;
+  LitPixel lit = LitPixel(vec4(0), vec4(0));
+  if (lights != 0) lit = lit_pixels[place];
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
-  double end = 1e37LF;
-  if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
+  double end = has_distances != 0 ? double(distances[place]) : 1e37LF;
   vec3 visible = exp(-min(depth_along(origin, direction, end), 200));
-  vec3 in_air = lit_pixels[place].airlight.rgb + ambient * (1 - visible), on_surface = visible * lit_pixels[place].reflected.rgb;
+  vec3 in_air = lit.airlight.rgb + ambient * (1 - visible), on_surface = visible * lit.reflected.rgb;
   for (int c = 0; c < 3; ++c) {
     airlight_layer[3 * place + c] = in_air[c];
     transmittance_layer[3 * place + c] = visible[c];

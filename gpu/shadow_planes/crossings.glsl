@@ -1,20 +1,21 @@
 // Where the number of surfaces between a ray and the light changes: methods/shadow_planes/shadow_volumes.cpp, in double
-// precision. Crossings are met in the order of their keys, 32 at a time: when there are more, the next 32 are gathered
-// again, so none is lost. Needs raster/primitive.glsl, raster/view.glsl, edge.glsl and ray.glsl.
+// precision. Crossings are met in the order of their keys, MOST_HITS at a time: when there are more, the next of them are
+// gathered again, so none is lost. Needs raster/primitive.glsl, raster/view.glsl, edge.glsl, light_state.glsl and ray.glsl.
+#include "shadow_planes/facing.glsl"
 #include "shadow_planes/fan.glsl"
-layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
-layout(std430, binding = 3) readonly buffer Starts { int starts[]; };  // of the lists of sectors
-layout(std430, binding = 4) readonly buffer Lists { int lists[]; };
-uniform int solid_count, edge_count, edge_split;
+#include "shadow_planes/spheres.glsl"
+layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = AT_STARTS) readonly buffer Starts { ivec2 sector_list[]; };  // begin and end in lists
+layout(std430, binding = AT_LISTS) readonly buffer Lists { int lists[]; };
+uniform int solid_count, edge_split;
 
-const int most_hits = 32;
-double hit_key[most_hits];
-int hit_origin[most_hits];  // decides between equal keys
-int hit_change[most_hits];
+// Of every invocation, slot by slot: in registers they would spill. A crossing's name tells all but its key: twice the edge, + 1
+// where the ray leaves a shadow; of spheres ~(twice the crossing's number, + 1 where it enters).
+shared double hit_key[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
+shared int hit_name[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
+int slot_of(int hit) { return hit * LOCAL_SIZE_X * LOCAL_SIZE_Y + int(gl_LocalInvocationIndex); }
+
 #if STENCIL
-double hit_place[most_hits];
-int hit_edge[most_hits];  // -1: a sphere's shadow
-double hit_share[most_hits], hit_times[most_hits];  // where on the edge's plane (methods/shadow_planes/shadow_volumes.h)
 double stencil_end;  // [m]: changes before it sum up to
 int stencil_sum;
 #endif
@@ -24,62 +25,70 @@ int crossing_count;
 double last_key;   // what was gathered before ends here
 int last_origin;
 
-// Keeps the first most_hits of those after the last gathering.
-void keep_crossing(double key, int origin, int change, double place, int edge, double share, double times) {
+// Decides between equal keys.
+int origin_of(int name) { return name >= 0 ? edges[name >> 1].origin : 0x40000000 + (~name >> 1); }
+int change_of(int name) {
+  if (name < 0) return (~name & 1) != 0 ? 2 : -2;
+  return (name & 1) != 0 ? -edges[name >> 1].multiplicity : edges[name >> 1].multiplicity;
+}
+
+// Keeps the first MOST_HITS of those after the last gathering.
+void keep_crossing(double key, int name, int change, double place) {
   crossing_sum += change;
 #if STENCIL
   if (place < stencil_end) stencil_sum += change;
 #endif
   ++crossing_count;
-  if (key < last_key || (key == last_key && origin <= last_origin)) return;
-  int to = min(hit_count, most_hits);
+#if SHADOWS
+  if (key < last_key || (key == last_key && origin_of(name) <= last_origin)) return;
+  int to = min(hit_count, MOST_HITS);
   ++hit_count;
-  if (to == most_hits) {
+  if (to == MOST_HITS) {
     --to;
-    if (key > hit_key[to] || (key == hit_key[to] && origin > hit_origin[to])) return;
+    double last = hit_key[slot_of(to)];
+    if (key > last || (key == last && origin_of(name) > origin_of(hit_name[slot_of(to)]))) return;
   }
-  while (to > 0 && (hit_key[to - 1] > key || (hit_key[to - 1] == key && hit_origin[to - 1] > origin))) {
-    hit_key[to] = hit_key[to - 1];
-    hit_origin[to] = hit_origin[to - 1];
-    hit_change[to] = hit_change[to - 1];
-#if STENCIL
-    hit_place[to] = hit_place[to - 1];
-    hit_edge[to] = hit_edge[to - 1];
-    hit_share[to] = hit_share[to - 1];
-    hit_times[to] = hit_times[to - 1];
-#endif
-    --to;
+  for (; to > 0; --to) {
+    int before = slot_of(to - 1);
+    double other = hit_key[before];
+    if (other < key || (other == key && origin_of(hit_name[before]) <= origin_of(name))) break;
+    hit_key[slot_of(to)] = other;
+    hit_name[slot_of(to)] = hit_name[before];
   }
-  hit_key[to] = key;
-  hit_origin[to] = origin;
-  hit_change[to] = change;
-#if STENCIL
-  hit_place[to] = place;
-  hit_edge[to] = edge;
-  hit_share[to] = share;
-  hit_times[to] = times;
+  hit_key[slot_of(to)] = key;
+  hit_name[slot_of(to)] = name;
 #endif
 }
 
-// `side`: normal to the plane through light and ray, `normal` its direction; `to_origin`: from the light, unit.
-void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_origin) {
-  if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) return;
+// Where the plane of edge e is crossed: at `place` on the ray [m], `share` of the edge, `times` as far from the light. False:
+// nowhere between light and ray. `side`: normal to the plane through light and ray.
+bool cross_plane(Ray ray, int e, dvec3 side, out double place, out double share, out double times) {
   dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
-  double sa = dot(side, a), sb = dot(side, b);
-  if ((sa >= 0) == (sb >= 0)) return;
-  double share = sa / (sa - sb);
+  double sa = precise_dot(side, a), sb = precise_dot(side, b);  // edges that share a vertex agree about it
+  place = share = times = 0;
+  if ((sa >= 0) == (sb >= 0)) return false;
+  share = sa / (sa - sb);
   dvec3 p = a + (b - a) * share;
   double towards = dot(p, ray.n);
-  if (!(towards > 0) || towards > ray.h) return;  // not between light and ray
-  double x = ray.T + ray.h * dot(p, ray.direction) / towards;
-  if (!(x > 0) || !(x < end)) return;
-  int change = dot(cross(a, b), ray.direction) > 0 ? -edges[e].multiplicity : edges[e].multiplicity;
-  double key = x;
+  if (!(towards > 0) || towards > ray.h) return false;
+  times = ray.h / towards;
+  place = ray.T + ray.h * dot(p, ray.direction) / towards;
+  return true;
+}
+
+// `normal`: the direction of `side`; `to_origin`: from the light, unit.
+void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_origin) {
+  if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) return;
+  double place, share, times;
+  if (!cross_plane(ray, e, side, place, share, times) || !(place > 0) || !(place < end)) return;
+  dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
+  bool leaves = dot(cross(a, b), ray.direction) > 0;
+  double key = place;
 #if STENCIL
   double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
   key = dot(normalize(a + (b - a) * middle), to_origin);
 #endif
-  keep_crossing(key, edges[e].origin, change, x, e, share, ray.h / towards);
+  keep_crossing(key, 2 * e + int(leaves), leaves ? -edges[e].multiplicity : edges[e].multiplicity, place);
 }
 
 // Of the edges that the ray may cross: those of its sectors in the fan.
@@ -88,59 +97,60 @@ void cross_edges(Ray ray, double end) {
   dvec3 side = cross(ray.direction, ray.to_light), to_origin = -normalize(ray.to_light);
   vec3 normal = vec3(normalize(side));
   dvec3 v = view_perspective != 0 ? ray.direction : -ray.to_light;
-  dvec2 across = dvec2(dot(v, fan_x), dot(v, fan_y));
+  dvec2 across = across_line(v);
   if (is_across(across, v)) {
     double turn = turn_of(across);
-    for (int level = 0; level < fan_levels; ++level) {
-      int sector = first_sector(level) + min(int(turn * 0.25LF * sectors_of(level)), sectors_of(level) - 1);
-      int last = starts[sector + 1];
-      for (int i = starts[sector]; i < last; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
+    for (int level = 0; level < FAN_LEVELS; ++level) {
+      ivec2 list = sector_list[first_sector(level) + min(int(turn * 0.25LF * sectors_of(level)), sectors_of(level) - 1)];
+      for (int i = list.x; i < list.y; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
     }
   } else {
     for (int e = 0; e < edge_count; ++e) cross_edge(ray, end, e, side, normal, to_origin);
   }
 }
 
-// Does the open segment from the light to y, relative to it, meet the sphere around c?
-bool hides(dvec3 c, double radius, dvec3 y) {
-  double length_ = length(y);
-  if (!(length_ > 0)) return false;
-  dvec3 u = y / length_;
-  double along = dot(c, u), beside = length(c - along * u);
-  if (beside >= radius) return false;
-  double half_chord = sqrt((radius - beside) * (radius + beside)), near = along - half_chord, far = along + half_chord;
-  double least = 1e-12LF * radius;  // a light on the sphere is outside
-  return far > least && ((near > -least && near < length_) || far < length_);
+// Places where the shadow of a sphere may begin or end: on its tangent cone, or on itself.
+struct SphereShadow {
+  dvec3 center;  // from the light [m]
+  double radius;
+  dvec2 cone, ball;
+};
+SphereShadow shadow_of(Solid s, Ray ray) {
+  dvec3 center = dvec3(s.point[0], s.point[1], s.point[2]), c = center - light, from_center = ray.origin - center;
+  return SphereShadow(c, s.radius, cross_tangent_cone(c, s.radius, -ray.to_light, ray.direction),
+                      roots_of(1, dot(from_center, ray.direction), dot(from_center, from_center) - s.radius * s.radius));
+}
+// The least of them beyond `place`; 1e37: none before `end`.
+double next_place(SphereShadow s, double place, double end) {
+  double next = 1e37LF;
+  for (int j = 0; j < 4; ++j) {
+    double other = j < 2 ? s.cone[j] : s.ball[j - 2];
+    if (other > place && other < end) next = min(next, other);
+  }
+  return next;
 }
 
 // What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
 void cross_spheres(Ray ray, double end) {
   end *= 1 - 1e-10LF;  // where the ray ends on a ball it does not enter it, whatever rounding says
   for (int i = 0; i < solid_count; ++i) {
-    Solid s = solids[i];
-    if (s.kind != 1) continue;
-    dvec3 center = dvec3(s.point[0], s.point[1], s.point[2]), c = center - light, y = -ray.to_light, w = ray.direction;
-    dvec3 from_center = ray.origin - center;
-    dvec2 cone = cross_tangent_cone(c, s.radius, y, w);
-    dvec2 ball = roots_of(1, dot(from_center, w), dot(from_center, from_center) - s.radius * s.radius);
+    if (solids[i].kind != 1) continue;
+    SphereShadow s = shadow_of(solids[i], ray);
+    dvec3 y = -ray.to_light;
     // In turn the least place beyond the last one, with 0 the first.
     double place = 0;
-    bool before = hides(c, s.radius, y);
+    bool before = hides(s.center, s.radius, y);
     for (int k = 0; k < 5; ++k) {
-      double next = 1e37LF;
-      for (int j = 0; j < 4; ++j) {
-        double other = j < 2 ? cone[j] : ball[j - 2];
-        if (other > place && other < end) next = min(next, other);
-      }
+      double next = next_place(s, place, end);
       bool last = next >= 1e37LF;
-      double beyond = last ? min(end, 2 * place + 1 + length(c) + length(y)) : next;
-      bool hidden = hides(c, s.radius, y + 0.5LF * (place + beyond) * w);
+      double beyond = last ? min(end, 2 * place + 1 + length(s.center) + length(y)) : next;
+      bool hidden = hides(s.center, s.radius, y + 0.5LF * (place + beyond) * ray.direction);
       if (hidden != before) {
         double key = place;
 #if STENCIL
-        key = dot(normalize(y + place * w), normalize(y));
+        key = dot(normalize(y + place * ray.direction), normalize(y));
 #endif
-        keep_crossing(key, 0x40000000 + 5 * i + k, hidden ? 2 : -2, place, -1, 0, 0);
+        keep_crossing(key, ~(2 * (5 * i + k) + int(hidden)), hidden ? 2 : -2, place);
       }
       before = hidden;
       if (last) break;
@@ -149,23 +159,36 @@ void cross_spheres(Ray ray, double end) {
   }
 }
 
+#if STENCIL
+// Where crossing `name` lies on the ray [m]; of an edge also where on its plane.
+double place_of(Ray ray, double end, int name, out double share, out double times) {
+  double place = 0;
+  share = times = 0;
+  if (name >= 0) {
+    cross_plane(ray, name >> 1, cross(ray.direction, ray.to_light), place, share, times);
+  } else {
+    int number = ~name >> 1;
+    SphereShadow s = shadow_of(solids[number / 5], ray);
+    for (int k = number % 5; k > 0; --k) place = next_place(s, place, end * (1 - 1e-10LF));
+  }
+  return place;
+}
+#endif
+
 // Gathers the next crossings within (0, end) in order, after `key` and `origin`, which then are those of the last; true if
-// more are left.
+// more are left. `ray` in general position.
 bool gather(Ray ray, double end, inout double key, inout int origin) {
-  hit_count = 0;
-  crossing_sum = 0;
-  crossing_count = 0;
+  hit_count = crossing_sum = crossing_count = 0;
 #if STENCIL
   stencil_sum = 0;
 #endif
   last_key = key;
   last_origin = origin;
-  Ray from = ray_in_general_position(ray);
-  cross_edges(from, end);
-  cross_spheres(from, end);
-  if (hit_count <= most_hits) return false;
-  hit_count = most_hits;
-  key = hit_key[most_hits - 1];
-  origin = hit_origin[most_hits - 1];
+  cross_edges(ray, end);
+  cross_spheres(ray, end);
+  if (hit_count <= MOST_HITS) return false;
+  hit_count = MOST_HITS;
+  key = hit_key[slot_of(MOST_HITS - 1)];
+  origin = origin_of(hit_name[slot_of(MOST_HITS - 1)]);
   return true;
 }

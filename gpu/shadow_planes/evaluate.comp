@@ -14,8 +14,8 @@ struct Case {
   float extinction, h;  // [1/m], [m]
   float d0, length_;    // [m] from the foot point on; 1e37: endless
 };
-layout(std430, binding = 0) readonly buffer Cases { Case cases[]; };
-layout(std430, binding = 1) writeonly buffer Integrals { float integrals[]; };  // [1/m]
+layout(std430, binding = AT_CASES) readonly buffer Cases { Case cases[]; };
+layout(std430, binding = AT_INTEGRALS) writeonly buffer Integrals { float integrals[]; };  // [1/m]
 uniform int case_count;
 uniform int phase_kind;
 uniform float phase_g, phase_scale, phase_width;

@@ -1,11 +1,11 @@
 #include "gpu/shadow_planes/evaluator_on_device.h"
 
-#include "gpu/program.h"
+#include "gpu/shadow_planes/interface.h"
 #include "gpu/timer.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
 std::vector<float> rule_nodes(int nodes, int m, bool root_ends) {
   const shadow_planes::MappedRule<double> rule(nodes, m, root_ends);
@@ -26,12 +26,12 @@ std::vector<float> integrals_on_device(Context& context, const DeviceEvaluator& 
     numbers = rule_nodes(evaluator.nodes, evaluator.stretch, false);
   const Buffer table(context, "evaluator", numbers), input(context, "cases", cases);
   const Buffer output(context, "integrals", cases.size() * 4);
-  table.bind(5);
-  input.bind(0);
-  output.bind(1);
-  Program& p = context.program("shadow_planes/evaluate.comp", {{"LOCAL_SIZE_X", "64"},
-                                                               {"POLYNOMIAL", evaluator.polynomial ? "1" : "0"},
-                                                               {"POWER", std::to_string(evaluator.stretch)}});
+  table.bind(at::evaluator);
+  input.bind(at::cases);
+  output.bind(at::integrals);
+  Program& p =
+      program(context, "evaluate", 64, 1,
+              {{"POLYNOMIAL", evaluator.polynomial ? "1" : "0"}, {"POWER", std::to_string(evaluator.stretch)}});
   p.set("case_count", int(cases.size()));
   if (evaluator.polynomial) {
     p.set("degree", evaluator.nodes);
@@ -51,4 +51,4 @@ std::vector<float> integrals_on_device(Context& context, const DeviceEvaluator& 
   return values;
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -6,7 +6,7 @@
 #include "gpu/buffer.h"
 #include "methods/shadow_planes/phase_form.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
 // 4 floats a node, as rule.glsl reads them. `root_ends` as MappedRule.
 std::vector<float> rule_nodes(int nodes, int m, bool root_ends);
@@ -26,4 +26,4 @@ struct EvaluatorCase {
 std::vector<float> integrals_on_device(Context&, const DeviceEvaluator&, const std::vector<EvaluatorCase>&,
                                        double* seconds = nullptr);
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -1,14 +1,14 @@
-// Sorts silhouette edges into the sectors of a fan, one edge per invocation. FILL 0 counts those of every sector, FILL 1 writes
-// them where fan_starts.comp has put its beginning.
+// Sorts silhouette edges into the sectors of a fan, one edge per invocation. FILL 0 counts those of every sector; FILL 1 writes
+// them where fan_starts.comp has put its list, and counts back to 0, where the next sorting begins.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "shadow_planes/edge.glsl"
 #include "shadow_planes/fan.glsl"
+#include "shadow_planes/light_state.glsl"
 
-layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
-layout(std430, binding = 1) buffer SectorCounts { int sector_count[]; };
-layout(std430, binding = 3) readonly buffer Starts { int starts[]; };
-layout(std430, binding = 4) writeonly buffer Lists { int lists[]; };
-uniform int edge_count;
+layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = AT_SECTORS) buffer Sectors { int listed, sector_count[]; };
+layout(std430, binding = AT_STARTS) readonly buffer Starts { ivec2 sector_list[]; };
+layout(std430, binding = AT_LISTS) writeonly buffer Lists { int lists[]; };
 
 void main() {
   int e = int(gl_GlobalInvocationID.x);
@@ -18,9 +18,13 @@ void main() {
   int sectors = sectors_of(range.x);
   for (int s = range.y; s <= range.z; ++s) {
     int sector = first_sector(range.x) + (s + sectors) % sectors;
-    int place = atomicAdd(sector_count[sector], 1);
 #if FILL
-    lists[starts[sector] + place] = e;
+    lists[sector_list[sector].x + atomicAdd(sector_count[sector], -1) - 1] = e;
+#else
+    atomicAdd(sector_count[sector], 1);
 #endif
   }
+#if FILL
+  if (e == 0) listed = 0;
+#endif
 }

@@ -3,27 +3,26 @@
 #pragma once
 #include <memory>
 
-#include "gpu/linked_program.h"
 #include "gpu/shadow_planes/silhouettes.h"
 #include "scene/camera.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
 class FanOnDevice {
  public:
-  explicit FanOnDevice(Context&);
+  explicit FanOnDevice(Context&, int most_edges);
 
   // Sorts a light's edges for all rays of a camera. An edge is in four lists at most: there is always room.
   void fill(const scene::Camera&, const Point3& light, const LightEdges&);
 
-  // Binds 3 (where lists begin), 4 (the edges' places), sets the uniforms of fan.glsl.
+  // Binds the lists, sets the uniforms of fan.glsl.
   void bind(LinkedProgram&) const;
 
  private:
   Context& context_;
-  Buffer counts_, starts_;
-  std::unique_ptr<Buffer> lists_;
+  Buffer sectors_, starts_, lists_;
+  Program *count_, *begin_, *list_;
   Vec3 x_, y_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

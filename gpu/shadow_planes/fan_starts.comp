@@ -1,24 +1,25 @@
-// Where the list of every sector begins: sums of the counts before it, which become 0. One work group.
+// Where the list of every sector begins and ends, in no order: a work group takes room for its sectors.
 layout(local_size_x = LOCAL_SIZE_X) in;
 
-layout(std430, binding = 1) buffer SectorCounts { int sector_count[]; };
-layout(std430, binding = 3) writeonly buffer Starts { int starts[]; };  // and the end of the last
-uniform int total_sectors;
+layout(std430, binding = AT_SECTORS) buffer Sectors { int listed, sector_count[]; };
+layout(std430, binding = AT_STARTS) writeonly buffer Starts { ivec2 sector_list[]; };
 
-shared int sums[LOCAL_SIZE_X];
+shared int of_group, first_of_group;
 
 void main() {
-  int thread = int(gl_LocalInvocationID.x), share = (total_sectors + LOCAL_SIZE_X - 1) / LOCAL_SIZE_X;
-  int first = min(total_sectors, thread * share), last = min(total_sectors, first + share), sum = 0;
-  for (int i = first; i < last; ++i) sum += sector_count[i];
-  sums[thread] = sum;
+  int first = int(gl_WorkGroupID.x) * SECTORS_PER_GROUP + int(gl_LocalInvocationID.x), count = 0;
+  int last = min(FAN_SECTORS, (int(gl_WorkGroupID.x) + 1) * SECTORS_PER_GROUP);
+  if (gl_LocalInvocationID.x == 0) of_group = 0;
   barrier();
-  int start = 0;
-  for (int i = 0; i < thread; ++i) start += sums[i];
-  for (int i = first; i < last; ++i) {
-    starts[i] = start;
-    start += sector_count[i];
-    sector_count[i] = 0;
+  for (int sector = first; sector < last; sector += LOCAL_SIZE_X) count += sector_count[sector];
+  int begin = count > 0 ? atomicAdd(of_group, count) : 0;
+  barrier();
+  if (gl_LocalInvocationID.x == 0) first_of_group = of_group > 0 ? atomicAdd(listed, of_group) : 0;
+  barrier();
+  begin += first_of_group;
+  for (int sector = first; sector < last; sector += LOCAL_SIZE_X) {
+    int end = begin + sector_count[sector];
+    sector_list[sector] = ivec2(begin, end);
+    begin = end;
   }
-  if (thread == LOCAL_SIZE_X - 1) starts[total_sectors] = start;
 }

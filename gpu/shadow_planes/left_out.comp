@@ -1,12 +1,10 @@
 // Shadow planes that cannot cut a medium's box: methods/shadow_planes/paper_stages.cpp (misses). One edge per invocation.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "shadow_planes/edge.glsl"
+#include "shadow_planes/light_state.glsl"
 
-layout(std430, binding = 0) readonly buffer Edges { Edge edges[]; };
-layout(std430, binding = 15) writeonly buffer LeftOut { int left_out[]; };
-uniform int edge_count;
+layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
 uniform dvec3 box_lo, box_hi;  // [m] from the light
-
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= edge_count) return;

@@ -1,7 +1,7 @@
 // Homogeneous media, each in its region: scene/media/region.h.
 #include "shadow_planes/phase.glsl"
 
-const int region_unbounded = 0, region_box = 1, region_sphere = 2, region_slab = 3;
+const int region_unbounded = REGION_UNBOUNDED, region_box = REGION_BOX, region_sphere = REGION_SPHERE, region_slab = REGION_SLAB;
 struct Medium {
   double lo[3], hi[3];  // of the box; centre and radius; normal and both heights [m]
   float extinction[3];  // [1/m]
@@ -10,7 +10,7 @@ struct Medium {
   Phase phase;
   int unused;
 };
-layout(std430, binding = 8) readonly buffer Media { Medium media[]; };
+layout(std430, binding = AT_MEDIA) readonly buffer Media { Medium media[]; };
 uniform int media_count;
 uniform int air_medium;  // the one in question, where it is one alone
 

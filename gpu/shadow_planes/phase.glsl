@@ -1,5 +1,6 @@
 // Phase functions with mean 1: methods/shadow_planes/phase_form.h. v = (1+c)/2, w = (1-c)/2 of the cosine c.
-const int phase_isotropic = 0, phase_rayleigh = 1, phase_hazy = 2, phase_murky = 3, phase_henyey_greenstein = 4;
+const int phase_isotropic = PHASE_ISOTROPIC, phase_rayleigh = PHASE_RAYLEIGH, phase_hazy = PHASE_HAZY,
+          phase_henyey_greenstein = PHASE_HENYEY_GREENSTEIN;  // else murky
 
 struct Phase {
   int kind;

@@ -2,4 +2,4 @@
 struct LitPixel {
   vec4 airlight, reflected;  // rgb
 };
-layout(std430, binding = 6) buffer LitPixels { LitPixel lit_pixels[]; };
+layout(std430, binding = AT_PIXELS) buffer LitPixels { LitPixel lit_pixels[]; };

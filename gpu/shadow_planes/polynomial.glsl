@@ -1,6 +1,6 @@
 // The paper's evaluator, Biri et al. 2006, section 4.1: methods/shadow_planes/polynomial.h about theta = 0. Its coefficients
 // times e^a are polynomials in a = extinction * h, which come from there: the annex's or the right ones.
-layout(std430, binding = 5) readonly buffer Coefficients { float coefficient[]; };  // [n][power of a]
+layout(std430, binding = AT_EVALUATOR) readonly buffer Coefficients { float coefficient[]; };  // [n][power of a]
 uniform int degree;
 
 // Airlight per unit of albedo and intensity over [d0, d1] [m] from the foot point; `depth` of the whole way there; h > 0 [m].

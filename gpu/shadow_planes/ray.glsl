@@ -20,11 +20,13 @@ Ray ray_to(dvec3 origin, dvec3 direction) {
   return ray;
 }
 
-// From beside the origin: methods/shadow_planes/general_position.h.
-Ray ray_in_general_position(Ray ray) {
-  double aside = 2e-13LF * length(ray.to_light) + 4e-15LF * (length(ray.origin) + length(light));
-  return ray_to(ray.origin + aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF), ray.direction);
+// Beside the origin of a ray: methods/shadow_planes/general_position.h.
+dvec3 in_general_position(dvec3 origin) {
+  precise double aside = 2e-13LF * length(light - origin) + 4e-15LF * (length(origin) + length(light));
+  precise dvec3 result = origin + aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF);
+  return result;
 }
+Ray ray_in_general_position(Ray ray) { return ray_to(in_general_position(ray.origin), ray.direction); }
 
 // Roots of a t^2 + 2 b t + c; -1 for those that are not real.
 dvec2 roots_of(double a, double b, double c) {

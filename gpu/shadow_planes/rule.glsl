@@ -2,7 +2,7 @@
 // nodes. Needs POWER, m of the map.
 #include "shadow_planes/length.glsl"
 
-layout(std430, binding = 5) readonly buffer Rule { vec4 rule[]; };  // node on [0, 1], 1 - node, weight
+layout(std430, binding = AT_EVALUATOR) readonly buffer Rule { vec4 rule[]; };  // node on [0, 1], 1 - node, weight
 uniform int rule_nodes;
 
 const float depth_cut = 20, endless = 1e30;

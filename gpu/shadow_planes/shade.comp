@@ -5,28 +5,32 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/primitive.glsl"
 #include "shadow_planes/edge.glsl"
+#include "shadow_planes/light_state.glsl"
 #include "shadow_planes/ray.glsl"
+#if CROSSINGS
 #include "shadow_planes/crossings.glsl"
+#else
+const int hit_count = 0;
+#endif
 #include "shadow_planes/airlight.glsl"
 #include "common/loops_cut.glsl"
+#include "shadow_planes/counters.glsl"
 #include "shadow_planes/pixels.glsl"
 #include "shadow_planes/state.glsl"
 
-layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
-#if COUNT_BY_PIXEL
-layout(std430, binding = 13) readonly buffer Counts { int count_at[]; };  // m where a ray begins
-#endif
-// lit parts, crossings, gatherings after the first; unfinished, loops cut
-layout(std430, binding = 14) buffer Counters { uint counters[]; };
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
 #if SURFACES
-layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
+layout(std430, binding = AT_TABLES) readonly buffer Tables { float tables[]; };
 #include "common/reflection.glsl"
 #endif
-uniform int has_primitives, count_at_camera, frame_buffer;
-uniform int reflects;  // light on surfaces is added once, not with every medium
+uniform int has_primitives, frame_buffer;
+uniform int reflects;   // light on surfaces is added once, not with every medium
+uniform int adds;       // to what other lights left; 0: the first of a picture
+uniform int next_groups;  // which of resume_groups are the next dispatch's
 uniform vec3 intensity;  // [W/sr], of a spot on its axis
 
-shared uint part_sum, crossing_total, more_total;
+shared uint part_sum, crossing_total, gathering_total;
+shared bool unfinished_here;
 
 #if STENCIL
 #include "shadow_planes/stencil.glsl"
@@ -34,59 +38,73 @@ shared uint part_sum, crossing_total, more_total;
 #include "shadow_planes/lit_parts.glsl"
 #endif
 
+#if SURFACES
+// What a surface reflects of the light, without what is lost on the way to the eye.
+vec3 reflected_light(Ray ray, double end, int surface, dvec3 normal) {
+  if (dot(normal, ray.direction) > 0) normal = -normal;
+  dvec3 offset = ray.to_light - end * ray.direction;
+  double distance_ = length(offset);
+  dvec3 to_light = offset / distance_;
+  float cosine = float(dot(normal, to_light)), d = float(distance_), factor = 1;
+#if SPOT
+  double from_axis = -dot(to_light, spot_axis);
+  factor = from_axis > cos_outer ? spot_factor(float(1 - from_axis)) : 0;
+#endif
+  if (!(cosine > 0 && factor > 0)) return vec3(0);
+  return brdf(materials[surface], vec3(normal), vec3(to_light), vec3(-ray.direction)) * cosine * factor * intensity / (d * d) *
+         exp(-depth_along(ray.origin + end * ray.direction, to_light, distance_));
+}
+#endif
+
+void shade(ivec2 pixel, int place) {
+  int primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;
+  dvec3 origin, direction, normal = dvec3(0);
+  view_ray(dvec2(pixel) + 0.5LF, origin, direction);
+  double end = 1e37LF;
+  if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
+  Ray ray = ray_to(origin, direction);
+  int m = 0, m_end;
+#if COUNT_BY_PIXEL
+  m = states[place].m_origin;
+#elif CROSSINGS
+  m = count_at_camera;
+#endif
+  Work work;
+  LitPixel lit = LitPixel(vec4(0), vec4(0));
+  if (adds != 0) lit = lit_pixels[place];
+  State state = begin_state(place, m);
+  if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit.airlight.rgb;  // that of all lights
+  vec3 in_air = airlight_of(ray, end, primitive, m, state, m_end, work);
+#if CROSSINGS
+  if (resume == 0) atomicAdd(crossing_total, uint(work.crossings));
+  if (work.gatherings != 0) atomicAdd(gathering_total, uint(work.gatherings));
+  states[place].unfinished = state.unfinished;
+  if (state.unfinished != 0) {
+    states[place] = state;
+    unfinished_here = true;
+  }
+#endif
+  atomicAdd(part_sum, uint(work.parts));
+  if (state.unfinished != 0) return;
+  lit.airlight.rgb = in_air + (frame_buffer != 0 ? vec3(0) : lit.airlight.rgb);
+#if SURFACES
+  if (reflects != 0 && surface >= 0 && m_end == 0) lit.reflected.rgb += reflected_light(ray, end, surface, normal);
+#endif
+  lit_pixels[place] = lit;
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (gl_LocalInvocationIndex == 0) part_sum = crossing_total = more_total = 0;
+  if (gl_LocalInvocationIndex == 0) part_sum = crossing_total = gathering_total = 0, unfinished_here = false;
   barrier();
   int place = pixel.y * view_width + pixel.x;
-  if (pixel.x < view_width && pixel.y < view_height && (resume == 0 || states[place].unfinished != 0)) {
-    int primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;
-    dvec3 origin, direction, normal = dvec3(0);
-    view_ray(dvec2(pixel) + 0.5LF, origin, direction);
-    double end = 1e37LF;
-    if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
-    Ray ray = ray_to(origin, direction);
-    int m = count_at_camera, m_end, parts;
-#if COUNT_BY_PIXEL
-    m = count_at[place];
-#endif
-    State state = begin_state(place, m);
-    if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // that of all lights
-    vec3 in_air = airlight_of(ray, end, primitive, m, state, m_end, parts);
-#if CROSSINGS
-    states[place] = state;
-    if (resume == 0) atomicAdd(crossing_total, uint(crossing_count));
-    if (state.unfinished != 0) atomicAdd(more_total, 1);
-#endif
-    atomicAdd(part_sum, uint(parts));
-    bool done = state.unfinished == 0;
-    if (done) lit_pixels[place].airlight.rgb = in_air + (frame_buffer != 0 ? vec3(0) : lit_pixels[place].airlight.rgb);
-#if SURFACES
-    if (done && reflects != 0 && surface >= 0 && m_end == 0) {
-      if (dot(normal, direction) > 0) normal = -normal;
-      dvec3 offset = ray.to_light - end * direction;
-      double distance_ = length(offset);
-      vec3 to_light = vec3(offset / distance_);
-      float cosine = float(dot(normal, offset / distance_)), d = float(distance_);
-#if SPOT
-      double from_axis = -dot(offset / distance_, spot_axis);
-      float factor = from_axis > cos_outer ? spot_factor(float(1 - from_axis)) : 0;
-#else
-      float factor = 1;
-#endif
-      if (cosine > 0 && factor > 0)
-        lit_pixels[place].reflected.rgb += brdf(materials[surface], vec3(normal), to_light, vec3(-direction)) * cosine * factor *
-                                intensity / (d * d) *
-                                exp(-depth_along(origin + end * direction, offset / distance_, distance_));
-    }
-#endif
-  }
-  if (loops_cut()) atomicOr(counters[4], 1);
+  if (pixel.x < view_width && pixel.y < view_height && (resume == 0 || states[place].unfinished != 0)) shade(pixel, place);
+  if (loops_cut()) atomicOr(loops_were_cut, 1);
   barrier();
   if (gl_LocalInvocationIndex == 0) {
-    atomicAdd(counters[0], part_sum);
-    atomicAdd(counters[1], crossing_total);
-    atomicAdd(counters[2], more_total);
-    atomicAdd(counters[3], more_total);
+    atomicAdd(lit_parts, part_sum);
+    atomicAdd(crossings, crossing_total);
+    atomicAdd(gatherings_after_first, gathering_total);
+    if (unfinished_here) resume_groups[next_groups] = uvec4(gl_NumWorkGroups, 0);
   }
 }

@@ -1,25 +1,23 @@
 #include "gpu/shadow_planes/shading.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "gpu/material_tables.h"
-#include "gpu/program.h"
 #include "gpu/view_uniforms.h"
 #include "methods/shadow_planes/paper_stages.h"
-#include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
 using shadow_planes::Options;
 
-LitPicture::LitPicture(Context& context, const scene::View& v, bool shadows)
+LitPicture::LitPicture(Frame& frame, const scene::View& v, bool hits, bool crossings, int dispatches)
     : view(v),
-      pixels(context, fmt::format("light of {} x {} pixels", v.width, v.height), std::size_t(v.width) * v.height * 32),
-      states(context, fmt::format("states of {} x {} pixels", v.width, v.height),
-             shadows ? std::size_t(v.width) * v.height * 48 : 48),
-      counters(context, "counters", 20) {}
+      distances(hits ? &frame.buffers.get("distances", std::size_t(v.width) * v.height * 4) : nullptr),
+      primitives(hits ? &frame.buffers.get("primitives", std::size_t(v.width) * v.height * 4) : nullptr),
+      pixels(frame.buffers.get("light of pixels", sizeof(LitPixelData) * v.width * v.height)),
+      states(
+          frame.buffers.get("states of pixels", sizeof(StateData) * (crossings ? std::size_t(v.width) * v.height : 1))),
+      counters(frame.buffers.get("counters", sizeof(CountersData) + 16 * std::size_t(dispatches))) {
+  counters.clear();
+}
 
 PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options,
                            const AirlightTermsOnDevice& airlight_terms, const SurfacesOnDevice* surfaces)
@@ -28,52 +26,55 @@ PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::
       options_(options),
       airlight_terms_(airlight_terms),
       surfaces_(surfaces),
+      // llvmpipe's limit on loops is that of a dispatch.
+      most_gatherings_(context.software() ? 2 : 64),
       materials_(context, "materials", MaterialTables(*scene).materials),
-      tables_(context, "reflectance tables", MaterialTables(*scene).values) {}
+      tables_(context, "reflectance tables", MaterialTables(*scene).values),
+      left_out_(program(context, "left_out", edges_per_group)),
+      composition_(program(context, "composition", 8, 8)) {}
 
-// Edges whose planes cannot cut a medium's box, by their places; `edges` null: there are none.
-std::unique_ptr<Buffer> PlaneShading::left_out(const LightEdges* edges, const Box& box, const Point3& light) const {
-  const int count = edges ? edges->count : 0;
-  auto flags = std::make_unique<Buffer>(context_, "planes left out", 4 * std::size_t(count));
-  if (count == 0) return flags;
-  edges->edges->bind(0);
-  flags->bind(15);
-  Program& p = context_.program("shadow_planes/left_out.comp", {{"LOCAL_SIZE_X", "64"}});
-  p.set("edge_count", count);
-  p.set_double("box_lo", Vec3(box.lo - light));
-  p.set_double("box_hi", Vec3(box.hi - light));
-  p.dispatch(count);
-  return flags;
+// Marks edges whose planes cannot cut a medium's box.
+void PlaneShading::leave_out(const LightEdges& edges, const Box& box, const Point3& light) const {
+  edges.bind();
+  left_out_.set_double("box_lo", Vec3(box.lo - light));
+  left_out_.set_double("box_hi", Vec3(box.hi - light));
+  edges.dispatch(left_out_);
 }
 
-void PlaneShading::add(LitPicture& picture, int index, int term, const std::vector<int>& counts, const Edges& lists,
-                       const VertexValues* values) const {
-  const Use use(context_);
-  const scene::Light& light = scene_->lights[index];
-  const auto* spot = std::get_if<scene::SpotLight>(&light);
+// Values at vertices are drawn by the paper's stages, with or without shadows.
+bool PlaneShading::in_stages(int term, const Edges& lists, const VertexValues* values) const {
+  return term >= 0 && (values || (options_.shadows == Options::Shadows::stencil && lists.edges));
+}
+
+Program& PlaneShading::shade_program(int light, int term, const LitPicture& picture, bool crossings,
+                                     bool values) const {
+  const bool parallel = picture.view.camera.kind != scene::Camera::Kind::perspective && crossings;
+  const bool spot = std::holds_alternative<scene::SpotLight>(scene_->lights[light]);
+  Program*& p = programs_[{spot, term, parallel, crossings, values}];
+  if (p) return *p;
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  const scene::Region* region = term >= 0 ? airlight_terms_.region(term) : nullptr;
-  // Values at vertices are drawn by the paper's stages, with or without shadows.
-  const bool stages = term >= 0 && (values || (options_.shadows == Options::Shadows::stencil && lists.edges));
-  auto definitions = airlight_terms_.definitions(index, term);
-  definitions.insert({{"LOCAL_SIZE_X", "16"},
-                      {"LOCAL_SIZE_Y", "8"},
-                      {"AIRLIGHT", flag(term >= 0)},
-                      {"COUNT_BY_PIXEL", flag(counts.size() > 1)},
-                      {"CROSSINGS", flag(lists.edges)},
+  const bool stages = term >= 0 && (values || (options_.shadows == Options::Shadows::stencil && crossings));
+  auto definitions = airlight_terms_.definitions(light, term);
+  definitions.insert({{"AIRLIGHT", flag(term >= 0)},
+                      {"COUNT_BY_PIXEL", flag(parallel)},
+                      {"CROSSINGS", flag(crossings)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
                       {"STENCIL", flag(stages)},
                       {"SURFACES", flag(!scene_->surfaces.empty())},
                       {"VERTICES", flag(values)}});
-  Program& p = context_.program("shadow_planes/shade.comp", definitions);
-  std::unique_ptr<Buffer> by_pixel, flags;
-  if (counts.size() > 1) {
-    by_pixel = std::make_unique<Buffer>(context_, "counts where rays begin", counts);
-    by_pixel->bind(13);
-  }
-  if (stages && region) {
-    flags = left_out(lists.edges, bounding_box(*region), scene::ball(light)->center);
-    flags->bind(15);
+  p = &program(context_, "shade", 8, 8, definitions);
+  return *p;
+}
+
+void PlaneShading::add(LitPicture& picture, int index, int term, const Edges& lists, const VertexValues* values,
+                       int rounds) const {
+  const Use use(context_);
+  const scene::Light& light = scene_->lights[index];
+  const auto* spot = std::get_if<scene::SpotLight>(&light);
+  const bool stages = in_stages(term, lists, values);
+  Program& p = shade_program(index, term, picture, lists.edges, values);
+  if (const scene::Region* region = stages ? airlight_terms_.region(term) : nullptr) {
+    if (lists.edges) leave_out(*lists.edges, bounding_box(*region), scene::ball(light)->center);
     p.set("boundary_cells", options_.boundary_cells);
   }
   airlight_terms_.bind(p, index, term);
@@ -82,57 +83,55 @@ void PlaneShading::add(LitPicture& picture, int index, int term, const std::vect
     p.set("media_end", shadow_planes::all_end(scene_->media));
   }
   if (lists.edges) {
-    lists.edges->edges->bind(0);
-    p.set("edge_count", lists.edges->count);
+    lists.edges->bind();
+    lists.fan->bind(p);
   }
-  if (lists.fan) lists.fan->bind(p);
-  if (picture.primitives) picture.primitives->bind(1);
+  if (picture.primitives) picture.primitives->bind(at::primitives);
   if (surfaces_) surfaces_->bind();
-  materials_.bind(2);
-  picture.pixels.bind(6);
-  picture.states.bind(7);
-  tables_.bind(9);
-  picture.counters.bind(14);
+  materials_.bind(at::materials);
+  picture.pixels.bind(at::pixels);
+  picture.states.bind(at::states);
+  tables_.bind(at::tables);
+  picture.counters.bind(at::counters);
   set_view(p, picture.view);
   p.set("intensity", spot ? spot->intensity : std::get<scene::PointLight>(light).intensity);
   p.set("triangle_count", surfaces_ ? surfaces_->triangles() : 0);
   p.set("solid_count", surfaces_ ? int(surfaces_->solids().size()) : 0);
   p.set("has_primitives", picture.primitives != nullptr);
-  p.set("count_at_camera", counts.front());
   p.set("reflects", term <= 0);
+  p.set("adds", !picture.empty);
   p.set("edge_split", options_.edge_split);
   p.set("frame_buffer", options_.frame_buffer && stages);
+  p.set("most_gatherings", most_gatherings_);
   p.set("loop_count", 3);
-  for (bool resume = false;; resume = true) {
-    p.set("resume", resume);
-    p.dispatch(picture.view.width, picture.view.height);
-    std::vector<unsigned> counters = picture.counters.download<unsigned>();
-    if (counters[4] != 0)
-      throw Unavailable(
-          fmt::format("gpu: {} ends the loops of a pixel after 65535 iterations, too few for {} nodes and {} crossings",
-                      context_.renderer(), options_.nodes, counters[1]));
-    if (counters[3] == 0) return;
-    counters[3] = 0;
-    picture.counters.upload(counters);
+  picture.empty = false;
+  for (int round = 0; round <= rounds; ++round) {
+    p.set("resume", round > 0);
+    p.set("next_groups", round < rounds ? picture.next_groups : 0);
+    if (round == 0)
+      p.dispatch(picture.view.width, picture.view.height);
+    else
+      p.dispatch_indirect(picture.counters,
+                          offsetof(CountersData, unfinished) + 16 * std::size_t(picture.next_groups - 1));
+    if (round < rounds) ++picture.next_groups;
   }
 }
 
 void PlaneShading::compose(const LitPicture& picture, const Layers& layers) const {
   const Use use(context_);
-  Program& p = context_.program("shadow_planes/composition.comp", {{"LOCAL_SIZE_X", "16"}, {"LOCAL_SIZE_Y", "8"}});
-  if (picture.primitives) picture.primitives->bind(1);
-  if (surfaces_) surfaces_->bind();
-  picture.pixels.bind(6);
+  Program& p = composition_;
+  if (picture.distances) picture.distances->bind(at::distances);
+  picture.pixels.bind(at::pixels);
   airlight_terms_.bind_media(p);
-  layers.airlight.bind(0);
-  layers.transmittance.bind(3);
-  layers.surface.bind(4);
-  layers.mean.bind(5);
+  layers.airlight.bind(at::airlight_layer);
+  layers.transmittance.bind(at::transmittance_layer);
+  layers.surface.bind(at::surface_layer);
+  layers.mean.bind(at::mean_layer);
   set_view(p, picture.view);
-  p.set("triangle_count", surfaces_ ? surfaces_->triangles() : 0);
-  p.set("has_primitives", picture.primitives != nullptr);
+  p.set("has_distances", picture.distances != nullptr);
+  p.set("lights", !picture.empty);
   p.set("ambient", options_.ambient ? scene_->ambient_in_scatter : Rgb::Zero());
   p.dispatch(picture.view.width, picture.view.height);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

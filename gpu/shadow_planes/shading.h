@@ -1,25 +1,26 @@
 // The dispatches that shade a picture: one per light and air, then the film's layers.
 #pragma once
+#include <map>
 #include <memory>
-#include <vector>
 
+#include "gpu/frame.h"
 #include "gpu/raster/surfaces_on_device.h"
 #include "gpu/shadow_planes/airlight_terms_on_device.h"
 #include "gpu/shadow_planes/fan_on_device.h"
 #include "gpu/shadow_planes/vertex_values.h"
-#include "scene/renderer.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
-// What lights leave in a picture.
+// What lights leave in a picture, in a frame's buffers.
 struct LitPicture {
-  LitPicture(Context&, const scene::View&, bool shadows);  // shadows: edges are crossed
+  // Clears the counters. `crossings`: edges are crossed; `dispatches`: of lights and airs, those that go on included.
+  LitPicture(Frame&, const scene::View&, bool hits, bool crossings, int dispatches);
   scene::View view;
-  std::unique_ptr<Buffer> primitives;  // of the first hits; null: there are none
-  Buffer pixels;                       // the layout of pixels.glsl
-  Buffer states;                       // that of state.glsl
-  // Lit parts, crossings, gatherings after the first; of the last dispatch: unfinished pixels; whether loops were cut.
-  Buffer counters;
+  const Buffer *distances, *primitives;  // of the first hits; null: there are none
+  const Buffer &pixels, &states;         // the layouts of pixels.glsl, state.glsl
+  Buffer& counters;                      // that of counters.glsl
+  int next_groups = 1;                   // of its resume_groups, the first that no dispatch writes yet
+  bool empty = true;                     // nothing is in the pixels yet
 };
 
 class PlaneShading {
@@ -35,25 +36,33 @@ class PlaneShading {
     const FanOnDevice* fan = nullptr;
   };
   // Adds an air (-1: there is none) as a light shows it, and with the first of them what surfaces reflect of the light.
-  // `counts`: m where rays begin, one number or one for every pixel; `values` is null where the airlight is computed
-  // for every pixel.
-  void add(LitPicture&, int light, int term, const std::vector<int>& counts, const Edges&, const VertexValues*) const;
+  // `values` is null where the airlight is computed for every pixel. `rounds`: dispatches that go on with pixels that
+  // have more crossings than the first gathers; they cost next to nothing where no pixel has.
+  void add(LitPicture&, int light, int term, const Edges&, const VertexValues*, int rounds) const;
+
+  // Crossings of a pixel that a dispatch takes in.
+  int crossings_of_dispatch() const { return most_hits * most_gatherings_; }
 
   // Layers of 3 floats per pixel.
   struct Layers {
-    Buffer airlight, transmittance, surface, mean;
+    const Buffer &airlight, &transmittance, &surface, &mean;
   };
   void compose(const LitPicture&, const Layers&) const;
 
  private:
-  std::unique_ptr<Buffer> left_out(const LightEdges*, const Box&, const Point3& light) const;
+  Program& shade_program(int light, int term, const LitPicture&, bool crossings, bool values) const;
+  void leave_out(const LightEdges&, const Box&, const Point3& light) const;
+  bool in_stages(int term, const Edges&, const VertexValues*) const;
 
   Context& context_;
   const std::shared_ptr<const scene::Scene>& scene_;
   shadow_planes::Options options_;
   const AirlightTermsOnDevice& airlight_terms_;
   const SurfacesOnDevice* surfaces_;
+  int most_gatherings_;
   Buffer materials_, tables_;
+  Program &left_out_, &composition_;
+  mutable std::map<std::array<int, 5>, Program*> programs_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

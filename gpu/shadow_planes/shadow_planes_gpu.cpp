@@ -4,12 +4,9 @@
 
 #include <algorithm>
 
-#include "gpu/program.h"
-#include "gpu/raster/first_hits.h"
-#include "gpu/raster_program.h"
+#include "gpu/frame.h"
+#include "gpu/shadow_planes/origin_counts.h"
 #include "gpu/shadow_planes/shading.h"
-#include "gpu/timer.h"
-#include "methods/shadow_planes/general_position.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
@@ -19,41 +16,18 @@
 namespace airlight::gpu {
 namespace {
 
+using namespace planes;
+
 using scene::Execution;
 using scene::Scene;
 using scene::View;
 using shadow_planes::Options;
-using shadow_planes::SurfaceCount;
 
 constexpr int most_degree = 16, most_media = 32;  // single precision; bits of a word
 
 class PreparedShadowPlanesGpu final : public scene::Prepared {
  public:
-  PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options)
-      : scene_(std::move(scene)),
-        options_(options),
-        context_(Context::get()),
-        airlight_terms_(context_, scene_, options),
-        fan_(context_) {
-    const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
-    const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
-                                   [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
-    StageTimer timer(context_);
-    if (surfaces || balls) {
-      first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-      timer.stage("upload");
-    }
-    shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airlight_terms_, surfaces_on_device());
-    if (lit && surfaces) {
-      occluders_ = std::make_shared<const shadow_planes::Occluders>(scene_);
-      silhouettes_ = std::make_unique<Silhouettes>(context_, *occluders_);
-      timer.stage("edges");
-      edges_.resize(scene_->lights.size());
-      find_silhouettes();
-      timer.stage("silhouettes");
-    }
-    times_ = timer.times();
-  }
+  PreparedShadowPlanesGpu(std::shared_ptr<const Scene>, const Options&, FirstHits::Way);
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
@@ -61,18 +35,14 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  // Of every light, and m where it is asked for.
-  void find_silhouettes() {
-    counts_.clear();
-    for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
-      silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
-      counts_.emplace_back(occluders_, scene::ball(scene_->lights[l])->center);
-    }
-  }
-  std::vector<int> counts_at_origins(std::size_t light, const View&, const Execution&) const;
+  void prepare(FirstHits::Way);
+  void find_silhouettes() const;  // of every light
   const SurfacesOnDevice* surfaces_on_device() const { return first_hits_ ? &first_hits_->surfaces() : nullptr; }
-  // Adds one light; the number of vertices at which its airlight was computed.
-  double add_light(int light, LitPicture&, const Execution&, StageTimer&) const;
+  int shaded_airs() const { return int(scene_->lights.size()) * std::max(1, airlight_terms_.count()); }
+
+  void draw(const View&) const;  // a frame, up to the notes of what is downloaded
+  void add_light(int light, LitPicture&) const;
+  bool finish(scene::Rendering&) const;  // false: crossings are missing, more rounds would have them
 
   std::shared_ptr<const Scene> scene_;
   Options options_;
@@ -80,128 +50,186 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
   AirlightTermsOnDevice airlight_terms_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
   std::unique_ptr<PlaneShading> shading_;
-  std::shared_ptr<const shadow_planes::Occluders> occluders_;
   std::unique_ptr<Silhouettes> silhouettes_;  // null: nothing casts a shadow
-  std::vector<LightEdges> edges_;             // by light
-  std::vector<SurfaceCount> counts_;
-  mutable FanOnDevice fan_;
-  mutable VertexValues values_;
+  std::unique_ptr<OriginCounts> counts_;      // likewise
+  std::unique_ptr<FanOnDevice> fan_;          // likewise
+  std::unique_ptr<VertexValues> values_;      // null: the airlight is computed for every pixel
+  mutable std::vector<LightEdges> edges_;     // by light
+  mutable bool moved_ = false;                // lights are no longer where edges_ has them
+  mutable int rounds_ = 0;                    // PlaneShading::add; more when a frame that was looked at had too few
+  mutable Frame frame_;
   std::vector<scene::StageTime> times_;
 };
 
+PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> scene, const Options& options,
+                                                 FirstHits::Way way)
+    : scene_(std::move(scene)),
+      options_(options),
+      context_(Context::get()),
+      airlight_terms_(context_, scene_, options),
+      frame_(context_) {
+  prepare(way);
+}
+
+void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
+  const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
+  const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
+                                 [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
+  StageTimer timer(context_);
+  if (surfaces || balls) {
+    timer.begin("upload");
+    first_hits_ = std::make_unique<FirstHits>(context_, *scene_, true, way);
+  }
+  shading_ = std::make_unique<PlaneShading>(context_, scene_, options_, airlight_terms_, surfaces_on_device());
+  if (lit && surfaces) {
+    timer.begin("edges");
+    const shadow_planes::Occluders occluders(scene_);
+    silhouettes_ = std::make_unique<Silhouettes>(context_, occluders, VertexValues::plane_rows(options_),
+                                                 options_.bounded == Options::Bounded::paper);
+    counts_ = std::make_unique<OriginCounts>(context_, *silhouettes_, *first_hits_);
+    fan_ = std::make_unique<FanOnDevice>(context_, silhouettes_->most());
+    edges_.resize(scene_->lights.size());
+    timer.begin("silhouettes");
+    find_silhouettes();
+    // A ray crosses an edge once, the border of what a sphere hides five times at most.
+    int most = silhouettes_->most();
+    for (const scene::Surface& surface : scene_->surfaces)
+      if (std::holds_alternative<scene::Sphere>(surface.shape)) most += 5;
+    rounds_ = std::min(2, (most - 1) / shading_->crossings_of_dispatch());
+  }
+  if (options_.evaluation == Options::Evaluation::vertices)
+    values_ = std::make_unique<VertexValues>(context_, scene_, options_, airlight_terms_, surfaces_on_device(),
+                                             silhouettes_ ? silhouettes_->most() : 0);
+  times_ = timer.times();
+}
+
+void PreparedShadowPlanesGpu::find_silhouettes() const {
+  for (std::size_t l = 0; l < scene_->lights.size(); ++l)
+    silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
+  moved_ = false;
+}
+
 std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
   std::size_t edges = 0;
-  for (const LightEdges& of_light : edges_) edges += of_light.count;
+  const Use use(context_);
+  for (const LightEdges& of_light : edges_)
+    edges += std::size_t(of_light.state->download<int>()[offsetof(LightStateData, edge_count) / 4]);
   const bool lit = !scene_->lights.empty();
   const std::string dark = lit ? "one dispatch per light and air" : "no light shines";
   const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, scene_->lights.size())
                             : lit        ? "there are no surfaces"
                                          : dark;
   return {{"silhouettes", silhouettes_ != nullptr, found},
+          {"counts", silhouettes_ != nullptr, silhouettes_ ? "surfaces between light and camera, by a tree" : found},
           {"edges of rays", silhouettes_ != nullptr,
            silhouettes_ ? "by angle around the line from light to camera" : found},
           {"airlight and surfaces", lit, dark},
           {"composition", true, "layers of the film"}};
 }
 
+// Silhouettes are found when the frame is drawn: that waits once.
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanesGpu::next(std::shared_ptr<const Scene> scene,
                                                                            const Execution&) {
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
   const Use use(context_);
   if (first_hits_ && !first_hits_->move_balls(*scene)) return std::nullopt;
   scene_ = std::move(scene);
-  if (!silhouettes_) return std::vector<scene::StageTime>{};
-  StageTimer timer(context_);
-  find_silhouettes();
-  timer.stage("silhouettes");
-  return timer.times();
+  moved_ = silhouettes_ != nullptr;
+  return std::vector<scene::StageTime>{};
 }
 
-std::vector<int> PreparedShadowPlanesGpu::counts_at_origins(std::size_t light, const View& view,
-                                                            const Execution& execution) const {
-  if (counts_.empty()) return {0};
-  const Point3 at = scene::ball(scene_->lights[light])->center;
-  const auto count = [&](const Point3& origin) {
-    return counts_[light].at(shadow_planes::origin_in_general_position(origin, at));
-  };
-  if (view.camera.kind == scene::Camera::Kind::perspective) return {count(view.camera.position)};
-  std::vector<int> counts(std::size_t(view.width) * view.height);
-  scene::parallel_rows(view.height, {execution.threads, {}}, [&](int y) {
-    for (int x = 0; x < view.width; ++x)
-      counts[std::size_t(y) * view.width + x] =
-          count(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).origin);
-  });
-  return counts;
-}
-
-double PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture, const Execution& execution,
-                                          StageTimer& timer) const {
-  const Point3 light = scene::ball(scene_->lights[l])->center, camera = picture.view.camera.position;
-  const std::vector<int> counts = counts_at_origins(l, picture.view, execution);
+void PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture) const {
+  const Point3 light = scene::ball(scene_->lights[l])->center;
+  const scene::Camera& camera = picture.view.camera;
   PlaneShading::Edges lists;
   if (silhouettes_) {
-    fan_.fill(picture.view.camera, light, edges_[l]);
-    lists = {&edges_[l], &fan_};
-    timer.stage("edges of rays");
-  }
-  double vertices = 0;
-  for (int term = 0; term < airlight_terms_.count(); ++term) {
-    const bool by_vertex = options_.evaluation == Options::Evaluation::vertices;
-    if (by_vertex) {
-      const double far = lists.edges ? shadow_planes::mesh_reach(*scene_, airlight_terms_.region(term), light, camera,
-                                                                 options_.plane_levels)
-                                     : 0;
-      const bool planes = lists.edges && options_.shadows != Options::Shadows::none;
-      values_.fill(context_, *scene_, options_, airlight_terms_, l, term, camera, surfaces_on_device(),
-                   planes ? lists.edges : nullptr, far, picture.counters, timer);
-      vertices += double(values_.count());
-    }
-    shading_->add(picture, l, term, counts, lists, by_vertex ? &values_ : nullptr);
-    timer.stage("airlight and surfaces");
+    frame_.timer.begin("counts");
+    counts_->find(picture.view, light, edges_[l], picture.states, picture.counters);
+    frame_.timer.begin("edges of rays");
+    fan_->fill(camera, light, edges_[l]);
+    lists = {&edges_[l], fan_.get()};
   }
   if (airlight_terms_.count() == 0) {
-    shading_->add(picture, l, -1, counts, lists, nullptr);
-    timer.stage("airlight and surfaces");
+    frame_.timer.begin("airlight and surfaces");
+    shading_->add(picture, l, -1, lists, nullptr, rounds_);
   }
-  return vertices;
+  for (int term = 0; term < airlight_terms_.count(); ++term) {
+    if (values_) {
+      const bool planes = lists.edges && options_.shadows != Options::Shadows::none;
+      const double far = lists.edges ? shadow_planes::mesh_reach(*scene_, airlight_terms_.region(term), light,
+                                                                 camera.position, options_.plane_levels)
+                                     : 0;
+      values_->fill(frame_, l, term, camera.position, planes ? lists.edges : nullptr, far, picture.counters);
+    }
+    frame_.timer.begin("airlight and surfaces");
+    shading_->add(picture, l, term, lists, values_.get(), rounds_);
+  }
+}
+
+void PreparedShadowPlanesGpu::draw(const View& view) const {
+  const std::size_t pixels = std::size_t(view.width) * view.height;
+  if (moved_) {
+    frame_.timer.begin("silhouettes");
+    find_silhouettes();
+  }
+  LitPicture picture(frame_, view, first_hits_ != nullptr, silhouettes_ != nullptr, shaded_airs() * rounds_);
+  if (first_hits_) {
+    frame_.timer.begin("distances");
+    first_hits_->find(view, *picture.distances, picture.primitives);
+  }
+  for (std::size_t l = 0; l < scene_->lights.size(); ++l) add_light(int(l), picture);
+  frame_.timer.begin("composition");
+  const auto layer = [&](const char* name) -> const Buffer& {
+    const Buffer& buffer = frame_.buffers.get(name, pixels * 12);
+    frame_.download.add(name, buffer, pixels * 12);
+    return buffer;
+  };
+  shading_->compose(picture, {layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")});
+  frame_.download.add_values("counters", picture.counters, sizeof(CountersData));
+  for (std::size_t l = 0; l < edges_.size(); ++l)
+    frame_.download.add_values(fmt::format("light {}", l), *edges_[l].state, sizeof(LightStateData));
+}
+
+bool PreparedShadowPlanesGpu::finish(scene::Rendering& result) const {
+  frame_.finish(result);
+  result.counters["rays"] = double(result.film.pixels());
+  const auto all = frame_.download.values<CountersData>("counters");
+  if (all.empty()) return true;  // nobody looks
+  const CountersData& counted = all.front();
+  if (counted.loops_were_cut)
+    throw Unavailable(
+        fmt::format("gpu: {} ends the loops of a pixel after 65535 iterations, too few for {} nodes and {} crossings",
+                    context_.renderer(), options_.nodes, counted.crossings));
+  if (counted.values_missing)
+    throw Unavailable(fmt::format("gpu: values at the vertices of planes pass the {} bytes of a storage block of {}",
+                                  context_.limits().storage_block, context_.renderer()));
+  if (counted.unfinished[0]) return false;
+  result.counters["lit_parts"] = counted.lit_parts;
+  result.counters["crossings"] = counted.crossings;
+  result.counters["gatherings_beyond_32"] = counted.gatherings_after_first;
+  if (!values_) return true;
+  double vertices = 0;
+  for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
+    const auto state = frame_.download.values<LightStateData>(fmt::format("light {}", l));
+    const bool planes = !state.empty() && options_.shadows != Options::Shadows::none;
+    const double of_planes = planes ? double(state.front().edge_count) * VertexValues::plane_rows(options_) : 0;
+    for (int term = 0; term < airlight_terms_.count(); ++term) vertices += of_planes + double(values_->count(term));
+  }
+  result.counters["vertices"] = vertices;
+  return true;
 }
 
 scene::Rendering PreparedShadowPlanesGpu::render(const View& view, const Execution& execution) const {
   require_lights_apart(*scene_, view, 1e-9, "shadow_planes_gpu");
-  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
-  const std::size_t pixels = result.film.pixels();
-  const long dispatches = Program::dispatches(), draws = RasterProgram::draws();
-  if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
+  if (values_ && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const Use use(context_);
-  StageTimer timer(context_);
-  LitPicture picture(context_, view, silhouettes_ != nullptr);
-  if (first_hits_) {
-    picture.primitives = std::make_unique<Buffer>(context_, "primitives", pixels * 4);
-    first_hits_->draw(view).read_primitives(*picture.primitives, 0);
-    timer.stage("distances");
+  for (;; rounds_ = 4 * rounds_ + 1) {
+    scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+    frame_.begin(execution);
+    draw(view);
+    if (finish(result)) return result;
   }
-  double vertices = 0;
-  for (std::size_t l = 0; l < scene_->lights.size(); ++l) vertices += add_light(int(l), picture, execution, timer);
-  const auto layer = [&](const char* name) { return Buffer(context_, name, pixels * 12); };
-  const PlaneShading::Layers layers{layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")};
-  shading_->compose(picture, layers);
-  timer.stage("composition");
-  result.film.layers["airlight"] = layers.airlight.download<float>();
-  result.film.layers["transmittance"] = layers.transmittance.download<float>();
-  result.film.layers["surface"] = layers.surface.download<float>();
-  result.film.layers["mean"] = layers.mean.download<float>();
-  const std::vector<unsigned> counted = picture.counters.download<unsigned>();
-  timer.stage("read back");
-  result.times = timer.times();
-  result.counters["rays"] = double(pixels);
-  result.counters["lit_parts"] = counted[0];
-  result.counters["crossings"] = counted[1];
-  result.counters["gatherings_beyond_32"] = counted[2];
-  if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;
-  result.counters["dispatches"] = double(Program::dispatches() - dispatches);
-  result.counters["draws"] = double(RasterProgram::draws() - draws);
-  return result;
 }
 
 }  // namespace
@@ -216,6 +244,9 @@ std::vector<scene::SettingSpec> ShadowPlanesGpu::settings() const {
     if (setting.name == "nodes") setting.fallback = "16";
     if (setting.name == "stretch") setting.fallback = "3";
   }
+  settings.push_back(scene::choice_setting("first_hits", "tree", {"tree", "raster"},
+                                           "what ends camera rays; raster: by the rasteriser, faster on some devices, "
+                                           "to 1/256 pixel at silhouettes"));
   return settings;
 }
 
@@ -233,7 +264,9 @@ std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const sce
 std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                     const scene::Settings& settings,
                                                                     const Execution&) const {
-  return std::make_unique<PreparedShadowPlanesGpu>(std::move(scene), shadow_planes::read_options(settings));
+  return std::make_unique<PreparedShadowPlanesGpu>(
+      std::move(scene), shadow_planes::read_options(settings),
+      settings.text("first_hits") == "raster" ? FirstHits::Way::raster : FirstHits::Way::tree);
 }
 
 }  // namespace airlight::gpu

@@ -1,25 +1,30 @@
 #include "gpu/shadow_planes/silhouettes.h"
 
-#include "gpu/program.h"
+namespace airlight::gpu::planes {
 
-namespace airlight::gpu {
-
-// The layouts of silhouette.comp.
+// The layouts of edge_meshes.glsl, counts.comp and silhouette.comp.
 struct Silhouettes::Arrays {
   std::vector<double> vertices;
-  std::vector<int> triangles;
+  std::vector<int> triangles, numbers;
   std::vector<std::array<int, 4>> edges;
   std::vector<int> sides;
 };
 
 Silhouettes::Arrays Silhouettes::arrays(const shadow_planes::Occluders& occluders) {
   Arrays all;
-  for (const shadow_planes::MeshEdges& mesh : occluders.meshes()) {
+  for (std::size_t m = 0; m < occluders.meshes().size(); ++m) {
+    const shadow_planes::MeshEdges& mesh = occluders.meshes()[m];
     const int vertex = int(all.vertices.size() / 3), triangle = int(all.triangles.size() / 3);
     const int side = int(all.sides.size());
+    const std::size_t number = all.numbers.size();  // surfaces without triangles lie between the meshes
+    all.numbers.resize(
+        number + std::get<scene::TriangleMesh>(occluders.scene().surfaces[occluders.surface(m)].shape).triangles.size(),
+        -1);
     for (const Point3& v : mesh.vertices()) all.vertices.insert(all.vertices.end(), v.data(), v.data() + 3);
-    for (const auto& t : mesh.triangles())
-      for (const int corner : t) all.triangles.push_back(vertex + corner);
+    for (std::size_t t = 0; t < mesh.triangles().size(); ++t) {
+      for (const int corner : mesh.triangles()[t]) all.triangles.push_back(vertex + corner);
+      all.numbers[number + mesh.number(int(t))] = triangle + int(t);
+    }
     for (const auto& edge : mesh.edges())
       all.edges.push_back({vertex + edge.a, vertex + edge.b, side + edge.first, edge.count});
     for (const auto& s : mesh.sides()) all.sides.push_back(2 * (triangle + s.triangle) + (s.forward ? 1 : 0));
@@ -27,36 +32,44 @@ Silhouettes::Arrays Silhouettes::arrays(const shadow_planes::Occluders& occluder
   return all;
 }
 
-Silhouettes::Silhouettes(Context& context, const shadow_planes::Occluders& occluders)
-    : Silhouettes(context, arrays(occluders)) {}
+Silhouettes::Silhouettes(Context& context, const shadow_planes::Occluders& occluders, int plane_rows, bool left_out)
+    : Silhouettes(context, arrays(occluders), plane_rows, left_out) {}
 
-Silhouettes::Silhouettes(Context& context, const Arrays& arrays)
+Silhouettes::Silhouettes(Context& context, const Arrays& arrays, int plane_rows, bool left_out)
     : context_(context),
       mesh_edges_(int(arrays.edges.size())),
+      plane_rows_(plane_rows),
+      left_out_(left_out),
       vertices_(context, "vertices of edges", arrays.vertices),
       triangles_(context, "triangles of edges", arrays.triangles),
+      numbers_(context, "numbers of triangles", arrays.numbers),
       edges_(context, "edges of meshes", arrays.edges),
       sides_(context, "sides of edges", arrays.sides),
-      count_(context, "number of edges", 4) {}
+      program_(program(context, "silhouette", 64)) {}
 
-void Silhouettes::find(const Point3& light, LightEdges& found) {
+void Silhouettes::find(const Point3& light, LightEdges& found) const {
   const Use use(context_);
-  constexpr std::size_t edge_bytes = 96;
-  if (!found.edges) found.edges = std::make_unique<Buffer>(context_, "silhouette", edge_bytes * mesh_edges_);
-  found.count = 0;
-  if (mesh_edges_ == 0) return;
-  count_.upload(std::vector<int>{0});
-  vertices_.bind(1);
-  triangles_.bind(2);
-  edges_.bind(3);
-  sides_.bind(4);
-  found.edges->bind(0);
-  count_.bind(6);
-  Program& p = context_.program("shadow_planes/silhouette.comp", {{"LOCAL_SIZE_X", "64"}});
-  p.set("mesh_edge_count", mesh_edges_);
-  p.set_double("light", light);
-  p.dispatch(mesh_edges_);
-  found.count = count_.download<int>().front();
+  if (!found.edges) {
+    found.edges = std::make_unique<Buffer>(context_, "silhouette", sizeof(EdgeData) * std::size_t(mesh_edges_),
+                                           Contents::undefined);
+    found.state = std::make_unique<Buffer>(context_, "state of a light",
+                                           sizeof(LightStateData) + (left_out_ ? 4 * std::size_t(mesh_edges_) : 0));
+  }
+  found.state->clear();
+  bind_meshes();
+  edges_.bind(at::mesh_edges);
+  sides_.bind(at::mesh_sides);
+  found.bind();
+  program_.set("mesh_edge_count", mesh_edges_);
+  program_.set("plane_rows", plane_rows_);
+  program_.set_double("light", light);
+  program_.dispatch(mesh_edges_);
 }
 
-}  // namespace airlight::gpu
+void Silhouettes::bind_meshes() const {
+  vertices_.bind(at::mesh_vertices);
+  triangles_.bind(at::mesh_triangles);
+  numbers_.bind(at::mesh_numbers);
+}
+
+}  // namespace airlight::gpu::planes

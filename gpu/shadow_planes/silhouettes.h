@@ -3,33 +3,49 @@
 #pragma once
 #include <memory>
 
-#include "gpu/buffer.h"
+#include "gpu/shadow_planes/interface.h"
 #include "methods/shadow_planes/surface_count.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
-// Of one light. The layout of edge.glsl, in no particular order.
+// Of one light; nobody on the host knows how many there are.
 struct LightEdges {
-  std::unique_ptr<Buffer> edges;
-  int count = 0;
+  std::unique_ptr<Buffer> edges;  // the layout of edge.glsl, in no particular order
+  std::unique_ptr<Buffer> state;  // that of light_state.glsl
+
+  void bind() const {
+    edges->bind(at::edges);
+    state->bind(at::light_state);
+  }
+  // An invocation per edge, rows of them with `planes`; of programs whose groups are edges_per_group edges.
+  void dispatch(Program& program, bool planes = false) const {
+    program.dispatch_indirect(*state, planes ? offsetof(LightStateData, plane_groups) : 0);
+  }
 };
 
 class Silhouettes {
  public:
-  // Uploads the edges of all meshes. Throws Error where they pass the device's limits.
-  Silhouettes(Context&, const shadow_planes::Occluders&);
+  // Uploads the edges of all meshes. `plane_rows`: vertices of a plane, for LightEdges::dispatch; `left_out`: the state
+  // of a light has room for these marks. Throws Unavailable where they pass the device's limits.
+  Silhouettes(Context&, const shadow_planes::Occluders&, int plane_rows, bool left_out);
 
-  // Finds those of a light, on the device; waits for their number.
-  void find(const Point3& light, LightEdges&);
+  // Finds those of a light, on the device.
+  void find(const Point3& light, LightEdges&) const;
+  int most() const { return mesh_edges_; }  // that a light can have
+
+  // Binds the meshes: edge_meshes.glsl, and by the scene's triangles their places there.
+  void bind_meshes() const;
 
  private:
   struct Arrays;
   static Arrays arrays(const shadow_planes::Occluders&);
-  Silhouettes(Context&, const Arrays&);
+  Silhouettes(Context&, const Arrays&, int plane_rows, bool left_out);
 
   Context& context_;
-  int mesh_edges_;
-  Buffer vertices_, triangles_, edges_, sides_, count_;
+  int mesh_edges_, plane_rows_;
+  bool left_out_;
+  Buffer vertices_, triangles_, numbers_, edges_, sides_;
+  Program& program_;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

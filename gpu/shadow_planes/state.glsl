@@ -1,18 +1,24 @@
-// Where a pixel was left that has more crossings than one gathering holds: the next dispatch goes on there. So no dispatch
-// lasts, and no driver's limit on loops is met by the number of gatherings.
+// Where a pixel was left that has more crossings than one dispatch may gather: the next goes on there. So no dispatch lasts, and no
+// driver's limit on loops is met by the number of gatherings.
 struct State {
   double last_key, from;
   vec4 sum;         // rgb
   int last_origin;
   int m;            // or the stencil
   int unfinished;   // 0: done
-  int unused;
+  int m_origin;     // of a parallel view: m where the ray begins (counts.comp)
 };
-layout(std430, binding = 7) buffer States { State states[]; };
-uniform int resume;  // 0: the first dispatch of a light
+layout(std430, binding = AT_STATES) buffer States { State states[]; };
+uniform int resume;           // 0: the first dispatch of a light
+uniform int most_gatherings;  // of a dispatch, > 0
 
 // Of pixel `place`: what is before the first crossing, or what was left.
 State begin_state(int place, int m) {
   if (resume != 0) return states[place];
-  return State(-1e300LF, 0, vec4(0), -1, m, 0, 0);
+  return State(-1e300LF, 0, vec4(0), -1, m, 0, m);
 }
+
+// What a pixel took: lit parts, crossings, gatherings after the first.
+struct Work {
+  int parts, crossings, gatherings;
+};

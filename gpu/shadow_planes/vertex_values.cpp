@@ -4,69 +4,91 @@
 
 #include <algorithm>
 
-#include "gpu/program.h"
 #include "scene/error.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::planes {
 
-void VertexValues::fill(Context& context, const scene::Scene& scene, const shadow_planes::Options& options,
-                        const AirlightTermsOnDevice& airlight_terms, int light, int term, const Point3& camera,
-                        const SurfacesOnDevice* surfaces, const LightEdges* edges, double far, const Buffer& counters,
-                        StageTimer& timer) {
-  const Use use(context);
-  const scene::Light& of = scene.lights[light];
-  const auto* spot = std::get_if<scene::SpotLight>(&of);
-  levels_ = options.plane_levels;
-  cells_ = options.boundary_cells;
+using shadow_planes::Options;
+
+VertexValues::VertexValues(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options,
+                           const AirlightTermsOnDevice& airlight_terms, const SurfacesOnDevice* surfaces,
+                           int most_edges)
+    : context_(context),
+      scene_(scene),
+      options_(options),
+      airlight_terms_(airlight_terms),
+      surfaces_(surfaces),
+      meshes_(surfaces ? surfaces->vertices() : 0) {
+  const long room = long(context.limits().storage_block / 16) - meshes_ -
+                    6L * (options.boundary_cells + 1) * (options.boundary_cells + 1);
+  if (room < 0)
+    throw Unavailable(fmt::format("gpu: values at {} vertices of surfaces pass the {} bytes of a storage block of {}",
+                                  meshes_, context.limits().storage_block, context.renderer()));
+  most_edges_ = int(std::min<long>(most_edges, room / plane_rows(options)));
+}
+
+Program& VertexValues::prepare(Of of, int light, int term, const Point3& camera) {
+  const scene::Light& shines = scene_->lights[light];
+  const auto* spot = std::get_if<scene::SpotLight>(&shines);
+  Program*& p = programs_[{int(of), spot != nullptr, term}];
+  if (!p) {
+    auto definitions = airlight_terms_.definitions(light, term);
+    definitions["OF"] = std::to_string(int(of));
+    p = &program(context_, "vertices", edges_per_group, 1, definitions);
+  }
+  airlight_terms_.bind(*p, light, term);
+  p->set("loop_count", 3);
+  p->set_double("camera", camera);
+  p->set_double("ball_radius", scene::ball(shines)->radius);
+  p->set("intensity", spot ? spot->intensity : std::get<scene::PointLight>(shines).intensity);
+  return *p;
+}
+
+long VertexValues::count(int term) const {
+  const int side = options_.boundary_cells + 1;
+  return meshes_ + (airlight_terms_.region(term) ? 6L * side * side : 0);
+}
+
+void VertexValues::fill(Frame& frame, int light, int term, const Point3& camera, const LightEdges* edges, double far,
+                        const Buffer& counters) {
+  const Use use(context_);
+  const int cells = options_.boundary_cells, rows = plane_rows(options_);
   far_ = far;
-  meshes_ = surfaces ? surfaces->vertices() : 0;
-  boundary_ = airlight_terms.region(term) ? 6 * (cells_ + 1) * (cells_ + 1) : 0;
-  const double of_planes = edges ? double(edges->count) * (options.edge_split + 1) * (levels_ + 2) : 0;
-  const std::size_t most = context.limits().storage_block;
-  if ((of_planes + meshes_ + boundary_) * 16 > double(most))
-    throw Unavailable(fmt::format("gpu: values at {:.0f} vertices pass the {} bytes of a storage block of {}",
-                                  of_planes + meshes_ + boundary_, most, context.renderer()));
-  planes_ = int(of_planes);
-  const std::size_t bytes = 16 * std::size_t(count());
-  if (!values_ || values_->bytes() < bytes) values_ = std::make_unique<Buffer>(context, "values at vertices", bytes);
-  int first = 0;
-  const auto evaluate = [&](int kind, int count, const char* stage) {
-    if (count == 0) return;
-    auto definitions = airlight_terms.definitions(light, term);
-    definitions.insert({{"LOCAL_SIZE_X", "64"}, {"OF", std::to_string(kind)}});
-    Program& p = context.program("shadow_planes/vertices.comp", definitions);
-    if (surfaces) surfaces->bind();
-    if (edges) edges->edges->bind(0);
-    airlight_terms.bind(p, light, term);
-    values_->bind(13);
-    counters.bind(14);
-    p.set("loop_count", 3);
-    p.set("vertex_count", count);
+  of_term_ = int(count(term));
+  values_ = &frame.buffers.get("values at vertices",
+                               16 * (std::size_t(of_term_) + (edges ? std::size_t(most_edges_) * rows : 0)));
+  values_->bind(at::values);
+  counters.bind(at::counters);
+  if (surfaces_) surfaces_->bind();
+  const auto evaluate = [&](Of of, int first, int vertices) {
+    if (vertices == 0) return;
+    frame.timer.begin("vertices of surfaces");
+    Program& p = prepare(of, light, term, camera);
+    p.set("vertex_count", vertices);
     p.set("first_value", first);
-    p.set("pieces", options.edge_split);
-    p.set_double("camera", camera);
-    p.set_double("ball_radius", scene::ball(of)->radius);
-    p.set("intensity", spot ? spot->intensity : std::get<scene::PointLight>(of).intensity);
-    if (kind == 1) p.set("boundary_cells", cells_);
-    if (kind == 2) {
-      p.set("plane_levels", levels_);
-      p.set("plane_far", far);
-    }
-    p.dispatch(count);
-    first += count;
-    timer.stage(stage);
+    if (of == Of::boundary) p.set("boundary_cells", cells);
+    p.dispatch(vertices);
   };
-  evaluate(0, meshes_, "vertices of surfaces");
-  evaluate(1, boundary_, "vertices of surfaces");
-  evaluate(2, planes_, "vertices of planes");
+  evaluate(Of::meshes, 0, meshes_);
+  evaluate(Of::boundary, meshes_, of_term_ - meshes_);
+  if (!edges) return;
+  frame.timer.begin("vertices of planes");
+  Program& p = prepare(Of::planes, light, term, camera);
+  p.set("first_value", of_term_);
+  p.set("pieces", options_.edge_split);
+  p.set("most_edges", most_edges_);
+  p.set("plane_levels", options_.plane_levels);
+  p.set("plane_far", far);
+  edges->bind();
+  edges->dispatch(p, true);
 }
 
 void VertexValues::bind(LinkedProgram& program) const {
-  values_->bind(13);
+  values_->bind(at::values);
   program.set("first_boundary", meshes_);
-  program.set("first_plane", meshes_ + boundary_);
-  program.set("plane_levels", levels_);
+  program.set("first_plane", of_term_);
+  program.set("plane_levels", options_.plane_levels);
   program.set("plane_far", far_);
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::planes

@@ -7,14 +7,6 @@
 #include "methods/shadow_planes/general_position.h"
 
 namespace airlight::shadow_planes {
-namespace {
-
-// Of a whole turn, 4. Greater than what rounding does to angles of vectors whose part across the line is more than
-// `least_across` of them; others are met by all rays, or meet all edges.
-constexpr double margin = 1e-8, least_across = 1e-6;
-
-}  // namespace
-
 FanAxes fan_axes(const scene::Camera& camera, const Point3& light) {
   Vec3 line = camera.kind == scene::Camera::Kind::perspective
                   ? Vec3(origin_in_general_position(camera.position, light) - light)

@@ -24,10 +24,13 @@ class EdgeFan {
   // Every edge that the ray may cross, and some more; in no order.
   void of_ray(const Ray&, std::vector<int>& edges) const;
 
+  static constexpr int levels = 8;  // of 4, 16, ... 65536 sectors
   static constexpr int total_sectors() { return first_sector(levels); }
+  // Of a whole turn, 4. Greater than what rounding does to angles of vectors whose part across the line is more than
+  // `least_across` of them; others are met by all rays, or meet all edges.
+  static constexpr double margin = 1e-8, least_across = 1e-6;
 
  private:
-  static constexpr int levels = 8;  // of 4, 16, ... 65536 sectors
   static constexpr int sectors(int level) { return 4 << (2 * level); }
   static constexpr int first_sector(int level) { return (sectors(level) - 4) / 3; }
   struct Range {

@@ -107,6 +107,18 @@ TEST_CASE("how long a job is warmed up", "[driver]") {
   CHECK(after_twenty(0.9898) == 60);
 }
 
+TEST_CASE("a job with a warm-up of its own is run until that is spent, beside the budget", "[driver]") {
+  double now = 0;
+  int runs = 0;
+  const TimedJob gpu{0.125, [&] { now += 0.125, ++runs; }, 1};
+  CHECK(time_runs({31, 0, 1, 0}, {gpu}, [&] { return now; })[0].runs == 7);
+  CHECK(runs == 8 + 7);
+  runs = 0;  // beside another each of the seven is preceded by a twentieth of a second
+  const TimedJob other{2, [&] { now += 2; }};
+  CHECK(time_runs({31, 0, 1, 0}, {gpu, other}, [&] { return now; })[0].runs == 7);
+  CHECK(runs == 8 + 2 * 7);
+}
+
 TEST_CASE("jobs at the border of short and long", "[driver]") {
   double now = 0;
   int at = 0, below = 0;

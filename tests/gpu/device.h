@@ -1,6 +1,8 @@
 // The device of the tests, or a test that says why it is skipped.
 #pragma once
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
 
 #include "gpu/context.h"
 #include "scene/error.h"
@@ -15,6 +17,12 @@ inline Context* device() {
     WARN("test skipped: " << reason.what());
     return nullptr;
   }
+}
+
+// Relative error that AIRLIGHT_GPU_ULPS puts into exp, log, sqrt, sin and cos; 0 without it. For bounds close to rounding.
+inline double injected_error() {
+  const char* ulps = std::getenv("AIRLIGHT_GPU_ULPS");
+  return ulps ? std::atof(ulps) * std::exp2(-23) : 0;
 }
 
 }  // namespace airlight::gpu::test

@@ -1,10 +1,13 @@
 // The GPU house: context, programs, buffers, timers, and how each fails.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "gpu/buffer.h"
 #include "gpu/device_choice.h"
+#include "gpu/kernel_drivers.h"
 #include "gpu/program.h"
 #include "gpu/shader_source.h"
 #include "gpu/timer.h"
@@ -57,6 +60,27 @@ TEST_CASE("a device is chosen by number, by place or by a part of its names", "[
   CHECK(refusal({broken}, "auto") ==
         "gpu: no device works; there is device 0: eglInitialize: EGL_NOT_INITIALIZED (0x3001)");
   CHECK(refusal({}, "auto") == "gpu: EGL lists no device and no surfaceless platform: CPU only");
+}
+
+TEST_CASE("a kernel driver without its EGL is told", "[gpu-choice]") {
+  const Attempt soft{{"surfaceless", true, nullptr}, "llvmpipe (LLVM 15)", "Mesa", "4.5", ""},
+      nvidia{{"device 0", false, nullptr}, "Tesla", "NVIDIA Corporation", "4.6", ""},
+      failed{{"device 0", false, nullptr}, "", "NVIDIA Corporation", "", "device 0: eglInitialize"};
+  const TemporaryFolder root;
+  const auto lines = [&](const std::vector<Attempt>& attempts) { return drivers_without_egl(attempts, root.path()); };
+  CHECK(lines({soft}).empty());
+  std::filesystem::create_directories(root.path() / "dev/dri");
+  CHECK(lines({soft}).empty());
+  root.write("dev/dri/renderD128", "");
+  REQUIRE(lines({soft}).size() == 1);
+  CHECK_THAT(lines({soft})[0], Catch::Contains("/dev/dri/renderD"));
+  CHECK(lines({soft, nvidia}).empty());
+  std::filesystem::create_directories(root.path() / "proc/driver/nvidia");
+  CHECK(lines({soft, nvidia}).empty());
+  CHECK(lines({soft, failed}).size() == 2);
+  CHECK_THAT(lines({soft, failed})[0], Catch::Contains("/proc/driver/nvidia") && Catch::Contains("its EGL is not"));
+  root.write("dev/kfd", "");
+  CHECK_THAT(lines({soft, nvidia})[0], Catch::Contains("/dev/kfd"));
 }
 
 // A driver with holes in it: a stand-in for its eglGetProcAddress.
@@ -139,11 +163,37 @@ TEST_CASE("misuse of the GPU is an error", "[gpu]") {
   context->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 9999, 0);
   CHECK_THROWS_WITH(context->check("this"), Catch::Contains("this failed on " + context->renderer()));
   CHECK_NOTHROW(context->check("once only"));
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {{"LOCAL_SIZE_X", "256"}}), Catch::Contains("more than 128"));
+  const std::string too_many = std::to_string(2 * context->limits().invocations);
+  CHECK_THROWS_AS(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}), Unavailable);
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}),
+                    Catch::Contains(too_many + " invocations") && Catch::Contains("offers at most"));
   CHECK_THROWS_AS(program.dispatch(context->limits().groups[0] + 1), Error);
   CHECK_THROWS_WITH(Buffer(*context, "giant", context->limits().storage_block + 1),
                     Catch::Contains("'giant' needs") && Catch::Contains("offers at most"));
   CHECK_THROWS_AS(Buffer(*context, "giant", context->limits().storage_block + 1), Unavailable);
+}
+
+TEST_CASE("more storage blocks than the device has are refused in one line", "[gpu]") {
+  Context* context = test::device();
+  if (!context) return;
+  const auto with_blocks = [](int count) {
+    std::string text = "layout(local_size_x = 1) in;\n", body;
+    for (int i = 0; i < count; ++i) {
+      text += fmt::format("layout(std430, binding = {0}) buffer B{0} {{ float v{0}; }};\n", i);
+      body += fmt::format("v{} += 1; ", i);
+    }
+    return text + "void main() { " + body + "}\n";
+  };
+  const int most = context->limits().storage_blocks;
+  {
+    const ShaderFolder shaders(with_blocks(most));
+    CHECK_NOTHROW(Program(*context, "test.comp", {}));
+  }
+  const ShaderFolder shaders(with_blocks(most + 1));
+  CHECK_THROWS_AS(Program(*context, "test.comp", {}), Unavailable);
+  CHECK_THROWS_WITH(Program(*context, "test.comp", {}),
+                    Catch::Contains(fmt::format("{} storage blocks", most + 1)) && !Catch::Contains("\n"));
+  CHECK_NOTHROW(context->check("nothing is left of it"));
 }
 
 TEST_CASE("stages are timed by the device", "[gpu]") {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/fogshop/passes.h"
+#include "gpu/fogshop/fog_on_device.h"
 #include "gpu/program.h"
 #include "methods/fogshop/surface_psf.h"
 #include "tests/gpu/device.h"
@@ -35,16 +35,20 @@ RayAnswer one_ray(gpu::Context& context, const Options& options, const Fog& fog,
   model.fog = fog;
   model.gaussians = make_arrays(fog.sum.gaussians, options.cull, options.depth_threshold).arrays;
   if (light) model.lights.push_back({*light, Rgb::Ones(), {}, nullptr});
-  gpu::FogOnDevice device(context, model);
-  if (light && model.paper()) {
+  Needs needs{};
+  needs.airlight = true;
+  needs.center_depths = light && model.paper() && model.gaussians.count > 0;
+  gpu::fog::FogOnDevice device(context, model, needs);
+  if (needs.center_depths) {
     device.fill_light_depths();
     device.fill_view_depths(view);
   }
-  gpu::StageTimer timer(context);
+  gpu::Frame frame(context);
+  frame.begin({});
   const scene::View one{scene::look_at(view, view + Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
   const gpu::Buffer distance(context, "distances",
                              std::vector<float>{length < gpu::far_away ? float(length) : gpu::far_away});
-  return device.airlight(one, &distance, timer)->download<RayAnswer>().at(0);
+  return device.airlight(one, &distance, frame).download<RayAnswer>().at(0);
 }
 
 }  // namespace
@@ -77,7 +81,7 @@ TEST_CASE("depths under extreme inputs on the device", "[gpu]") {
                                grey_fog({{gaussian(c.a, c.c, c.b)}, 0, infinity}), Point3::Zero(), c.d, nullptr)
                            .depth;
     // The error function is good to 3.3e-7. The depth of a step of 1e-15 is lost in its rounding.
-    CHECK(std::abs(got - c.expected) <= 3.3e-7 * c.c * std::sqrt(pi) / c.a);
+    CHECK(std::abs(got - c.expected) <= (3.3e-7 + gpu::test::injected_error()) * c.c * std::sqrt(pi) / c.a);
   }
 }
 
@@ -87,15 +91,16 @@ TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]"
   for (const fogshop_test::StressCase& c : fogshop_test::stress_cases) {
     const Fog fog = grey_fog({{c.gaussian()}, 0, infinity});
     INFO(c.expected);
-    // With the 128 slices that a shader has room for, what is left of K^-4 is below 2e-4. The nearest light, 1e-4 from
+    // With 128 slices, what is left of K^-4 is below 2e-4. The nearest light, 1e-4 from
     // the ray, shines on slices so short that their depths have four digits.
     Options slices = exact(Options::Variant::slices, 128);
     slices.extrapolate = true;
     slices.boxes = true;
     const Line ray{c.view, Vec3::UnitZ(), c.d};
     const double got = one_ray(*context, slices, fog, c.view, c.d, &c.light).airlight[0];
-    CHECK(std::abs(got / c.expected - 1) <= 1e-3);
-    CHECK(std::abs(got / fogshop_test::ray_airlight(slices, fog, c.light, Rgb::Ones(), ray)[0] - 1) <= 1e-3);
+    const double bound = 1e-3 + 1e4 * gpu::test::injected_error();
+    CHECK(std::abs(got / c.expected - 1) <= bound);
+    CHECK(std::abs(got / fogshop_test::ray_airlight(slices, fog, c.light, Rgb::Ones(), ray)[0] - 1) <= bound);
     // The paper's variant has its own answer; what is below 1e-38 is 0.
     const Options paper = exact(Options::Variant::paper, 8);
     const double ours = one_ray(*context, paper, fog, c.view, c.d, &c.light).airlight[0];
@@ -128,7 +133,7 @@ TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[
     options.source_radius = c.radius;
     const double got =
         one_ray(*context, options, grey_fog({{}, c.beta, infinity}), Point3::Zero(), c.d_vp, &light).airlight[0];
-    CHECK(std::abs(got - c.expected) <= 5e-7 * c.expected);
+    CHECK(std::abs(got - c.expected) <= (5e-7 + 2 * gpu::test::injected_error()) * c.expected);
   }
 }
 
@@ -147,17 +152,14 @@ TEST_CASE("limits of the NPSF on the device", "[gpu]") {
   }
 }
 
-// Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its table and by its series far away.
+// Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its fit and by its series far away.
 TEST_CASE("average depth under extreme inputs on the device", "[gpu]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
-layout(std430, binding = 9) readonly buffer Tables { float tables[]; };
-uniform int has_scattered;
-#include "common/reflection.glsl"
-#include "fogshop/harmonics.glsl"
+#include "fogshop/average_depth.glsl"
 layout(std430, binding = 1) readonly buffer Distances { float distance_of[]; };
 layout(std430, binding = 3) writeonly buffer Depths { float depth_of[]; };
 void main() {
@@ -165,24 +167,16 @@ void main() {
   depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
 }
 )");
-  gpu::Program program(*context, "test.comp",
-                       {{"SH_ORDER", "4"}, {"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"TRANSFER", "0"}});
-  std::vector<float> table;
-  for (const AverageDepthNode& node : average_depth_nodes())
-    table.insert(table.end(), {float(node.value), float(node.slope)});
+  gpu::Program program(*context, "test.comp", {{"ERF_COUNT", "0"}, {"COLOURED", "0"}});
   // At the origin, width 1, half_depth so that the sum is average_depth(u).
   const gpu::Buffer gaussian(*context, "Gaussian",
-                             std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0}),
-      tables(*context, "tables", table);
+                             std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0});
   const std::vector<float> u = {0, 1e-6f, 0.3f, 1, 3, 9.99f, 10, 10.01f, 1e3f, 1e6f, 1e15f, 1e25f};
   const gpu::Buffer distances(*context, "distances", u), depths(*context, "depths", u.size() * 4);
   gaussian.bind(0);
   distances.bind(1);
   depths.bind(3);
-  tables.bind(9);
   program.set("gaussian_count", 1);
-  program.set("average_at", 0);
-  program.set("average_nodes", int(average_depth_nodes().size()));
   program.dispatch(int(u.size()));
   const std::vector<float> got = depths.download<float>();
   for (std::size_t i = 0; i < u.size(); ++i) {

@@ -1,4 +1,4 @@
-// Every pixel of the raster pass against scene::ray_end.
+// Every pixel of the first hits against scene::ray_end.
 #pragma once
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 
 #include "gpu/raster/first_hits.h"
 #include "scene/scene.h"
+#include "tests/gpu/raster/pixel_ends.h"
 
 namespace airlight::gpu::test {
 
@@ -40,16 +41,26 @@ inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const s
   return (got - n).norm() < 1e-4 && std::abs(pixel.distance - t) <= 1e-4 * end.t;
 }
 
-inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view) {
+inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view,
+                         FirstHits::Way way = FirstHits::Way::tree) {
   const Use use(context);
-  FirstHits pass(context, scene);
-  const HitImage& image = pass.draw(view);
   const std::size_t pixels = std::size_t(view.width) * view.height;
-  Buffer hits(context, "hits", pixels * sizeof(PixelHit)), surfaces(context, "surfaces", pixels * 4);
-  image.read_hits(hits);
-  image.read_surfaces(surfaces);
-  const auto hit = hits.download<PixelHit>();
-  const auto surface = surfaces.download<int>();
+  const Buffer distances(context, "distances", pixels * 4), primitives(context, "primitives", pixels * 4);
+  FirstHits(context, scene, true, way).find(view, distances, &primitives);
+  const auto distance = distances.download<float>();
+  const auto primitive = primitives.download<int>();
+  const PixelEnds ends(scene);
+  std::vector<PixelHit> hit(pixels, {far_away, {0, 0, 0}});
+  std::vector<int> surface(pixels, -1);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (primitive[i] < 0) continue;
+    const int x = int(i) % view.width, y = int(i) / view.width;
+    const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+    const scene::RayEnd end = ends.at(primitive[i], distance[i], ray);
+    surface[i] = end.hit ? end.hit->surface : -2;
+    hit[i].distance = distance[i];
+    if (end.hit) Eigen::Map<Eigen::Vector3f>(hit[i].normal) = end.hit->normal.cast<float>();
+  }
   Agreement result;
   result.pixels = int(pixels);
   std::vector<double> errors;

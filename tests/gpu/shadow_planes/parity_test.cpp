@@ -10,7 +10,6 @@
 #include "tests/methods/shadow_planes/special_scenes.h"
 
 using namespace airlight;
-using gpu::test::beyond;
 using gpu::test::compare;
 using gpu::test::Pairs;
 using gpu::test::render;
@@ -19,8 +18,9 @@ using gpu::test::scene_of;
 TEST_CASE("shadow planes: GPU agrees with CPU", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
   for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_1", "shadow_planes/boxes_3",
-                           "shadow_planes/boxes_8", "shadow_planes/spot", "shadow_planes/media", "elephant_fog"})
+                           "shadow_planes/boxes_8", "shadow_planes/spot", "shadow_planes/media"})
     compare(scene_of(file), {});
+  compare(scene_of("elephant_fog"), {}, 2e-5, 1.2e-5);
 }
 
 TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_planes]") {
@@ -31,7 +31,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_p
         Pairs{{"shadows", "stencil"}, {"edge_split", "4"}}, Pairs{{"evaluator", "polynomial"}, {"degree", "6"}},
         Pairs{{"evaluator", "polynomial"}, {"annex", "true"}}, Pairs{{"ambient", "true"}}})
     compare(scene, given);
-  compare(scene, {{"nodes", "8"}, {"stretch", "2"}}, 1e-3, 2e-4);
+  compare(scene, {{"nodes", "8"}, {"stretch", "2"}}, 2e-4, 2e-4);
   // Sums in steps of 1/255: where one rounds up the other may round down.
   compare(scene, {{"shadows", "stencil"}, {"frame_buffer", "true"}}, 1);
 }
@@ -47,11 +47,13 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][s
     const Pairs same{{"nodes", "16"}, {"stretch", "3"}};
     Pairs printed = same;
     printed["printed_phases"] = "true";
-    compare(scene, same, 1e-4, 3e-5);
-    compare(scene, printed, 1e-4, 3e-5);
+    // The rule's own error: murky needs more nodes.
+    const double most = std::holds_alternative<scene::Murky>(phase) ? 3e-5 : 5e-6;
+    compare(scene, same, most, most);
+    compare(scene, printed, most, most);
     const auto media = scene_of("shadow_planes/media", 24, 18);
     media->media[1].phase = phase;
-    compare(media, same, 1e-4, 3e-5);
+    compare(media, same);
   }
 }
 
@@ -106,8 +108,9 @@ TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][sha
     given.insert(more.begin(), more.end());
     return given;
   };
-  for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_8", "shadow_planes/spot", "elephant_fog"})
+  for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_8", "shadow_planes/spot"})
     compare(scene_of(file), vertices);
+  compare(scene_of("elephant_fog"), vertices, 2e-5, 1.2e-5);
   const auto boxes = scene_of("shadow_planes/boxes_3");
   compare(boxes, with(vertices, {{"edge_split", "3"}, {"plane_levels", "5"}}));
   compare(boxes, with(vertices, {{"evaluator", "polynomial"}}));
@@ -116,8 +119,8 @@ TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][sha
   for (const Pairs& given :
        {Pairs{}, Pairs{{"shadows", "stencil"}}, vertices,
         with(vertices, {{"evaluator", "polynomial"}, {"degree", "8"}}), with(vertices, {{"boundary_cells", "3"}})})
-    compare(media, with(given, {{"bounded", "paper"}}));
-  compare(media, vertices);
+    compare(media, with(given, {{"bounded", "paper"}}), 4e-5);
+  compare(media, vertices, 4e-5);
   media->lights = {scene::SpotLight{{0.5, 1.6, 3}, Vec3(-0.2, -0.6, -1).normalized(), 0.2, 0.5, Rgb(20, 10, 5), 0.01}};
   media->media[2].region = scene::Unbounded{};
   media->media[2].sigma_t = Rgb::Constant(0.1);
@@ -153,11 +156,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_
     if (seed == 4) light = {inside.x(), inside.y(), first.front().z()};
     scene->lights.emplace_back(scene::PointLight{light, Rgb(5, 4, 3), 0.01});
     finish(*scene);
-    const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, {}).film;
-    const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, {}).film;
-    CAPTURE(scene->name);
-    CHECK(gpu::test::p99(a, b, "airlight") < 1e-5);
-    CHECK(beyond(a, b, "airlight", 1e-4) <= 3);  // silhouettes
+    compare(scene, {}, 1e-5, 2.5e-6, light != inside);  // the camera is outside
   }
 }
 

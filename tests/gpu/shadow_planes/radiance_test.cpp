@@ -55,9 +55,10 @@ TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][sh
     options.stretch = 3;
     options.printed_phases = true;
     const auto shared = std::make_shared<const scene::Scene>(scene);
-    const gpu::AirlightTermsOnDevice airlight_terms(*context, shared, options);
+    const gpu::planes::AirlightTermsOnDevice airlight_terms(*context, shared, options);
     REQUIRE(airlight_terms.count() == 1);
-    const auto definitions = airlight_terms.definitions(0, 0);
+    auto definitions = airlight_terms.definitions(0, 0);
+    definitions.merge(gpu::planes::shared_definitions());
     auto& program = programs[definitions];
     if (!program) program = std::make_unique<gpu::Program>(*context, "test.comp", definitions);
     const gpu::Buffer radiance(*context, "radiance", 4);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "gpu/raster/hit_image.h"
+#include "gpu/raster/first_hits.h"
 #include "gpu/shadow_planes/evaluator_on_device.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
@@ -29,7 +29,7 @@ TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_plane
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const MappedRule<double> truth(128, 6);
-  std::vector<gpu::EvaluatorCase> cases;
+  std::vector<gpu::planes::EvaluatorCase> cases;
   for (const auto& [a, d0, length] : rule_cases()) cases.push_back({a, 1, d0, device_length(length)});
   for (const RuleErrors& row : rule_errors()) {
     const std::vector<float> quick = integrals_on_device(*context, {row.phase, false, 8, 2}, cases);
@@ -37,7 +37,7 @@ TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_plane
     double worst_quick = 0;
     std::vector<double> errors;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      const gpu::EvaluatorCase& c = cases[i];
+      const gpu::planes::EvaluatorCase& c = cases[i];
       const LitPart<double> part{0, c.length < gpu::far_away ? c.length : infinity};
       const double exact = airlight_integral(truth, row.phase, double(c.extinction), double(-c.d0), 1.0, part, one);
       REQUIRE((std::isfinite(quick[i]) && std::isfinite(fine[i])));
@@ -69,8 +69,8 @@ TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]
     const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
                  length = number(in.at("x1")) - x0;
     const shadow_planes::PhaseForm phase = phase_of(in);
-    const gpu::EvaluatorCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
-    const float got = gpu::integrals_on_device(*context, {phase}, {rounded}).front();
+    const gpu::planes::EvaluatorCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
+    const float got = gpu::planes::integrals_on_device(*context, {phase}, {rounded}).front();
     // Of the rounded input, which is all that a float can know.
     const LitPart<double> part{0, rounded.length < gpu::far_away ? rounded.length : infinity};
     const double exact =
@@ -92,7 +92,8 @@ TEST_CASE("shadow planes: the polynomial on the device", "[gpu][shadow_planes]")
     for (const int degree : {2, 4, 8})
       for (const float a : {1e-4f, 0.1f, 1.0f, 3.0f})
         for (const float d0 : {-2.0f, -0.3f, 0.5f}) {
-          const float got = integrals_on_device(*context, {phase, true, degree}, {{a, 1, d0, 0.7f}}).front();
+          const float got =
+              gpu::planes::integrals_on_device(*context, {phase, true, degree}, {{a, 1, d0, 0.7f}}).front();
           const auto c = shadow_planes::taylor_coefficients(phase, double(a), degree);
           const double theta0 = std::atan(double(d0)), theta1 = std::atan(double(d0) + double(0.7f));
           const double expected = std::exp(double(a) * (shadow_planes::q_at(double(d0), 1.0) - 1)) *

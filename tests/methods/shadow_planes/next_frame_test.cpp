@@ -1,4 +1,5 @@
 // Prepared::next: frames whose lights have moved are those of a preparation of their own, on both sides.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
@@ -15,6 +16,11 @@ std::shared_ptr<scene::Scene> moved(const scene::Scene& from, const Vec3& by) {
   return to;
 }
 
+double seconds(const std::vector<scene::StageTime>& times) {
+  const auto found = std::find_if(times.begin(), times.end(), [](const auto& t) { return t.name == "silhouettes"; });
+  return found == times.end() ? 0 : found->seconds;
+}
+
 void check(const scene::Renderer& method, std::map<std::string, std::string> given) {
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(
       "experiments/scenes/shadow_planes/boxes_3.toml", {{"film.width", "32"}, {"film.height", "24"}}));
@@ -25,9 +31,13 @@ void check(const scene::Renderer& method, std::map<std::string, std::string> giv
   const auto there = moved(*scene, {0.4, -0.2, 0.3});
   const auto times = prepared->next(there, {1, {}});
   REQUIRE(times);
-  REQUIRE(times->size() == 1);
-  CHECK(times->front().name == "silhouettes");
-  const scene::Film second = prepared->render(view, {1, {}}).film;
+  const scene::Rendering moved_frame = prepared->render(view, {1, {}});
+  // A device finds them when the frame is drawn, and once.
+  const double found = seconds(*times), drawn = seconds(moved_frame.times);
+  CHECK((found > 0) == method.device().empty());
+  CHECK((drawn > 0) != method.device().empty());
+  CHECK(seconds(prepared->render(view, {1, {}}).times) == 0);
+  const scene::Film& second = moved_frame.film;
   CHECK(second.layers == method.prepare(there, settings, {1, {}})->render(view, {1, {}}).film.layers);
   CHECK(second.layers != first.layers);
   REQUIRE(prepared->next(scene, {1, {}}));  // and back
@@ -55,4 +65,5 @@ TEST_CASE("shadow planes: a light that moves", "[shadow_planes]") {
 TEST_CASE("shadow planes: a light that moves, on the device", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
   check(gpu::ShadowPlanesGpu(), {});
+  check(gpu::ShadowPlanesGpu(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
 }

@@ -1,4 +1,4 @@
-// What a raster pass shows in a pixel, as the processor knows it: for work on surfaces that stays on the CPU.
+// What the device has found in a pixel, as the processor knows it.
 //
 // The device tells the primitive and the distance as a float; here the ray meets that very primitive in double
 // precision again, so that points lie on their surface to rounding and shadow rays start where the CPU's own would.
@@ -7,15 +7,14 @@
 
 #include "scene/scene.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::test {
 
 class PixelEnds {
  public:
   // Keeps the scene by reference.
   explicit PixelEnds(const scene::Scene&);
 
-  // `primitive` as HitImage::read_primitives numbers them (triangles in their order, then solids, then balls; -1:
-  // nothing), `distance` [m] as read_distances.
+  // `primitive` and `distance` [m] as FirstHits::find leaves them.
   scene::RayEnd at(int primitive, float distance, const Ray&) const;
 
  private:
@@ -25,4 +24,4 @@ class PixelEnds {
   int triangles_ = 0;
 };
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::test

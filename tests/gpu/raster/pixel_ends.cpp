@@ -1,11 +1,11 @@
-#include "gpu/raster/pixel_ends.h"
+#include "tests/gpu/raster/pixel_ends.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "scene/geometry/ray_primitive.h"
 
-namespace airlight::gpu {
+namespace airlight::gpu::test {
 namespace {
 
 // Where a ray meets a triangle's plane, if that is what the device has met. At a silhouette a pixel may show a triangle
@@ -57,4 +57,4 @@ scene::RayEnd PixelEnds::at(int primitive, float distance, const Ray& ray) const
   return {met.t, scene::Hit{met.t, met.position, met.normal, solid_[solid], -1}, false};
 }
 
-}  // namespace airlight::gpu
+}  // namespace airlight::gpu::test

@@ -1,0 +1,53 @@
+#include "gpu/environment_lights.h"
+
+#include <cmath>
+
+namespace airlight::gpu {
+namespace {
+
+enum Kind { constant, map, harmonics };  // as common/environment.glsl
+
+std::vector<float> coefficients(const std::vector<Rgb>& sh) {
+  std::vector<float> values;
+  for (const Rgb& c : sh) values.insert(values.end(), {float(c[0]), float(c[1]), float(c[2])});
+  return values;
+}
+
+}  // namespace
+
+EnvironmentLights::EnvironmentLights(Context& context, const scene::Scene& scene) {
+  for (const scene::Light& light : scene.lights) {
+    const auto* e = std::get_if<scene::EnvironmentLight>(&light);
+    if (!e) continue;
+    Light l{constant, 1, 0, 0, e->scale, e->to_map, nullptr};
+    if (e->map) {
+      l.kind = map;
+      l.width = e->map->width;
+      l.height = e->map->height;
+      l.values = std::make_unique<Buffer>(context, "environment map", e->map->rgb);
+    } else if (!e->sh.empty()) {
+      l.kind = harmonics;
+      l.order = int(std::lround(std::sqrt(double(e->sh.size()))));
+      l.values = std::make_unique<Buffer>(context, "environment harmonics", coefficients(e->sh));
+    }
+    lights_.push_back(std::move(l));
+  }
+}
+
+std::map<std::string, std::string> EnvironmentLights::definitions(int light) const {
+  return {{"KIND", std::to_string(lights_[light].kind)}, {"SH_ORDER", std::to_string(lights_[light].order)}};
+}
+
+void EnvironmentLights::bind(int light, LinkedProgram& p) const {
+  const Light& l = lights_[light];
+  if (l.values) l.values->bind(9);
+  if (l.kind == map) {
+    p.set("map_width", l.width);
+    p.set("map_height", l.height);
+  }
+  if (l.kind == harmonics) p.set("sh_order", l.order);
+  p.set("scale", l.scale);
+  p.set("to_map", l.to_map);
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,15 @@
+// What the passes of variant S hand on, by ray of a strip of tiles (gpu/fogshop/airlight.cpp, which defines the sizes): a field of all
+// rays, then the next, so that neighbours read together. No pass holds an array, however many slices and lights there are.
+layout(std430, binding = 10) buffer RayValues { float ray_value[]; };
+uniform int ray_count;  // of the strip
+
+// Fields. Slices begin where nodes are done with.
+const int slices_from = 0, slices_to = 1;  // [m] the stretch of the ray that is sliced; empty: none
+const int reach_from = 2, reach_to = 3;    // [m] that of the Gaussians alone
+const int opacity_sum = 4, edges = 5;      // of the boxes; SLICES + 1 ray parameters [m]
+const int nodes = edges + SLICES + 1, shares = nodes + NODES;  // [m], and what of the slices ends before
+const int slices = nodes;                                      // depth before the first edge, then that of every slice
+const int scattering = slices + SLICES + 1;                    // if coloured: what they scatter, three channels each
+
+int value_at(int field, int ray) { return field * ray_count + ray; }
+int ray_of_strip() { return int(gl_GlobalInvocationID.y) * grid_width + int(gl_GlobalInvocationID.x); }

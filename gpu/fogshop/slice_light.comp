@@ -1,0 +1,93 @@
+// Variant S, last pass: airlight of every ray from the depths of its slices and those from the lights at their edges
+// (methods/fogshop/ray_airlight.cpp, slices.cpp).
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "common/camera.glsl"
+#include "common/angle.glsl"
+#include "fogshop/fog.glsl"
+#include "fogshop/pixels.glsl"
+#include "fogshop/tile.glsl"
+#include "fogshop/ray_values.glsl"
+#include "fogshop/light.glsl"
+#include "fogshop/light_lookup.glsl"
+
+uniform int extrapolate;
+
+// Optical depth of all Gaussians between two points.
+float gaussian_depth(vec3 from, vec3 to) {
+  float length_ = length(to - from), sum = 0;
+  vec3 direction = length_ > 0 ? (to - from) / length_ : vec3(0, 0, 1);
+  for (int i = 0; i < gaussian_count; ++i) {
+    Crossing c = cross_line(gaussians[i], from, direction, length_);
+    sum += depth_at(c, length_);  // whole: what lies beyond its radius counts, as on the CPU
+  }
+  return sum;
+}
+
+// What is known where a slice begins or ends: the ray parameter [m], depths from there to the camera and to the light.
+struct Edge {
+  float t, depth, shadow;  // the depth of both ways with the constant; that of the Gaussians towards the light alone
+};
+
+// Light that a slice scatters, per channel; `scattered` is its optical depth, coloured.
+vec3 light_of_slice(LightFromRay seen, float h, Edge begin, Edge end, vec3 scattered) {
+  float length_ = end.t - begin.t;
+  if (!(length_ > 0)) return vec3(0);
+  float xa = begin.t - seen.along, xb = end.t - seen.along;
+  float mean_inverse_square = angle_of(h * length_, h * h + xa * xb) / (h * length_);
+  vec3 e0 = exp(-hue * begin.depth), q = hue * (end.depth - begin.depth), mean;
+  vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
+  for (int c = 0; c < 3; ++c) mean[c] = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * end.depth)) / q[c];
+  return mean_inverse_square * hue * scattered * mean;
+}
+
+vec3 scattered_by(int slice, int ray, float depth) {
+#if COLOURED
+  int at = scattering + 3 * slice;
+  return vec3(ray_value[value_at(at, ray)], ray_value[value_at(at + 1, ray)], ray_value[value_at(at + 2, ray)]);
+#else
+  return vec3(depth);
+#endif
+}
+
+void main() {
+  ivec2 pixel = pixel_of_strip();
+  if (near_count() < 0 || pixel.x >= grid_width) return;
+  int ray = ray_of_strip();
+  float lo = ray_value[value_at(slices_from, ray)], hi = ray_value[value_at(slices_to, ray)];
+  if (!(lo < hi)) return;
+  vec3 origin, direction;
+  camera_ray(film_position(pixel), origin, direction);
+  float end = ray_length(pixel), before = ray_value[value_at(slices, ray)];
+  vec3 airlight = vec3(0);
+  for (int l = 0; l < LIGHTS; ++l) {
+    Light light = lights[l];
+    LightFromRay seen = light_from_ray(light, origin, direction);
+    float h = max(length(vec2(seen.h, source_radius)), least_h), view_depth = before;
+    vec3 sum = vec3(0), half_sum = vec3(0), pair_scattered = vec3(0);
+    Edge last = Edge(0, 0, 0), pair = last;
+    for (int k = 0; k <= SLICES; ++k) {
+      float t = ray_value[value_at(edges + k, ray)], depth = k > 0 ? ray_value[value_at(slices + k, ray)] : 0;
+      view_depth += depth;
+      vec3 x = origin + t * direction;
+      float shadow = EXACT_LIGHT_DEPTH != 0 ? gaussian_depth(light.position, x) : light_depth(light, x);
+      Edge here = Edge(t, view_depth + (shadow + constant * length(vec2(t - seen.along, seen.h))), shadow);
+      if (k > 0) {
+        vec3 scattered = scattered_by(k - 1, ray, depth);
+        sum += light_of_slice(seen, h, last, here, scattered);
+        pair_scattered += scattered;
+      }
+      if (extrapolate != 0 && k % 2 == 0) {  // the same of two slices at a time
+        if (k > 0) half_sum += light_of_slice(seen, h, pair, here, pair_scattered);
+        pair = here;
+        pair_scattered = vec3(0);
+      }
+      last = here;
+    }
+    if (extrapolate != 0) sum = max(sum + (sum - half_sum) / 3, 0);
+    sum /= 4 * pi;
+    if (constant > 0 && hi < end)
+      sum += exp(-hue * (view_depth + last.shadow)) * homogeneous_airlight(LightFromRay(seen.along - hi, seen.h), end - hi);
+    airlight += light.intensity * sum;
+  }
+  pixels[place_of(pixel)].rgb = airlight * albedo;
+}

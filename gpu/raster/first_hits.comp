@@ -1,0 +1,103 @@
+// What ends the rays of a view, one invocation a ray (gpu/raster/first_hits.h).
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "raster/view.glsl"
+#include "raster/triangles.glsl"
+#include "raster/solids.glsl"
+#include "raster/tree.glsl"
+
+layout(std430, binding = 0) buffer Distances { float distances[]; };
+layout(std430, binding = 1) writeonly buffer Primitives { int primitives[]; };
+uniform int columns, rows, block, first_ray, keeps_primitives;
+#if RESUMES
+// Groups of each dispatch; then of each ray its next node and what it has met so far.
+layout(std430, binding = 2) buffer Unfinished { int unfinished[]; };
+uniform int dispatch, dispatches, nodes_at_once;
+#endif
+uniform int triangle_count, ball_count;  // balls of lights come behind the other solids
+
+struct First {
+  float t;  // [m]
+  int primitive;
+};
+
+int order_of(int primitive) {
+  int surface = primitive < triangle_count ? triangles[primitive].w : solids[primitive - triangle_count].surface;
+  return surface < 0 ? 0x7fffffff : surface;
+}
+void keep_nearer(inout First best, double t, int primitive) {
+  float rounded = float(min(t, 1e37LF));
+  if (!(t > 0) || !(rounded <= best.t)) return;
+  if (rounded == best.t) {
+    if (best.primitive < 0) return;
+    int mine = order_of(primitive), other = order_of(best.primitive);
+    if (mine > other || (mine == other && primitive > best.primitive)) return;
+  }
+  best = First(rounded, primitive);
+}
+
+// Twice the area of (0, p, q); `side` is its sign, on a tie that after moving the origin by (e, e^2), e -> 0. The same for both
+// triangles at an edge, but for the sign: so they are computed as they stand.
+double edge(dvec3 p, dvec3 q, out int side) {
+  precise double left = p.x * q.y, right = p.y * q.x;
+  precise double value = left - right;
+  side = value != 0 ? (value > 0 ? 1 : -1) : p.y != q.y ? (p.y > q.y ? 1 : -1) : int(q.x > p.x) - int(q.x < p.x);
+  return value;
+}
+dvec3 sheared(ivec3 axis, dvec3 shear, dvec3 v) {
+  precise dvec3 result = dvec3(v[axis.x], v[axis.y], 0) - dvec3(shear.xy, -shear.z) * v[axis.z];
+  return result;
+}
+// scene/geometry/ray_primitive.cpp; 0: it is not met.
+double meet_triangle(int triangle, ivec3 axis, dvec3 shear, dvec3 origin) {
+  ivec4 corners = triangles[triangle];
+  dvec3 p = sheared(axis, shear, mesh_vertex(corners.x) - origin), q = sheared(axis, shear, mesh_vertex(corners.y) - origin),
+        r = sheared(axis, shear, mesh_vertex(corners.z) - origin);
+  int side_u, side_v, side_w;
+  double u = edge(q, r, side_u), v = edge(r, p, side_v), w = edge(p, q, side_w), whole = u + v + w;
+  if (side_u == 0 || side_u != side_v || side_u != side_w || whole == 0) return 0;
+  return p.z + v / whole * (q.z - p.z) + w / whole * (r.z - p.z);
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= columns || at.y >= rows) return;
+  dvec3 origin, direction, normal;
+  view_ray(double(block) * (dvec2(at) + 0.5LF), origin, direction);
+  int place = at.y * columns + at.x, node = 0;
+  First best = First(1e37, -1);
+#if RESUMES
+  int kept = 3 * dispatches + 2 * place;
+  if (dispatch > 0) {
+    node = unfinished[kept];
+    best = First(distances[first_ray + place], unfinished[kept + 1]);
+  }
+#endif
+  if (node == 0)
+    for (int i = 0; i < solid_count + ball_count; ++i)
+      keep_nearer(best, meet_solid(solids[i], origin, direction, normal), triangle_count + i);
+
+  TreeRay ray = tree_ray_of(vec3(origin - tree_middle), vec3(direction));
+  dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
+#if RESUMES
+  for (int n = 0; n < nodes_at_once && node < tree_nodes; ++n) {
+#else
+  while (node < tree_nodes) {
+#endif
+    bool met = meets_box(ray, node, best.t * (1 + 1e-6));
+    int leaf = tree[4 * node + 1].w;
+    if (met && leaf >= 0)
+      for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k) {
+        int triangle = triangle_to_meet(ray, k);
+        if (triangle >= 0) keep_nearer(best, meet_triangle(triangle, ray.axis, shear, origin), triangle);
+      }
+    node = next_node(ray, node, leaf, met);
+  }
+#if RESUMES
+  unfinished[kept] = node;
+  unfinished[kept + 1] = best.primitive;
+  if (node < tree_nodes && dispatch + 1 < dispatches)
+    for (int a = 0; a < 3; ++a) unfinished[3 * (dispatch + 1) + a] = int(gl_NumWorkGroups[a]);
+#endif
+  distances[first_ray + place] = best.t;
+  if (keeps_primitives != 0) primitives[first_ray + place] = best.primitive;
+}

@@ -1,0 +1,9 @@
+// Of a frame. Every dispatch that may leave pixels unfinished writes the groups of the one that goes on with them; the first are those
+// that no dispatch has gone on with.
+layout(std430, binding = AT_COUNTERS) buffer Counters {
+  uint lit_parts, crossings, gatherings_after_first;
+  uint loops_were_cut;  // the picture is wrong (common/loops_cut.glsl)
+  uint values_missing;  // there was no room for those of so many silhouette edges
+  uint unused[3];
+  uvec4 resume_groups[];
+};

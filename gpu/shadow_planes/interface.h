@@ -1,0 +1,94 @@
+// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/context.h"
+#include "gpu/program.h"
+
+namespace airlight::gpu::planes {
+
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials). What no
+// shader has at the same time shares a number, so that the largest needs 16.
+namespace at {
+enum Binding {
+  edges = 0,
+  primitives = 1,
+  materials = 2,
+  starts = 3,
+  lists = 4,
+  evaluator = 5,
+  pixels = 6,
+  states = 7,
+  media = 8,
+  tables = 9,
+  light_state = 13,
+  values = 14,
+  counters = 15,
+  // silhouette.comp, counts.comp
+  mesh_vertices = 1,
+  mesh_triangles = 2,
+  mesh_numbers = 3,
+  mesh_edges = 4,
+  mesh_sides = 5,
+  sectors = 1,  // fan.comp
+  // composition.comp
+  distances = 1,
+  airlight_layer = 0,
+  transmittance_layer = 3,
+  surface_layer = 4,
+  mean_layer = 5,
+  // evaluate.comp
+  cases = 0,
+  integrals = 1,
+};
+}  // namespace at
+
+enum class RegionKind { unbounded, box, sphere, slab };
+constexpr int edges_per_group = 64;  // of indirect dispatches
+constexpr int sectors_per_group = 1024;
+constexpr int most_hits = 32;  // crossings that a pixel gathers at a time
+
+// The layouts of edge.glsl, state.glsl, pixels.glsl and media.glsl.
+struct alignas(16) EdgeData {
+  float near_a[4], near_b[4];
+  double a[3], b[3];
+  int multiplicity, origin;
+};
+struct alignas(16) StateData {
+  double last_key, from;
+  float sum[4];
+  int last_origin, m, unfinished, m_origin;
+};
+struct LitPixelData {
+  float airlight[4], reflected[4];
+};
+struct MediumData {
+  double lo[3], hi[3];
+  float extinction[3], albedo[3];
+  int region, phase;
+  float g, scale, width;
+  int unused;
+};
+
+// That of light_state.glsl, without left_out.
+struct LightStateData {
+  unsigned edge_groups[3], plane_groups[3];
+  int edge_count, count_at_camera;
+};
+
+// That of counters.glsl, with the first of resume_groups.
+struct CountersData {
+  unsigned lit_parts, crossings, gatherings_after_first, loops_were_cut, values_missing, unused[3], unfinished[4];
+};
+
+// All of the above, the fan's and phase functions' numbers (methods/shadow_planes/edge_fan.h, phase_form.h).
+std::map<std::string, std::string> shared_definitions();
+
+// A program of this folder: `file` without folder and .comp, the definitions, a work group of x times y invocations. Looked up
+// by its text, so it is kept by those who need it in every frame. Throws Error if the driver lays out the structures
+// above otherwise than the compiler of the host.
+Program& program(Context&, const std::string& file, int x, int y = 1,
+                 std::map<std::string, std::string> definitions = {});
+
+}  // namespace airlight::gpu::planes

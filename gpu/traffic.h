@@ -1,0 +1,29 @@
+// What passed between host and device, counted where it is done: a frame's is the difference of two of these.
+#pragma once
+#include <map>
+#include <string>
+
+namespace airlight::gpu {
+
+struct Traffic {
+  long bytes_up = 0, bytes_down = 0;  // of buffers and textures; uniforms are not counted
+  long syncs = 0;                     // waits of the host for the device
+  long allocations = 0;               // buffers, textures, queries, framebuffers
+  long dispatches = 0, draws = 0;
+  long look_ups = 0;  // of programs by file and definitions
+
+  // As a Rendering's counters name them.
+  std::map<std::string, double> counters() const {
+    return {{"bytes_up", double(bytes_up)},       {"bytes_down", double(bytes_down)}, {"syncs", double(syncs)},
+            {"allocations", double(allocations)}, {"dispatches", double(dispatches)}, {"draws", double(draws)},
+            {"look_ups", double(look_ups)}};
+  }
+};
+
+inline Traffic operator-(const Traffic& a, const Traffic& b) {
+  return {a.bytes_up - b.bytes_up,       a.bytes_down - b.bytes_down, a.syncs - b.syncs,
+          a.allocations - b.allocations, a.dispatches - b.dispatches, a.draws - b.draws,
+          a.look_ups - b.look_ups};
+}
+
+}  // namespace airlight::gpu
