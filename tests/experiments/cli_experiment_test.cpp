@@ -163,9 +163,9 @@ TEST_CASE("gates see a shader that was changed by hand", "[cli]") {
   CHECK(run("gates --root .", project).out == first.out);
   CHECK(read_bytes(journal) == rows);  // a copy of the shaders makes the same rows
   std::string shader = read_bytes(project.file("gpu/ray_marcher/march.comp"));
-  const std::string line = "pixels[place].airlight += airlight;";
+  const std::string line = "Pixel(pixel.airlight + airlight,";
   REQUIRE(shader.find(line) != std::string::npos);
-  shader.replace(shader.find(line), line.size(), "pixels[place].airlight += 1.5 * airlight;");
+  shader.replace(shader.find(line), line.size(), "Pixel(pixel.airlight + 1.5 * airlight,");
   project.write("gpu/ray_marcher/march.comp", shader);
   const Result changed = run("gates --root .", project);
   unsetenv("AIRLIGHT_SHADERS");
