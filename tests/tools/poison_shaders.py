@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """tests/tools/poison_shaders.py OUT: the shaders of gpu/, with every variable that is declared without a value set to poison.
 
-    tests/tools/poison_shaders.py /tmp/poisoned
-    AIRLIGHT_SHADERS=/tmp/poisoned AIRLIGHT_GPU_POISON=1 build/release/tests/airlight_tests "[gpu]"
+    tests/tools/poison_shaders.py build/poisoned
+    AIRLIGHT_SHADERS=build/poisoned AIRLIGHT_GPU_POISON=1 build/release/tests/airlight_tests "[gpu]"
 
 Poison is NaN, or an index far below any array: who reads what no path has set shows it. Local and global variables, arrays too;
 members of structures are left to scripts/check_shaders. AIRLIGHT_GPU_POISON does the same to buffers that a frame takes over."""
