@@ -4,44 +4,15 @@
 #include <cmath>
 
 namespace airlight::wavelet_fog {
-namespace {
-
-constexpr int empty_blocks = 3;                                 // blocks of 2, 4, 8 cells
-const char* const families[] = {"haar", "cdf22", "cdf33", ""};  // by degree; there is none of degree 3
 
 using Variant = Options::Variant;
 
-// Directions over the map that a view holds. Where it looks straight up or down anywhere, all of them; else they are widest
-// at its rim.
-PolarTable::Fan fan_of(const scene::Fogmap& fog, const scene::View& view) {
-  const PolarTable::Fan all{0, 2 * pi};
-  const auto azimuth = [&](const Vec3& direction) {
-    const scene::MapLine line = line_over(fog, {view.camera.position, direction});
-    return std::atan2(line.dv, line.du);
-  };
-  const auto ray = [&](double x, double y) {
-    return scene::camera_ray(view.camera, x, y, view.width, view.height).direction;
-  };
-  const Vec3& forward = view.camera.forward;
-  if (std::hypot(forward[0], forward[2]) < 1e-6) return all;
-  const double middle = azimuth(forward);
-  double least = 0, most = 0, before = 0;
-  bool first = true, around = false;
-  const auto look = [&](double x, double y) {
-    double turn = std::remainder(azimuth(ray(x, y)) - middle, 2 * pi);
-    around = around || (!first && std::abs(turn - before) > 0.5 * pi);  // the rim runs around a pole
-    first = false;
-    before = turn;
-    least = std::min(least, turn);
-    most = std::max(most, turn);
-  };
-  for (int x = 0; x <= view.width; ++x) look(x, 0);
-  for (int y = 0; y <= view.height; ++y) look(view.width, y);
-  for (int x = view.width; x >= 0; --x) look(x, view.height);
-  for (int y = view.height; y >= 0; --y) look(0, y);
-  constexpr double margin = 1e-6;
-  return around || most - least > 1.9 * pi ? all : PolarTable::Fan{middle + least - margin, most - least + 2 * margin};
+double enough_column(const scene::Medium& medium, const Options& options) {
+  const double thinnest = medium.sigma_t.minCoeff();
+  return options.termination > 0 && thinnest > 0 ? -std::log(options.termination) / thinnest : infinity;
 }
+
+namespace {
 
 double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
   return std::ldexp(o.near * fog.cell, level);
@@ -53,13 +24,12 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
     : medium_(&medium),
       fog_(std::get<scene::FogmapPointer>(medium.field).get()),
       options_(options),
-      levels_(make_levels(fog_->map, families[fog_->map.degree()], options.coarse,
+      levels_(make_levels(fog_->map, family_name(fog_->map.degree()), options.coarse,
                           uses_levels(options.variant) ? options.levels : 0, options.variant == Variant::paper)) {
   if (options.variant == Variant::skip || options.variant == Variant::polar)
     blocks_.emplace(levels_, empty_blocks, false);
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
-  const double thinnest = medium.sigma_t.minCoeff();
-  enough_ = options.termination > 0 && thinnest > 0 ? -std::log(options.termination) / thinnest : infinity;
+  enough_ = enough_column(medium, options);
 }
 
 double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
@@ -125,7 +95,6 @@ PolarTable LeveledFog::polar_table(const scene::View& view, const scene::Executi
 }
 
 double LeveledFog::column(const PolarTable& table, const Ray& ray, double length, Visits& visits) const {
-  constexpr double upright = 1e-3;  // cells over the ground below which the table has nothing to say
   const Interval t = scene::extent(*medium_, ray, {0, length});
   if (t.empty()) return 0;
   const scene::MapLine line = line_over(*fog_, ray);

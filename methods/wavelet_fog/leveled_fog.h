@@ -8,6 +8,12 @@
 
 namespace airlight::wavelet_fog {
 
+constexpr int empty_blocks = 3;   // blocks of 2, 4, 8 cells that skip looks at
+constexpr double upright = 1e-3;  // cells over the ground below which polar's table has nothing to say
+
+// Integral of the density at which a ray ends [m]; infinite where it never does.
+double enough_column(const scene::Medium&, const Options&);
+
 class LeveledFog {
  public:
   // The medium is a fogmap and outlives this.

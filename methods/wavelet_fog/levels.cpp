@@ -31,7 +31,9 @@ Levels make_levels(const SplineMap& map, const std::string& family_name, Coarse 
   if (levels > most_levels(map.range()))
     throw Error(fmt::format("levels = {}, expected at most {} for {} x {} coefficients", levels,
                             most_levels(map.range()), map.range().size[0], map.range().size[1]));
-  const Taps low = coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
+  // The map alone has no need of wavelets, which degree 3 has none of.
+  const Taps low =
+      levels == 0 || coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
   Levels result;
   Coefficients fine{map.range(), map.coefficients()};
   result.grid.push_back(map);

@@ -43,7 +43,7 @@ scene::MapLine random_line(std::mt19937_64& random, double size) {
   return {u(random), u(random), h(random), std::cos(angle), std::sin(angle), 0.3 * h(random)};
 }
 
-const std::string families[] = {"haar", "cdf22", "cdf33"};
+const std::string families[] = {family_name(0), family_name(1), family_name(2)};
 
 }  // namespace
 
@@ -78,6 +78,15 @@ TEST_CASE("wavelets: coarse grids keep the mass, restricted and clamped ones the
     CHECK(*std::min_element(positive.values.begin(), positive.values.end()) >= 0);
     CHECK(std::accumulate(positive.values.begin(), positive.values.end(), 0.0) == Approx(kept).epsilon(1e-13));
   }
+}
+
+TEST_CASE("wavelet fog: a map of degree 3 is rendered without wavelets, which it has none of", "[wavelet_fog]") {
+  const Coefficients c = random_map(6, 5, 2);
+  const scene::SplineMap map(3, c.range, c.values);
+  for (const Coarse coarse : {Coarse::wavelet, Coarse::clamped, Coarse::restricted})
+    CHECK(make_levels(map, family_name(3), coarse, 0, false).count() == 0);
+  CHECK_THROWS(make_levels(map, family_name(3), Coarse::wavelet, 1, false));
+  CHECK(make_levels(map, family_name(3), Coarse::restricted, 1, false).count() == 1);
 }
 
 TEST_CASE("wavelet fog: levels summed equal one grid at a time, and the map where all count", "[wavelet_fog]") {
