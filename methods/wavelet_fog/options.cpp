@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "methods/wavelet_fog/sun_map.h"
 #include "scene/error.h"
 
 namespace airlight::wavelet_fog {
@@ -29,6 +30,13 @@ std::vector<scene::SettingSpec> setting_specs() {
                    "transmittance below which a ray ends; not with paper, whose details may be negative; 0: never"),
       real_setting("fade", "0", 0, 1e9,
                    "m; the paper's: density falls by e over this vertical distance from the eye; 0: not at all"),
+      flag_setting("sun", false,
+                   "single scattering of directional lights in the fog, with its shadows and those of surfaces"),
+      real_setting("sun_step", "0.5", 0.01, 100, "of sun, cells between the entries of its map of columns"),
+      integer_setting("sun_points", "3", 1, 10, "of sun: Gauss points in a cell, at least its degree + 1"),
+      integer_setting("shadow_steps", "64", 1, 65536,
+                      "of sun: shadow rays over the fog on a ray, at least, and sun_points in each cell; finds shadows "
+                      "wider than that"),
   };
 }
 
@@ -44,6 +52,10 @@ Options read_options(const scene::Settings& settings) {
   o.radial_step = settings.real("radial_step");
   o.termination = settings.real("termination");
   o.fade = settings.real("fade");
+  o.sun = settings.flag("sun");
+  o.sun_step = settings.real("sun_step");
+  o.sun_points = int(settings.integer("sun_points"));
+  o.shadow_steps = int(settings.integer("shadow_steps"));
   return o;
 }
 
@@ -51,6 +63,31 @@ bool uses_levels(Options::Variant variant) {
   using V = Options::Variant;
   return variant == V::paper || variant == V::tele || variant == V::dist || variant == V::bound;
 }
+
+namespace {
+
+// Against the layer of the sun.
+void add_reasons_of_sun(const scene::Scene& scene, const Options& o, std::vector<std::string>& reasons) {
+  if (o.fade > 0) reasons.push_back("sun with fade, which depends on the eye: the sun has its own way through the fog");
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const std::string why = scene::unknown_light<scene::DirectionalLight, scene::EnvironmentLight>(scene.lights, i);
+    if (!why.empty()) reasons.push_back("sun: " + why);
+    const auto* sun = std::get_if<scene::DirectionalLight>(&scene.lights[i]);
+    for (std::size_t m = 0; m < scene.media.size() && sun; ++m) {
+      const auto* fog = std::get_if<scene::FogmapPointer>(&scene.media[m].field);
+      if (!fog) continue;
+      if (sun->to_light[1] < 0 && std::holds_alternative<scene::ExponentialFall>((*fog)->profile))
+        reasons.push_back(fmt::format(
+            "sun: light {} shines from below the horizon, and the profile of {} is exponential: no map holds its columns",
+            i, scene::label(scene.media, m)));
+      if (const double entries = SunMap::entries(**fog, sun->to_light, o.sun_step); entries > SunMap::most_entries)
+        reasons.push_back(fmt::format("sun_step = {}: a map of {:.2g} entries for {}, expected at most {:.2g}",
+                                      o.sun_step, entries, scene::label(scene.media, m), SunMap::most_entries));
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& o) {
   std::vector<std::string> reasons;
@@ -87,6 +124,7 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       if (const auto* fog = std::get_if<scene::FogmapPointer>(&scene.media[i].field);
           fog && !std::holds_alternative<scene::SameAtAllHeights>((*fog)->profile))
         reasons.push_back(fmt::format("fade with a profile of {}: one or the other", scene::label(scene.media, i)));
+  if (o.sun) add_reasons_of_sun(scene, o, reasons);
   return reasons;
 }
 

@@ -29,7 +29,11 @@ struct Options {
   int angles = 512;          // of `polar`
   double radial_step = 0.5;  // of `polar` [cells]
   double termination = 0;    // transmittance below which a ray ends; 0: never
-  double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
+  double fade = 0;        // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
+  bool sun = false;       // single scattering of directional lights
+  double sun_step = 0.5;  // [cells] between the entries of a sun's map
+  int sun_points = 3;     // of a cell; at least its degree + 1
+  int shadow_steps = 64;  // shadow rays over the fog on a ray, at least; and sun_points in each cell
 };
 // Those that read coarse grids.
 bool uses_levels(Options::Variant);
