@@ -122,7 +122,7 @@ void FogOnDevice::add_grids() {
   if (levels > 0) {
     const Taps low = options_.coarse == wavelet_fog::Coarse::restricted
                          ? wavelet_fog::restriction(n)
-                         : wavelet_fog::family(wavelet_fog::family_name(n)).p_tilde;
+                         : wavelet_fog::family(wavelet_fog::family_of_degree(n)).p_tilde;
     std::vector<IndexRange> ranges{map.range()};
     for (int l = 0; l < levels; ++l) ranges.push_back(coarse_range(ranges.back(), low, low));
     for (int l = 1; l <= levels; ++l) pure.push_back(grids_.add(ranges[l], n));

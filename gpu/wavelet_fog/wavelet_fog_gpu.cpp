@@ -206,6 +206,11 @@ std::vector<scene::SettingSpec> WaveletFogGpu::settings() const {
 std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = wavelet_fog::WaveletFog().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
+  const Options options = wavelet_fog::read_options(settings);
+  if (options.sun) reasons.push_back("sun is for the CPU: no shader scatters light of directional lights");
+  if (options.variant == Options::Variant::pre)
+    reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
+  if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }
 

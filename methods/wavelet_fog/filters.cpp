@@ -36,11 +36,6 @@ const Family& family(const std::string& name) {
   throw Error(fmt::format("family = \"{}\", expected haar, cdf22, cdf33 or cdf31", name));
 }
 
-const char* family_name(int degree) {
-  constexpr const char* names[] = {"haar", "cdf22", "cdf33", ""};
-  return names[degree];
-}
-
 Taps two_scale(int degree) {
   Taps taps;
   for (int k = 0; k <= degree + 1; ++k) taps.values.push_back(binomial(degree + 1, k) / double(1 << degree));

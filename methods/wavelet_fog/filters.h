@@ -21,8 +21,6 @@ struct Family {
 // "haar" (degree 0), "cdf22" (1), "cdf33" (2), and "cdf31" (2), whose iterated low-pass grows without end: for the table
 // that shows it. Throws Error for another name.
 const Family& family(const std::string& name);
-// Of maps of a degree from 0 to 3: "haar", "cdf22", "cdf33", or "" where there is none.
-const char* family_name(int degree);
 
 // p_k = 2^-n C(n+1, k): any degree.
 Taps two_scale(int degree);

@@ -24,12 +24,38 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
     : medium_(&medium),
       fog_(std::get<scene::FogmapPointer>(medium.field).get()),
       options_(options),
-      levels_(make_levels(fog_->map, family_name(fog_->map.degree()), options.coarse,
+      levels_(make_levels(fog_->map, family_of_degree(fog_->map.degree()), options.coarse,
                           uses_levels(options.variant) ? options.levels : 0, options.variant == Variant::paper)) {
   if (options.variant == Variant::skip || options.variant == Variant::polar)
     blocks_.emplace(levels_, empty_blocks, false);
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
+  if (options.table > 0 || options.variant == Variant::pre) lay_bands();
   enough_ = enough_column(medium, options);
+}
+
+void LeveledFog::lay_bands() {
+  const int L = levels_.count();
+  bands_.emplace_back(levels_.grid[L], L);
+  if (options_.variant == Variant::pre) {
+    if (L > 0) {
+      const Family& wavelets = family(family_of_degree(fog_->map.degree()));
+      const Decomposition d = decompose({fog_->map.range(), fog_->map.coefficients()}, wavelets, L);
+      for (int l = L; l >= 1; --l) bands_.emplace_back(d.levels[l - 1], wavelets, l);
+    }
+  } else if (options_.variant == Variant::paper) {
+    for (int l = L - 1; l >= 0; --l) bands_.emplace_back(levels_.detail[l], l);
+  }
+  if (options_.table > 0) table_.emplace(bands_.back().pieces(), options_.table, options_.lookup);
+}
+
+// Of the paper's sum, with tables or wavelets: band 0 is complete, m counts up to its distance.
+double LeveledFog::summed_bands(const scene::HeightProfile& profile, const scene::MapLine& line, Interval inside,
+                                double length, Visits& visits) const {
+  double sum = 0;
+  for (std::size_t m = 0; m < bands_.size(); ++m)
+    sum += bands_[m].integral(profile, line, intersect(inside, {0, reach_of(int(m), length, options_.mu)}),
+                              table_ ? &*table_ : nullptr, visits);
+  return sum;
 }
 
 double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
@@ -50,7 +76,9 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
   const auto part = [&](int level, double from, double to) {
     return integral_of_level(levels_.grid[level], level, profile, line, intersect(inside, {from, to}), visits);
   };
+  if (!bands_.empty()) return summed_bands(profile, line, inside, reach, visits);
   switch (o.variant) {
+    case Variant::pre:
     case Variant::direct:
       return part(0, 0, length);
     case Variant::polar:  // rays that are not from the eye

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "methods/wavelet_fog/interpolation.h"
+
 namespace airlight::wavelet_fog {
 namespace {
 
@@ -15,17 +17,6 @@ double farthest(const SplineMap& map, double u, double v) {
   const double x = std::max(std::abs(map.support_lo(0) - u), std::abs(map.support_hi(0) - u));
   const double y = std::max(std::abs(map.support_lo(1) - v), std::abs(map.support_hi(1) - v));
   return std::hypot(x, y);
-}
-
-// From 0 at t = 0 to 1 at t = 1 with these values and slopes at the ends, on [0, 1].
-double hermite(double t, double a, double slope_a, double b, double slope_b) {
-  const double w = 1 - t;
-  return w * w * ((1 + 2 * t) * a + t * slope_a) + t * t * ((1 + 2 * w) * b - w * slope_b);
-}
-
-double catmull_rom(double t, const double (&p)[4]) {
-  return p[1] +
-         0.5 * t * (p[2] - p[0] + t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
 }  // namespace

@@ -149,6 +149,8 @@ TEST_CASE("wavelet fog: what the GPU refuses, it names", "[gpu][wavelet_fog]") {
   CHECK_FALSE(refused({}));
   CHECK(refused({{"variant", "polar"}}));
   CHECK(refused({{"variant", "tele"}}));
+  CHECK(refused({{"variant", "pre"}, {"levels", "0"}}));
+  CHECK(refused({{"sun", "true"}}));
   scene->media[0].field = scene::Homogeneous{};
   CHECK(refused({}));
 }

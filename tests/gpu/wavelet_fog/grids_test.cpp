@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "methods/wavelet_fog/options.h"
 #include "tests/gpu/device.h"
 #include "tests/oracle_vectors.h"
 
@@ -115,7 +116,7 @@ TEST_CASE("wavelets on the GPU: restricted and clamped grids are the processor's
       grids.down(0, low, low, coarse);
       // Wavelets' coarse grids have values below 0; degree 3 has none.
       const bool clamps = degree < 3;
-      const Taps analysis = clamps ? wavelet_fog::family(wavelet_fog::family_name(degree)).p_tilde : low;
+      const Taps analysis = clamps ? wavelet_fog::family(wavelet_fog::family_of_degree(degree)).p_tilde : low;
       const int pure = grids.add(coarse_range(c.range, analysis, analysis)), clamped = grids.add(grids.range(pure), 2);
       grids.down(0, analysis, analysis, pure);
       grids.clamp(pure, clamped);
