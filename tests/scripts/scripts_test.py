@@ -190,6 +190,11 @@ class Tighten(Tree):
         self.assertEqual(code, 1)
         self.assertIn(words, text)
 
+    def test_an_experiment_that_is_not_there(self):
+        code, text = self.run_script("tighten", "g/nosuch")
+        self.assertEqual(code, 2, text)
+        self.assertIn("unknown experiment 'g/nosuch'", text)
+
     def test_a_figure_that_became_better_leaves_a_loose_bound(self):
         self.write("results/g/e/run.json", json.dumps(rows(**{"one, large 8": 0.005})))
         self.objects("one, large, S, 8, rel_l2: at_most 0.018, expected 0.0075 (measured 0.005)")
