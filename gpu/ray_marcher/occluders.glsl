@@ -10,7 +10,7 @@ struct Solid {
   float unused;
 };
 
-layout(std430, binding = 9) readonly buffer Solids { Solid solids[]; };
+layout(std430, binding = AT_SOLIDS) readonly buffer Solids { Solid solids[]; };
 uniform vec3 middle_in_tree;  // [m] of the marcher's places, from the tree's middle
 
 bool solid_between(Solid s, vec3 origin, vec3 direction, float t_end) {
