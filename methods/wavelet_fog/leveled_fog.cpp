@@ -18,6 +18,12 @@ double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
   return std::ldexp(o.near * fog.cell, level);
 }
 
+bool same_map(const scene::SplineMap& a, const scene::SplineMap& b) {
+  const scene::IndexRange &x = a.range(), &y = b.range();
+  return a.degree() == b.degree() && std::equal(x.lo, x.lo + 2, y.lo) && std::equal(x.size, x.size + 2, y.size) &&
+         a.coefficients() == b.coefficients();
+}
+
 }  // namespace
 
 LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
@@ -31,6 +37,17 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
   if (options.table > 0 || options.variant == Variant::pre) lay_bands();
   enough_ = enough_column(medium, options);
+}
+
+void LeveledFog::become(const scene::Medium& medium) {
+  const scene::Fogmap& now = *std::get<scene::FogmapPointer>(medium.field);
+  if (&now != fog_ && !same_map(now.map, fog_->map)) {
+    *this = LeveledFog(medium, options_);
+    return;
+  }
+  medium_ = &medium;
+  fog_ = &now;
+  enough_ = enough_column(medium, options_);
 }
 
 void LeveledFog::lay_bands() {

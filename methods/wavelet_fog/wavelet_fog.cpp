@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "methods/wavelet_fog/sun_scattering.h"
@@ -23,19 +24,15 @@ class PreparedWaveletFog final : public scene::Prepared {
  public:
   PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
       : scene_(std::move(scene)), options_(options) {
-    scene::Stopwatch watch;
-    for (const scene::Medium& medium : scene_->media)
-      if (extinguishes(medium)) fogs_.emplace_back(medium, options);
-    times_.push_back({"levels", watch.lap()});
-    if (!sunlit()) return;
-    sun_.emplace(*scene_, options, execution);
-    times_.push_back({"sun maps", watch.lap()});
+    times_ = prepare({}, execution);
   }
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
+  std::vector<scene::StageTime> prepare(std::vector<LeveledFog> known, const Execution&);
   bool lit() const {
     return scene_->geometry && std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::is_delta);
   }
@@ -57,6 +54,34 @@ class PreparedWaveletFog final : public scene::Prepared {
   std::optional<SunScattering> sun_;
   std::vector<scene::StageTime> times_;
 };
+
+// Of the scene, from what is known of the same media before; maps of the sun are made anew.
+std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::vector<LeveledFog> known, const Execution& execution) {
+  scene::Stopwatch watch;
+  fogs_.clear();
+  for (const scene::Medium& medium : scene_->media) {
+    if (!extinguishes(medium)) continue;
+    if (fogs_.size() < known.size()) {
+      fogs_.push_back(std::move(known[fogs_.size()]));
+      fogs_.back().become(medium);
+    } else {
+      fogs_.emplace_back(medium, options_);
+    }
+  }
+  std::vector<scene::StageTime> times{{"levels", watch.lap()}};
+  sun_.reset();
+  if (!sunlit()) return times;
+  sun_.emplace(*scene_, options_, execution);
+  times.push_back({"sun maps", watch.lap()});
+  return times;
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedWaveletFog::next(std::shared_ptr<const Scene> scene,
+                                                                      const Execution& execution) {
+  if (!reasons_against(*scene, options_).empty()) return std::nullopt;
+  const std::shared_ptr<const Scene> before = std::exchange(scene_, std::move(scene));  // whose maps are compared
+  return prepare(std::exchange(fogs_, {}), execution);
+}
 
 std::vector<scene::Stage> PreparedWaveletFog::stages() const {
   const bool levels = uses_levels(options_.variant);
