@@ -84,7 +84,7 @@ TEST_CASE("wavelet fog: every layer is that of the deterministic reference", "[w
 }
 
 TEST_CASE("one fog as a map and as a sum of Gaussians", "[wavelet_fog][fogmap]") {
-  // Densities up to 1.05. The map's layers are at most (0.15 m)^2 / 8 of the height's curvature, 2 / (6 m)^2, above the
+  // Densities up to 0.84. The map's layers are at most (0.15 m)^2 / 8 of the height's curvature, 2 / (6 m)^2, above the
   // Gaussian, 1.6e-4 of it; a dot blurred and spread by a cubic spline is one of the same variance, but for its fourth
   // cumulant, 3e-5 of it.
   const auto map = scene_named("wavelet_fog/gaussian_map", 48, 36),
@@ -94,10 +94,10 @@ TEST_CASE("one fog as a map and as a sum of Gaussians", "[wavelet_fog][fogmap]")
     for (double y = -20; y < 25; y += 0.83)
       for (double z = -30; z < 30; z += 1.91) {
         const double density = scene::density(sum->media[0], {x, y, z});
-        REQUIRE(std::abs(scene::density(map->media[0], {x, y, z}) - density) <= 2.5e-4);
+        REQUIRE(std::abs(scene::density(map->media[0], {x, y, z}) - density) <= 2e-4);
         greatest = std::max(greatest, density);
       }
-  CHECK(greatest > 0.95);
+  CHECK(greatest > 0.75);
   const auto truth = deterministic::make_renderer();
   const scene::Film a = picture(*truth, map), b = picture(*truth, sum);
   CHECK(rms(a, b, "transmittance") <= 6e-5);
