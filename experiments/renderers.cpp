@@ -4,6 +4,7 @@
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
@@ -25,6 +26,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<shadow_planes::ShadowPlanes>());
     list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
     list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
+    list.push_back(std::make_unique<gpu::WaveletFogGpu>());
     return list;
   }();
   return renderers;

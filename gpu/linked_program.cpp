@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <regex>
 
 #include "gpu/shader_source.h"
@@ -19,12 +20,17 @@ std::string refusal(const std::string& files, const char* what, Context& context
 
 // What a driver may have meant by its refusal; empty if the shader stays within the device's storage blocks. Counts what
 // stands in the text, also in branches that definitions left out.
-std::string beyond_storage(const std::string& file, GLenum stage, const std::string& text, const Context& context) {
-  static const std::regex block(R"(layout\s*\([^)]*binding\s*=\s*(\d+)\s*\)[^;{]*\bbuffer\b)");
+std::string beyond_storage(const std::string& file, GLenum stage, const std::string& text,
+                           const std::map<std::string, std::string>& definitions, const Context& context) {
+  static const std::regex block(R"(layout\s*\([^)]*binding\s*=\s*(\w+)\s*\)[^;{]*\bbuffer\b)");
+  const auto number = [&](const std::string& word) {  // 0 of names that a shader defines itself
+    const auto found = definitions.find(word);
+    return std::atoi((found == definitions.end() ? word : found->second).c_str());
+  };
   const Limits& limits = context.limits();
   int blocks = 0, greatest = 0;
   for (std::sregex_iterator found(text.begin(), text.end(), block), end; found != end; ++found, ++blocks)
-    greatest = std::max(greatest, std::stoi((*found)[1]));
+    greatest = std::max(greatest, number((*found)[1]));
   const int offered = stage == GL_COMPUTE_SHADER  ? limits.storage_blocks
                       : stage == GL_VERTEX_SHADER ? limits.vertex_storage_blocks
                                                   : limits.fragment_storage_blocks;
@@ -51,7 +57,7 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
   for (const auto& [stage, file] : stages) {
     source = shader_source(file, definitions);
     text_ += source.text;
-    if (beyond.empty()) beyond = beyond_storage(file, stage, source.text, context);
+    if (beyond.empty()) beyond = beyond_storage(file, stage, source.text, definitions, context);
     files_ += (files_.empty() ? "gpu/" : ", gpu/") + file;
     const Handle shader(context, gl.CreateShader(stage), [](const Gl& gl, GLuint id) { gl.DeleteShader(id); });
     const char* text = source.text.c_str();

@@ -19,6 +19,17 @@ std::shared_ptr<const scene::VoxelGrid> modular_grid(int n, int seed) {
   return grid;
 }
 
+// Coefficients ((5i + 17j + seed) mod 13) / 12 over unit cells, times exp(-kappa max(0, y)).
+std::shared_ptr<const scene::Fogmap> modular_fogmap(int n, int seed, int degree, double kappa) {
+  std::vector<double> coefficients;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) coefficients.push_back((5 * i + 17 * j + seed) % 13 / 12.0);
+  auto fog = std::make_shared<scene::Fogmap>();
+  fog->map = scene::SplineMap(degree, {{0, 0}, {n, n}}, coefficients);
+  if (kappa > 0) fog->profile = scene::ExponentialFall{0, 1 / kappa};
+  return fog;
+}
+
 struct Segment {
   Ray ray;
   double length;
@@ -62,16 +73,36 @@ Check read_optical_depth(const Value& v) {
     expected["tau_raw"].number();
     return not_yet("Legendre box");
   }
-  if (in.has("degree")) {
-    expected["tau"].number();
-    return not_yet("fogmap");
-  }
+  const int n = in["n"].integer_in(1, 256), seed = in["seed"].integer_in(0, 1000000);
   scene::Medium medium = fog(scene::Unbounded{}, 0.1, 1, scene::Isotropic{});
-  medium.field = modular_grid(in["n"].integer_in(1, 256), in["seed"].integer_in(0, 1000000));
+  if (in.has("degree")) {
+    medium.sigma_t = Rgb::Ones();
+    medium.field = modular_fogmap(n, seed, in["degree"].integer_in(0, 3), in["kappa"].number());
+  } else {
+    medium.field = modular_grid(n, seed);
+  }
   const double tau = expected["tau"].number(), accuracy = v["accuracy"]["abs"].number();
   return {"", [=](VerifyProfile) {
             return Outcome{{absolute("tau", tau, scene::optical_depth({medium}, s.ray, {0, s.length})[0], accuracy)}};
           }};
+}
+
+// A cell of the fogmap of the optical depths, seed 0: tighter bounds than the hull of its coefficients are as rigorous.
+Check cell_bounds(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  const std::vector<double> cell = in["cell"].numbers(), hull = expected["hull"].numbers(),
+                            sampled = expected["sampled"].numbers();
+  if (cell.size() != 2 || hull.size() != 2 || sampled.size() != 2) v.complain("cell, hull and sampled of two numbers");
+  const int degree = in["degree"].integer_in(0, 3);
+  const double accuracy = v["accuracy"]["abs"].number();
+  return {
+      "", [=](VerifyProfile) {
+        constexpr double inside = 1e-12;  // no neighbour touches
+        const double lo[2] = {cell[0] + inside, cell[1] + inside}, hi[2] = {cell[0] + 1 - inside, cell[1] + 1 - inside};
+        const Interval bounds = modular_fogmap(8, 0, degree, 0)->map.bounds(lo, hi);
+        return Outcome{{truth("within the hull", bounds.lo >= hull[0] - accuracy && bounds.hi <= hull[1] + accuracy),
+                        truth("contains samples", bounds.lo <= sampled[0] && bounds.hi >= sampled[1])}};
+      }};
 }
 
 Check read_field_bounds(const Value& v) {
@@ -80,10 +111,7 @@ Check read_field_bounds(const Value& v) {
     expected["bernstein_min"].number();
     return not_yet("Legendre box");
   }
-  if (in.has("cell")) {
-    expected["hull"].numbers();
-    return not_yet("fogmap");
-  }
+  if (in.has("cell")) return cell_bounds(v);
   const auto medium = gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), 1, scene::Isotropic{});
   const Box box{in["lo"].vector(), in["hi"].vector()};
   const double lower = expected["lower"].number(), upper = expected["upper"].number();

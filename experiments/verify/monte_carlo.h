@@ -20,7 +20,7 @@ struct Effort {
   double se = 0;  // 0: `least` samples
   std::uint64_t least = 1 << 14;
   std::uint64_t most = std::uint64_t(1) << 24;
-  double collisions = 3e7;
+  double collisions = 1e7;
   double refused = 1e8;  // collisions; of what may take more, nothing is begun
 };
 Effort fixed(std::uint64_t samples, VerifyProfile);

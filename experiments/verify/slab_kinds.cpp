@@ -98,14 +98,14 @@ Outcome compare_table(const std::string& id, const std::vector<TableRow>& rows, 
   }
   // A row in nine, R and T at one incidence each. The stride 25 is prime to the lengths of the table's three nested
   // columns, so that phases, albedos and depths all take their turn. Left out are numbers too small to be seen in this
-  // noise, and those that the pilot expects to take more than a few seconds.
+  // noise, and those that the pilot expects to take more than a second.
   const std::size_t wanted = std::max<std::size_t>(2, rows.size() / 9);
   std::size_t index = 0, done = 0;
   for (std::size_t k = 0; k < rows.size() && done < wanted; ++k, index = (index + 25) % rows.size()) {
     const std::size_t before = out.comparisons.size();
     for (const bool reflection : {true, false}) {
       const TableNumber n = table_number(id, rows[index], int(k % 4), reflection);
-      if (n.expected > 10 * table_se && n.measurement.collisions_for(aim(table_se, profile)) < 1.5e7) add(n);
+      if (n.expected > 10 * table_se && n.measurement.collisions_for(aim(table_se, profile)) < 5e6) add(n);
     }
     done += out.comparisons.size() > before;
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/interface.h"
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu::fog {
@@ -50,7 +51,7 @@ void FogOnDevice::make_programs() {
   programs_.composition = &program("fogshop/composition.comp", {{"LOCAL_SIZE_X", "64"}});
   if (needs_.center_depths)
     programs_.view_depths = &program("fogshop/depths.comp", {{"LOCAL_SIZE_X", std::to_string(depth_group)}});
-  if (needs_.low_resolution) programs_.upsample = &context_.program("fogshop/upsample.comp", square);
+  if (needs_.low_resolution) programs_.upsample = &program("fogshop/upsample.comp", square);
   if (!needs_.airlight) return;
   if (n == 0) {
     programs_.homogeneous = &program("fogshop/homogeneous.comp", square);
@@ -116,14 +117,13 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   const int columns = blocks(grid.width(), tile), rows = blocks(grid.height(), tile), n = model_.gaussians.count;
   const bool hands_on = sliced() || needs_.sky_volume;
   const int fields = hands_on ? RayValues{o.slices, sliced() ? int(model_.lights.size()) : 0}.fields() : 0;
-  const std::size_t row_of_lists = std::size_t(columns) * n * 4,
+  const std::size_t row_of_lists = std::size_t(columns) * (n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
   const int height = int(std::clamp<std::size_t>(most / std::max(row_of_lists, row_of_rays), 1, rows));
   const std::string which = grid.only_edges ? " of edges" : "";  // both are kept where both are made
-  frame.buffers.get("tile counts" + which, std::size_t(height) * columns * 4).bind(1);
-  frame.buffers.get("tile lists" + which, height * row_of_lists).bind(2);
-  if (hands_on) frame.buffers.get("values of rays" + which, height * row_of_rays).bind(10);
+  frame.buffers.get("tile lists" + which, height * row_of_lists).bind(at::tile_lists);
+  if (hands_on) frame.buffers.get("values of rays" + which, height * row_of_rays).bind(at::ray_values);
   for (Program* p : {programs_.tiles, programs_.paper, programs_.stretch, programs_.shares, programs_.slice_depths,
                      programs_.slice_light, programs_.even_depths, programs_.sky_light})
     if (p) set_grid(*p, grid);
@@ -134,6 +134,7 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
     if (p) p->set("source_radius", o.source_radius);
   if (sliced()) {
     programs_.edges->set("grid_width", grid.width());
+    programs_.edges->set("gaussian_count", n);
     programs_.shares->set("boxes", o.boxes);
     programs_.stretch->set("clearest", float((model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff()));
     programs_.slice_light->set("extrapolate", o.extrapolate);
@@ -174,8 +175,8 @@ const Buffer& FogOnDevice::airlight(const scene::View& view, const Buffer* dista
   const Use use_context(context_);
   const Buffer& pixels = frame.buffers.get("pixels", std::size_t(view.width) * view.height * 16);
   bind();
-  if (distances) distances->bind(3);
-  pixels.bind(6);
+  if (distances) distances->bind(at::distances);
+  pixels.bind(at::pixels);
   compute({view, 1, distances != nullptr, false}, frame);
   if (light_) add_environment(view, distances != nullptr, frame);
   return pixels;
@@ -204,16 +205,16 @@ const Buffer& FogOnDevice::low_resolution_airlight(const scene::View& view, cons
   const Buffer& pixels = frame.buffers.get("pixels", count * 16);
   const Buffer& low = frame.buffers.get("low pixels", std::size_t(r.low_width()) * r.low_height() * 16);
   bind();
-  frame.buffers.get("edges", find_edges ? count * 4 : 0).bind(9);
-  if (low_distances) low_distances->bind(3);
-  low.bind(6);
+  frame.buffers.get("edges", find_edges ? count * 4 : 0).bind(at::edges);
+  if (low_distances) low_distances->bind(at::distances);
+  low.bind(at::pixels);
   compute({view, r.factor, has_distances, false}, frame);
 
   frame.timer.begin("upsampling");
-  if (distances) distances->bind(3);
-  pixels.bind(6);
-  low.bind(10);
-  if (low_distances) low_distances->bind(11);
+  if (distances) distances->bind(at::distances);
+  pixels.bind(at::pixels);
+  low.bind(at::low_pixels);
+  if (low_distances) low_distances->bind(at::low_distances);
   upsample(r, find_edges);
   if (find_edges && o.upsample == Upsample::recompute) compute({view, 1, true, true}, frame);
   if (light_) add_environment(view, has_distances, frame);

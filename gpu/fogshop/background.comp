@@ -5,9 +5,9 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/fog.glsl"
 #include "common/environment.glsl"
 
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };  // airlight, T(v,p)
-layout(std430, binding = 7) buffer Surface { float surface_layer[]; };
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
+layout(std430, binding = AT_PIXELS) readonly buffer Pixels { vec4 pixels[]; };  // airlight, T(v,p)
+layout(std430, binding = AT_SURFACE) buffer Surface { float surface_layer[]; };
 uniform int has_distances, has_airlight;
 
 void main() {

@@ -1,5 +1,6 @@
 #include "gpu/fogshop/background.h"
 
+#include "gpu/fogshop/interface.h"
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu::fog {
@@ -18,9 +19,9 @@ void Background::draw(const FogOnDevice& fog, const scene::View& view, const Buf
     Program& p = *programs_[i];
     fog.use(p);
     fog.bind();
-    if (distances) distances->bind(3);
-    if (pixels) pixels->bind(6);
-    surface.bind(7);
+    if (distances) distances->bind(at::distances);
+    if (pixels) pixels->bind(at::pixels);
+    surface.bind(at::surface);
     lights_.bind(i, p);
     set_view(p, view);
     p.set("has_distances", distances != nullptr);

@@ -2,11 +2,11 @@
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
 
-layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };                // airlight, depth
-layout(std430, binding = 7) readonly buffer Surface { float surface_layer[]; };       // through the medium
-layout(std430, binding = 1) writeonly buffer Airlight { float airlight_layer[]; };
-layout(std430, binding = 2) writeonly buffer Transmittance { float transmittance_layer[]; };
-layout(std430, binding = 3) writeonly buffer Mean { float mean_layer[]; };
+layout(std430, binding = AT_PIXELS) readonly buffer Pixels { vec4 pixels[]; };                // airlight, depth
+layout(std430, binding = AT_SURFACE) readonly buffer Surface { float surface_layer[]; };       // through the medium
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight_layer[]; };
+layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer Transmittance { float transmittance_layer[]; };
+layout(std430, binding = AT_MEAN_LAYER) writeonly buffer Mean { float mean_layer[]; };
 uniform int has_airlight, has_surface, pixel_count;
 
 void main() {

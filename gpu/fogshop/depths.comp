@@ -5,7 +5,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
 
-layout(std430, binding = 8) writeonly buffer Depths { float segment_depth[]; };
+layout(std430, binding = AT_DEPTHS) writeonly buffer Depths { float segment_depth[]; };
 uniform vec3 from;
 uniform int first_depth, target_count;
 shared float part[LOCAL_SIZE_X];

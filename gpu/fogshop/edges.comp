@@ -1,6 +1,7 @@
 // Variant S, third pass: the edges of the slices, where the shares of the nodes reach equal steps.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/pixels.glsl"
+uniform int gaussian_count;
 #include "fogshop/tile.glsl"
 #include "fogshop/ray_values.glsl"
 

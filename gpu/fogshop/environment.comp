@@ -4,10 +4,10 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/spherical_harmonics.glsl"
 
-layout(std430, binding = 6) buffer Pixels { vec4 pixels[]; };             // airlight, T(v,p)
-layout(std430, binding = 9) readonly buffer Light { vec4 light[]; };      // sqrt(4 pi / (2l+1)) albedo L_lm
-layout(std430, binding = 10) readonly buffer Bands { float bands[]; };    // g_l, [depth][l]
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
+layout(std430, binding = AT_PIXELS) buffer Pixels { vec4 pixels[]; };             // airlight, T(v,p)
+layout(std430, binding = AT_ENVIRONMENT_LIGHT) readonly buffer Light { vec4 light[]; };      // sqrt(4 pi / (2l+1)) albedo L_lm
+layout(std430, binding = AT_PSF_BANDS) readonly buffer Bands { float bands[]; };    // g_l, [depth][l]
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
 uniform int has_distances, everywhere;
 #include "common/far_away.glsl"
 uniform vec3 hue;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/interface.h"
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu::fog {
@@ -20,14 +21,14 @@ void FogOnDevice::upload_environment(const fogshop::EnvironmentLighting& lightin
   band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
   bands_ = lighting.order();
   band_depths_ = lighting.bands().depths();
-  programs_.environment = &context_.program(
+  programs_.environment = &program(
       "fogshop/environment.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}, {"SH_ORDER", std::to_string(bands_)}});
 }
 
 void FogOnDevice::add_environment(const scene::View& view, bool has_distances, Frame& frame) {
   frame.timer.begin("environment");
-  light_->bind(9);
-  band_table_->bind(10);
+  light_->bind(at::environment_light);
+  band_table_->bind(at::psf_bands);
   Program& p = *programs_.environment;
   using Table = fogshop::PsfBands;
   set_camera(p, view);

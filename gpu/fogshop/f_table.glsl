@@ -3,7 +3,7 @@
 // The table holds what F lacks to F(u, pi/2). That falls along v at an ever smaller rate, so that no difference of two entries
 // is below 1/255 of them, and keeps its digits; F itself comes so close to its limit that two of them have none left in
 // single precision.
-layout(std430, binding = 14) readonly buffer FTable { float rest_of_f[]; };  // u slowest
+float rest_of_f(int entry) { return fog_table[F_TABLE_FROM + entry]; }  // u slowest
 const float u_max = 10;
 
 // F(u, v + step) - F(u, v) in one row of the table, linear between its entries; places in entries.
@@ -11,11 +11,11 @@ float f_between(int row, float v, float step_) {
   const int last = F_TABLE - 2;
   int i = min(int(v), last), j = min(int(v + step_), last);
   int from = row * F_TABLE + i, to = row * F_TABLE + j;
-  float here = rest_of_f[from] - rest_of_f[from + 1];
+  float here = rest_of_f(from) - rest_of_f(from + 1);
   if (i == j) return here * step_;
-  float there = rest_of_f[to] - rest_of_f[to + 1];
+  float there = rest_of_f(to) - rest_of_f(to + 1);
   // Both shares from the step itself, whose digits a sum with v would lose.
-  return (float(i + 1) - v) * here + (rest_of_f[from + 1] - rest_of_f[to]) + (step_ - (float(j) - v)) * there;
+  return (float(i + 1) - v) * here + (rest_of_f(from + 1) - rest_of_f(to)) + (step_ - (float(j) - v)) * there;
 }
 
 float homogeneous_airlight(LightFromRay light, float length_, float beta) {

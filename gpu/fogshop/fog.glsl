@@ -11,13 +11,19 @@ struct Gaussian {
   float unused;
 };
 
-layout(std430, binding = 0) readonly buffer Gaussians { Gaussian gaussians[]; };
+layout(std430, binding = AT_GAUSSIANS) readonly buffer Gaussians { Gaussian gaussians[]; };
 uniform int gaussian_count;
 uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m]
 uniform vec3 hue;        // extinction per channel over the greatest
 uniform vec3 albedo;
+#if COLOURED || NOISE || F_TABLE
+layout(std430, binding = AT_FOG_TABLES) readonly buffer FogTables { float fog_table[]; };  // each from its place on
+#endif
 #if COLOURED  // what each Gaussian, by place, and the constant scatter of that
-layout(std430, binding = 15) readonly buffer Colours { vec4 colour_of[]; };
+vec3 colour_of(int gaussian) {
+  int at = COLOURS_FROM + 3 * gaussian;
+  return vec3(fog_table[at], fog_table[at + 1], fog_table[at + 2]);
+}
 uniform vec3 constant_colour;
 #endif
 

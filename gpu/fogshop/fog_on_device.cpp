@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "gpu/fogshop/interface.h"
 #include "scene/error.h"
 
 namespace airlight::gpu::fog {
@@ -12,24 +13,6 @@ namespace {
 
 using Float3 = std::array<float, 3>;
 Float3 float3(const Vec3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
-
-// The layouts of fog.glsl and light.glsl.
-struct GaussianData {
-  Float3 center;
-  float a, half_depth, radius_squared, place, unused;
-};
-struct LightData {
-  Float3 position;
-  float map_near;
-  Float3 intensity;
-  float map_far;
-  Float3 axis_x;
-  float map_tangent;
-  Float3 axis_y;
-  int map_offset;
-  Float3 axis_z;
-  float unused;
-};
 
 std::vector<GaussianData> gaussian_data(const fogshop::GaussianArrays& g) {
   std::vector<GaussianData> data;
@@ -39,16 +22,16 @@ std::vector<GaussianData> gaussian_data(const fogshop::GaussianArrays& g) {
   return data;
 }
 
-// Empty where all albedos are equal.
-std::vector<std::array<float, 4>> colour_data(const fogshop::GaussianArrays& g) {
-  std::vector<std::array<float, 4>> data;
+// Three numbers each; empty where all albedos are equal.
+std::vector<float> colours(const fogshop::GaussianArrays& g) {
+  std::vector<float> data;
   for (int i = 0; i < g.count && g.has_colours(); ++i)
-    data.push_back({float(g.colour[0][i]), float(g.colour[1][i]), float(g.colour[2][i]), 0});
+    for (int channel = 0; channel < 3; ++channel) data.push_back(float(g.colour[channel][i]));
   return data;
 }
 
 // Empty without noise.
-std::vector<int> permutation(const fogshop::Model& model) {
+std::vector<float> permutation(const fogshop::Model& model) {
   if (!model.noise) return {};
   return {model.noise->permutation().begin(), model.noise->permutation().end()};
 }
@@ -99,11 +82,22 @@ FogOnDevice::FogOnDevice(Context& context, const fogshop::Model& model, const fo
               needs.center_depths
                   ? (std::size_t(model.gaussians.count) * (model.lights.size() + 1) + model.lights.size()) * 4
                   : 0),
-      colours_(context, "colours", colour_data(model.gaussians)),
-      permutation_(context, "permutation", permutation(model)),
-      f_table_(context, "table of F", rest_of_f(model, needs.f_table, f_table_size_)) {
+      tables_(context, "tables of the fog", tables()) {
   const Use use_context(context_);
   make_programs();
+}
+
+std::vector<float> FogOnDevice::tables() {
+  std::vector<float> all;
+  const auto add = [&](const std::vector<float>& values) {
+    const std::size_t from = all.size();
+    all.insert(all.end(), values.begin(), values.end());
+    return int(from);
+  };
+  table_places_.colours = add(colours(model_.gaussians));
+  table_places_.permutation = add(permutation(model_));
+  table_places_.f = add(rest_of_f(model_, needs_.f_table, table_places_.f_size));
+  return all;
 }
 
 Program& FogOnDevice::program(const char* file, Definitions definitions) const {
@@ -118,9 +112,13 @@ Program& FogOnDevice::program(const char* file, Definitions definitions) const {
     definitions["ERF_COUNT"] = std::to_string(coefficients.size());
     definitions["ERF_COEFFICIENTS"] = fmt::format("{}", fmt::join(coefficients, ", "));
   }
-  definitions["F_TABLE"] = std::to_string(f_table_size_);
+  definitions["F_TABLE"] = std::to_string(table_places_.f_size);
+  definitions["COLOURS_FROM"] = std::to_string(table_places_.colours);
+  definitions["PERMUTATION_FROM"] = std::to_string(table_places_.permutation);
+  definitions["F_TABLE_FROM"] = std::to_string(table_places_.f);
+  definitions.try_emplace("NOISE", "0");
   definitions["COLOURED"] = model_.fog.one_albedo() ? "0" : "1";
-  return context_.program(file, definitions);
+  return fog::program(context_, file, definitions);
 }
 
 void FogOnDevice::use(Program& p) const {
@@ -132,13 +130,11 @@ void FogOnDevice::use(Program& p) const {
 }
 
 void FogOnDevice::bind() const {
-  gaussians_.bind(0);
-  lights_.bind(4);
-  maps_.bind(5);
-  depths_.bind(8);
-  if (!model_.fog.one_albedo()) colours_.bind(15);
-  if (model_.noise) permutation_.bind(13);
-  if (f_table_size_ > 0) f_table_.bind(14);
+  gaussians_.bind(at::gaussians);
+  lights_.bind(at::lights);
+  maps_.bind(at::light_maps);
+  depths_.bind(at::depths);
+  tables_.bind(at::fog_tables);
 }
 
 void FogOnDevice::fill_light_maps() {
@@ -193,13 +189,14 @@ void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const B
   Program& p = *programs_.composition;
   use(p);
   bind();
-  if (pixels) pixels->bind(6);
-  if (surface) surface->bind(7);
+  if (pixels) pixels->bind(at::pixels);
+  if (surface) surface->bind(at::surface);
   const int count = view.width * view.height;
-  int binding = 0;
-  for (const char* layer : {"airlight", "transmittance", "mean"}) {
+  for (const auto& [layer, binding] : {std::pair{"airlight", at::airlight_layer},
+                                       {"transmittance", at::transmittance_layer},
+                                       {"mean", at::mean_layer}}) {
     Buffer& buffer = frame.buffers.get(layer, std::size_t(count) * 12);
-    buffer.bind(++binding);
+    buffer.bind(binding);
     frame.download.add(layer, buffer, buffer.bytes());
   }
   p.set("has_airlight", pixels != nullptr);

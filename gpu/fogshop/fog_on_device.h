@@ -76,6 +76,7 @@ class FogOnDevice {
   };
   struct Strip;
 
+  std::vector<float> tables();
   bool sliced() const { return !model_.paper() && !model_.lights.empty() && model_.gaussians.count > 0; }
   float open_distance() const;  // [m] of rays that nothing ends
   void make_programs();
@@ -90,8 +91,10 @@ class FogOnDevice {
   Context& context_;
   const fogshop::Model& model_;
   const fogshop::Needs needs_;
-  int f_table_size_ = 0;  // 0: none
-  Buffer gaussians_, lights_, maps_, depths_, colours_, permutation_, f_table_;
+  struct {
+    int colours = 0, permutation = 0, f = 0, f_size = 0;  // f_size 0: there is no table of F
+  } table_places_;
+  Buffer gaussians_, lights_, maps_, depths_, tables_;
   int bands_ = 0, band_depths_ = 0;             // of the environment; 0: none
   std::unique_ptr<Buffer> light_, band_table_;  // its harmonics, those of the PSF
   std::unique_ptr<SkyVolumeOnDevice> sky_;      // null: none

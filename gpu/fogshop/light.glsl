@@ -12,7 +12,7 @@ struct Light {
   float unused;
 };
 
-layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = AT_LIGHTS) readonly buffer Lights { Light lights[]; };
 uniform int light_count;
 uniform float source_radius;  // [m]
 

@@ -6,7 +6,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/cone.glsl"
 #include "fogshop/light_cells.glsl"
 
-layout(std430, binding = 15) buffer LightLists { int light_list[]; };
+layout(std430, binding = AT_LIGHT_LISTS) buffer LightLists { int light_list[]; };
 const int group_size = int(LOCAL_SIZE_X);
 #include "fogshop/ranks.glsl"
 

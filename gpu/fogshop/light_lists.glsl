@@ -2,7 +2,7 @@
 // (fogshop/light_lists.comp). After fog.glsl and light.glsl.
 #include "fogshop/light_cells.glsl"
 // Where the list of each cell of each light begins, and the last one ends; then the lists.
-layout(std430, binding = 15) readonly buffer LightLists { int light_list[]; };
+layout(std430, binding = AT_LIGHT_LISTS) readonly buffer LightLists { int light_list[]; };
 
 float depth_from_light(int light, vec3 point) {
   vec3 from = lights[light].position, way = point - from;

@@ -1,6 +1,6 @@
 // Depths from a light out of its map, and the closed parts of the airlight (methods/fogshop/light_map_lookup.cpp,
 // homogeneous_airlight.cpp).
-layout(std430, binding = 5) readonly buffer Maps { float map_depth[]; };
+layout(std430, binding = AT_LIGHT_MAPS) readonly buffer Maps { float map_depth[]; };
 
 float map_texel(Light light, int i, int j, int k, float f) {
   int place = light.map_offset + (j * (map_directions + 2) + i) * (map_edges + 1) + k;

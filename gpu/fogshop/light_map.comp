@@ -3,7 +3,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
 
-layout(std430, binding = 5) buffer Maps { float map_depth[]; };
+layout(std430, binding = AT_LIGHT_MAPS) buffer Maps { float map_depth[]; };
 uniform int light_index;
 
 vec2 fold(vec2 p) { return (1 - abs(p.yx)) * vec2(p.x >= 0 ? 1 : -1, p.y >= 0 ? 1 : -1); }

@@ -1,6 +1,5 @@
 // The Gaussians that the rays of this work group may meet, read together into shared memory. The group is one tile.
 #include "fogshop/tile.glsl"
-layout(std430, binding = 2) readonly buffer TileLists { int tile_list[]; };
 
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 shared Gaussian near_block[LOCAL_SIZE_X * LOCAL_SIZE_Y];
@@ -10,7 +9,7 @@ shared int wish_of_group;
 int load_near(int first, int count) {
   int local = int(gl_LocalInvocationIndex);
   barrier();
-  if (first + local < count) near_block[local] = gaussians[tile_list[tile_of_group() * gaussian_count + first + local]];
+  if (first + local < count) near_block[local] = gaussians[tile_list[list_of_group() + 1 + first + local]];
   barrier();
   return min(group_size, count - first);
 }

@@ -1,6 +1,6 @@
 // Section 5.5: depths of Gaussians along rays that noise bends, as methods/fogshop/noise.cpp. After fog.glsl.
 #if NOISE
-layout(std430, binding = 13) readonly buffer Permutation { int permutation[256]; };
+int permutation(int i) { return int(fog_table[PERMUTATION_FROM + i]); }
 uniform float noise_scale, noise_frequency, noise_phase, noise_reach;
 const int noise_period = 32;
 const ivec3 gradient[12] =
@@ -17,8 +17,8 @@ vec3 noise_at(vec3 x) {
     vec3 offset = f - vec3(far), w = mix(1 - blend, blend, vec3(far));
     float weight = w.x * w.y * w.z;
     for (int channel = 0; channel < 3; ++channel) {
-      int a = permutation[at.x + 2 * noise_period * channel];
-      int hash = permutation[(permutation[(a + at.y) & 255] + at.z) & 255];
+      int a = permutation(at.x + 2 * noise_period * channel);
+      int hash = permutation((permutation((a + at.y) & 255) + at.z) & 255);
       sum[channel] += weight * dot(vec3(gradient[hash % 12]), offset);
     }
   }

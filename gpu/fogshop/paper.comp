@@ -11,7 +11,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 
 // Depths as in depths.comp: from every light to every centre, from the view point to every centre, from every light to
 // the view point.
-layout(std430, binding = 8) readonly buffer Depths { float segment_depth[]; };
+layout(std430, binding = AT_DEPTHS) readonly buffer Depths { float segment_depth[]; };
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
@@ -48,7 +48,7 @@ void main() {
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
         vec3 term = hue * weight * exp(hue * exponent);
 #if COLOURED
-        term *= colour_of[int(g.place)].rgb;
+        term *= colour_of(int(g.place));
 #endif
         sum[l] += term;
       }

@@ -1,9 +1,9 @@
 // Which pixels a dispatch computes: those of the film, one in the middle of each block of film_step x film_step, or the edges
 // alone (methods/fogshop/low_resolution.h). Depths of the results are those of T(v, p), hue 1.
 #include "common/far_away.glsl"
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };  // of the pixels that are computed
-layout(std430, binding = 6) buffer Pixels { vec4 pixels[]; };                  // airlight, depth
-layout(std430, binding = 9) readonly buffer Edges { int edge_of[]; };
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // of the pixels that are computed
+layout(std430, binding = AT_PIXELS) buffer Pixels { vec4 pixels[]; };                  // airlight, depth
+layout(std430, binding = AT_EDGES) readonly buffer Edges { int edge_of[]; };
 uniform int grid_width, grid_height, film_step, has_distances, only_edges;
 uniform float open_distance;  // [m] of rays that nothing ends
 

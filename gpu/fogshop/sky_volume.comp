@@ -10,7 +10,7 @@ struct Beam {
   vec3 weight;  // radiance times solid angle over 4 pi [W/m^2/sr]
   float unused_too;
 };
-layout(std430, binding = 10) readonly buffer Beams { Beam beams[]; };
+layout(std430, binding = AT_BEAMS) readonly buffer Beams { Beam beams[]; };
 uniform int first_beam, last_beam;
 
 // Optical depth of all Gaussians from a point to infinity.

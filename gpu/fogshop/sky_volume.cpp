@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/interface.h"
 
 namespace airlight::gpu::fog {
 namespace {
@@ -40,7 +41,7 @@ SkyVolumeOnDevice::SkyVolumeOnDevice(Context& context, FogOnDevice& fog, const s
   Program& p =
       fog.program("fogshop/sky_volume.comp", {{"LOCAL_SIZE_X", "4"}, {"LOCAL_SIZE_Y", "4"}, {"LOCAL_SIZE_Z", "4"}});
   fog.bind();
-  beam_buffer.bind(10);
+  beam_buffer.bind(at::beams);
   fog.use(p);
   use(p);
   const double each = model.gaussians.count + 2.0;  // loop iterations per beam; the one that ends a loop counts
@@ -58,7 +59,7 @@ void SkyVolumeOnDevice::use(Program& p) const {
   p.set("grid_corner", grid_.corner);
   p.set("grid_cell", grid_.cell);
   p.set("grid_last", Vec3(grid_.last.cast<double>().matrix()));
-  nodes_.bind(7);
+  nodes_.bind(at::sky_volume);
 }
 
 }  // namespace airlight::gpu::fog

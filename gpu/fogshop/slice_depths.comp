@@ -56,7 +56,7 @@ void main() {
       if (first_slice == 0) before += c.depth * erf_between(place_at(-c.a * c.middle), begin);
       float part;
 #if COLOURED
-      vec3 colour = colour_of[int(g.place)].rgb;
+      vec3 colour = colour_of(int(g.place));
 #endif
 #define ADD_DEPTH(k)                            \
   next = place_at(c, edge[k + 1]);              \

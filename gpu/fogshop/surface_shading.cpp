@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "gpu/fogshop/interface.h"
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu::fog {
@@ -77,7 +78,7 @@ void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
   const auto run = [&](Program& p, const Buffer& buffer) {
     fog.use(p);
     fog.bind();
-    buffer.bind(15);
+    buffer.bind(at::light_lists);
     p.set("cells", cells_);
     p.set("light_count", lights);
     p.dispatch(group * cells_ * lights, cells_);
@@ -114,19 +115,19 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   fog.use(p);
   fog.bind();
   surfaces.bind();
-  materials_.bind(2);
-  light_places_.bind(3);
-  tables_.bind(9);
-  if (lighting_.transfer) transfer_.bind(13);
-  primitives.bind(1);
-  if (lists_) lists_->bind(15);
+  materials_.bind(at::materials);
+  light_places_.bind(at::light_places);
+  tables_.bind(at::surface_tables);
+  if (lighting_.transfer) transfer_.bind(at::transfer);
+  primitives.bind(at::primitives);
+  if (lists_) lists_->bind(at::light_lists);
   if (maps_) {
-    maps_->primitives().bind(5);
+    maps_->primitives().bind(at::light_primitives);
     hits.tree().bind(p);
   }
-  if (pixels) pixels->bind(6);
-  surface.bind(7);
-  if (scattered) scattered->bind(8);
+  if (pixels) pixels->bind(at::pixels);
+  surface.bind(at::surface);
+  if (scattered) scattered->bind(at::scattered);
   set_view(p, view);
   p.set("light_count", int(model_.lights.size()));
   p.set("cells", cells_);

@@ -11,12 +11,12 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/light_lists.glsl"
 #include "fogshop/average_depth.glsl"
 
-layout(std430, binding = 9) readonly buffer Tables { float tables[]; };  // all that is precomputed, one after the other
-layout(std430, binding = 1) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
-layout(std430, binding = 3) readonly buffer LightPlaces { double light_place[]; };  // [m], not rounded: maps start there
-layout(std430, binding = 6) readonly buffer Pixels { vec4 pixels[]; };           // airlight, depth
-layout(std430, binding = 7) writeonly buffer Surface { float surface_layer[]; };
-layout(std430, binding = 8) writeonly buffer Scattered { float scattered_layer[]; };
+layout(std430, binding = AT_SURFACE_TABLES) readonly buffer Tables { float tables[]; };  // all that is precomputed, one after the other
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
+layout(std430, binding = AT_LIGHT_PLACES) readonly buffer LightPlaces { double light_place[]; };  // [m], not rounded: maps start there
+layout(std430, binding = AT_PIXELS) readonly buffer Pixels { vec4 pixels[]; };           // airlight, depth
+layout(std430, binding = AT_SURFACE) writeonly buffer Surface { float surface_layer[]; };
+layout(std430, binding = AT_SCATTERED) writeonly buffer Scattered { float scattered_layer[]; };
 uniform int has_airlight, has_scattered;
 uniform float environment_depth;  // of the constant up to the environment [-]
 #include "common/reflection.glsl"

@@ -6,8 +6,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/pixels.glsl"
 #include "fogshop/cone.glsl"
 
-layout(std430, binding = 1) writeonly buffer TileCounts { int tile_count[]; };
-layout(std430, binding = 2) writeonly buffer TileLists { int tile_list[]; };
+layout(std430, binding = AT_TILE_LISTS) writeonly buffer TileLists { int tile_list[]; };  // of each tile its length first
 uniform int tile_row;
 
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
@@ -15,7 +14,8 @@ const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 shared uint farthest;  // bits of the greatest length of a ray; 0: no pixel is wanted
 
 void main() {
-  int tile = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x), local = int(gl_LocalInvocationIndex);
+  int list = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (gaussian_count + 1);
+  int local = int(gl_LocalInvocationIndex);
   ivec2 first_pixel = ivec2(gl_WorkGroupID.xy) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
   ivec2 pixel = first_pixel + ivec2(gl_LocalInvocationID.xy);
   ivec2 last_pixel = min(first_pixel + ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y), ivec2(grid_width, grid_height));
@@ -25,7 +25,7 @@ void main() {
   if (is_computed(pixel)) atomicMax(farthest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
   barrier();
   if (farthest == 0) {
-    if (local == 0) tile_count[tile] = -1;
+    if (local == 0) tile_list[list] = -1;
     return;
   }
   float far = uintBitsToFloat(farthest) * 1.0001;
@@ -46,9 +46,9 @@ void main() {
   int begin = local * each, end = min(begin + each, gaussian_count), count = 0;
   for (int i = begin; i < end; ++i)
     if (touches(cone, gaussians[i], far)) ++count;
-  int rank = rank_of(local, count), at = tile * gaussian_count + rank;
+  int rank = rank_of(local, count), at = list + 1 + rank;
   if (count > 0)
     for (int i = begin; i < end; ++i)
       if (touches(cone, gaussians[i], far)) tile_list[at++] = i;
-  if (local == group_size - 1) tile_count[tile] = rank + count;
+  if (local == group_size - 1) tile_list[list] = rank + count;
 }

@@ -1,5 +1,5 @@
 // Reflectance times visibility, both in harmonics in the world's axes: products mix all bands, so all of them are held.
-layout(std430, binding = 13) readonly buffer Transfer { float transfer[]; };  // SH_SIZE for every vertex
+layout(std430, binding = AT_TRANSFER) readonly buffer Transfer { float transfer[]; };  // SH_SIZE for every vertex
 uniform int product_at;  // for every coefficient the first of its (i, j, integral of three), SH_SIZE + 1 of them, then these
 
 vec3 functions[2 * SH_SIZE];  // two of them

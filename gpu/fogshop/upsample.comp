@@ -1,11 +1,11 @@
 // Airlight and depth of the film from those of the low pixels: methods/fogshop/low_resolution.cpp. Marks the edges too.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 
-layout(std430, binding = 3) readonly buffer Distances { float distances[]; };
-layout(std430, binding = 6) writeonly buffer Pixels { vec4 pixels[]; };
-layout(std430, binding = 9) writeonly buffer Edges { int edge_of[]; };
-layout(std430, binding = 10) readonly buffer LowPixels { vec4 low_pixels[]; };
-layout(std430, binding = 11) readonly buffer LowDistances { float low_distances[]; };
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
+layout(std430, binding = AT_PIXELS) writeonly buffer Pixels { vec4 pixels[]; };
+layout(std430, binding = AT_EDGES) writeonly buffer Edges { int edge_of[]; };
+layout(std430, binding = AT_LOW_PIXELS) readonly buffer LowPixels { vec4 low_pixels[]; };
+layout(std430, binding = AT_LOW_DISTANCES) readonly buffer LowDistances { float low_distances[]; };
 uniform int width, height, low_width, low_height, factor;
 uniform int find_edges;  // 0: bilinear everywhere
 uniform float open_distance;  // [m] of rays that nothing ends

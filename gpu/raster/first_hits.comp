@@ -11,7 +11,7 @@ uniform int columns, rows, block, first_ray, keeps_primitives;
 #if RESUMES
 // Groups of each dispatch; then of each ray its next node and what it has met so far.
 layout(std430, binding = 2) buffer Unfinished { int unfinished[]; };
-uniform int dispatch, dispatches, nodes_at_once;
+uniform int dispatch, dispatches, leaves_at_once;
 #endif
 uniform int triangle_count, ball_count;  // balls of lights come behind the other solids
 
@@ -59,7 +59,8 @@ double meet_triangle(int triangle, ivec3 axis, dvec3 shear, dvec3 origin) {
 }
 
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  int i = int(gl_LocalInvocationIndex);  // neighbours side by side: 8 are 4 x 2, 32 are 8 x 4
+  ivec2 at = 8 * ivec2(gl_WorkGroupID.xy) + ivec2(i & 3 | i >> 1 & 4, i >> 2 & 1 | i >> 3 & 6);
   if (at.x >= columns || at.y >= rows) return;
   dvec3 origin, direction, normal;
   view_ray(double(block) * (dvec2(at) + 0.5LF), origin, direction);
@@ -79,18 +80,15 @@ void main() {
   TreeRay ray = tree_ray_of(vec3(origin - tree_middle), vec3(direction));
   dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
 #if RESUMES
-  for (int n = 0; n < nodes_at_once && node < tree_nodes; ++n) {
+  for (int leaves = 0; leaves < leaves_at_once && node < tree_nodes; ++leaves) {
 #else
   while (node < tree_nodes) {
 #endif
-    bool met = meets_box(ray, node, best.t * (1 + 1e-6));
-    int leaf = tree[4 * node + 1].w;
-    if (met && leaf >= 0)
-      for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k) {
-        int triangle = triangle_to_meet(ray, k);
-        if (triangle >= 0) keep_nearer(best, meet_triangle(triangle, ray.axis, shear, origin), triangle);
-      }
-    node = next_node(ray, node, leaf, met);
+    int leaf = next_leaf(ray, node, tree_nodes, best.t * (1 + 1e-6));
+    for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
+      int triangle = triangle_at((leaf >> 3) + findLSB(bits));
+      keep_nearer(best, meet_triangle(triangle, ray.axis, shear, origin), triangle);
+    }
   }
 #if RESUMES
   unfinished[kept] = node;

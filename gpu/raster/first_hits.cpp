@@ -9,9 +9,11 @@ namespace airlight::gpu {
 namespace {
 
 constexpr int tile = 8;
-// llvmpipe ends loops after 65535 iterations (gpu/README.md). A ray is at a node once at most, and with up to four
-// triangles there; the rest is for solids.
-constexpr int nodes_at_once = 12000, most_solids = 5000;
+// llvmpipe ends loops after 65535 iterations (gpu/README.md): 28 at most from leaf to leaf, those over 16 nodes and twice
+// four triangles among them; the rest is for solids.
+constexpr int leaves_at_once = 2150, most_solids = 5000;
+// A ray is at a node once at most, and after 16 nodes it has met a leaf or not.
+constexpr int most_leaves(int nodes) { return (nodes + 1) / 2 + nodes / 16 + 1; }
 
 }  // namespace
 
@@ -25,7 +27,7 @@ FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_ball
     if (surfaces_.solids().size() > most_solids)
       throw Unavailable(fmt::format("gpu: {} spheres and planes, {} takes {} at most", surfaces_.solids().size(),
                                     context.renderer(), most_solids));
-    dispatches_ = std::max(1, (tree_.nodes() + nodes_at_once - 1) / nodes_at_once);
+    dispatches_ = std::max(1, (most_leaves(tree_.nodes()) + leaves_at_once - 1) / leaves_at_once);
   }
   program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(tile)},
                                                          {"LOCAL_SIZE_Y", std::to_string(tile)},
@@ -72,7 +74,7 @@ void FirstHits::trace(const scene::View& view, const Buffer& distances, const Bu
   unfinished_->clear();
   unfinished_->bind(2);
   program.set("dispatches", dispatches_);
-  program.set("nodes_at_once", nodes_at_once);
+  program.set("leaves_at_once", leaves_at_once);
   for (int i = 0; i < dispatches_; ++i) {
     program.set("dispatch", i);
     if (i == 0)

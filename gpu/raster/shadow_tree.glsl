@@ -1,9 +1,6 @@
-// Is anything between a point and a light? COUNT_NODE, if defined, is done at every node.
+// Is anything between a point and a light?
 #include "raster/primitive.glsl"
 #include "raster/tree.glsl"
-#ifndef COUNT_NODE
-#define COUNT_NODE
-#endif
 
 // Does it meet the ray in (0, end)? Moeller and Trumbore 1997 for triangles. The origin may lie on it if `own`.
 bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, double end) {
@@ -35,15 +32,11 @@ bool tree_blocks(int own, dvec3 point, dvec3 to_light, double end) {
   TreeRay ray = tree_ray_of(vec3(point - tree_middle), vec3(to_light));
   float until = float(end) * (1 + 1e-6);
   for (int node = 0; node < tree_nodes;) {
-    COUNT_NODE
-    bool met = meets_box(ray, node, until);
-    int leaf = tree[4 * node + 1].w;
-    if (met && leaf >= 0)
-      for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k) {
-        int triangle = triangle_to_meet(ray, k);
-        if (triangle >= 0 && triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;
-      }
-    node = next_node(ray, node, leaf, met);
+    int leaf = next_leaf(ray, node, tree_nodes, until);
+    for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
+      int triangle = triangle_at((leaf >> 3) + findLSB(bits));
+      if (triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;
+    }
   }
   return false;
 }

@@ -26,6 +26,8 @@ class ShadowTree {
   int nodes_, solids_;
   Point3 middle_;
   double reach_;
+  Vec3 low_;
+  float cell_;
   Buffer tree_;
 };
 

@@ -4,8 +4,8 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/environment.glsl"
 #include "ray_marcher/pixel.glsl"
 
-layout(std430, binding = 5) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
-layout(std430, binding = 7) buffer Surface { float surface_layer[]; };
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
+layout(std430, binding = AT_SURFACE) buffer Surface { float surface_layer[]; };
 uniform int rows, first_row;              // of the band
 uniform int has_primitives, has_surface;  // 0: rays are infinite; nothing is in the layer yet
 

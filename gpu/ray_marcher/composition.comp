@@ -2,12 +2,12 @@
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "ray_marcher/pixel.glsl"
 
-layout(std430, binding = 0) writeonly buffer Airlight { float airlight_layer[]; };
-layout(std430, binding = 1) writeonly buffer Transmittance { float transmittance_layer[]; };
-layout(std430, binding = 2) writeonly buffer Mean { float mean_layer[]; };
-layout(std430, binding = 7) buffer Surface { float surface_layer[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight_layer[]; };
+layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer Transmittance { float transmittance_layer[]; };
+layout(std430, binding = AT_MEAN_LAYER) writeonly buffer Mean { float mean_layer[]; };
+layout(std430, binding = AT_SURFACE) buffer Surface { float surface_layer[]; };
 // Low and high words: steps, shadow rays, shadow steps, occlusion rays.
-layout(std430, binding = 8) buffer Totals { uint totals[8]; };
+layout(std430, binding = AT_TOTALS) buffer Totals { uint totals[8]; };
 uniform int pixel_count, first_pixel;  // of the band; of it in the film
 uniform int has_media, has_surface, counts;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gpu/ray_marcher/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
@@ -85,9 +86,9 @@ PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, Grid
       {"GAUSSIANS", flag(any_layer(plan, [](const auto& l) { return bool(l.gaussians); }))}};
   auto marching = media;
   marching.insert({{"OCCLUDERS", flag(has_occluders_)}, {"BALL_WORDS", std::to_string(balls_ / 32 + 1)}});
-  if (!plan.layers.empty()) march_ = &context.program("ray_marcher/march.comp", marching);
+  if (!plan.layers.empty()) march_ = &program(context, "ray_marcher/march.comp", marching);
   if (reflects_) {
-    surfaces_ = &context.program("ray_marcher/surfaces.comp", media);
+    surfaces_ = &program(context, "ray_marcher/surfaces.comp", media);
     if (const Box box = plan.scene->geometry->bounds(); !box.empty())
       magnitude_ = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
     for (const scene::Surface& surface : plan.scene->surfaces)
@@ -97,19 +98,19 @@ PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, Grid
   for (int i = 0; i < environments_.count(); ++i) {
     auto definitions = environments_.definitions(i);
     definitions.insert({{"LOCAL_SIZE_X", side}, {"LOCAL_SIZE_Y", side}, {"LAYERS", media.at("LAYERS")}});
-    backgrounds_.push_back(&context.program("ray_marcher/background.comp", definitions));
+    backgrounds_.push_back(&program(context, "ray_marcher/background.comp", definitions));
   }
-  composition_ = &context.program("ray_marcher/composition.comp", {{"LOCAL_SIZE_X", "64"}});
+  composition_ = &program(context, "ray_marcher/composition.comp", {{"LOCAL_SIZE_X", "64"}});
 }
 
 // What marching and reflecting have in common.
 void PlanOnDevice::bind(Program& p) const {
   const ray_marcher::Options& o = plan_.options;
-  layers_.bind(0);
-  gaussians_.bind(1);
+  layers_.bind(at::layers);
+  gaussians_.bind(at::gaussians);
   grids_.bind();
-  bricks_.bind(3);
-  lights_.bind(4);
+  bricks_.bind(at::free_distances);
+  lights_.bind(at::lights);
   p.set("layer_count", int(plan_.layers.size()));
   p.set("skip_empty", o.skip_empty);
   p.set("exact_shadow", o.exact_shadow);
@@ -122,11 +123,11 @@ void PlanOnDevice::march(const scene::View& view, const MarchedFilm& film, Frame
   const ray_marcher::Options& o = plan_.options;
   Program& p = *march_;
   bind(p);
-  if (film.distances) film.distances->bind(5);
-  band.pixels.bind(6);
+  if (film.distances) film.distances->bind(at::distances);
+  band.pixels.bind(at::pixels);
   if (has_occluders_) {
     first_hits_->tree().bind(p);
-    solids_.bind(9);
+    solids_.bind(at::solids);
     p.set("middle_in_tree", Vec3(middle_ - first_hits_->tree().middle()));
   }
   p.set("light_count", plan_.scatters ? int(plan_.lights.size()) : 0);
@@ -148,11 +149,11 @@ void PlanOnDevice::march(const scene::View& view, const MarchedFilm& film, Frame
 void PlanOnDevice::reflect(const scene::View& view, const MarchedFilm& film, FrameBuffers& buffers, const Band& band) {
   Program& p = *surfaces_;
   bind(p);
-  film.primitives->bind(5);
-  band.pixels.bind(6);
-  film.surface.bind(7);
-  materials_.bind(8);
-  reflectances_.bind(15);
+  film.primitives->bind(at::primitives);
+  band.pixels.bind(at::pixels);
+  film.surface.bind(at::surface);
+  materials_.bind(at::materials);
+  reflectances_.bind(at::reflectances);
   first_hits_->surfaces().bind();
   first_hits_->tree().bind(p);
   p.set("triangle_count", first_hits_->surfaces().triangles());
@@ -171,9 +172,9 @@ void PlanOnDevice::reflect(const scene::View& view, const MarchedFilm& film, Fra
 void PlanOnDevice::add_environments(const scene::View& view, const MarchedFilm& film, const Band& band) {
   for (int i = 0; i < environments_.count(); ++i) {
     Program& p = *backgrounds_[i];
-    if (film.primitives) film.primitives->bind(5);
-    band.pixels.bind(6);
-    film.surface.bind(7);
+    if (film.primitives) film.primitives->bind(at::primitives);
+    band.pixels.bind(at::pixels);
+    film.surface.bind(at::surface);
     environments_.bind(i, p);
     set_camera(p, view, middle_);
     p.set("rows", band.rows);
@@ -186,12 +187,12 @@ void PlanOnDevice::add_environments(const scene::View& view, const MarchedFilm& 
 
 void PlanOnDevice::compose(const scene::View& view, const MarchedFilm& film, const Band& band, bool counts) {
   Program& p = *composition_;
-  film.airlight.bind(0);
-  film.transmittance.bind(1);
-  film.mean.bind(2);
-  band.pixels.bind(6);
-  film.surface.bind(7);
-  film.totals.bind(8);
+  film.airlight.bind(at::airlight_layer);
+  film.transmittance.bind(at::transmittance_layer);
+  film.mean.bind(at::mean_layer);
+  band.pixels.bind(at::pixels);
+  film.surface.bind(at::surface);
+  film.totals.bind(at::totals);
   p.set("pixel_count", view.width * band.rows);
   p.set("first_pixel", view.width * band.first_row);
   p.set("has_media", march_ != nullptr);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "gpu/ray_marcher/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "scene/error.h"
 
@@ -42,7 +43,7 @@ std::string GridsOnDevice::description() const {
 }
 
 void GridsOnDevice::bind() const {
-  if (buffer_) buffer_->bind(2);
+  if (buffer_) buffer_->bind(at::grid_values);
   for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i]->bind(int(i));
 }
 

@@ -37,17 +37,17 @@ struct Gaussian {
   float unused[2];
 };
 
-layout(std430, binding = 0) readonly buffer Layers { Layer layers[]; };
+layout(std430, binding = AT_LAYERS) readonly buffer Layers { Layer layers[]; };
 #if GAUSSIANS
-layout(std430, binding = 1) readonly buffer GaussianList { Gaussian gaussians[]; };
+layout(std430, binding = AT_GAUSSIANS) readonly buffer GaussianList { Gaussian gaussians[]; };
 #endif
 #if GRIDS
 #if TEXTURES
 layout(binding = 0) uniform sampler3D grid_texture[TEXTURES];
 #else
-layout(std430, binding = 2) readonly buffer GridValues { float grid_value[]; };      // x fastest
+layout(std430, binding = AT_GRID_VALUES) readonly buffer GridValues { float grid_value[]; };      // x fastest
 #endif
-layout(std430, binding = 3) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
+layout(std430, binding = AT_FREE_DISTANCES) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
 #endif
 
 // Loops over layers run to a uniform: unrolled, they make programs as many times as large.

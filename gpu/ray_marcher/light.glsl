@@ -10,7 +10,7 @@ struct Light {
   float cos_outer;
 };
 
-layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = AT_LIGHTS) readonly buffer Lights { Light lights[]; };
 
 // A light as a ray meets it: at the ray parameter t, from where it is at `offset`, which is across the ray and h long [m].
 struct Approach {

@@ -15,7 +15,7 @@ uniform int light_count, balls;  // the first `balls` of the lights are point an
 #include "ray_marcher/pixel.glsl"
 #include "ray_marcher/rounds.glsl"
 
-layout(std430, binding = 5) readonly buffer Distances { float distances[]; };
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
 uniform int tile_columns;  // of the image
 uniform int first_row;     // of the band
 uniform int has_distances;

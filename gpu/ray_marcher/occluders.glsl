@@ -1,5 +1,6 @@
 // Is a light hidden behind a surface? Triangles through the tree of all of them, spheres and planes one by one, all in single
 // precision: for points in the media.
+#define COUNT_NODE ++work;
 #include "raster/tree.glsl"
 
 struct Solid {
@@ -9,7 +10,7 @@ struct Solid {
   float unused;
 };
 
-layout(std430, binding = 9) readonly buffer Solids { Solid solids[]; };
+layout(std430, binding = AT_SOLIDS) readonly buffer Solids { Solid solids[]; };
 uniform vec3 middle_in_tree;  // [m] of the marcher's places, from the tree's middle
 
 bool solid_between(Solid s, vec3 origin, vec3 direction, float t_end) {
@@ -29,17 +30,13 @@ bool solid_between(Solid s, vec3 origin, vec3 direction, float t_end) {
 
 // Woop, Benthin and Wald 2013: edge functions after a shear that turns the ray into an axis. Edges belong to both sides.
 bool triangle_between(TreeRay ray, int place, float along, float t_end) {
-  int at = 4 * tree_nodes + 3 * place;
-  vec3 a = intBitsToFloat(tree[at].xyz) - ray.origin, b = intBitsToFloat(tree[at + 1].xyz) - ray.origin,
-       c = intBitsToFloat(tree[at + 2].xyz) - ray.origin;
-  int x = ray.axis.x, y = ray.axis.y, z = ray.axis.z;
-  vec2 p = vec2(a[x], a[y]) - ray.shear * a[z], q = vec2(b[x], b[y]) - ray.shear * b[z],
-       r = vec2(c[x], c[y]) - ray.shear * c[z];
+  vec3 a = corner_of(ray, place, 0), b = corner_of(ray, place, 1), c = corner_of(ray, place, 2);
+  vec2 p = a.xy - ray.shear * a.z, q = b.xy - ray.shear * b.z, r = c.xy - ray.shear * c.z;
   float u = q.x * r.y - q.y * r.x, v = r.x * p.y - r.y * p.x, w = p.x * q.y - p.y * q.x;
   if (min(min(u, v), w) < 0 && max(max(u, v), w) > 0) return false;
   float whole = u + v + w;
   if (whole == 0) return false;
-  float t = (a[z] + (v * (b[z] - a[z]) + w * (c[z] - a[z])) / whole) / along;
+  float t = (a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / whole) / along;
   return t > 0 && t < t_end;
 }
 
@@ -50,13 +47,9 @@ bool occluded(vec3 origin, vec3 direction, float t_end) {
   TreeRay ray = tree_ray_of(origin + middle_in_tree, direction);
   float along = direction[ray.axis.z];
   for (int node = 0; node < tree_nodes;) {
-    ++work;
-    bool met = meets_box(ray, node, t_end);
-    int leaf = tree[4 * node + 1].w;
-    if (met && leaf >= 0)
-      for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k)
-        if (triangle_between(ray, k, along, t_end)) return true;
-    node = next_node(ray, node, leaf, met);
+    int leaf = next_leaf(ray, node, tree_nodes, t_end);
+    for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k)
+      if (triangle_between(ray, k, along, t_end)) return true;
   }
   return false;
 }

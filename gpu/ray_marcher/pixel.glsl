@@ -12,4 +12,4 @@ struct Pixel {
   int light;  // of the step; then of the surface behind the media
   float from, width_;  // of what is under way of a step, in shares of it
 };
-layout(std430, binding = 6) buffer Pixels { Pixel pixels[]; };
+layout(std430, binding = AT_PIXELS) buffer Pixels { Pixel pixels[]; };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gpu/ray_marcher/interface.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu::marcher {
@@ -20,7 +21,7 @@ void Rounds::begin(bool looks, const std::function<bool(double)>& progress) {
 
 void Rounds::run(Program& p, FrameBuffers& buffers, int tiles) {
   Buffer& rounds = buffers.get(name_of(bands_.size()), 4 * (12 + 3 * std::size_t(tiles)));
-  rounds.bind(13);
+  rounds.bind(at::rounds);
   p.set("tile_count", tiles);
   p.set("budget", context_.software() ? software_budget : budget);
   const int at_once = progress_ ? (context_.software() ? software_tiles : hardware_tiles) : tiles;

@@ -2,7 +2,7 @@
 //
 // Four times the groups of a dispatch, of which round r uses r mod 4; then of each tile the last round that it was left to; then
 // two lists of tiles, for odd and for even rounds.
-layout(std430, binding = 13) buffer Rounds { int rounds[]; };
+layout(std430, binding = AT_ROUNDS) buffer Rounds { int rounds[]; };
 uniform int round_, first_tile, tile_count;
 uniform int budget;  // iterations of loops in a round, roughly
 

@@ -3,7 +3,7 @@
 // start there.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #define COUNT_NODE ++work;
-#define MATERIALS_BINDING 8
+#define MATERIALS_BINDING AT_MATERIALS
 #include "ray_marcher/layer.glsl"
 #include "raster/view.glsl"
 #include "raster/shadow_tree.glsl"
@@ -14,9 +14,9 @@ uniform int skip_empty, light_count;
 #include "ray_marcher/pixel.glsl"
 #include "ray_marcher/rounds.glsl"
 
-layout(std430, binding = 5) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
-layout(std430, binding = 7) buffer Surface { float surface_layer[]; };
-layout(std430, binding = 15) readonly buffer Tables { float tables[]; };  // of reflectances
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
+layout(std430, binding = AT_SURFACE) buffer Surface { float surface_layer[]; };
+layout(std430, binding = AT_REFLECTANCES) readonly buffer Tables { float tables[]; };  // of reflectances
 #include "common/reflection.glsl"
 uniform int tile_columns, first_row;
 uniform dvec3 middle;  // [m] of the marcher's places

@@ -62,14 +62,9 @@ int crossed_triangles(dvec3 y, double end, int node, int last) {
   Shear shear = shear_of(direction);
   float until = float(end) * (1 + 1e-6);
   while (node < last) {
-    bool met = meets_box(ray, node, until);
-    int leaf = tree[4 * node + 1].w;
-    if (met && leaf >= 0)
-      for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k) {
-        int triangle = triangle_to_meet(ray, k);
-        if (triangle >= 0 && is_crossed(triangle, shear, y, end)) ++sum;
-      }
-    node = next_node(ray, node, leaf, met);
+    int leaf = next_leaf(ray, node, last, until);
+    for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1)
+      if (is_crossed(triangle_at((leaf >> 3) + findLSB(bits)), shear, y, end)) ++sum;
   }
   return sum;
 }

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "gpu/interface.h"
 #include "methods/shadow_planes/edge_fan.h"
 #include "methods/shadow_planes/phase_form.h"
-#include "scene/error.h"
 
 namespace airlight::gpu::planes {
 
@@ -28,62 +28,51 @@ std::map<std::string, std::string> shared_definitions() {
   number("PHASE_RAYLEIGH", Phase::rayleigh);
   number("PHASE_HAZY", Phase::hazy);
   number("PHASE_HENYEY_GREENSTEIN", Phase::henyey_greenstein);
-  const std::pair<const char*, int> bindings[] = {{"EDGES", at::edges},
-                                                  {"PRIMITIVES", at::primitives},
-                                                  {"STARTS", at::starts},
-                                                  {"LISTS", at::lists},
-                                                  {"EVALUATOR", at::evaluator},
-                                                  {"PIXELS", at::pixels},
-                                                  {"STATES", at::states},
-                                                  {"MEDIA", at::media},
-                                                  {"TABLES", at::tables},
-                                                  {"LIGHT_STATE", at::light_state},
-                                                  {"VALUES", at::values},
-                                                  {"COUNTERS", at::counters},
-                                                  {"MESH_VERTICES", at::mesh_vertices},
-                                                  {"MESH_TRIANGLES", at::mesh_triangles},
-                                                  {"MESH_NUMBERS", at::mesh_numbers},
-                                                  {"MESH_EDGES", at::mesh_edges},
-                                                  {"MESH_SIDES", at::mesh_sides},
-                                                  {"SECTORS", at::sectors},
-                                                  {"DISTANCES", at::distances},
-                                                  {"AIRLIGHT_LAYER", at::airlight_layer},
-                                                  {"TRANSMITTANCE_LAYER", at::transmittance_layer},
-                                                  {"SURFACE_LAYER", at::surface_layer},
-                                                  {"MEAN_LAYER", at::mean_layer},
-                                                  {"CASES", at::cases},
-                                                  {"INTEGRALS", at::integrals}};
-  for (const auto& [name, number] : bindings) definitions[std::string("AT_") + name] = std::to_string(number);
+  define({{"EDGES", at::edges},
+          {"PRIMITIVES", at::primitives},
+          {"STARTS", at::starts},
+          {"LISTS", at::lists},
+          {"EVALUATOR", at::evaluator},
+          {"PIXELS", at::pixels},
+          {"STATES", at::states},
+          {"MEDIA", at::media},
+          {"TABLES", at::tables},
+          {"LIGHT_STATE", at::light_state},
+          {"VALUES", at::values},
+          {"COUNTERS", at::counters},
+          {"MESH_VERTICES", at::mesh_vertices},
+          {"MESH_TRIANGLES", at::mesh_triangles},
+          {"MESH_NUMBERS", at::mesh_numbers},
+          {"MESH_EDGES", at::mesh_edges},
+          {"MESH_SIDES", at::mesh_sides},
+          {"SECTORS", at::sectors},
+          {"DISTANCES", at::distances},
+          {"AIRLIGHT_LAYER", at::airlight_layer},
+          {"TRANSMITTANCE_LAYER", at::transmittance_layer},
+          {"SURFACE_LAYER", at::surface_layer},
+          {"MEAN_LAYER", at::mean_layer},
+          {"CASES", at::cases},
+          {"INTEGRALS", at::integrals}},
+         definitions);
   return definitions;
 }
 
 namespace {
 
-void check_layouts(const Program& program, const std::string& file) {
-  const struct {
-    const char* variable;
-    std::size_t offset, stride;
-  } expected[] = {{"edges[0].near_b", offsetof(EdgeData, near_b), sizeof(EdgeData)},
-                  {"edges[0].b[0]", offsetof(EdgeData, b), sizeof(EdgeData)},
-                  {"edges[0].origin", offsetof(EdgeData, origin), sizeof(EdgeData)},
-                  {"states[0].from", offsetof(StateData, from), sizeof(StateData)},
-                  {"states[0].m_origin", offsetof(StateData, m_origin), sizeof(StateData)},
-                  {"lit_pixels[0].reflected", offsetof(LitPixelData, reflected), sizeof(LitPixelData)},
-                  {"media[0].hi[0]", offsetof(MediumData, hi), sizeof(MediumData)},
-                  {"media[0].albedo[0]", offsetof(MediumData, albedo), sizeof(MediumData)},
-                  {"media[0].phase.width", offsetof(MediumData, width), sizeof(MediumData)},
-                  {"plane_groups[0]", offsetof(LightStateData, plane_groups), 0},
-                  {"count_at_camera", offsetof(LightStateData, count_at_camera), 0},
-                  {"loops_were_cut", offsetof(CountersData, loops_were_cut), 0},
-                  {"resume_groups[0]", offsetof(CountersData, unfinished), 0}};
-  for (const auto& [variable, offset, stride] : expected) {
-    const auto found = program.place_of(variable);
-    if (!found || found->offset == 0) continue;  // so Mesa says of what is not used
-    if (std::size_t(found->offset) == offset && (stride == 0 || std::size_t(found->stride) == stride)) continue;
-    throw Error(fmt::format("gpu/shadow_planes/{}.comp: {} at byte {}, {} apart; expected {} and {}", file, variable,
-                            found->offset, found->stride, offset, stride));
-  }
-}
+const std::vector<Layout> layouts = {
+    {"edges[0].near_b", offsetof(EdgeData, near_b), sizeof(EdgeData)},
+    {"edges[0].b[0]", offsetof(EdgeData, b), sizeof(EdgeData)},
+    {"edges[0].origin", offsetof(EdgeData, origin), sizeof(EdgeData)},
+    {"states[0].from", offsetof(StateData, from), sizeof(StateData)},
+    {"states[0].m_origin", offsetof(StateData, m_origin), sizeof(StateData)},
+    {"lit_pixels[0].reflected", offsetof(LitPixelData, reflected), sizeof(LitPixelData)},
+    {"media[0].hi[0]", offsetof(MediumData, hi), sizeof(MediumData)},
+    {"media[0].albedo[0]", offsetof(MediumData, albedo), sizeof(MediumData)},
+    {"media[0].phase.width", offsetof(MediumData, width), sizeof(MediumData)},
+    {"plane_groups[0]", offsetof(LightStateData, plane_groups), 0},
+    {"count_at_camera", offsetof(LightStateData, count_at_camera), 0},
+    {"loops_were_cut", offsetof(CountersData, loops_were_cut), 0},
+    {"resume_groups[0]", offsetof(CountersData, unfinished), 0}};
 
 }  // namespace
 
@@ -93,7 +82,7 @@ Program& program(Context& context, const std::string& file, int x, int y,
   definitions["LOCAL_SIZE_X"] = std::to_string(x);
   definitions["LOCAL_SIZE_Y"] = std::to_string(y);
   Program& made = context.program("shadow_planes/" + file + ".comp", definitions);
-  check_layouts(made, file);
+  check_layouts(made, "shadow_planes/" + file + ".comp", layouts);
   return made;
 }
 

@@ -21,10 +21,7 @@ Coefficients prolonged(const SplineMap& coarse, int level) {
   const Taps p = two_scale(coarse.degree());
   for (; level > 0; --level) {
     Coefficients fine;
-    for (int a = 0; a < 2; ++a) {
-      fine.range.lo[a] = 2 * c.range.lo[a];
-      fine.range.size[a] = 2 * (c.range.size[a] - 1) + int(p.values.size());
-    }
+    fine.range = fine_range(c.range, p);
     fine.values.assign(std::size_t(fine.range.size[0]) * fine.range.size[1], 0);
     filter_up(c, p, p, fine);
     c = std::move(fine);

@@ -39,10 +39,34 @@ void row_up(const double* a, int lo, int size, const Taps& taps, int first, int 
 
 }  // namespace
 
+IndexRange coarse_range(const IndexRange& range, const Taps& along_u, const Taps& along_v) {
+  const auto [u_first, u_count] = reached(range.lo[0], range.size[0], along_u);
+  const auto [v_first, v_count] = reached(range.lo[1], range.size[1], along_v);
+  return {{u_first, v_first}, {u_count, v_count}};
+}
+
+IndexRange fine_range(const IndexRange& coarse, const Taps& taps) {
+  IndexRange fine;
+  for (int a = 0; a < 2; ++a) {
+    fine.lo[a] = 2 * coarse.lo[a] + taps.first;
+    fine.size[a] = 2 * (coarse.size[a] - 1) + int(taps.values.size());
+  }
+  return fine;
+}
+
+IndexRange united(const IndexRange& x, const IndexRange& y) {
+  IndexRange both;
+  for (int a = 0; a < 2; ++a) {
+    both.lo[a] = std::min(x.lo[a], y.lo[a]);
+    both.size[a] = std::max(x.lo[a] + x.size[a], y.lo[a] + y.size[a]) - both.lo[a];
+  }
+  return both;
+}
+
 Coefficients filter_down(const Coefficients& c, const Taps& along_u, const Taps& along_v) {
-  const auto [u_first, u_count] = reached(c.range.lo[0], c.range.size[0], along_u);
-  const auto [v_first, v_count] = reached(c.range.lo[1], c.range.size[1], along_v);
-  Coefficients out{{{u_first, v_first}, {u_count, v_count}}, std::vector<double>(std::size_t(u_count) * v_count)};
+  const IndexRange range = coarse_range(c.range, along_u, along_v);
+  const int u_first = range.lo[0], u_count = range.size[0], v_first = range.lo[1], v_count = range.size[1];
+  Coefficients out{range, std::vector<double>(std::size_t(u_count) * v_count)};
   // Rows are filtered along u as those along v need them: as many are kept as the filter has taps.
   const int length = int(along_v.values.size());
   std::vector<std::vector<double>> rows(std::size_t(length) + 1, std::vector<double>(u_count));
@@ -124,13 +148,7 @@ std::vector<Coefficients> approximations(const Coefficients& c, const Taps& low,
 Coefficients difference(const Coefficients& fine, const Coefficients& coarse, int degree) {
   const Taps p = two_scale(degree);
   Coefficients r;
-  for (int a = 0; a < 2; ++a) {
-    const int lo = std::min(fine.range.lo[a], 2 * coarse.range.lo[a]);
-    const int hi = std::max(fine.range.lo[a] + fine.range.size[a],
-                            2 * (coarse.range.lo[a] + coarse.range.size[a] - 1) + int(p.values.size()));
-    r.range.lo[a] = lo;
-    r.range.size[a] = hi - lo;
-  }
+  r.range = united(fine.range, fine_range(coarse.range, p));
   r.values.assign(std::size_t(r.range.size[0]) * r.range.size[1], 0);
   filter_up(coarse, p, p, r);
   for (double& value : r.values) value = -value;

@@ -13,6 +13,12 @@ struct Coefficients {
   std::vector<double> values;
 };
 
+// Indices k that filters reach from a range, by c_i -> sum_i taps_{i-2k} c_i; and back, by a_k -> sum_k taps_{i-2k} a_k.
+scene::IndexRange coarse_range(const scene::IndexRange&, const Taps& along_u, const Taps& along_v);
+scene::IndexRange fine_range(const scene::IndexRange&, const Taps& along_both);
+// What either holds.
+scene::IndexRange united(const scene::IndexRange&, const scene::IndexRange&);
+
 // sum_i taps_{i-2k} c_i for every k that some c_i reaches, along u, then along v.
 Coefficients filter_down(const Coefficients&, const Taps& along_u, const Taps& along_v);
 // sum_k taps_{i-2k} a_k added to `fine`, along both.

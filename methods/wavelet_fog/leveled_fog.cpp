@@ -4,44 +4,15 @@
 #include <cmath>
 
 namespace airlight::wavelet_fog {
-namespace {
-
-constexpr int empty_blocks = 3;                                 // blocks of 2, 4, 8 cells
-const char* const families[] = {"haar", "cdf22", "cdf33", ""};  // by degree; there is none of degree 3
 
 using Variant = Options::Variant;
 
-// Directions over the map that a view holds. Where it looks straight up or down anywhere, all of them; else they are widest
-// at its rim.
-PolarTable::Fan fan_of(const scene::Fogmap& fog, const scene::View& view) {
-  const PolarTable::Fan all{0, 2 * pi};
-  const auto azimuth = [&](const Vec3& direction) {
-    const scene::MapLine line = line_over(fog, {view.camera.position, direction});
-    return std::atan2(line.dv, line.du);
-  };
-  const auto ray = [&](double x, double y) {
-    return scene::camera_ray(view.camera, x, y, view.width, view.height).direction;
-  };
-  const Vec3& forward = view.camera.forward;
-  if (std::hypot(forward[0], forward[2]) < 1e-6) return all;
-  const double middle = azimuth(forward);
-  double least = 0, most = 0, before = 0;
-  bool first = true, around = false;
-  const auto look = [&](double x, double y) {
-    double turn = std::remainder(azimuth(ray(x, y)) - middle, 2 * pi);
-    around = around || (!first && std::abs(turn - before) > 0.5 * pi);  // the rim runs around a pole
-    first = false;
-    before = turn;
-    least = std::min(least, turn);
-    most = std::max(most, turn);
-  };
-  for (int x = 0; x <= view.width; ++x) look(x, 0);
-  for (int y = 0; y <= view.height; ++y) look(view.width, y);
-  for (int x = view.width; x >= 0; --x) look(x, view.height);
-  for (int y = view.height; y >= 0; --y) look(0, y);
-  constexpr double margin = 1e-6;
-  return around || most - least > 1.9 * pi ? all : PolarTable::Fan{middle + least - margin, most - least + 2 * margin};
+double enough_column(const scene::Medium& medium, const Options& options) {
+  const double thinnest = medium.sigma_t.minCoeff();
+  return options.termination > 0 && thinnest > 0 ? -std::log(options.termination) / thinnest : infinity;
 }
+
+namespace {
 
 double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
   return std::ldexp(o.near * fog.cell, level);
@@ -53,13 +24,38 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
     : medium_(&medium),
       fog_(std::get<scene::FogmapPointer>(medium.field).get()),
       options_(options),
-      levels_(make_levels(fog_->map, families[fog_->map.degree()], options.coarse,
+      levels_(make_levels(fog_->map, family_of_degree(fog_->map.degree()), options.coarse,
                           uses_levels(options.variant) ? options.levels : 0, options.variant == Variant::paper)) {
   if (options.variant == Variant::skip || options.variant == Variant::polar)
     blocks_.emplace(levels_, empty_blocks, false);
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
-  const double thinnest = medium.sigma_t.minCoeff();
-  enough_ = options.termination > 0 && thinnest > 0 ? -std::log(options.termination) / thinnest : infinity;
+  if (options.table > 0 || options.variant == Variant::pre) lay_bands();
+  enough_ = enough_column(medium, options);
+}
+
+void LeveledFog::lay_bands() {
+  const int L = levels_.count();
+  bands_.emplace_back(levels_.grid[L], L);
+  if (options_.variant == Variant::pre) {
+    if (L > 0) {
+      const Family& wavelets = family(family_of_degree(fog_->map.degree()));
+      const Decomposition d = decompose({fog_->map.range(), fog_->map.coefficients()}, wavelets, L);
+      for (int l = L; l >= 1; --l) bands_.emplace_back(d.levels[l - 1], wavelets, l);
+    }
+  } else if (options_.variant == Variant::paper) {
+    for (int l = L - 1; l >= 0; --l) bands_.emplace_back(levels_.detail[l], l);
+  }
+  if (options_.table > 0) table_.emplace(bands_.back().pieces(), options_.table, options_.lookup);
+}
+
+// Of the paper's sum, with tables or wavelets: band 0 is complete, m counts up to its distance.
+double LeveledFog::summed_bands(const scene::HeightProfile& profile, const scene::MapLine& line, Interval inside,
+                                double length, Visits& visits) const {
+  double sum = 0;
+  for (std::size_t m = 0; m < bands_.size(); ++m)
+    sum += bands_[m].integral(profile, line, intersect(inside, {0, reach_of(int(m), length, options_.mu)}),
+                              table_ ? &*table_ : nullptr, visits);
+  return sum;
 }
 
 double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
@@ -80,7 +76,9 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
   const auto part = [&](int level, double from, double to) {
     return integral_of_level(levels_.grid[level], level, profile, line, intersect(inside, {from, to}), visits);
   };
+  if (!bands_.empty()) return summed_bands(profile, line, inside, reach, visits);
   switch (o.variant) {
+    case Variant::pre:
     case Variant::direct:
       return part(0, 0, length);
     case Variant::polar:  // rays that are not from the eye
@@ -125,7 +123,6 @@ PolarTable LeveledFog::polar_table(const scene::View& view, const scene::Executi
 }
 
 double LeveledFog::column(const PolarTable& table, const Ray& ray, double length, Visits& visits) const {
-  constexpr double upright = 1e-3;  // cells over the ground below which the table has nothing to say
   const Interval t = scene::extent(*medium_, ray, {0, length});
   if (t.empty()) return 0;
   const scene::MapLine line = line_over(*fog_, ray);

@@ -2,11 +2,18 @@
 #pragma once
 #include <optional>
 
+#include "methods/wavelet_fog/band_grid.h"
 #include "methods/wavelet_fog/blocks.h"
 #include "methods/wavelet_fog/options.h"
 #include "methods/wavelet_fog/polar_table.h"
 
 namespace airlight::wavelet_fog {
+
+constexpr int empty_blocks = 3;   // blocks of 2, 4, 8 cells that skip looks at
+constexpr double upright = 1e-3;  // cells over the ground below which polar's table has nothing to say
+
+// Integral of the density at which a ray ends [m]; infinite where it never does.
+double enough_column(const scene::Medium&, const Options&);
 
 class LeveledFog {
  public:
@@ -23,11 +30,17 @@ class LeveledFog {
   const scene::Medium& medium() const { return *medium_; }
 
  private:
+  void lay_bands();
+  double summed_bands(const scene::HeightProfile&, const scene::MapLine&, Interval inside, double length,
+                      Visits&) const;
+
   const scene::Medium* medium_;
   const scene::Fogmap* fog_;
   Options options_;
   Levels levels_;
   std::optional<Blocks> blocks_;
+  std::vector<BandGrid> bands_;  // of pre, and of a table: as they are summed, the coarsest first
+  std::optional<PathTable> table_;
   double enough_;  // column at which a ray ends
 };
 

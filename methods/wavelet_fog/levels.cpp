@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/error.h"
 
@@ -31,16 +32,21 @@ Levels make_levels(const SplineMap& map, const std::string& family_name, Coarse 
   if (levels > most_levels(map.range()))
     throw Error(fmt::format("levels = {}, expected at most {} for {} x {} coefficients", levels,
                             most_levels(map.range()), map.range().size[0], map.range().size[1]));
-  const Taps low = coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
+  // The map alone has no need of wavelets, which degree 3 has none of.
+  const Taps low =
+      levels == 0 || coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
+  // Of large maps little may be held at once: what is not needed any more goes before the next copy is made.
   Levels result;
   Coefficients fine{map.range(), map.coefficients()};
-  result.grid.push_back(map);
   for (int l = 0; l < levels; ++l) {
     Coefficients next = filter_down(fine, low, low);
-    if (details) result.detail.push_back(map_of(difference(fine, next, map.degree()), map.degree()));
-    result.grid.push_back(map_of(coarse == Coarse::clamped ? clamped(next) : next, map.degree()));
+    Coefficients detail = details ? difference(fine, next, map.degree()) : Coefficients();
     fine = std::move(next);
+    if (details) result.detail.push_back(map_of(std::exchange(detail, {}), map.degree()));
+    result.grid.push_back(map_of(coarse == Coarse::clamped ? clamped(fine) : fine, map.degree()));
   }
+  fine = {};
+  result.grid.insert(result.grid.begin(), map);
   return result;
 }
 

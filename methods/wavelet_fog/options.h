@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "methods/wavelet_fog/levels.h"
+#include "methods/wavelet_fog/path_table.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 
@@ -19,6 +20,7 @@ struct Options {
     skip,    // the map itself, empty blocks passed at once
     bound,   // per block the coarsest level that keeps the error below the tolerance
     polar,   // integrals from the eye tabulated by angle and distance, once per frame
+    pre,     // approximation and bands of wavelets, before deconstruction (section 4.2, eq. 11)
   };
   Variant variant = Variant::skip;
   Coarse coarse = Coarse::wavelet;
@@ -30,9 +32,19 @@ struct Options {
   double radial_step = 0.5;  // of `polar` [cells]
   double termination = 0;    // transmittance below which a ray ends; 0: never
   double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
+  int table = 0;    // R of the paper's tables of path integrals, of direct, pre and paper; 0: exact
+  PathTable::Lookup lookup = PathTable::Lookup::nearest;
+  bool sun = false;       // single scattering of directional lights
+  double sun_step = 0.5;  // [cells] between the entries of a sun's map
+  int sun_points = 3;     // of a cell; at least its degree + 1
+  int shadow_steps = 64;  // shadow rays over the fog on a ray, at least; and sun_points in each cell
 };
 // Those that read coarse grids.
 bool uses_levels(Options::Variant);
+// Those that sum up details of any sign.
+bool is_signed(Options::Variant);
+// Of a degree up to 2, of the family that the method takes: haar, cdf22, cdf33. Empty for 3.
+const char* family_of_degree(int degree);
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.

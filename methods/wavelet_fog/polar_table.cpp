@@ -4,6 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "methods/wavelet_fog/interpolation.h"
+
 namespace airlight::wavelet_fog {
 namespace {
 
@@ -17,24 +19,47 @@ double farthest(const SplineMap& map, double u, double v) {
   return std::hypot(x, y);
 }
 
-// From 0 at t = 0 to 1 at t = 1 with these values and slopes at the ends, on [0, 1].
-double hermite(double t, double a, double slope_a, double b, double slope_b) {
-  const double w = 1 - t;
-  return w * w * ((1 + 2 * t) * a + t * slope_a) + t * t * ((1 + 2 * w) * b - w * slope_b);
-}
-
-double catmull_rom(double t, const double (&p)[4]) {
-  return p[1] +
-         0.5 * t * (p[2] - p[0] + t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
-}
-
 }  // namespace
+
+PolarTable::Fan fan_of(const scene::Fogmap& fog, const scene::View& view) {
+  const PolarTable::Fan all{0, 2 * pi};
+  const auto azimuth = [&](const Vec3& direction) {
+    const scene::MapLine line = line_over(fog, {view.camera.position, direction});
+    return std::atan2(line.dv, line.du);
+  };
+  const auto ray = [&](double x, double y) {
+    return scene::camera_ray(view.camera, x, y, view.width, view.height).direction;
+  };
+  const Vec3& forward = view.camera.forward;
+  if (std::hypot(forward[0], forward[2]) < 1e-6) return all;
+  const double middle = azimuth(forward);
+  double least = 0, most = 0, before = 0;
+  bool first = true, around = false;
+  const auto look = [&](double x, double y) {
+    double turn = std::remainder(azimuth(ray(x, y)) - middle, 2 * pi);
+    around = around || (!first && std::abs(turn - before) > 0.5 * pi);  // the rim runs around a pole
+    first = false;
+    before = turn;
+    least = std::min(least, turn);
+    most = std::max(most, turn);
+  };
+  for (int x = 0; x <= view.width; ++x) look(x, 0);
+  for (int y = 0; y <= view.height; ++y) look(view.width, y);
+  for (int x = view.width; x >= 0; --x) look(x, view.height);
+  for (int y = view.height; y >= 0; --y) look(0, y);
+  constexpr double margin = 1e-6;
+  return around || most - least > 1.9 * pi ? all : PolarTable::Fan{middle + least - margin, most - least + 2 * margin};
+}
+
+int steps_to_rim(const SplineMap& map, double u, double v, double step) {
+  return int(std::ceil(farthest(map, u, v) / step)) + 1;
+}
 
 PolarTable::PolarTable(const SplineMap& map, double u, double v, const Fan& fan, int angles, double step,
                        bool with_first_moment, const scene::Execution& execution)
     : fan_(fan),
       angles_(angles + 3),
-      steps_(int(std::ceil(farthest(map, u, v) / step)) + 1),
+      steps_(steps_to_rim(map, u, v, step)),
       spacing_(fan.span / angles),
       step_(step),
       first_moment_(with_first_moment),

@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "scene/media/spline_map.h"
+#include "scene/media/fogmap.h"
 #include "scene/renderer.h"
 
 namespace airlight::wavelet_fog {
@@ -44,5 +44,12 @@ class PolarTable {
   long cells_ = 0;
   std::vector<Entry> entries_;  // [angle][distance]
 };
+
+// Directions over the map that a view holds. Where it looks straight up or down anywhere, all of them; else they are widest at its
+// rim.
+PolarTable::Fan fan_of(const scene::Fogmap&, const scene::View&);
+
+// Steps of that many cells from (u, v) that pass the map's farthest corner.
+int steps_to_rim(const scene::SplineMap&, double u, double v, double step);
 
 }  // namespace airlight::wavelet_fog

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "methods/wavelet_fog/leveled_fog.h"
+#include "methods/wavelet_fog/sun_scattering.h"
 #include "scene/background.h"
 #include "scene/error.h"
 #include "scene/stopwatch.h"
@@ -20,12 +21,15 @@ using scene::View;
 
 class PreparedWaveletFog final : public scene::Prepared {
  public:
-  PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options)
+  PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
       : scene_(std::move(scene)), options_(options) {
     scene::Stopwatch watch;
     for (const scene::Medium& medium : scene_->media)
       if (extinguishes(medium)) fogs_.emplace_back(medium, options);
     times_.push_back({"levels", watch.lap()});
+    if (!sunlit()) return;
+    sun_.emplace(*scene_, options, execution);
+    times_.push_back({"sun maps", watch.lap()});
   }
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
@@ -36,6 +40,13 @@ class PreparedWaveletFog final : public scene::Prepared {
     return scene_->geometry && std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::is_delta);
   }
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !fogs_.empty(); }
+  bool sunlit() const {
+    const auto shines = [](const scene::Light& light) {
+      const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+      return sun && sun->irradiance.maxCoeff() > 0;
+    };
+    return options_.sun && !fogs_.empty() && std::any_of(scene_->lights.begin(), scene_->lights.end(), shines);
+  }
   bool ends() const { return scene_->geometry || !scene_->lights.empty(); }
   Rgb depth(const Ray&, double length, Visits&, const std::vector<PolarTable>& tables = {}) const;
   Rgb behind(const Ray&, const scene::RayEnd&, Visits&) const;
@@ -43,6 +54,7 @@ class PreparedWaveletFog final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   std::vector<LeveledFog> fogs_;
+  std::optional<SunScattering> sun_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -65,6 +77,11 @@ std::vector<scene::Stage> PreparedWaveletFog::stages() const {
            ambient()       ? "ambient_in_scatter times 1 - transmittance"
            : fogs_.empty() ? none
                            : "ambient_in_scatter is zero"},
+          {"airlight", sun_.has_value(),
+           sun_            ? "directional lights, scattered once"
+           : !options_.sun ? "sun is not asked for"
+           : fogs_.empty() ? none
+                           : "no directional light shines"},
           {"surfaces", lit(), lit() ? "lights through the fog" : "no surface is lit"}};
 }
 
@@ -109,6 +126,7 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
   scene::Film& film = result.film;
   film.add("mean"), film.add("transmittance"), film.add("surface");
   if (ambient()) film.add("ambient");
+  if (sun_) film.add("airlight");
   scene::Stopwatch watch;
   std::vector<PolarTable> tables;
   if (options_.variant == Options::Variant::polar) {
@@ -118,9 +136,11 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
   }
   std::mutex mutex;
   Visits total;
+  SunVisits of_sun;
   for (const PolarTable& table : tables) total.cells += table.cells();
   scene::parallel_rows(view.height, execution, [&](int y) {
     Visits visits, of_surfaces;
+    SunVisits sun_visits;
     for (int x = 0; x < view.width; ++x) {
       const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
       const scene::RayEnd end = ends() ? scene::ray_end(*scene_, ray) : scene::RayEnd{};
@@ -135,22 +155,33 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
         film.set("ambient", x, y, fog);
         mean += fog;
       }
+      if (sun_) {
+        const Rgb scattered = sun_->airlight(ray, end.t, sun_visits);
+        film.set("airlight", x, y, scattered);
+        mean += scattered;
+      }
       film.set("mean", x, y, mean);
     }
     const std::lock_guard lock(mutex);
     total.cells += visits.cells;
     total.coefficients += visits.coefficients;
+    of_sun.points += sun_visits.points;
+    of_sun.shadow_rays += sun_visits.shadow_rays;
   });
   result.times.push_back({"transmittance", watch.lap()});
   result.counters = {
       {"rays", double(film.pixels())}, {"cells", double(total.cells)}, {"coefficients", double(total.coefficients)}};
+  if (sun_) {
+    result.counters["sun_points"] = double(of_sun.points);
+    result.counters["shadow_rays"] = double(of_sun.shadow_rays);
+  }
   return result;
 }
 
 }  // namespace
 
 std::string WaveletFog::about() const {
-  return "transmittance of fogmaps in B-spline wavelets, constant in-scatter (Giroud and Biri 2010)";
+  return "transmittance of fogmaps in B-spline wavelets, constant in-scatter, a sun (Giroud and Biri 2010)";
 }
 
 std::vector<scene::SettingSpec> WaveletFog::settings() const { return setting_specs(); }
@@ -161,8 +192,8 @@ std::vector<std::string> WaveletFog::supports(const Scene& scene, const scene::S
 
 std::unique_ptr<scene::Prepared> WaveletFog::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                const scene::Settings& settings,
-                                                               const Execution&) const {
-  return std::make_unique<PreparedWaveletFog>(std::move(scene), read_options(settings));
+                                                               const Execution& execution) const {
+  return std::make_unique<PreparedWaveletFog>(std::move(scene), read_options(settings), execution);
 }
 
 }  // namespace airlight::wavelet_fog

@@ -2,7 +2,7 @@
 // Giroud and Biri 2010. README.md says which variants, how accurate.
 //
 // Layers: transmittance, ambient = ambient_in_scatter (1 - transmittance), surface (lights through the fog, reflected,
-// through the fog), mean = ambient + surface. Nothing is scattered by the fog but the constant.
+// through the fog), airlight (directional lights, scattered once by the fog; with the setting sun), mean = their sum.
 #pragma once
 #include "scene/renderer.h"
 

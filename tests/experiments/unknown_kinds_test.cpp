@@ -52,6 +52,6 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   }
   CHECK(fogshop == 2);
   CHECK(shadow_planes == 2);
-  CHECK(wavelet_fog == 1);
+  CHECK(wavelet_fog == 2);
   CHECK(others == 4);
 }

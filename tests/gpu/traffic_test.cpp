@@ -6,6 +6,7 @@
 #include "gpu/frame.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
 #include "tests/gpu/device.h"
 #include "tests/pictures.h"
 
@@ -33,6 +34,7 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
   const gpu::FogshopGpu fogshop;
   const gpu::ShadowPlanesGpu planes;
   const gpu::RayMarcherGpu marcher;
+  const gpu::WaveletFogGpu fogmaps;
   const Given printed{
       {"evaluator", "polynomial"}, {"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}};
   const std::vector<Case> cases{
@@ -43,6 +45,9 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
       {planes, "shadow_planes/fig1", {}, true},
       {planes, "shadow_planes/fig8b", printed, true},
       {marcher, "shadow_planes/fig8b", {{"steps", "16"}, {"shadow_steps", "4"}}},
+      {fogmaps, "wavelet_fog/valley", {}, true},
+      {fogmaps, "wavelet_fog/valley", {{"variant", "polar"}}, true},
+      {fogmaps, "wavelet_fog/patchy", {{"variant", "paper"}}},
   };
   for (const Case& c : cases) {
     CAPTURE(c.method.name(), c.scene, c.given);

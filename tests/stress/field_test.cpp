@@ -1,5 +1,7 @@
 // Stress cases 18, 19 and 21 to 26: densities at the edge of what a density can be.
+#include "methods/wavelet_fog/leveled_fog.h"
 #include "scene/math/random.h"
+#include "scene/stopwatch.h"
 #include "tests/stress/stress.h"
 
 using namespace airlight;
@@ -105,7 +107,67 @@ TEST_CASE("stress 23: Legendre degree 23 per axis", "[stress]") {
 }
 
 TEST_CASE("stress 24: a fogmap of 4096 x 4096 with a single spike", "[stress]") {
-  WARN("test skipped: the fogmap does not exist yet");
+  // One coefficient of degree 1 on cells of 1 m, 4 m high: upright through its top the depth is 4, beside it 0. The other
+  // map holds next to nothing at the same place: as empty as a map can be that is not left out.
+  constexpr int side = 4096, at = 2500;
+  std::vector<double> values(std::size_t(side) * side, 0.0);
+  const auto spike = [&](double height) {
+    values[std::size_t(at) * side + at] = height;
+    auto fog = std::make_shared<scene::Fogmap>();
+    fog->map = scene::SplineMap(1, {{0, 0}, {side, side}}, values);
+    return of_field(scene::FogmapPointer(fog), 1, 0.8, scene::Slab{Vec3::UnitY(), 0, 4});
+  };
+  const auto needle = scene_of({spike(1)}, {scene::DirectionalLight{Vec3::UnitY(), Rgb::Ones()}});
+  const auto empty = scene_of({spike(1e-30)}, needle->lights);
+  const double top = at + 1;
+  const Ray down{{top, 10, top}, -Vec3::UnitY()};
+  CHECK(scene::optical_depth(needle->media, down, {0, infinity})[0] == Approx(4).epsilon(1e-14));
+  CHECK(scene::optical_depth(needle->media, {{top + 1, 10, top}, -Vec3::UnitY()}, {0, infinity})[0] == 0);
+  // Across the whole map through the top: the triangle's area, 1. Along a diagonal of its cells, sqrt(2) 2/3.
+  const Ray across{{-10, 2, top}, Vec3::UnitX()}, diagonal{{top - 1700, 2, top - 1700}, Vec3(1, 0, 1).normalized()};
+  const Ray beside{{-10, 2, top + 20}, Vec3::UnitX()};
+  CHECK(scene::optical_depth(needle->media, across, {0, infinity})[0] == Approx(1).epsilon(1e-12));
+  CHECK(scene::optical_depth(needle->media, diagonal, {0, infinity})[0] ==
+        Approx(std::sqrt(2.0) * 2 / 3).epsilon(1e-11));
+  CHECK(scene::optical_depth(needle->media, beside, {0, infinity})[0] == 0);
+  // Light and view along one line: (1 - exp(-2 depth)) / 2 as in case 25.
+  const double expected = 0.8 / (4 * pi) * 0.5 * (1 - std::exp(-8.0));
+  const auto exact = deterministic::airlight(*needle, down, infinity);
+  CHECK(exact.converged);
+  CHECK(exact.radiance[0] == Approx(expected).epsilon(1e-8));
+  const World world(needle, Options{}), vanishing(empty, Options{});
+  const auto traced = radiance(world, down, 1 << 14, {}, 241);
+  check_equal(expected, traced.orders[1], 0.05);
+  CHECK(traced.counters.violations == 0);
+
+  // The supergrid skips what is empty: no collision is looked for beside the spike, and few around it.
+  const auto missed = radiance(world, beside, 4096, {}, 242), slow = radiance(vanishing, across, 4096, {}, 243);
+  const auto met = radiance(world, across, 4096, {}, 244);
+  CHECK(missed.counters.lookups == 0);
+  CHECK(missed.orders[1].mean[0] == 0);
+  CHECK(slow.counters.lookups < 64 * slow.samples);
+  CHECK(met.counters.lookups < 64 * met.samples);
+
+  // The method's empty blocks: eight cells at a time, and a handful of cells are read.
+  wavelet_fog::Options options;
+  const wavelet_fog::LeveledFog fog(needle->media[0], options);
+  for (const Ray& ray : {across, diagonal, beside}) {
+    wavelet_fog::Visits visits;
+    CHECK(fog.column(ray, infinity, visits) ==
+          Approx(scene::optical_depth(needle->media, ray, {0, infinity})[0]).epsilon(1e-12));
+    CHECK(visits.cells <= 4);
+  }
+  // Within twice the time of the empty map: the fastest of five, in turns.
+  double fastest[2] = {infinity, infinity};
+  for (int run = 0; run < 5; ++run)
+    for (int which = 0; which < 2; ++which) {
+      scene::Stopwatch watch;
+      radiance(which ? world : vanishing, across, 2048, {}, 245 + run);
+      fastest[which] = std::min(fastest[which], watch.lap());
+    }
+  CAPTURE(fastest[0], fastest[1]);
+  if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("spike {:.3g} s, empty {:.3g} s\n", fastest[1], fastest[0]);
+  CHECK(fastest[1] <= 2 * fastest[0]);
 }
 
 TEST_CASE("stress 25: renderers on a Gaussian spike and a flat one", "[stress]") {

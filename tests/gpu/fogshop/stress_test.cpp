@@ -167,7 +167,7 @@ void main() {
   depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
 }
 )");
-  gpu::Program program(*context, "test.comp", {{"ERF_COUNT", "0"}, {"COLOURED", "0"}});
+  gpu::Program program(*context, "test.comp", {{"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"AT_GAUSSIANS", "0"}});
   // At the origin, width 1, half_depth so that the sum is average_depth(u).
   const gpu::Buffer gaussian(*context, "Gaussian",
                              std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0});

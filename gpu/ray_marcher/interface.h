@@ -1,0 +1,39 @@
+// What host and shaders of the ray marcher must agree about, said once; the structures are in scene_data.h.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/program.h"
+
+namespace airlight::gpu::marcher {
+
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9 (values of an
+// environment). What no shader has at the same time shares a number.
+namespace at {
+enum Binding {
+  layers = 0,
+  gaussians = 1,
+  grid_values = 2,
+  free_distances = 3,
+  lights = 4,
+  distances = 5,
+  primitives = 5,
+  pixels = 6,
+  surface = 7,
+  materials = 8,
+  solids = 9,
+  rounds = 13,
+  reflectances = 15,
+  // composition.comp
+  airlight_layer = 0,
+  transmittance_layer = 1,
+  mean_layer = 2,
+  totals = 8,
+};
+}  // namespace at
+
+// A program with the bindings defined. Throws Error if the driver lays out the structures of scene_data.h otherwise than
+// the compiler of the host.
+Program& program(Context&, const std::string& file, std::map<std::string, std::string> definitions);
+
+}  // namespace airlight::gpu::marcher

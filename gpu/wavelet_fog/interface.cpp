@@ -1,0 +1,87 @@
+#include "gpu/wavelet_fog/interface.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+#include "methods/wavelet_fog/leveled_fog.h"
+#include "scene/error.h"
+
+namespace airlight::gpu::fogmaps {
+namespace {
+
+Definitions shared_definitions() {
+  Definitions definitions{{"UPRIGHT", fmt::format("{:e}LF", wavelet_fog::upright)}};
+  const auto number = [&](const char* name, auto kind) { definitions[name] = std::to_string(int(kind)); };
+  number("REGION_UNBOUNDED", RegionKind::unbounded);
+  number("REGION_BOX", RegionKind::box);
+  number("REGION_SPHERE", RegionKind::sphere);
+  number("REGION_SLAB", RegionKind::slab);
+  number("PROFILE_NONE", Profile::none);
+  number("PROFILE_LAYERS", Profile::layers);
+  number("PROFILE_EXPONENTIAL", Profile::exponential);
+  using Variant = wavelet_fog::Options::Variant;
+  number("VARIANT_PAPER", Variant::paper);
+  number("VARIANT_TELE", Variant::tele);
+  number("VARIANT_DIST", Variant::dist);
+  number("VARIANT_BOUND", Variant::bound);
+  number("VARIANT_POLAR", Variant::polar);
+  const std::pair<const char*, int> bindings[] = {{"FOG", at::fog},
+                                                  {"GRIDS", at::grids},
+                                                  {"VALUES", at::values},
+                                                  {"EMPTINESS", at::emptiness},
+                                                  {"TABLE", at::table},
+                                                  {"DISTANCES", at::distances},
+                                                  {"DEPTHS", at::depths},
+                                                  {"COUNTERS", at::counters},
+                                                  {"LIT", at::lit},
+                                                  {"PRIMITIVES", at::primitives},
+                                                  {"MATERIALS", at::materials},
+                                                  {"TABLES", at::tables},
+                                                  {"TRANSMITTANCE_LAYER", at::transmittance_layer},
+                                                  {"AMBIENT_LAYER", at::ambient_layer},
+                                                  {"SURFACE_LAYER", at::surface_layer},
+                                                  {"MEAN_LAYER", at::mean_layer}};
+  for (const auto& [name, number] : bindings) definitions[std::string("AT_") + name] = std::to_string(number);
+  return definitions;
+}
+
+void check_layouts(const Program& program, const std::string& file) {
+  const struct {
+    const char* variable;
+    std::size_t offset, stride;
+  } expected[] = {{"region_hi[0]", offsetof(FogData, region_hi), 0},
+                  {"highest", offsetof(FogData, highest), 0},
+                  {"enough", offsetof(FogData, enough), 0},
+                  {"region", offsetof(FogData, region), 0},
+                  {"errors", offsetof(FogData, errors), 0},
+                  {"knot[0]", sizeof(FogData), 0},
+                  {"grids[0].stride", offsetof(GridData, stride), sizeof(GridData)},
+                  {"lit[0].t", offsetof(LitData, t), sizeof(LitData)}};
+  for (const auto& [variable, offset, stride] : expected) {
+    const auto found = program.place_of(variable);
+    if (!found || found->offset == 0) continue;  // so Mesa says of what is not used
+    if (std::size_t(found->offset) == offset && (stride == 0 || std::size_t(found->stride) == stride)) continue;
+    throw Error(fmt::format("gpu/wavelet_fog/{}.comp: {} at byte {}, {} apart; expected {} and {}", file, variable,
+                            found->offset, found->stride, offset, stride));
+  }
+}
+
+}  // namespace
+
+std::string listed(const std::vector<double>& values) {
+  std::string list;
+  for (const double value : values) list += fmt::format("{}{:.9e}", list.empty() ? "" : ", ", value);
+  return list;
+}
+
+Program& program(Context& context, const std::string& file, int x, int y, Definitions definitions) {
+  definitions.merge(shared_definitions());
+  definitions["LOCAL_SIZE_X"] = std::to_string(x);
+  definitions["LOCAL_SIZE_Y"] = std::to_string(y);
+  Program& made = context.program("wavelet_fog/" + file + ".comp", definitions);
+  check_layouts(made, file);
+  return made;
+}
+
+}  // namespace airlight::gpu::fogmaps

@@ -1,0 +1,66 @@
+// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/context.h"
+#include "gpu/program.h"
+
+namespace airlight::gpu::fogmaps {
+
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. What no shader has at the
+// same time shares a number: no stage needs more than 8.
+namespace at {
+enum Binding {
+  fog = 0,
+  grids = 1,
+  values = 2,
+  emptiness = 3,
+  table = 4,
+  distances = 5,
+  depths = 6,
+  counters = 7,
+  lit = 8,
+  // surfaces.comp, background.comp
+  primitives = 0,
+  materials = 1,
+  tables = 2,
+  // composition.comp
+  transmittance_layer = 0,
+  ambient_layer = 1,
+  surface_layer = 2,
+  mean_layer = 3,
+};
+}  // namespace at
+
+enum class RegionKind { unbounded, box, sphere, slab };
+enum class Profile { none, layers, exponential };
+
+// The layouts of fog.glsl, without the knots, of grids.glsl, lit.glsl.
+struct FogData {
+  double map_x0, map_z0, cos_over_cell, sin_over_cell;
+  double region_lo[3], region_hi[3];
+  double lowest, highest, least_near, mu;
+  float sigma_t[3], enough, allowed, scale_height;
+  int region, knots, levels, details, cells, errors;
+};
+struct GridData {
+  int lo[2], size[2], offset, stride;
+};
+struct LitData {
+  float reflected[4], sum[4];
+  double t, unused;
+};
+constexpr int counter_words = 5;  // low and high words of cells and coefficients, and whether loops were cut
+
+using Definitions = std::map<std::string, std::string>;
+
+// "float[](NAME)" of a list: digits that single precision tells apart.
+std::string listed(const std::vector<double>&);
+
+// A program of this folder: `file` without folder and .comp, the definitions, a work group of x times y invocations. Looked up
+// by its text, so it is kept by those who need it in every frame. Throws Error if the driver lays out the structures
+// above otherwise than the compiler of the host.
+Program& program(Context&, const std::string& file, int x, int y = 1, Definitions definitions = {});
+
+}  // namespace airlight::gpu::fogmaps

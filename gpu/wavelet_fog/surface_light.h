@@ -1,0 +1,44 @@
+// What rays end on, seen without the fog in front of it: surfaces in the light of lamps, which comes through the fog, and the
+// environment.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "gpu/environment_lights.h"
+#include "gpu/material_tables.h"
+#include "gpu/raster/first_hits.h"
+#include "gpu/wavelet_fog/fog_on_device.h"
+
+namespace airlight::gpu::fogmaps {
+
+// Does anything end rays: surfaces, or balls of lights; does a lamp light surfaces.
+bool something_ends_rays(const scene::Scene&);
+bool lamps_light_surfaces(const scene::Scene&);
+
+class SurfaceLight {
+ public:
+  // Keeps the surfaces by reference; null: there are none. Throws Unavailable where the driver ends loops before a shadow ray
+  // has passed all surfaces.
+  SurfaceLight(Context&, const scene::Scene&, const FirstHits*);
+
+  // False: no lamp lights a surface, and there is no environment: `lit` is not written.
+  bool shines() const { return reflects_ || environments_.count() > 0; }
+  // Of the lights of `scene`, the one it was made for or one whose lamps moved. `primitives` may be null.
+  void render(const scene::Scene&, const scene::View&, const std::vector<std::unique_ptr<FogOnDevice>>&,
+              const Buffer* primitives, const Buffer& lit);
+
+ private:
+  SurfaceLight(Context&, const scene::Scene&, const FirstHits*, const MaterialTables&);
+  void reflect(const scene::Light&, const scene::View&, const Buffer& primitives, const Buffer& lit, bool first);
+
+  Context& context_;
+  const FirstHits* first_hits_;
+  bool reflects_;
+  double magnitude_ = 0;  // greatest coordinate of a surface [m]
+  Buffer materials_, reflectances_;
+  EnvironmentLights environments_;
+  Program* surfaces_ = nullptr;
+  std::vector<Program*> backgrounds_;  // by environment
+};
+
+}  // namespace airlight::gpu::fogmaps

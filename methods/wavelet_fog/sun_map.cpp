@@ -1,0 +1,165 @@
+#include "methods/wavelet_fog/sun_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/wavelet_fog/interpolation.h"
+
+namespace airlight::wavelet_fog {
+namespace {
+
+using scene::ExponentialFall;
+using scene::Fogmap;
+using scene::HeightProfile;
+using scene::MapLine;
+
+constexpr double least_way = 2;  // cells over the ground up to which the walk is as short as a lookup, and exact
+
+MapLine to_sun_from(const Fogmap& fog, const Point3& x, const Vec3& to_sun) { return line_over(fog, {x, to_sun}); }
+
+// Of the support, in axes along and across the azimuth.
+struct Extent {
+  double lo[2] = {infinity, infinity}, hi[2] = {-infinity, -infinity};
+};
+Extent turned_support(const Fogmap& fog, const double (&along)[2]) {
+  Extent e;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double u = corner & 1 ? fog.map.support_hi(0) : fog.map.support_lo(0);
+    const double v = corner & 2 ? fog.map.support_hi(1) : fog.map.support_lo(1);
+    const double place[2] = {u * along[0] + v * along[1], v * along[0] - u * along[1]};
+    for (int a = 0; a < 2; ++a) {
+      e.lo[a] = std::min(e.lo[a], place[a]);
+      e.hi[a] = std::max(e.hi[a], place[a]);
+    }
+  }
+  return e;
+}
+
+}  // namespace
+
+double SunMap::entries(const Fogmap& fog, const Vec3& to_sun, double step) {
+  const MapLine line = to_sun_from(fog, Point3::Zero(), to_sun);
+  const double across = std::hypot(line.du, line.dv);
+  if (fog.map.empty() || !(across > 0)) return 0;
+  const Extent e = turned_support(fog, {line.du / across, line.dv / across});
+  return ((e.hi[0] - e.lo[0]) / step + 2) * ((e.hi[1] - e.lo[1]) / step + 4);
+}
+
+SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, const scene::Execution& execution)
+    : medium_(&medium), fog_(std::get<scene::FogmapPointer>(medium.field).get()), to_sun_(to_sun), step_(step) {
+  const MapLine line = to_sun_from(*fog_, Point3::Zero(), to_sun);
+  across_ = std::hypot(line.du, line.dv);
+  upright_ = fog_->map.empty() || !(across_ > 0);
+  if (upright_) return;
+  along_[0] = line.du / across_;
+  along_[1] = line.dv / across_;
+  if (const auto* fall = std::get_if<ExponentialFall>(&fog_->profile)) k_ = line.dy / (across_ * fall->scale_height);
+  const Extent e = turned_support(*fog_, along_);
+  // A row beyond the support on either side, and one more to interpolate from.
+  columns_ = int(std::ceil((e.hi[0] - e.lo[0]) / step)) + 1;
+  rows_ = int(std::ceil((e.hi[1] - e.lo[1]) / step)) + 3;
+  lo_[0] = e.lo[0];
+  lo_[1] = e.lo[1] - step;
+  entries_.resize(std::size_t(columns_) * rows_);
+  scene::parallel_rows(rows_, execution, [&](int row) { fill_row(row); });
+}
+
+// From the sun's side on.
+void SunMap::fill_row(int row) {
+  const double q = lo_[1] + row * step_;
+  const MapLine line{
+      lo_[0] * along_[0] - q * along_[1], lo_[0] * along_[1] + q * along_[0], 0, along_[0], along_[1], 1};
+  const double reach = (columns_ - 1) * step_;
+  const HeightProfile one = scene::SameAtAllHeights{};
+  const bool layered = std::holds_alternative<scene::Layers>(fog_->profile);
+  const Interval inside = clip(fog_->map, line, {0, reach});
+  Entry* entry = entries_.data() + std::size_t(row) * columns_;
+  Moments sum;
+  for (int c = columns_ - 1; c >= 0; --c) {
+    const Interval part = intersect(inside, {c * step_, (c + 1) * step_});
+    sum.fallen *= std::exp(-k_ * step_);
+    if (layered) sum.f1 += step_ * sum.f0;
+    if (!part.empty()) {
+      sum.f0 += scene::integral(fog_->map, one, line, part);
+      if (layered)
+        sum.f1 += scene::integral(fog_->map, scene::Layers{{c * step_, (c + 1) * step_}, {0, step_}}, line, part);
+      if (k_ > 0)
+        sum.fallen += scene::integral(fog_->map, ExponentialFall{c * step_, 1 / k_}, line, part);
+      else
+        sum.fallen = sum.f0;
+    }
+    entry[c] = {sum, fog_->map.at(line.u + c * step_ * line.du, line.v + c * step_ * line.dv)};
+  }
+}
+
+// p: from the first entry [cells].
+SunMap::Moments SunMap::on_row(int row, double p) const {
+  const Entry* entry = entries_.data() + std::size_t(std::clamp(row, 0, rows_ - 1)) * columns_;
+  const double place = p / step_;
+  if (!(place > 0)) return entry[0].sum;
+  if (!(place < columns_ - 1)) return {};
+  const int c = int(place);
+  const double t = place - c;
+  const Entry &a = entry[c], &b = entry[c + 1];
+  const auto between = [&](double from, double slope_from, double to, double slope_to) {
+    return hermite(t, from, step_ * slope_from, to, step_ * slope_to);
+  };
+  return {between(a.sum.f0, -a.value, b.sum.f0, -b.value), between(a.sum.f1, -a.sum.f0, b.sum.f1, -b.sum.f0),
+          between(a.sum.fallen, k_ * a.sum.fallen - a.value, b.sum.fallen, k_ * b.sum.fallen - b.value)};
+}
+
+SunMap::Moments SunMap::at(double p, double q) const {
+  const double place = (q - lo_[1]) / step_;
+  if (!(place > -1 && place < rows_)) return {};
+  const int row = int(std::floor(place));
+  double f0[4], f1[4], fallen[4];
+  for (int i = 0; i < 4; ++i) {
+    const Moments m = on_row(row + i - 1, p);
+    f0[i] = m.f0, f1[i] = m.f1, fallen[i] = m.fallen;
+  }
+  const double t = place - row;
+  return {catmull_rom(t, f0), catmull_rom(t, f1), catmull_rom(t, fallen)};
+}
+
+double SunMap::column(const Point3& x) const {
+  const Ray ray{x, to_sun_};
+  const Interval way = scene::extent(*medium_, ray, {0, infinity});
+  if (way.empty()) return 0;
+  if (upright_ || !(across_ * way.length() > least_way)) return density_integral(*medium_, ray, way);
+  const MapLine line = line_over(*fog_, ray);
+  const double p = line.u * along_[0] + line.v * along_[1] - lo_[0], q = line.v * along_[0] - line.u * along_[1];
+  const auto upto = [&](double t) { return std::isinf(t) ? Moments() : at(p + t * across_, q); };
+  double sum = 0;
+  Moments from = upto(way.lo);
+  const auto add = [&](Interval part) {
+    const Moments to = upto(part.hi);
+    // Inside, since at a knot there are two slopes; the last part may have no end.
+    const double length = std::isinf(part.hi) ? 1 : part.length();
+    const double a = part.lo + 0.25 * length, b = part.lo + 0.75 * length;
+    const double ya = line.y + a * line.dy, yb = line.y + b * line.dy;
+    const double fa = factor_at(fog_->profile, ya), fb = factor_at(fog_->profile, yb);
+    const auto* fall = std::get_if<ExponentialFall>(&fog_->profile);
+    if (fall && line.dy > 0 && ya > fall->base) {
+      const double low = factor_at(fog_->profile, line.y + part.lo * line.dy);
+      const double high = std::isinf(part.hi) ? 0 : factor_at(fog_->profile, line.y + part.hi * line.dy);
+      sum += low * from.fallen - high * to.fallen;
+    } else {
+      const double beta = (fb - fa) / (b - a), alpha = fa - beta * (a - part.lo);  // from part.lo on, per metre
+      sum += alpha * (from.f0 - to.f0);
+      if (beta != 0) sum += beta * ((from.f1 - to.f1) / across_ - part.length() * to.f0);
+    }
+    from = to;
+  };
+  double start = way.lo;
+  const auto cut_at = [&](double height) {
+    const double t = (height - line.y) / line.dy;
+    if (t > start && t < way.hi) add({start, t}), start = t;
+  };
+  const std::vector<double> heights = height_breaks(fog_->profile);
+  if (line.dy > 0) std::for_each(heights.begin(), heights.end(), cut_at);
+  if (line.dy < 0) std::for_each(heights.rbegin(), heights.rend(), cut_at);
+  add({start, way.hi});
+  return std::max(0.0, sum) / across_;
+}
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,55 @@
+// Columns of a fogmap towards a sun: one map over the ground, made once per sun and fog, from which the column at every
+// height follows. (Giroud and Biri 2010, section 5, name shadows inside the fog as future work.)
+//
+// Rows of the map run along the sun's azimuth a. With p the place along a [cells], to the sun's side of a point:
+//   F_0 = integral of f dp',  F_1 = integral of (p' - p) f dp',  E = integral of f exp(-k (p' - p)) dp',
+// k the scale heights that the way to the sun climbs per cell. A ray to the sun climbs evenly, so that a factor of the
+// height that is none or made of straight lines is alpha + beta p' between knots, and takes differences of F_0 and F_1; above
+// its base an exponential one is h(y) E(p): exact at all heights, but for interpolation between the map's entries.
+#pragma once
+#include <vector>
+
+#include "scene/media/medium.h"
+#include "scene/renderer.h"
+
+namespace airlight::wavelet_fog {
+
+class SunMap {
+ public:
+  static constexpr double most_entries = 1 << 25;
+  // Of a map with that step.
+  static double entries(const scene::Fogmap&, const Vec3& to_sun, double step);
+
+  // The medium is a fogmap and outlives this. to_sun: unit, not below the horizon where the profile is exponential. An
+  // entry every `step` cells along rows, and a row every `step`.
+  SunMap(const scene::Medium&, const Vec3& to_sun, double step, const scene::Execution&);
+
+  // Integral of the density from x to the sun, region included [m]; may be infinite. Cubic between entries (Hermite along
+  // rows, by the map's own values; Catmull and Rom across).
+  double column(const Point3& x) const;
+
+ private:
+  struct Moments {
+    double f0 = 0, f1 = 0, fallen = 0;
+  };
+  struct Entry {
+    Moments sum;
+    double value;  // the map's
+  };
+  void fill_row(int row);
+  Moments on_row(int row, double p) const;
+  Moments at(double u, double v) const;
+
+  const scene::Medium* medium_;
+  const scene::Fogmap* fog_;
+  Vec3 to_sun_;
+  bool upright_ = false;      // no azimuth: columns are walked
+  double along_[2] = {1, 0};  // the azimuth in u and v
+  double across_ = 0;         // cells over the ground per metre to the sun
+  double k_ = 0;              // scale heights per cell
+  double lo_[2], step_;       // first p and q of the rows [cells]
+  int columns_ = 0, rows_ = 0;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace airlight::wavelet_fog

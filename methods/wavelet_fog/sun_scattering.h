@@ -1,0 +1,54 @@
+// Light of a sun that the fog scatters once: shadows of fog in fog, and of what stands in it. Named as future work by
+// Giroud and Biri 2010, section 5.
+//
+//   L = sum over suns, media  integral  albedo extinction(t) p(c) E exp(-depth(0, t) - depth(t, sun)) visible(t) dt
+//
+// along a ray, cell by cell: Gauss points of each cell, where the densities are polynomials; the transmittance to them is
+// carried along, that to the sun read from one map per sun and fog (sun_map.h). Surfaces stand in the way by shadow rays.
+#pragma once
+#include <vector>
+
+#include "methods/wavelet_fog/options.h"
+#include "methods/wavelet_fog/sun_map.h"
+#include "scene/math/gauss_legendre.h"
+
+namespace airlight::wavelet_fog {
+
+// What rays read.
+struct SunVisits {
+  long points = 0, shadow_rays = 0;
+};
+
+class SunScattering {
+ public:
+  // Of all directional lights of the scene, which outlives this and has fogmaps alone.
+  SunScattering(const scene::Scene&, const Options&, const scene::Execution&);
+
+  // Over 0 < t < length, which may be infinite [W/m^2/sr].
+  Rgb airlight(const Ray&, double length, SunVisits&) const;
+
+ private:
+  struct Sun {
+    scene::DirectionalLight light;
+    std::vector<SunMap> maps;  // one for each medium
+  };
+  struct Rule {  // on [0, 1]
+    std::vector<double> node, weight;
+    std::vector<double> upto;  // [node][term]: integral from 0 to the node of the polynomial through all terms
+  };
+  struct Along;  // a ray under a sun
+
+  static Rule rule_of(int points);
+  std::vector<Interval> cells(const Ray&, double length) const;
+  Rgb scattered(const Sun&, const Ray&, const std::vector<Interval>& cells, SunVisits&) const;
+  void add(Along&, Interval, bool lit, int halvings = 0) const;
+
+  const scene::Geometry* geometry_;  // null without surfaces
+  std::vector<const scene::Medium*> media_;
+  std::vector<Sun> suns_;
+  Rule rule_;
+  int shadow_steps_;
+  double least_;  // transmittance at which a ray ends
+};
+
+}  // namespace airlight::wavelet_fog

@@ -1,0 +1,72 @@
+// Fogmaps on the GPU against those on the CPU: same settings, same picture to single precision. Bounds are within 3 times of what
+// is measured.
+#include "tests/gpu/wavelet_fog/pictures.h"
+
+using namespace airlight;
+using namespace airlight::gpu::test;
+
+namespace {
+
+const std::pair<Point3, Point3> views[] = {
+    {{-12, 2, -22}, {3, 1.5, 8}}, {{0, 1, 0}, {10, 0.5, 3}}, {{-60, 9, -45}, {0, 2, 0}}, {{5, 25, 5}, {6, 0, 5.5}}};
+
+const scene::HeightProfile profiles[] = {scene::SameAtAllHeights{}, scene::Layers{{0, 3, 8}, {1, 0.8, 0}},
+                                         scene::ExponentialFall{0.5, 2.5}};
+
+}  // namespace
+
+TEST_CASE("wavelet fog: GPU agrees with CPU in every profile and degree", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  for (int degree = 0; degree <= 3; ++degree)
+    for (const scene::HeightProfile& profile : profiles)
+      for (const auto& [eye, at] : views)
+        for (const char* variant : {"direct", "skip"}) {
+          auto fog = patches(degree, 40, 33, 1, 3 + degree, profile);
+          fog->cos_turn = 0.8, fog->sin_turn = 0.6;
+          const auto scene = scene_of(fog, 0.15, eye, at);
+          scene->name = fmt::format("degree {} {} from {}", degree, profile_name(profile), eye[1]);
+          compare(scene, {{"variant", variant}}, 2e-6);
+        }
+}
+
+TEST_CASE("wavelet fog: every variant on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  for (int degree = 0; degree <= 2; ++degree)
+    for (const char* coarse : {"wavelet", "clamped", "restricted"})
+      for (const auto& [eye, at] : views) {
+        const auto scene = scene_of(patches(degree, 64, 47, 0.8, 5 + degree, profiles[degree]), 0.2, eye, at);
+        scene->name = fmt::format("degree {} from {}", degree, eye[1]);
+        for (const char* variant : {"tele", "dist", "paper", "bound"})
+          compare(scene, {{"variant", variant}, {"coarse", coarse}, {"mu", "0.4"}, {"near", "8"}}, 1e-5);
+      }
+}
+
+TEST_CASE("wavelet fog: the polar table on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  for (int degree = 0; degree <= 3; ++degree)
+    for (int profile = 0; profile < 2; ++profile)
+      for (const auto& [eye, at] : views) {
+        const auto scene = scene_of(patches(degree, 64, 47, 0.8, 5 + degree, profiles[profile]), 0.2, eye, at);
+        scene->name = fmt::format("degree {} {} from {}", degree, profile_name(profiles[profile]), eye[1]);
+        compare(scene, {{"variant", "polar"}}, 2e-5);
+      }
+}
+
+TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  auto valley = airlight::test::scene_named("wavelet_fog/valley", 96, 72);
+  compare(valley, {}, 1.7e-6);
+  compare(valley, {{"variant", "tele"}}, 3e-6);
+  compare(valley, {{"variant", "polar"}, {"first_hits", "raster"}}, 9e-6);
+  // A lamp and a spot in the fog, the first a ball, a second map across the first.
+  valley->lights.push_back(scene::PointLight{{-4, 2, -6}, Rgb(40, 30, 20), 0.4});
+  scene::SpotLight spot;
+  spot.position = {3, 6, -12}, spot.axis = Vec3(0.1, -1, 0.6).normalized(), spot.intensity = Rgb(90, 120, 150);
+  valley->lights.push_back(spot);
+  scene::Medium second;
+  second.field = scene::FogmapPointer(patches(1, 20, 20, 2, 7, scene::ExponentialFall{-1, 2}));
+  second.region = Box{{-15, -9, -15}, {15, 9, 15}};
+  second.sigma_t = Rgb(0.05, 0, 0.1);
+  valley->media.push_back(second);
+  compare(valley, {}, 1.7e-6);
+}
