@@ -54,7 +54,11 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
       fog_(std::get<scene::FogmapPointer>(medium.field).get()),
       options_(options),
       levels_(make_levels(fog_->map, families[fog_->map.degree()], options.coarse,
-                          uses_levels(options.variant) ? options.levels : 0, options.variant == Variant::paper)) {
+                          uses_levels(options.variant) ? options.levels : 0,
+                          options.variant == Variant::paper || options.variant == Variant::bands)) {
+  if (options.variant == Variant::bands)
+    wavelets_ =
+        decompose({fog_->map.range(), fog_->map.coefficients()}, family(families[fog_->map.degree()]), options.levels);
   if (options.variant == Variant::skip || options.variant == Variant::polar)
     blocks_.emplace(levels_, empty_blocks, false);
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
@@ -88,6 +92,9 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
       return skipped_depth(levels_, *blocks_, profile, line, way, enough_, visits);
     case Variant::paper:
       return summed_depth(levels_, profile, line, inside, reach, o.mu, visits);
+    case Variant::bands:
+      return banded_depth(levels_, *wavelets_, family(families[fog_->map.degree()]), profile, line, inside, reach, o.mu,
+                          visits);
     case Variant::tele:
       return telescoped_depth(levels_, profile, line, inside, reach, o.mu, visits);
     case Variant::dist: {
@@ -132,7 +139,7 @@ double LeveledFog::column(const PolarTable& table, const Ray& ray, double length
   const double across = std::hypot(line.du, line.dv);  // cells over the ground per metre
   if (!(across * t.length() > upright)) return column(ray, length, visits);
   const auto upto = [&](double at) {
-    ++visits.cells;
+    ++visits.lookups;
     return table.at(line.du, line.dv, at * across);
   };
   if (std::holds_alternative<scene::SameAtAllHeights>(fog_->profile))

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "methods/wavelet_fog/bands.h"
 #include "methods/wavelet_fog/blocks.h"
 #include "methods/wavelet_fog/options.h"
 #include "methods/wavelet_fog/polar_table.h"
@@ -28,7 +29,8 @@ class LeveledFog {
   Options options_;
   Levels levels_;
   std::optional<Blocks> blocks_;
-  double enough_;  // column at which a ray ends
+  std::optional<Decomposition> wavelets_;  // of `bands`
+  double enough_;                          // column at which a ray ends
 };
 
 }  // namespace airlight::wavelet_fog

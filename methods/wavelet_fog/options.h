@@ -19,6 +19,7 @@ struct Options {
     skip,    // the map itself, empty blocks passed at once
     bound,   // per block the coarsest level that keeps the error below the tolerance
     polar,   // integrals from the eye tabulated by angle and distance, once per frame
+    bands,   // as paper, by wavelets before their deconstruction
   };
   Variant variant = Variant::skip;
   Coarse coarse = Coarse::wavelet;
@@ -29,6 +30,8 @@ struct Options {
   int angles = 512;          // of `polar`
   double radial_step = 0.5;  // of `polar` [cells]
   double termination = 0;    // transmittance below which a ray ends; 0: never
+  int degree = -1;           // of the splines that the maps' pixels are coefficients of; -1: as the scene says
+  double keep = 1;           // share of the wavelet coefficients, the greatest, that the map is made of
   double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
 };
 // Those that read coarse grids.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "methods/wavelet_fog/compression.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "scene/background.h"
 #include "scene/error.h"
@@ -20,9 +21,10 @@ using scene::View;
 
 class PreparedWaveletFog final : public scene::Prepared {
  public:
-  PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options)
-      : scene_(std::move(scene)), options_(options) {
+  PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options) : options_(options) {
     scene::Stopwatch watch;
+    scene_ = with_maps_changed(std::move(scene), options, &compression_);
+    if (options.keep < 1) times_.push_back({"compression", watch.lap()});
     for (const scene::Medium& medium : scene_->media)
       if (extinguishes(medium)) fogs_.emplace_back(medium, options);
     times_.push_back({"levels", watch.lap()});
@@ -43,6 +45,7 @@ class PreparedWaveletFog final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   std::vector<LeveledFog> fogs_;
+  std::vector<CompressionReport> compression_;
   std::vector<scene::StageTime> times_;
 };
 
@@ -140,10 +143,18 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     const std::lock_guard lock(mutex);
     total.cells += visits.cells;
     total.coefficients += visits.coefficients;
+    total.lookups += visits.lookups;
   });
   result.times.push_back({"transmittance", watch.lap()});
   result.counters = {
       {"rays", double(film.pixels())}, {"cells", double(total.cells)}, {"coefficients", double(total.coefficients)}};
+  if (!tables.empty()) result.counters["lookups"] = double(total.lookups);
+  if (options_.keep < 1) {
+    for (const CompressionReport& report : compression_) {
+      result.counters["kept"] += double(report.kept);
+      result.counters["map_error_ppm"] = std::max(result.counters["map_error_ppm"], 1e6 * report.error);
+    }
+  }
   return result;
 }
 
