@@ -8,10 +8,10 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.0284227]
+set xrange [0:0.0180708]
 set logscale y
 set format y "%g"
-set yrange [7.82272e-07:0.135189]
+set yrange [7.27661e-07:0.135744]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.landscape.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 3 levels", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0029386:0.0274643]
+set xrange [0.00213409:0.0463534]
 set logscale y
 set format y "%g"
-set yrange [5.06333e-06:0.0282715]
+set yrange [2.60875e-07:0.0334392]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.smooth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 1 level", \
