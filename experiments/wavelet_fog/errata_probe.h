@@ -4,7 +4,7 @@
 
 namespace airlight::experiments {
 
-// Input: a scene with a fogmap, of degree 0 to 2. README of methods/wavelet_fog lists the errata.
+// Input: a scene with a fogmap, of degree 0 to 2. errata_probe.cpp says what each is.
 class WaveletErrata : public Probe {
  public:
   std::string name() const override { return "wavelet_errata"; }

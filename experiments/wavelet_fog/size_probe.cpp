@@ -68,8 +68,8 @@ std::string WaveletMapSize::about() const {
 }
 
 std::vector<scene::SettingSpec> WaveletMapSize::settings() const {
-  return {scene::choice_setting("variant", "direct", {"direct", "skip", "bound", "tele", "dist", "polar", "paper"},
-                                "of wavelet_fog"),
+  return {scene::choice_setting("depth", "direct", {"direct", "skip", "bound", "tele", "dist", "polar", "paper"},
+                                "how it comes about, as the variants of wavelet_fog"),
           scene::choice_setting("fog", "smooth", {"smooth", "patchy", "hard"}, "of 64 m a side, drawn at any size"),
           scene::integer_setting("size", "64", 2, 8192, "of the map, coefficients a side"),
           scene::integer_setting("levels", "3", 0, 12, "of paper, tele, dist and bound"),
@@ -84,7 +84,7 @@ std::vector<std::string> WaveletMapSize::figures() const { return {"rms", "great
 Findings WaveletMapSize::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
   const auto scene = make_scene(s.choice<Kind>("fog"), int(s.integer("size")), int(s.integer("width")));
   const airlight::wavelet_fog::WaveletFog method;
-  const std::string variant = s.text("variant");
+  const std::string variant = s.text("depth");
   const scene::Settings settings(method.settings(), {{"variant", variant},
                                                      {"levels", fmt::format("{}", s.integer("levels"))},
                                                      {"tolerance", fmt::format("{}", s.real("tolerance"))},

@@ -27,11 +27,12 @@ double norm_of(const Taps& taps, int degree) {
 // A coefficient of a decomposition and what it weighs.
 struct Weighed {
   double weight;
+  std::size_t order;
   double* value;
 };
 
 void weigh(Coefficients& band, double norm, std::vector<Weighed>& all) {
-  for (double& value : band.values) all.push_back({std::abs(value) * norm, &value});
+  for (double& value : band.values) all.push_back({std::abs(value) * norm, all.size(), &value});
 }
 
 }  // namespace
@@ -68,10 +69,11 @@ Compressed compress(const Coefficients& map, const Family& f, int levels, double
   const std::size_t wanted = std::size_t(std::ceil(keep * double(map.range.size[0]) * double(map.range.size[1])));
   Compressed result;
   if (wanted < all.size()) {
-    std::nth_element(
-        all.begin(), all.begin() + std::ptrdiff_t(wanted), all.end(), [](const Weighed& a, const Weighed& b) {
-          return a.weight != b.weight ? a.weight > b.weight : a.value < b.value;  // one order on every machine
-        });
+    std::nth_element(all.begin(), all.begin() + std::ptrdiff_t(wanted), all.end(),
+                     [](const Weighed& a, const Weighed& b) {
+                       return a.weight != b.weight ? a.weight > b.weight
+                                                   : a.order < b.order;  // ties of equal weight: the same every time
+                     });
     for (std::size_t i = wanted; i < all.size(); ++i) *all[i].value = 0;
   }
   for (std::size_t i = 0; i < std::min(wanted, all.size()); ++i) result.kept += *all[i].value != 0 ? 1 : 0;

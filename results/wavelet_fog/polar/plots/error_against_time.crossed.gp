@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00175733:0.0105034]
+set xrange [0.00164001:0.0176472]
 set logscale y
 set format y "%g"
 set yrange [2.16133e-07:0.000194987]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00191917:0.0117148]
+set xrange [0.00178045:0.0167505]
 set logscale y
 set format y "%g"
 set yrange [1.06013e-07:0.000158755]
