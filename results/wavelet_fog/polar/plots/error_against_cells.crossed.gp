@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [12641.6:125224]
 set logscale y
 set format y "%g"
-set yrange [2.16133e-07:0.000194987]
+set yrange [3.491e-07:0.000194596]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.crossed.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

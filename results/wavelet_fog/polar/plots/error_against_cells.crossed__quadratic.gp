@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [12858.1:127243]
 set logscale y
 set format y "%g"
-set yrange [1.06013e-07:0.000158755]
+set yrange [1.30739e-07:0.000158549]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.crossed__quadratic.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [11417.3:112657]
 set logscale y
 set format y "%g"
-set yrange [3.40346e-06:0.000761789]
+set yrange [4.05165e-06:0.000765728]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [11417.3:112657]
 set logscale y
 set format y "%g"
-set yrange [1.72748e-07:6.50927e-05]
+set yrange [1.46795e-07:5.87843e-05]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.smooth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

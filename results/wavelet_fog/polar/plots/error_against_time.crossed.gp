@@ -8,12 +8,10 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set logscale x
-set format x "%g"
-set xrange [0.00164001:0.0176472]
+set xrange [0:0.00283705]
 set logscale y
 set format y "%g"
-set yrange [2.16133e-07:0.000194987]
+set yrange [3.491e-07:0.000194596]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.crossed.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00178045:0.0167505]
+set xrange [0.000807397:0.0186513]
 set logscale y
 set format y "%g"
-set yrange [1.06013e-07:0.000158755]
+set yrange [1.30739e-07:0.000158549]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.crossed__quadratic.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

@@ -8,10 +8,12 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.0241882]
+set logscale x
+set format x "%g"
+set xrange [0.000886876:0.0286544]
 set logscale y
 set format y "%g"
-set yrange [3.40346e-06:0.000761789]
+set yrange [4.05165e-06:0.000765728]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [216508:1.10372e+07]
+set xrange [122045:6.19702e+06]
 set logscale y
 set format y "%g"
-set yrange [0.000977681:0.438109]
+set yrange [0.000529208:0.34502]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_coefficients.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "before, linear 16x16", \
