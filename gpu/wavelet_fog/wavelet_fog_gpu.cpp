@@ -210,6 +210,8 @@ std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene
   if (options.sun) reasons.push_back("sun is for the CPU: no shader scatters light of directional lights");
   if (options.variant == Options::Variant::pre)
     reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
+  if (options.keep < 1) reasons.push_back("keep is for the CPU: no shader compresses maps");
+  if (options.degree >= 0) reasons.push_back("degree is for the CPU: shaders take the scene's");
   if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }
