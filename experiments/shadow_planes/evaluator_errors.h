@@ -34,7 +34,7 @@ double map_error(const Evaluator&, double extinction, double h);
 double map_reference_error(double extinction, double h);
 
 // Relative error of the polynomial's integral about theta = 0 over random angles in [-reach, reach], a log-uniform, in
-// double precision: section 3 of the method's specification.
+// double precision.
 Spread errors_over_angles(int degree, double reach, double a_low, double a_high, int cases);
 
 // Endless rays over 0 to 90 degrees from a light at that optical distance: rms error over mean radiance.

@@ -118,9 +118,7 @@ Findings EvaluatorMap::run(const ProbeInput&, const scene::Settings& settings,
   return found;
 }
 
-std::string EvaluatorAngles::about() const {
-  return "relative error of the polynomial's integral over random angles (section 3 of the specification)";
-}
+std::string EvaluatorAngles::about() const { return "relative error of the polynomial's integral over random angles"; }
 
 std::vector<SettingSpec> EvaluatorAngles::settings() const {
   return {degree, scene::real_setting("reach", "0.25", 1e-3, 1.57, "angles lie within +-reach"),

@@ -1,4 +1,4 @@
-// One random walk from the eye: the estimators of the references' specification, section 3.
+// One random walk from the eye: which estimators are summed along it.
 //
 // Collisions by delta tracking. At every vertex one light is sampled (next-event estimation); the environment is
 // combined with the continuation of the walk, and a point light that is close to a medium with a "connection": a

@@ -78,8 +78,7 @@ std::vector<scene::Stage> PreparedTracer::stages() const {
 }  // namespace
 
 std::string PathTracer::about() const {
-  return "unbiased volume path tracer: delta tracking, next-event estimation, all orders (references' specification, "
-         "R1)";
+  return "unbiased volume path tracer: delta tracking, next-event estimation, all orders";
 }
 
 std::vector<scene::SettingSpec> PathTracer::settings() const { return setting_specs(); }

@@ -1,4 +1,4 @@
-// The stress list of the references' specification, section 10: what its cases have in common.
+// The stress list, cases at the ends of what scenes may hold: what they have in common.
 //
 // Statistical comparisons: all of [stress] together raise a false alarm with probability 1e-3 at most (seeds are
 // fixed; `limit` is the two-sided normal threshold for `comparisons` of them), and each asserts how small a deviation
