@@ -12,12 +12,12 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/loops_cut.glsl"
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_DEPTHS) buffer Depths { vec4 depths[]; };  // w: integral of this medium in the parts so far
-layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };  // low and high words: cells, coefficients; loops cut
+layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };  // low and high words: cells, coefficients; loops cut; 7, 8: lookups
 uniform int has_distances, first, counts;
 
-shared uint cells_of_group;
-void add_to_counter(int which, uint amount) {
-  if (atomicAdd(counters[2 * which], amount) > 0xffffffffu - amount) atomicAdd(counters[2 * which + 1], 1u);
+shared uint cells_of_group, lookups_of_group;
+void add_to_counter(int low, uint amount) {
+  if (atomicAdd(counters[low], amount) > 0xffffffffu - amount) atomicAdd(counters[low + 1], 1u);
 }
 #endif
 
@@ -39,7 +39,7 @@ void main() {
   lit[place].reflected = part + 1 < parts ? vec4(lit[place].reflected.rgb, sum) : vec4(lit[place].reflected.rgb * exp(-depth_of(sum)), 0);
 #else
   uint lookups = 0u;
-  if (gl_LocalInvocationIndex == 0u) cells_of_group = 0u;
+  if (gl_LocalInvocationIndex == 0u) cells_of_group = lookups_of_group = 0u;
   if (inside) {
     double end = has_distances != 0 ? double(distances[place]) : 1e37LF;
 #if VARIANT == VARIANT_POLAR
@@ -54,14 +54,12 @@ void main() {
   if (counts == 0) return;
   barrier();
   atomicAdd(cells_of_group, cells_read);
-  barrier();
-  uint read = cells_of_group;
-  barrier();
-  atomicAdd(cells_of_group, lookups);
+  atomicAdd(lookups_of_group, lookups);
   if (inside && loops_cut()) counters[4] = 1u;
   barrier();
   if (gl_LocalInvocationIndex != 0u) return;
   add_to_counter(0, cells_of_group);
-  add_to_counter(1, read * uint((DEGREE + 1) * (DEGREE + 1)));
+  add_to_counter(2, cells_of_group * uint((DEGREE + 1) * (DEGREE + 1)));
+  add_to_counter(7, lookups_of_group);
 #endif
 }

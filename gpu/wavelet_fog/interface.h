@@ -53,8 +53,8 @@ struct LitData {
   float reflected[4], sum[4];
   double t, unused;
 };
-// Low and high words of cells and coefficients, whether loops were cut, low and high words of points under a sun.
-constexpr int counter_words = 7;
+// Low and high words of cells and coefficients, whether loops were cut, low and high words of points under a sun and of lookups.
+constexpr int counter_words = 9;
 
 using Definitions = std::map<std::string, std::string>;
 

@@ -40,9 +40,10 @@ dvec2 looked_up(vec2 along, float r) {
 
 float column_of_table(dvec3 origin, dvec3 direction, double length_, inout uint lookups) {
   Line line = line_over(origin, direction);
-  dvec2 t = clip_to_support(grids[0], line, clip_to_region(origin, direction, dvec2(0, length_)));
+  dvec2 t = clip_to_region(origin, direction, dvec2(0, length_));
+  double across = length(line.along), reach = double(table_steps) * double(table_step);
+  if (across * t.y > reach) t.y = reach / across;  // the map need not be met: the table knows where it is
   if (!(t.y > t.x)) return 0;
-  double across = length(line.along);
   if (!(across * (t.y - t.x) > upright)) return column(origin, direction, length_);
   vec2 along = vec2(line.along / across);
   dvec2 before = dvec2(0);

@@ -164,6 +164,7 @@ void PreparedWaveletFogGpu::finish(scene::Rendering& result) const {
   if (words.empty()) return;
   result.counters["cells"] = words[0] + 4294967296.0 * words[1];
   result.counters["coefficients"] = words[2] + 4294967296.0 * words[3];
+  if (polar()) result.counters["lookups"] = words[7] + 4294967296.0 * words[8];
   if (sun_) result.counters["sun_points"] = words[5] + 4294967296.0 * words[6];
   if (words[4] != 0)
     throw Unavailable(fmt::format("gpu: {} ends the loops of a ray after 65535 iterations, too few for this map",

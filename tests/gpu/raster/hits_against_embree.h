@@ -31,14 +31,16 @@ struct Agreement {
 
 inline int kind_of(const scene::RayEnd& end) { return end.hit ? end.hit->surface : end.on_ball ? -2 : -1; }
 
-// Does the pixel show what this ray shows? The distance is that of the centre's ray on the same plane.
+// Does the pixel show what this ray shows? The distance is that of the centre's ray on the same plane, or, where they
+// graze it, between the two.
 inline bool shows(const PixelHit& pixel, int surface, const Ray& centre, const scene::RayEnd& end) {
   if (kind_of(end) != surface) return false;
   if (surface == -1) return pixel.distance == far_away;
   if (!end.hit) return std::abs(pixel.distance - end.t) <= 1e-2 * end.t;
   const Vec3 n = end.hit->normal, got(pixel.normal[0], pixel.normal[1], pixel.normal[2]);
   const double t = n.dot(end.hit->position - centre.origin) / n.dot(centre.direction);
-  return (got - n).norm() < 1e-4 && std::abs(pixel.distance - t) <= 1e-4 * end.t;
+  const double least = std::min(t, end.t), most = std::max(t, end.t), rounding = 1e-4 * end.t;
+  return (got - n).norm() < 1e-4 && pixel.distance >= least - rounding && pixel.distance <= most + rounding;
 }
 
 inline Agreement compare(Context& context, const scene::Scene& scene, const scene::View& view,
@@ -84,8 +86,8 @@ inline Agreement compare(Context& context, const scene::Scene& scene, const scen
       }
       // Beside the centre: what is shown is met by a ray there, and if something hides it, then not everywhere.
       bool met = false, seen = false, edge = false;
-      for (int k = 0; k < 16; ++k) {
-        const double angle = 2 * pi * k / 8, r = k < 8 ? 1.0 / 32 : 1.0 / 256;
+      for (int k = 0; k < 128; ++k) {  // many: a triangle seen from its edge is a sliver
+        const double angle = 2 * pi * k / 32, r = 1.0 / (32 << k / 32);
         const Ray moved = ray(r * std::cos(angle), r * std::sin(angle));
         const scene::RayEnd there = ray_end(scene, moved);
         seen = seen || shows(hit[i], surface[i], centre, there);
