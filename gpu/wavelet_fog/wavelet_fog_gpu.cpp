@@ -59,7 +59,7 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
       fogs_.push_back(
           std::make_unique<FogOnDevice>(context_, medium, options_, int(fogs_.size()), lamps_light_surfaces(*scene_)));
   composition_ = &program(context_, "composition", 64);
-  timer.begin("levels");
+  timer.begin("maps");
   for (const auto& fog : fogs_) fog->refresh();
   times_ = timer.times();
 }
@@ -67,7 +67,7 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
 std::vector<scene::Stage> PreparedWaveletFogGpu::stages() const {
   const bool levels = wavelet_fog::uses_levels(options_.variant) && !fogs_.empty(), lit = surfaces_->shines();
   const std::string none = "no fog extinguishes";
-  return {{"levels", levels,
+  return {{"coarser grids", levels,
            fogs_.empty() ? none
            : levels ? fmt::format("{} coarser grids, made on the device when the map is another one", options_.levels)
                     : "the map itself is read"},
@@ -167,7 +167,7 @@ scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution
   const Buffer& lit = frame_.buffers.get("lit", surfaces_->shines() ? sizeof(LitData) * pixels : sizeof(LitData));
   const Buffer *distances = nullptr, *primitives = nullptr;
   if (std::any_of(fogs_.begin(), fogs_.end(), [](const auto& fog) { return fog->stale(); })) {
-    frame_.timer.begin("levels");
+    frame_.timer.begin("maps");
     for (const auto& fog : fogs_)
       if (fog->stale()) fog->refresh();
   }

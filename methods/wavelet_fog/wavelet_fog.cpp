@@ -26,7 +26,7 @@ class PreparedWaveletFog final : public scene::Prepared {
     scene::Stopwatch watch;
     for (const scene::Medium& medium : scene_->media)
       if (extinguishes(medium)) fogs_.emplace_back(medium, options);
-    times_.push_back({"levels", watch.lap()});
+    times_.push_back({"maps", watch.lap()});
     if (!sunlit()) return;
     sun_.emplace(*scene_, options, execution);
     times_.push_back({"sun maps", watch.lap()});
@@ -67,7 +67,7 @@ std::vector<scene::Stage> PreparedWaveletFog::stages() const {
                         map.map.range().size[1], map.map.degree(), map.note.empty() ? "" : " (" + map.note + ")");
   }
   const std::string none = "no fog extinguishes";
-  return {{"levels", levels && !fogs_.empty(),
+  return {{"coarser grids", levels && !fogs_.empty(),
            fogs_.empty() ? none
            : levels      ? fmt::format("{} coarser grids of {}", options_.levels, maps)
                          : "the map itself is read: " + maps},
