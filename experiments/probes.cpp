@@ -4,6 +4,10 @@
 #include "experiments/fogshop/kernel_rate.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
 #include "experiments/verify/oracle_probe.h"
+#include "experiments/wavelet_fog/column_probe.h"
+#include "experiments/wavelet_fog/errata_probe.h"
+#include "experiments/wavelet_fog/seam_probe.h"
+#include "experiments/wavelet_fog/size_probe.h"
 
 namespace airlight::experiments {
 
@@ -17,6 +21,10 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<shadow_planes::EvaluatorImage>());
     list.push_back(std::make_unique<shadow_planes::EvaluatorTimes>());
     list.push_back(std::make_unique<shadow_planes::EvaluatorTimesGpu>());
+    list.push_back(std::make_unique<ColumnFogmaps>());
+    list.push_back(std::make_unique<WaveletSeams>());
+    list.push_back(std::make_unique<WaveletErrata>());
+    list.push_back(std::make_unique<WaveletMapSize>());
     return list;
   }();
   return probes;

@@ -23,11 +23,6 @@ void FrameBuffers::poison() {
     if (buffer) buffer->poison();
 }
 
-Download::~Download() {
-  const Use use(context_);
-  context_.gl().DeleteBuffers(1, &id_);  // unmaps it
-}
-
 void Download::begin(const std::optional<std::set<std::string>>& layers) {
   layers_ = layers;
   parts_.clear();
@@ -45,10 +40,11 @@ void Download::add_values(const std::string& name, const Buffer& buffer, std::si
 void Download::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   const Gl& gl = context_.gl();
-  gl.DeleteBuffers(1, &id_);
-  id_ = 0;
+  id_ = Handle();
   bytes_ = 0;
-  gl.CreateBuffers(1, &id_);
+  GLuint id = 0;
+  gl.CreateBuffers(1, &id);
+  id_ = Handle(context_, id, [](const Gl& gl, GLuint id) { gl.DeleteBuffers(1, &id); });  // unmaps it
   gl.NamedBufferStorage(id_, GLsizeiptr(bytes), nullptr, mapping | GL_CLIENT_STORAGE_BIT);
   ++context_.traffic().allocations;
   context_.check("making the buffer of downloads");

@@ -38,7 +38,6 @@ class FrameBuffers {
 class Download {
  public:
   explicit Download(Context& context) : context_(context) {}
-  ~Download();
   Download(const Download&) = delete;
 
   // Forgets what was added; `layers` as in scene::Execution.
@@ -77,7 +76,7 @@ class Download {
   std::optional<std::set<std::string>> layers_;
   std::vector<Part> parts_;
   std::map<std::string, std::vector<char>> values_;
-  GLuint id_ = 0;
+  Handle id_;
   std::size_t bytes_ = 0;
   const char* mapped_ = nullptr;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "scene/camera_rays.h"
 #include "scene/error.h"
 
 namespace airlight::scene {
@@ -27,15 +28,7 @@ Camera look_at(const Point3& position, const Point3& target, const Vec3& up) {
 }
 
 Ray camera_ray(const Camera& camera, double x, double y, int width, int height) {
-  const double aspect = double(width) / height;
-  const double sx = (2 * x / width - 1) * aspect;  // [-aspect, aspect], to the right
-  const double sy = 1 - 2 * y / height;            // [-1, 1], upwards
-  if (camera.kind == Camera::Kind::orthographic) {
-    const double half = 0.5 * camera.height;
-    return {camera.position + half * (sx * camera.right + sy * camera.up), camera.forward};
-  }
-  const double half = std::tan(0.5 * camera.vertical_fov);
-  return {camera.position, (camera.forward + half * (sx * camera.right + sy * camera.up)).normalized()};
+  return CameraRays(camera, width, height)(x, y);
 }
 
 }  // namespace airlight::scene

@@ -66,8 +66,8 @@ class Prepared {
   virtual std::vector<Stage> stages() const = 0;
   virtual std::vector<StageTime> prepare_times() const { return {}; }
   virtual Rendering render(const View&, const Execution&) const = 0;
-  // Becomes the preparation of the next frame, a scene that differs in its lights alone, and keeps what still holds. Wall
-  // clock per stage; nothing if it cannot, and is unchanged: then the next frame is prepared anew.
+  // Becomes the preparation of the next frame, where lights or media may differ, and keeps what still holds. Wall clock
+  // per stage; nothing if it cannot, and is unchanged: then the next frame is prepared anew.
   virtual std::optional<std::vector<StageTime>> next(std::shared_ptr<const Scene>, const Execution&) { return {}; }
 };
 

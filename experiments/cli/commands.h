@@ -44,8 +44,10 @@ struct ConvertOptions {
   std::vector<std::string> files;  // in, out, in, out, ...
   std::string layer = "mean";
   double exposure = 0;
+  std::string grid = "density";  // of an OpenVDB file
+  int pixels = 64, samples = 2, degree = 1;
 };
-// One layer of each file as PNG (8-bit sRGB) or PFM (linear floats).
+// One layer of each file as PNG (8-bit sRGB) or PFM (linear floats); an OpenVDB file as a fogmap of its columns.
 int convert(const ConvertOptions&);
 
 struct ExplainOptions {

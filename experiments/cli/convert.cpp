@@ -5,8 +5,10 @@
 
 #include "experiments/cli/commands.h"
 #include "scene/atomic_file.h"
+#include "scene/convert/fogmap_columns.h"
 #include "scene/error.h"
 #include "scene/film.h"
+#include "scene/grey_image.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -15,6 +17,21 @@ std::string kind_of(const std::string& out) {
   const std::string kind = std::filesystem::path(out).extension().string();
   if (kind != ".png" && kind != ".pfm") throw Error(fmt::format("{}: expected a name in .png or .pfm", out));
   return kind;
+}
+
+bool is_grid(const std::string& in) { return std::filesystem::path(in).extension() == ".vdb"; }
+
+// A voxel grid as a fogmap of its columns; prints the medium that shows it, and what it loses.
+void convert_columns(const std::string& in, const std::string& out, const ConvertOptions& options) {
+  const auto grid = std::make_shared<const scene::VoxelGrid>(scene::read_vdb(in, options.grid));
+  const scene::GroundPixels pixels = scene::ground_pixels(grid, options.pixels);
+  const scene::ColumnFogmap fog = scene::fogmap_from_columns(grid, pixels, options.samples, options.degree);
+  scene::write_grey_image(out, {pixels.width, pixels.height, fog.map.map.coefficients(), ""});
+  fmt::print("# columns: relative L2 error {:.2g}, sum {:.6f} of the grid's; density: relative L2 error {:.2g}\n",
+             fog.column_error, fog.column_ratio, fog.density_error);
+  fmt::print("[[medium]]\ntype = \"fogmap\"\nfile = \"{}\"\ncell = {}\ncorner = [{}, {}]\ndegree = {}\n",
+             std::filesystem::path(out).filename().string(), pixels.cell, pixels.x0, pixels.z0, options.degree);
+  fmt::print("region = {{ type = \"slab\", lo = {}, hi = {} }}\n", fog.heights.lo, fog.heights.hi);
 }
 
 void convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
@@ -35,8 +52,18 @@ void convert(const std::string& in, const std::string& out, const ConvertOptions
 }  // namespace
 
 int convert(const ConvertOptions& options) {
-  for (std::size_t i = 0; i < options.files.size(); i += 2) kind_of(options.files[i + 1]);
-  for (std::size_t i = 0; i < options.files.size(); i += 2) convert(options.files[i], options.files[i + 1], options);
+  const std::vector<std::string>& files = options.files;
+  for (std::size_t i = 0; i < files.size(); i += 2) {
+    if (!is_grid(files[i]))
+      kind_of(files[i + 1]);
+    else if (std::filesystem::path(files[i + 1]).extension() != ".exr")
+      throw Error(fmt::format("{}: expected a name in .exr for the map of a grid", files[i + 1]));
+  }
+  for (std::size_t i = 0; i < files.size(); i += 2)
+    if (is_grid(files[i]))
+      convert_columns(files[i], files[i + 1], options);
+    else
+      convert(files[i], files[i + 1], options);
   return 0;
 }
 

@@ -191,11 +191,17 @@ int dispatch(int argc, char** argv) {
   });
 
   ConvertOptions convert_options;
-  c = command(app, "convert", "a layer of OpenEXR files as PNG or PFM");
-  c->add_option("FILES", convert_options.files,
-                "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); more pairs may follow");
+  c = command(app, "convert", "a layer of OpenEXR files as PNG or PFM, a voxel grid as a fogmap");
+  c->add_option(
+      "FILES", convert_options.files,
+      "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); or OpenVDB file, and .exr: the map of its "
+      "columns, whose [[medium]] and errors are printed; more pairs may follow");
   c->add_option("--layer", convert_options.layer, "default mean");
   c->add_option("--exposure", convert_options.exposure, "of a PNG, in powers of two");
+  c->add_option("--grid", convert_options.grid, "of an OpenVDB file (density)");
+  c->add_option("--pixels", convert_options.pixels, "of a map, along its longer side (64)")->check(CLI::Range(1, 8192));
+  c->add_option("--samples", convert_options.samples, "squared: upright rays a pixel (2)")->check(CLI::Range(1, 64));
+  c->add_option("--degree", convert_options.degree, "of a map's splines (1)")->check(CLI::Range(0, 3));
   c->final_callback([&] {
     action = [&] {
       require(convert_options.files.empty() ? "" : convert_options.files.front(), "IN");

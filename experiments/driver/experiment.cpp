@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "experiments/driver/bounds.h"
+#include "experiments/driver/next_frames.h"
 #include "experiments/driver/toml_values.h"
 #include "experiments/metrics.h"
 #include "experiments/probes.h"
@@ -194,7 +195,7 @@ class Reader {
   void methods(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "method")) {
       std::vector<std::string> keys{"name", component_key(), "settings", "sweep", "profiles", "scenes"};
-      if (!numbers_) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving_lights"});
+      if (!numbers_) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving"});
       reader.allow(keys);
       MethodCase method;
       method.renderer = reader.text(component_key());
@@ -204,7 +205,7 @@ class Reader {
         method.layer = reader.text("layer", experiment_.layer);
         method.picture_only = reader.flag("picture_only", false);
         method.count_noise = reader.flag("count_noise", false);
-        method.moving_lights = reader.flag("moving_lights", false);
+        if (reader.has("moving")) method.moving = reader.choice("moving", what_may_move());
       }
       method.scenes = strings(*table, "scenes", reader);
       for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");

@@ -29,7 +29,7 @@ struct MethodCase {
   std::string layer;                // compared with the reference's layer
   bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
   bool picture_only = false;        // rendered and timed, not compared
-  bool moving_lights = false;       // each timed run is the next frame, whose lights have moved, and its render
+  std::string moving;               // each timed run is the next frame, of which this has moved; empty: one frame
   std::vector<std::string> scenes;  // empty: all
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/driver/keeper.h"
+#include "experiments/driver/next_frames.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/reference_cache.h"
@@ -62,41 +63,6 @@ std::shared_ptr<scene::Prepared> prepare(const Experiment& e, const Judged& judg
   return prepared;
 }
 
-// Frames of lights that move to and fro by a millimetre: the next frame, and its render.
-class MovingLights {
- public:
-  MovingLights(std::shared_ptr<scene::Prepared> prepared, std::shared_ptr<const scene::Scene> here)
-      : prepared_(std::move(prepared)), here_(std::move(here)) {
-    auto there = std::make_shared<scene::Scene>(*here_);
-    for (scene::Light& light : there->lights) light = scene::moved(light, {1e-3, 0, 0});
-    there_ = there;
-  }
-
-  // Ends where the scene has its lights.
-  scene::Rendering render(const scene::View& view, const scene::Execution& execution) {
-    one(there_, view, execution);
-    return one(here_, view, execution);
-  }
-  std::vector<scene::StageTime> again(const scene::View& view, const scene::Execution& execution) {
-    std::swap(here_, there_);
-    return one(here_, view, execution).times;
-  }
-
- private:
-  scene::Rendering one(const std::shared_ptr<const scene::Scene>& at, const scene::View& view,
-                       const scene::Execution& execution) {
-    auto times = prepared_->next(at, execution);
-    if (!times) throw scene::NotSupported("", "its lights cannot move: every frame is prepared anew");
-    scene::Rendering rendering = prepared_->render(view, execution);
-    times->insert(times->end(), rendering.times.begin(), rendering.times.end());
-    rendering.times = std::move(*times);
-    return rendering;
-  }
-
-  std::shared_ptr<scene::Prepared> prepared_;
-  std::shared_ptr<const scene::Scene> here_, there_;
-};
-
 // A device's frame is complete there: what is timed reads nothing back.
 scene::Execution as_timed(scene::Execution execution, const Row& row) {
   if (!row.device.empty()) execution.layers.emplace();
@@ -127,7 +93,8 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
   row.device = planned.renderer->device();
   const scene::Execution timed = as_timed(execution, row);
   if (!row.device.empty()) prepared->render(judged->view, timed);  // drivers compile shaders at first use
-  const auto moving = m.moving_lights ? std::make_shared<MovingLights>(prepared, judged->planned.scene) : nullptr;
+  const auto moving =
+      m.moving.empty() ? nullptr : std::make_shared<NextFrames>(prepared, judged->planned.scene, m.moving);
   double first = 0;
   const auto render = [&](const scene::Execution& how) {
     const double start = steady_seconds();

@@ -94,9 +94,10 @@ std::vector<float> FogOnDevice::tables() {
     all.insert(all.end(), values.begin(), values.end());
     return int(from);
   };
-  table_places_.colours = add(colours(model_.gaussians));
   table_places_.permutation = add(permutation(model_));
   table_places_.f = add(rest_of_f(model_, needs_.f_table, table_places_.f_size));
+  table_places_.colours =
+      add(colours(model_.gaussians));  // last: places are in the shaders, numbers of Gaussians are not
   return all;
 }
 

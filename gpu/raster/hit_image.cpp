@@ -15,9 +15,12 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
   const Gl& gl = context.gl();
   const GLenum formats[3] = {GL_R32F, GL_R32I, GL_DEPTH_COMPONENT32F};
   const GLenum attachments[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_DEPTH_ATTACHMENT};
-  gl.CreateFramebuffers(1, &framebuffer_);
-  gl.CreateTextures(GL_TEXTURE_2D, 3, textures_);
+  GLuint id = 0;
+  gl.CreateFramebuffers(1, &id);
+  framebuffer_ = Handle(context, id, [](const Gl& gl, GLuint id) { gl.DeleteFramebuffers(1, &id); });
   for (int i = 0; i < 3; ++i) {
+    gl.CreateTextures(GL_TEXTURE_2D, 1, &id);
+    textures_[i] = Handle(context, id, [](const Gl& gl, GLuint id) { gl.DeleteTextures(1, &id); });
     gl.TextureStorage2D(textures_[i], 1, formats[i], width, height);
     gl.NamedFramebufferTexture(framebuffer_, attachments[i], textures_[i], 0);
   }
@@ -28,12 +31,6 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
   if (status != GL_FRAMEBUFFER_COMPLETE)
     throw Error(fmt::format("gpu: {} refuses a framebuffer of 32-bit floats and integers (status {:#x})",
                             context.renderer(), status));
-}
-
-HitImage::~HitImage() {
-  const Use use(context_);
-  context_.gl().DeleteFramebuffers(1, &framebuffer_);
-  context_.gl().DeleteTextures(3, textures_);
 }
 
 void HitImage::begin() const {

@@ -10,7 +10,6 @@ class HitImage {
  public:
   // Throws Unavailable if the device's textures are smaller, Error if it has no such framebuffer.
   HitImage(Context&, int width, int height);
-  ~HitImage();
   HitImage(const HitImage&) = delete;
 
   int width() const { return width_; }
@@ -29,7 +28,7 @@ class HitImage {
 
   Context& context_;
   int width_, height_;
-  GLuint framebuffer_ = 0, textures_[3] = {0, 0, 0};
+  Handle textures_[3], framebuffer_;
 };
 
 }  // namespace airlight::gpu

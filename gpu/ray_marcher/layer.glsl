@@ -47,7 +47,8 @@ layout(binding = 0) uniform sampler3D grid_texture[TEXTURES];
 #else
 layout(std430, binding = AT_GRID_VALUES) readonly buffer GridValues { float grid_value[]; };      // x fastest
 #endif
-layout(std430, binding = AT_FREE_DISTANCES) readonly buffer FreeDistances { float free_distance[]; };  // [cells] per brick of 4^3; -1: not empty
+// Of each brick of 4^3 cells [cells]; -1: not empty.
+layout(std430, binding = AT_FREE_DISTANCES) readonly buffer FreeDistances { float free_distance[]; };
 #endif
 
 // Loops over layers run to a uniform: unrolled, they make programs as many times as large.

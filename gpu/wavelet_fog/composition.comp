@@ -6,7 +6,8 @@ layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer TransmittanceL
 layout(std430, binding = AT_AMBIENT_LAYER) writeonly buffer AmbientLayer { float ambient_layer[]; };
 layout(std430, binding = AT_SURFACE_LAYER) writeonly buffer SurfaceLayer { float surface_layer[]; };
 layout(std430, binding = AT_MEAN_LAYER) writeonly buffer MeanLayer { float mean_layer[]; };
-uniform int pixels, has_fog, has_lit, has_ambient;
+layout(std430, binding = AT_AIRLIGHT_LAYER) readonly buffer AirlightLayer { float airlight_layer[]; };
+uniform int pixels, has_fog, has_lit, has_ambient, has_airlight;
 uniform vec3 ambient;  // [W/m^2/sr]
 
 // 1 - exp(-depth) without the digits that the difference loses in thin fog.
@@ -23,7 +24,7 @@ void main() {
     float clear = exp(-min(depth[c], 200)), surface = clear * behind[c], fog = ambient[c] * opacity(depth[c]);
     transmittance_layer[3 * place + c] = clear;
     surface_layer[3 * place + c] = surface;
-    mean_layer[3 * place + c] = surface + fog;
+    mean_layer[3 * place + c] = surface + fog + (has_airlight != 0 ? airlight_layer[3 * place + c] : 0);
     if (has_ambient != 0) ambient_layer[3 * place + c] = fog;
   }
 }

@@ -143,7 +143,7 @@ void FogOnDevice::add_grids() {
     }
   }
   const Variant v = options_.variant;
-  if (v == Variant::skip || v == Variant::polar || v == Variant::bound) add_blocks(v == Variant::bound);
+  if (v == Variant::skip || v == Variant::polar || v == Variant::bound || options_.sun) add_blocks(v == Variant::bound);
 }
 
 // wavelet_fog::Blocks: the greatest of each block for every level, then, with `errors`, how far coarser grids are off.

@@ -32,12 +32,15 @@ class FogOnDevice {
   Program& light_rays() { return *light_rays_; }
   void dim(const scene::View&, const Buffer& lit);
 
- private:
+  // For other programs over the same map: what they are compiled with, and the buffers.
   Definitions definitions() const;
+  void bind() const;
+  const scene::Medium& medium() const { return medium_; }
+
+ private:
   void add_grids();
   void add_blocks(bool errors);
   void write(const scene::Medium&);  // settings and profile
-  void bind() const;
 
   Context& context_;
   wavelet_fog::Options options_;

@@ -20,6 +20,11 @@ Definitions shared_definitions() {
   number("PROFILE_NONE", Profile::none);
   number("PROFILE_LAYERS", Profile::layers);
   number("PROFILE_EXPONENTIAL", Profile::exponential);
+  // By their place in the variant.
+  number("PHASE_RAYLEIGH", scene::PhaseFunction(scene::Rayleigh()).index());
+  number("PHASE_HENYEY_GREENSTEIN", scene::PhaseFunction(scene::HenyeyGreenstein()).index());
+  number("PHASE_HAZY", scene::PhaseFunction(scene::Hazy()).index());
+  number("PHASE_MURKY", scene::PhaseFunction(scene::Murky()).index());
   using Variant = wavelet_fog::Options::Variant;
   number("VARIANT_PAPER", Variant::paper);
   number("VARIANT_TELE", Variant::tele);
@@ -35,6 +40,8 @@ Definitions shared_definitions() {
                                                   {"DEPTHS", at::depths},
                                                   {"COUNTERS", at::counters},
                                                   {"LIT", at::lit},
+                                                  {"AIRLIGHT", at::airlight},
+                                                  {"AIRLIGHT_LAYER", at::airlight_layer},
                                                   {"PRIMITIVES", at::primitives},
                                                   {"MATERIALS", at::materials},
                                                   {"TABLES", at::tables},

@@ -21,6 +21,7 @@ enum Binding {
   depths = 6,
   counters = 7,
   lit = 8,
+  airlight = 6,  // sun.comp
   // surfaces.comp, background.comp
   primitives = 0,
   materials = 1,
@@ -30,6 +31,7 @@ enum Binding {
   ambient_layer = 1,
   surface_layer = 2,
   mean_layer = 3,
+  airlight_layer = 4,
 };
 }  // namespace at
 
@@ -51,7 +53,8 @@ struct LitData {
   float reflected[4], sum[4];
   double t, unused;
 };
-constexpr int counter_words = 5;  // low and high words of cells and coefficients, and whether loops were cut
+// Low and high words of cells and coefficients, whether loops were cut, low and high words of points under a sun.
+constexpr int counter_words = 7;
 
 using Definitions = std::map<std::string, std::string>;
 

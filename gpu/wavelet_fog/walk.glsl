@@ -4,6 +4,10 @@
 // The walk is in single precision, from an anchor that is computed in double every 32 cells or so: places are rounded to 4e-6
 // of a cell however large the map and however far away the eye.
 #include "wavelet_fog/cell.glsl"
+#ifndef FALL_BASE  // height and scale height where the factor falls [m]
+#define FALL_BASE knot_height(0)
+#define FALL_SCALE double(scale_height)
+#endif
 #if SKIPS || VARIANT == VARIANT_BOUND
 #define EMPTINESS_ACCESS readonly
 #include "wavelet_fog/emptiness.glsl"
@@ -27,8 +31,7 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
   ivec2 anchor = ivec2(corner), last = lo_of(g) + size_of(g) + DEGREE - 1;
   vec2 at = vec2(exact - corner), along = vec2(line.along);
 #if PROFILE == PROFILE_EXPONENTIAL
-  float height = float((line.height + t * line.rise - knot_height(0)) / double(scale_height));
-  float fall = float(line.rise / double(scale_height));
+  float height = float((line.height + t * line.rise - FALL_BASE) / FALL_SCALE), fall = float(line.rise / FALL_SCALE);
 #endif
 #if PROFILE == PROFILE_LAYERS || PROFILE == PROFILE_EXPONENTIAL
   vec2 linear = vec2(factor.value + t * factor.slope, factor.slope);

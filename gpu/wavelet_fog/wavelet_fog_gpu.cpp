@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gpu/wavelet_fog/sun_on_device.h"
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "scene/error.h"
@@ -41,6 +42,7 @@ class PreparedWaveletFogGpu final : public scene::Prepared {
   std::vector<std::unique_ptr<FogOnDevice>> fogs_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
   std::unique_ptr<SurfaceLight> surfaces_;
+  std::unique_ptr<SunOnDevice> sun_;  // null: no sun is asked for, or none shines
   Program* composition_ = nullptr;
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
@@ -58,6 +60,8 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
     if (extinguishes(medium))
       fogs_.push_back(
           std::make_unique<FogOnDevice>(context_, medium, options_, int(fogs_.size()), lamps_light_surfaces(*scene_)));
+  if (options_.sun && !fogs_.empty() && !suns_of(*scene_).empty())
+    sun_ = std::make_unique<SunOnDevice>(context_, *fogs_.front(), options_);
   composition_ = &program(context_, "composition", 64);
   timer.begin("maps");
   for (const auto& fog : fogs_) fog->refresh();
@@ -74,6 +78,11 @@ std::vector<scene::Stage> PreparedWaveletFogGpu::stages() const {
           {"distances", first_hits_ != nullptr, first_hits_ ? "where camera rays end" : "nothing ends a ray"},
           {"polar tables", polar(), polar() ? "integrals from the eye, in every frame" : "rays walk through cells"},
           {"transmittance", !fogs_.empty(), fogs_.empty() ? none : "one dispatch per map"},
+          {"airlight", sun_ != nullptr,
+           sun_            ? "directional lights, scattered once"
+           : !options_.sun ? "sun is not asked for"
+           : fogs_.empty() ? none
+                           : "no directional light shines"},
           {"surfaces", lit,
            lit ? "lamps through the fog, the environment" : "no surface is lit, and there is no environment"},
           {"composition", true, "layers of the film"}};
@@ -89,7 +98,8 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
   };
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size() ||
       scene->media.size() != scene_->media.size() || !wavelet_fog::reasons_against(*scene, options_).empty() ||
-      !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light))
+      !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light) ||
+      (options_.sun && suns_of(*scene).empty() != suns_of(*scene_).empty()))
     return std::nullopt;
   std::vector<const scene::Medium*> media;
   for (std::size_t i = 0; i < scene->media.size(); ++i) {
@@ -132,8 +142,13 @@ void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, cons
     layer("ambient", at::ambient_layer);
   else
     depths.bind(at::ambient_layer);
+  if (sun_)
+    layer("airlight", at::airlight_layer);
+  else
+    depths.bind(at::airlight_layer);
   depths.bind(at::depths);
   lit.bind(at::lit);
+  p.set("has_airlight", sun_ != nullptr);
   p.set("pixels", int(pixels));
   p.set("has_fog", !fogs_.empty());
   p.set("has_lit", surfaces_->shines());
@@ -149,6 +164,7 @@ void PreparedWaveletFogGpu::finish(scene::Rendering& result) const {
   if (words.empty()) return;
   result.counters["cells"] = words[0] + 4294967296.0 * words[1];
   result.counters["coefficients"] = words[2] + 4294967296.0 * words[3];
+  if (sun_) result.counters["sun_points"] = words[5] + 4294967296.0 * words[6];
   if (words[4] != 0)
     throw Unavailable(fmt::format("gpu: {} ends the loops of a ray after 65535 iterations, too few for this map",
                                   context_.renderer()));
@@ -178,6 +194,11 @@ scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution
     first_hits_->find(view, *distances, primitives);
   }
   find_depths(view, distances, depths, counters);
+  if (sun_) {
+    frame_.timer.begin("airlight");
+    sun_->render(*scene_, view, frame_.buffers, distances, frame_.buffers.get("airlight", 12 * pixels), counters,
+                 frame_.download.wants_any());
+  }
   if (surfaces_->shines()) {
     frame_.timer.begin("surfaces");
     surfaces_->render(*scene_, view, fogs_, primitives, lit);
@@ -207,9 +228,14 @@ std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = wavelet_fog::WaveletFog().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = wavelet_fog::read_options(settings);
-  if (options.sun) reasons.push_back("sun is for the CPU: no shader scatters light of directional lights");
+  if (options.sun && !scene.surfaces.empty())
+    reasons.push_back("sun with surfaces is for the CPU: no shader looks for their shadows in the fog");
+  if (options.sun && scene.media.size() > 1)
+    reasons.push_back("sun with several media is for the CPU: the shader scatters in one");
   if (options.variant == Options::Variant::pre)
     reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
+  if (options.keep < 1) reasons.push_back("keep is for the CPU: no shader compresses maps");
+  if (options.degree >= 0) reasons.push_back("degree is for the CPU: shaders take the scene's");
   if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }

@@ -18,6 +18,12 @@ double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
   return std::ldexp(o.near * fog.cell, level);
 }
 
+bool same_map(const scene::SplineMap& a, const scene::SplineMap& b) {
+  const scene::IndexRange &x = a.range(), &y = b.range();
+  return a.degree() == b.degree() && std::equal(x.lo, x.lo + 2, y.lo) && std::equal(x.size, x.size + 2, y.size) &&
+         a.coefficients() == b.coefficients();
+}
+
 }  // namespace
 
 LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
@@ -31,6 +37,17 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
   if (options.variant == Variant::bound) blocks_.emplace(levels_, options.levels, true);
   if (options.table > 0 || options.variant == Variant::pre) lay_bands();
   enough_ = enough_column(medium, options);
+}
+
+void LeveledFog::become(const scene::Medium& medium) {
+  const scene::Fogmap& now = *std::get<scene::FogmapPointer>(medium.field);
+  if (&now != fog_ && !same_map(now.map, fog_->map)) {
+    *this = LeveledFog(medium, options_);
+    return;
+  }
+  medium_ = &medium;
+  fog_ = &now;
+  enough_ = enough_column(medium, options_);
 }
 
 void LeveledFog::lay_bands() {
@@ -123,36 +140,44 @@ PolarTable LeveledFog::polar_table(const scene::View& view, const scene::Executi
 }
 
 double LeveledFog::column(const PolarTable& table, const Ray& ray, double length, Visits& visits) const {
-  const Interval t = scene::extent(*medium_, ray, {0, length});
-  if (t.empty()) return 0;
+  Interval t = scene::clip(medium_->region, ray, {0, length});
   const scene::MapLine line = line_over(*fog_, ray);
-  const double across = std::hypot(line.du, line.dv);  // cells over the ground per metre
+  const double across = std::sqrt(line.du * line.du + line.dv * line.dv);  // cells over the ground per metre
+  const double metres = 1 / across;                                        // per cell; infinite for an upright ray
+  t.hi = std::min(t.hi, table.reach() * metres);  // the map need not be met: the table knows where it is
+  const auto* layers = std::get_if<scene::Layers>(&fog_->profile);
+  if (layers && line.dy != 0) {
+    const Interval heights = occupied_heights(fog_->profile);
+    const double a = (heights.lo - line.y) / line.dy, b = (heights.hi - line.y) / line.dy;
+    t = intersect(t, {std::min(a, b), std::max(a, b)});
+  }
+  if (t.empty()) return 0;
   if (!(across * t.length() > upright)) return column(ray, length, visits);
+  const PolarTable::Place place = table.place(line.du, line.dv);
   const auto upto = [&](double at) {
-    ++visits.cells;
-    return table.at(line.du, line.dv, at * across);
+    ++visits.lookups;
+    return table.at(place, at * across);
   };
-  if (std::holds_alternative<scene::SameAtAllHeights>(fog_->profile))
-    return (upto(t.hi).f - (t.lo > 0 ? upto(t.lo).f : 0)) / across;
-  // Between knots the factor is alpha + beta s.
-  std::vector<double> cuts{t.lo};
-  if (line.dy != 0)
-    for (const double height : height_breaks(fog_->profile))
-      if (const double cut = (height - line.y) / line.dy; cut > t.lo && cut < t.hi) cuts.push_back(cut);
-  cuts.push_back(t.hi);
-  std::sort(cuts.begin(), cuts.end());
-  double sum = 0;
-  PolarTable::Moments from = t.lo > 0 ? upto(t.lo) : PolarTable::Moments();
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const PolarTable::Moments to = upto(cuts[i + 1]);
-    const double a = cuts[i] + 0.25 * (cuts[i + 1] - cuts[i]), b = cuts[i + 1] - 0.25 * (cuts[i + 1] - cuts[i]);
+  PolarTable::Moments before = t.lo > 0 ? upto(t.lo) : PolarTable::Moments();
+  if (!layers) return (upto(t.hi).f - before.f) * metres;
+  double sum = 0, from = t.lo;
+  const auto add = [&](double to) {  // between knots the factor is alpha + beta s
+    const PolarTable::Moments after = upto(to);
+    const double a = from + 0.25 * (to - from), b = to - 0.25 * (to - from);
     const double fa = factor_at(fog_->profile, line.y + a * line.dy),
                  fb = factor_at(fog_->profile, line.y + b * line.dy);
     const double beta = b > a ? (fb - fa) / ((b - a) * across) : 0, alpha = fa - beta * a * across;
-    sum += alpha * (to.f - from.f) + beta * (to.s_f - from.s_f);
+    sum += alpha * (after.f - before.f) + beta * (after.s_f - before.s_f);
+    before = after;
     from = to;
+  };
+  const int knots = int(layers->heights.size());
+  for (int k = 0; k < knots && line.dy != 0; ++k) {  // in the order that the ray meets them
+    const double cut = (layers->heights[line.dy > 0 ? k : knots - 1 - k] - line.y) / line.dy;
+    if (cut > from && cut < t.hi) add(cut);
   }
-  return sum / across;
+  add(t.hi);
+  return sum * metres;
 }
 
 }  // namespace airlight::wavelet_fog

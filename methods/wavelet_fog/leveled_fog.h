@@ -29,6 +29,10 @@ class LeveledFog {
   PolarTable polar_table(const scene::View&, const scene::Execution&) const;
   const scene::Medium& medium() const { return *medium_; }
 
+  // Of another medium, a fogmap likewise, while the one before is still there: where the map is the same its levels stay,
+  // whether the fog has moved, turned or grown.
+  void become(const scene::Medium&);
+
  private:
   void lay_bands();
   double summed_bands(const scene::HeightProfile&, const scene::MapLine&, Interval inside, double length,

@@ -32,9 +32,8 @@ Levels make_levels(const SplineMap& map, const std::string& family_name, Coarse 
   if (levels > most_levels(map.range()))
     throw Error(fmt::format("levels = {}, expected at most {} for {} x {} coefficients", levels,
                             most_levels(map.range()), map.range().size[0], map.range().size[1]));
-  // The map alone has no need of wavelets, which degree 3 has none of.
-  const Taps low =
-      levels == 0 || coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
+  Taps low;  // there is no family of degree 3: none is asked for where nothing is coarse
+  if (levels > 0) low = coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
   // Of large maps little may be held at once: what is not needed any more goes before the next copy is made.
   Levels result;
   Coefficients fine{map.range(), map.coefficients()};

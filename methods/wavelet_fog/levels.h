@@ -40,7 +40,7 @@ double reach_of(int m, double length, double mu);
 
 // What a ray read.
 struct Visits {
-  long cells = 0, coefficients = 0;
+  long cells = 0, coefficients = 0, lookups = 0;
 };
 // Integral of f h over t of one grid [m].
 double integral_of_level(const scene::SplineMap&, int level, const scene::HeightProfile&, const scene::MapLine&,

@@ -30,6 +30,11 @@ std::vector<scene::SettingSpec> setting_specs() {
       real_setting(
           "termination", "0", 0, 0.999,
           "transmittance below which a ray ends; not with paper and pre, whose details may be negative; 0: never"),
+      integer_setting("degree", "-1", -1, 3,
+                      "of the splines that the pixels are coefficients of, in place of the scene's; -1: that"),
+      real_setting(
+          "keep", "1", 0, 1,
+          "share of the wavelet coefficients of `levels` levels, the greatest, that the map is made of; 1: all"),
       real_setting("fade", "0", 0, 1e9,
                    "m; the paper's: density falls by e over this vertical distance from the eye; 0: not at all"),
       integer_setting(
@@ -58,6 +63,8 @@ Options read_options(const scene::Settings& settings) {
   o.angles = int(settings.integer("angles"));
   o.radial_step = settings.real("radial_step");
   o.termination = settings.real("termination");
+  o.degree = int(settings.integer("degree"));
+  o.keep = settings.real("keep");
   o.fade = settings.real("fade");
   o.table = int(settings.integer("table"));
   o.lookup = settings.choice<PathTable::Lookup>("lookup");
@@ -135,14 +142,17 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       reasons.push_back(
           fmt::format("table with a profile of {}, expected none: it holds integrals over the ground alone",
                       scene::label(scene.media, i)));
-    if (!uses_levels(o.variant)) continue;
+    if (!uses_levels(o.variant) && o.keep == 1) continue;
     if (o.levels > most_levels(map.range()))
       reasons.push_back(fmt::format("levels = {}, expected at most {} for the {} x {} coefficients of {}", o.levels,
                                     most_levels(map.range()), map.range().size[0], map.range().size[1],
                                     scene::label(scene.media, i)));
-    if (map.degree() == 3 && (o.coarse != Coarse::restricted || o.variant == Options::Variant::pre))
-      reasons.push_back(fmt::format("{} has degree 3, for which there is no wavelet: expected coarse = restricted",
-                                    scene::label(scene.media, i)));
+    if (o.keep < 1 && o.levels == 0) reasons.push_back("keep with levels = 0: without levels there are no wavelets");
+    if ((o.degree < 0 ? map.degree() : o.degree) == 3 &&
+        (o.coarse != Coarse::restricted || o.variant == Options::Variant::pre || o.keep < 1))
+      reasons.push_back(
+          fmt::format("{} has degree 3, for which there is no wavelet: expected coarse = restricted, keep = 1",
+                      scene::label(scene.media, i)));
   }
   add_reasons_of_settings(o, reasons);
   const bool polar = o.variant == Options::Variant::polar;

@@ -31,6 +31,8 @@ struct Options {
   int angles = 512;          // of `polar`
   double radial_step = 0.5;  // of `polar` [cells]
   double termination = 0;    // transmittance below which a ray ends; 0: never
+  int degree = -1;           // of the splines that the maps' pixels are coefficients of; -1: as the scene says
+  double keep = 1;           // share of the wavelet coefficients, the greatest, that the map is made of
   double fade = 0;  // [m] the paper's: density falls by e over this vertical distance from the eye; 0: not at all
   int table = 0;    // R of the paper's tables of path integrals, of direct, pre and paper; 0: exact
   PathTable::Lookup lookup = PathTable::Lookup::nearest;

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "methods/wavelet_fog/interpolation.h"
+#include "scene/media/spline_integral.h"
 
 namespace airlight::wavelet_fog {
 namespace {
@@ -17,6 +18,48 @@ double farthest(const SplineMap& map, double u, double v) {
   const double x = std::max(std::abs(map.support_lo(0) - u), std::abs(map.support_hi(0) - u));
   const double y = std::max(std::abs(map.support_lo(1) - v), std::abs(map.support_hi(1) - v));
   return std::hypot(x, y);
+}
+
+// Of f and s f over [from, to] in a cell, by n + 1 Gauss points: exact for the degree 2 n + 1 of the second.
+template <int n, class Entry>
+void add_piece(const SplineMap& map, const MapLine& line, int i, int j, double from, double to, Entry& sum) {
+  const auto& rule = scene::spline_integral::unit_rule(n + 1);
+  for (int k = 0; k <= n; ++k) {
+    const double s = from + rule.node[k] * (to - from);
+    const double f = (to - from) * rule.weight[k] *
+                     scene::spline_integral::in_cell<n>(map.cell(i, j), map.stride(), line.u + s * line.du - i,
+                                                        line.v + s * line.dv - j);
+    sum.f += f;
+    sum.s_f += s * f;
+  }
+}
+
+// Entries 0 to steps of a spoke, in one walk. Returns the pieces of cells that were visited.
+template <int n, class Entry>
+long fill_spoke(const SplineMap& map, const MapLine& line, double step, int steps, Entry* entry) {
+  Entry sum{0, 0, 0};
+  int next = 0;
+  const auto close = [&](double upto) {  // entries up to a distance
+    for (; next <= steps && next * step <= upto; ++next) {
+      sum.value = map.at(line.u + next * step * line.du, line.v + next * step * line.dv);
+      entry[next] = sum;
+    }
+  };
+  long pieces = 0;
+  close(0);
+  walk_cells(map, line, {0, steps * step}, [&](int i, int j, double from, double to) {
+    close(from);
+    while (from < to) {
+      const double upto = std::min(to, next * step);
+      add_piece<n>(map, line, i, j, from, upto, sum);
+      ++pieces;
+      close(upto);
+      from = upto;
+    }
+    return false;
+  });
+  close(infinity);
+  return pieces;
 }
 
 }  // namespace
@@ -62,58 +105,46 @@ PolarTable::PolarTable(const SplineMap& map, double u, double v, const Fan& fan,
       steps_(steps_to_rim(map, u, v, step)),
       spacing_(fan.span / angles),
       step_(step),
+      per_spacing_(1 / spacing_),
+      per_step_(1 / step),
       first_moment_(with_first_moment),
       entries_(std::size_t(angles_) * (steps_ + 1)) {
-  const double reach = steps_ * step;
-  const scene::HeightProfile one = scene::SameAtAllHeights{}, distance = scene::Layers{{0, reach}, {0, reach}};
   std::mutex mutex;
   scene::parallel_rows(angles_, execution, [&](int i) {
+    Entry* spoke = entries_.data() + std::size_t(i) * (steps_ + 1);
     const double angle = fan_.first + (i - 1) * spacing_;
     const MapLine line{u, v, 0, std::cos(angle), std::sin(angle), 1};
-    const Interval inside = clip(map, line, {0, reach});
-    Entry* entry = entries_.data() + std::size_t(i) * (steps_ + 1);
-    Entry sum{0, 0, map.at(u, v)};
-    entry[0] = sum;
-    long cells = 0;
-    for (int k = 0; k < steps_; ++k) {
-      const Interval part = intersect(inside, {k * step, (k + 1) * step});
-      if (!part.empty()) {
-        sum.f += scene::integral(map, one, line, part, &cells);
-        if (first_moment_) sum.s_f += scene::integral(map, distance, line, part);
-      }
-      sum.value = map.at(u + (k + 1) * step * line.du, v + (k + 1) * step * line.dv);
-      entry[k + 1] = sum;
-    }
+    const long cells =
+        scene::with_degree(map.degree(), [&](auto n) { return fill_spoke<n()>(map, line, step, steps_, spoke); });
     const std::lock_guard lock(mutex);
     cells_ += cells;
   });
 }
 
-PolarTable::Moments PolarTable::on_spoke(int angle, double r) const {
-  const Entry* entry = entries_.data() + std::size_t(std::clamp(angle, 0, angles_ - 1)) * (steps_ + 1);
-  const double place = r / step_;
-  if (place >= steps_) return {entry[steps_].f, entry[steps_].s_f};
-  const int k = int(place);
-  const double t = place - k;
-  const Entry &a = entry[k], &b = entry[k + 1];
-  Moments m{hermite(t, a.f, step_ * a.value, b.f, step_ * b.value), 0};
-  if (first_moment_) m.s_f = hermite(t, a.s_f, step_ * step_ * k * a.value, b.s_f, step_ * step_ * (k + 1) * b.value);
-  return m;
+PolarTable::Place PolarTable::place(double du, double dv) const {
+  double angle = std::atan2(dv, du) - fan_.first;
+  while (angle < 0) angle += 2 * pi;
+  while (angle >= 2 * pi) angle -= 2 * pi;
+  const double place = angle * per_spacing_ + 1;
+  const int i = std::min(int(place), angles_ - 2);
+  return {i - 1, place - i};
 }
 
-PolarTable::Moments PolarTable::at(double du, double dv, double r) const {
-  double angle = std::fmod(std::atan2(dv, du) - fan_.first, 2 * pi);
-  if (angle < 0) angle += 2 * pi;
-  const double place = angle / spacing_ + 1;
-  const int i = std::min(int(place), angles_ - 2);
+PolarTable::Moments PolarTable::at(const Place& place, double r) const {
+  const double along = std::min(r * per_step_, double(steps_));
+  const int k = std::min(int(along), steps_ - 1);
+  const double t = along - k, w = 1 - t;
+  // Hermite: values and slopes at both ends.
+  const double a0 = w * w * (1 + 2 * t), a1 = w * w * t * step_, b0 = t * t * (1 + 2 * w), b1 = -t * t * w * step_;
+  const double a2 = a1 * step_ * k, b2 = b1 * step_ * (k + 1);  // the slope of s f is s times that of f
   double f[4], s_f[4];
-  for (int k = 0; k < 4; ++k) {
-    const Moments m = on_spoke(i + k - 1, r);
-    f[k] = m.f;
-    s_f[k] = m.s_f;
+  for (int n = 0; n < 4; ++n) {
+    const Entry* entry = entries_.data() + std::size_t(std::min(place.first + n, angles_ - 1)) * (steps_ + 1);
+    const Entry &a = entry[k], &b = entry[k + 1];
+    f[n] = a0 * a.f + a1 * a.value + b0 * b.f + b1 * b.value;
+    if (first_moment_) s_f[n] = a0 * a.s_f + a2 * a.value + b0 * b.s_f + b2 * b.value;
   }
-  const double t = place - i;
-  return {catmull_rom(t, f), first_moment_ ? catmull_rom(t, s_f) : 0};
+  return {catmull_rom(place.t, f), first_moment_ ? catmull_rom(place.t, s_f) : 0};
 }
 
 }  // namespace airlight::wavelet_fog

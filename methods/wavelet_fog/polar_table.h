@@ -27,19 +27,27 @@ class PolarTable {
 
   // Up to r cells in the direction (du, dv), of any length but 0, in the fan. Cubic in the angle (Catmull and Rom) and in the distance
   // (Hermite, by the map's own values).
-  Moments at(double du, double dv, double r) const;
-  long cells() const { return cells_; }  // visited for the table
+  Moments at(double du, double dv, double r) const { return at(place(du, dv), r); }
+  // The same for many distances in one direction.
+  struct Place {
+    int first;  // of the four spokes around the direction
+    double t;   // from the second to the third of them, in [0, 1]
+  };
+  Place place(double du, double dv) const;
+  Moments at(const Place&, double r) const;
+  double reach() const { return steps_ * step_; }  // [cells], beyond the map: nothing is added farther out
+  long cells() const { return cells_; }            // visited for the table
 
  private:
   struct Entry {
     double f, s_f, value;  // integrals up to here, and the map here
   };
-  Moments on_spoke(int angle, double r) const;
 
   Fan fan_;
   int angles_, steps_;
   double spacing_;  // of angles; the first spoke lies one before the fan
   double step_;
+  double per_spacing_, per_step_;  // their inverses
   bool first_moment_;
   long cells_ = 0;
   std::vector<Entry> entries_;  // [angle][distance]

@@ -13,8 +13,6 @@ using scene::Fogmap;
 using scene::HeightProfile;
 using scene::MapLine;
 
-constexpr double least_way = 2;  // cells over the ground up to which the walk is as short as a lookup, and exact
-
 MapLine to_sun_from(const Fogmap& fog, const Point3& x, const Vec3& to_sun) { return line_over(fog, {x, to_sun}); }
 
 // Of the support, in axes along and across the azimuth.
@@ -45,46 +43,61 @@ double SunMap::entries(const Fogmap& fog, const Vec3& to_sun, double step) {
   return ((e.hi[0] - e.lo[0]) / step + 2) * ((e.hi[1] - e.lo[1]) / step + 4);
 }
 
-SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, const scene::Execution& execution)
-    : medium_(&medium), fog_(std::get<scene::FogmapPointer>(medium.field).get()), to_sun_(to_sun), step_(step) {
-  const MapLine line = to_sun_from(*fog_, Point3::Zero(), to_sun);
-  across_ = std::hypot(line.du, line.dv);
-  upright_ = fog_->map.empty() || !(across_ > 0);
-  if (upright_) return;
-  along_[0] = line.du / across_;
-  along_[1] = line.dv / across_;
-  if (const auto* fall = std::get_if<ExponentialFall>(&fog_->profile)) k_ = line.dy / (across_ * fall->scale_height);
-  const Extent e = turned_support(*fog_, along_);
+SunRows rows_towards(const Fogmap& fog, const Vec3& to_sun, double step) {
+  SunRows rows;
+  const MapLine line = to_sun_from(fog, Point3::Zero(), to_sun);
+  rows.across = std::hypot(line.du, line.dv);
+  rows.upright = fog.map.empty() || !(rows.across > 0);
+  if (rows.upright) return rows;
+  rows.along[0] = line.du / rows.across;
+  rows.along[1] = line.dv / rows.across;
+  if (const auto* fall = std::get_if<ExponentialFall>(&fog.profile))
+    rows.k = line.dy / (rows.across * fall->scale_height);
+  const Extent e = turned_support(fog, rows.along);
   // A row beyond the support on either side, and one more to interpolate from.
-  columns_ = int(std::ceil((e.hi[0] - e.lo[0]) / step)) + 1;
-  rows_ = int(std::ceil((e.hi[1] - e.lo[1]) / step)) + 3;
-  lo_[0] = e.lo[0];
-  lo_[1] = e.lo[1] - step;
-  entries_.resize(std::size_t(columns_) * rows_);
-  scene::parallel_rows(rows_, execution, [&](int row) { fill_row(row); });
+  rows.columns = int(std::ceil((e.hi[0] - e.lo[0]) / step)) + 1;
+  rows.rows = int(std::ceil((e.hi[1] - e.lo[1]) / step)) + 3;
+  rows.lo[0] = e.lo[0];
+  rows.lo[1] = e.lo[1] - step;
+  return rows;
+}
+
+SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, const scene::Execution& execution)
+    : medium_(&medium),
+      fog_(std::get<scene::FogmapPointer>(medium.field).get()),
+      to_sun_(to_sun),
+      step_(step),
+      rows_(rows_towards(*fog_, to_sun, step)) {
+  if (rows_.upright) return;
+  entries_.resize(std::size_t(rows_.columns) * rows_.rows);
+  scene::parallel_rows(rows_.rows, execution, [&](int row) { fill_row(row); });
 }
 
 // From the sun's side on.
 void SunMap::fill_row(int row) {
-  const double q = lo_[1] + row * step_;
-  const MapLine line{
-      lo_[0] * along_[0] - q * along_[1], lo_[0] * along_[1] + q * along_[0], 0, along_[0], along_[1], 1};
-  const double reach = (columns_ - 1) * step_;
+  const double q = rows_.lo[1] + row * step_;
+  const MapLine line{rows_.lo[0] * rows_.along[0] - q * rows_.along[1],
+                     rows_.lo[0] * rows_.along[1] + q * rows_.along[0],
+                     0,
+                     rows_.along[0],
+                     rows_.along[1],
+                     1};
+  const double reach = (rows_.columns - 1) * step_;
   const HeightProfile one = scene::SameAtAllHeights{};
   const bool layered = std::holds_alternative<scene::Layers>(fog_->profile);
   const Interval inside = clip(fog_->map, line, {0, reach});
-  Entry* entry = entries_.data() + std::size_t(row) * columns_;
+  Entry* entry = entries_.data() + std::size_t(row) * rows_.columns;
   Moments sum;
-  for (int c = columns_ - 1; c >= 0; --c) {
+  for (int c = rows_.columns - 1; c >= 0; --c) {
     const Interval part = intersect(inside, {c * step_, (c + 1) * step_});
-    sum.fallen *= std::exp(-k_ * step_);
+    sum.fallen *= std::exp(-rows_.k * step_);
     if (layered) sum.f1 += step_ * sum.f0;
     if (!part.empty()) {
       sum.f0 += scene::integral(fog_->map, one, line, part);
       if (layered)
         sum.f1 += scene::integral(fog_->map, scene::Layers{{c * step_, (c + 1) * step_}, {0, step_}}, line, part);
-      if (k_ > 0)
-        sum.fallen += scene::integral(fog_->map, ExponentialFall{c * step_, 1 / k_}, line, part);
+      if (rows_.k > 0)
+        sum.fallen += scene::integral(fog_->map, ExponentialFall{c * step_, 1 / rows_.k}, line, part);
       else
         sum.fallen = sum.f0;
     }
@@ -94,10 +107,10 @@ void SunMap::fill_row(int row) {
 
 // p: from the first entry [cells].
 SunMap::Moments SunMap::on_row(int row, double p) const {
-  const Entry* entry = entries_.data() + std::size_t(std::clamp(row, 0, rows_ - 1)) * columns_;
+  const Entry* entry = entries_.data() + std::size_t(std::clamp(row, 0, rows_.rows - 1)) * rows_.columns;
   const double place = p / step_;
   if (!(place > 0)) return entry[0].sum;
-  if (!(place < columns_ - 1)) return {};
+  if (!(place < rows_.columns - 1)) return {};
   const int c = int(place);
   const double t = place - c;
   const Entry &a = entry[c], &b = entry[c + 1];
@@ -105,12 +118,12 @@ SunMap::Moments SunMap::on_row(int row, double p) const {
     return hermite(t, from, step_ * slope_from, to, step_ * slope_to);
   };
   return {between(a.sum.f0, -a.value, b.sum.f0, -b.value), between(a.sum.f1, -a.sum.f0, b.sum.f1, -b.sum.f0),
-          between(a.sum.fallen, k_ * a.sum.fallen - a.value, b.sum.fallen, k_ * b.sum.fallen - b.value)};
+          between(a.sum.fallen, rows_.k * a.sum.fallen - a.value, b.sum.fallen, rows_.k * b.sum.fallen - b.value)};
 }
 
 SunMap::Moments SunMap::at(double p, double q) const {
-  const double place = (q - lo_[1]) / step_;
-  if (!(place > -1 && place < rows_)) return {};
+  const double place = (q - rows_.lo[1]) / step_;
+  if (!(place > -1 && place < rows_.rows)) return {};
   const int row = int(std::floor(place));
   double f0[4], f1[4], fallen[4];
   for (int i = 0; i < 4; ++i) {
@@ -125,10 +138,11 @@ double SunMap::column(const Point3& x) const {
   const Ray ray{x, to_sun_};
   const Interval way = scene::extent(*medium_, ray, {0, infinity});
   if (way.empty()) return 0;
-  if (upright_ || !(across_ * way.length() > least_way)) return density_integral(*medium_, ray, way);
+  if (rows_.upright || !(rows_.across * way.length() > least_way)) return density_integral(*medium_, ray, way);
   const MapLine line = line_over(*fog_, ray);
-  const double p = line.u * along_[0] + line.v * along_[1] - lo_[0], q = line.v * along_[0] - line.u * along_[1];
-  const auto upto = [&](double t) { return std::isinf(t) ? Moments() : at(p + t * across_, q); };
+  const double p = line.u * rows_.along[0] + line.v * rows_.along[1] - rows_.lo[0],
+               q = line.v * rows_.along[0] - line.u * rows_.along[1];
+  const auto upto = [&](double t) { return std::isinf(t) ? Moments() : at(p + t * rows_.across, q); };
   double sum = 0;
   Moments from = upto(way.lo);
   const auto add = [&](Interval part) {
@@ -146,7 +160,7 @@ double SunMap::column(const Point3& x) const {
     } else {
       const double beta = (fb - fa) / (b - a), alpha = fa - beta * (a - part.lo);  // from part.lo on, per metre
       sum += alpha * (from.f0 - to.f0);
-      if (beta != 0) sum += beta * ((from.f1 - to.f1) / across_ - part.length() * to.f0);
+      if (beta != 0) sum += beta * ((from.f1 - to.f1) / rows_.across - part.length() * to.f0);
     }
     from = to;
   };
@@ -159,7 +173,7 @@ double SunMap::column(const Point3& x) const {
   if (line.dy > 0) std::for_each(heights.begin(), heights.end(), cut_at);
   if (line.dy < 0) std::for_each(heights.rbegin(), heights.rend(), cut_at);
   add({start, way.hi});
-  return std::max(0.0, sum) / across_;
+  return std::max(0.0, sum) / rows_.across;
 }
 
 }  // namespace airlight::wavelet_fog

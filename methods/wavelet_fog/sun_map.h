@@ -14,8 +14,21 @@
 
 namespace airlight::wavelet_fog {
 
+// Where the entries of a map are.
+struct SunRows {
+  bool upright = false;      // no azimuth: there is no map, columns are walked
+  double along[2] = {1, 0};  // the azimuth in u and v
+  double across = 0;         // cells over the ground per metre to the sun
+  double k = 0;              // scale heights per cell
+  double lo[2] = {0, 0};     // first p and q of the rows [cells]
+  int columns = 0, rows = 0;
+};
+SunRows rows_towards(const scene::Fogmap&, const Vec3& to_sun, double step);
+
 class SunMap {
  public:
+  static constexpr double least_way =
+      2;  // cells over the ground up to which the walk is as short as a lookup, and exact
   static constexpr double most_entries = 1 << 25;
   // Of a map with that step.
   static double entries(const scene::Fogmap&, const Vec3& to_sun, double step);
@@ -43,12 +56,8 @@ class SunMap {
   const scene::Medium* medium_;
   const scene::Fogmap* fog_;
   Vec3 to_sun_;
-  bool upright_ = false;      // no azimuth: columns are walked
-  double along_[2] = {1, 0};  // the azimuth in u and v
-  double across_ = 0;         // cells over the ground per metre to the sun
-  double k_ = 0;              // scale heights per cell
-  double lo_[2], step_;       // first p and q of the rows [cells]
-  int columns_ = 0, rows_ = 0;
+  double step_;
+  SunRows rows_;
   std::vector<Entry> entries_;
 };
 

@@ -21,6 +21,12 @@ struct SunVisits {
 
 class SunScattering {
  public:
+  struct Rule {  // on [0, 1]
+    std::vector<double> node, weight;
+    std::vector<double> upto;  // [node][term]: integral from 0 to the node of the polynomial through all terms
+  };
+  static Rule rule_of(int points);
+
   // Of all directional lights of the scene, which outlives this and has fogmaps alone.
   SunScattering(const scene::Scene&, const Options&, const scene::Execution&);
 
@@ -32,13 +38,8 @@ class SunScattering {
     scene::DirectionalLight light;
     std::vector<SunMap> maps;  // one for each medium
   };
-  struct Rule {  // on [0, 1]
-    std::vector<double> node, weight;
-    std::vector<double> upto;  // [node][term]: integral from 0 to the node of the polynomial through all terms
-  };
   struct Along;  // a ray under a sun
 
-  static Rule rule_of(int points);
   std::vector<Interval> cells(const Ray&, double length) const;
   Rgb scattered(const Sun&, const Ray&, const std::vector<Interval>& cells, SunVisits&) const;
   void add(Along&, Interval, bool lit, int halvings = 0) const;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
+#include "methods/wavelet_fog/compression.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "methods/wavelet_fog/sun_scattering.h"
 #include "scene/background.h"
+#include "scene/camera_rays.h"
 #include "scene/error.h"
 #include "scene/stopwatch.h"
 
@@ -19,23 +22,46 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
+struct Fate {
+  Rgb transmittance, opacity;
+};
+// Of depths >= 0, by one exponential a channel, once where they are equal: the smaller of the two to all its digits, since thin fog has
+// an opacity of 1e-8.
+Fate fate(const Rgb& depth) {
+  Fate fate;
+  for (int c = 0; c < 3; ++c) {
+    double &clear = fate.transmittance[c], &dense = fate.opacity[c];
+    if (c > 0 && depth[c] == depth[c - 1]) {
+      clear = fate.transmittance[c - 1];
+      dense = fate.opacity[c - 1];
+    } else if (depth[c] < 0.6) {
+      dense = -std::expm1(-depth[c]);
+      clear = 1 - dense;
+    } else {
+      clear = std::exp(-depth[c]);
+      dense = 1 - clear;
+    }
+  }
+  return fate;
+}
+
+void put(const Rgb& value, float* to) {
+  for (int c = 0; c < 3; ++c) to[c] = float(value[c]);
+}
+
 class PreparedWaveletFog final : public scene::Prepared {
  public:
   PreparedWaveletFog(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
-      : scene_(std::move(scene)), options_(options) {
-    scene::Stopwatch watch;
-    for (const scene::Medium& medium : scene_->media)
-      if (extinguishes(medium)) fogs_.emplace_back(medium, options);
-    times_.push_back({"maps", watch.lap()});
-    if (!sunlit()) return;
-    sun_.emplace(*scene_, options, execution);
-    times_.push_back({"sun maps", watch.lap()});
+      : options_(options) {
+    times_ = prepare(std::move(scene), {}, execution);
   }
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>, std::vector<LeveledFog> known, const Execution&);
   bool lit() const {
     return scene_->geometry && std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::is_delta);
   }
@@ -55,8 +81,42 @@ class PreparedWaveletFog final : public scene::Prepared {
   Options options_;
   std::vector<LeveledFog> fogs_;
   std::optional<SunScattering> sun_;
+  std::vector<CompressionReport> compression_;
   std::vector<scene::StageTime> times_;
 };
+
+// For a scene, from what is known of the same media before; maps of the sun are made anew.
+std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::shared_ptr<const Scene> scene,
+                                                          std::vector<LeveledFog> known, const Execution& execution) {
+  std::vector<scene::StageTime> times;
+  scene::Stopwatch watch;
+  compression_.clear();
+  const std::shared_ptr<const Scene> before = std::move(scene_);  // whose maps are compared
+  scene_ = with_maps_changed(std::move(scene), options_, &compression_);
+  if (options_.keep < 1) times.push_back({"compression", watch.lap()});
+  fogs_.clear();
+  for (const scene::Medium& medium : scene_->media) {
+    if (!extinguishes(medium)) continue;
+    if (fogs_.size() < known.size()) {
+      fogs_.push_back(std::move(known[fogs_.size()]));
+      fogs_.back().become(medium);
+    } else {
+      fogs_.emplace_back(medium, options_);
+    }
+  }
+  times.push_back({"maps", watch.lap()});
+  sun_.reset();
+  if (!sunlit()) return times;
+  sun_.emplace(*scene_, options_, execution);
+  times.push_back({"sun maps", watch.lap()});
+  return times;
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedWaveletFog::next(std::shared_ptr<const Scene> scene,
+                                                                      const Execution& execution) {
+  if (!reasons_against(*scene, options_).empty()) return std::nullopt;
+  return prepare(std::move(scene), std::exchange(fogs_, {}), execution);
+}
 
 std::vector<scene::Stage> PreparedWaveletFog::stages() const {
   const bool levels = uses_levels(options_.variant);
@@ -124,9 +184,10 @@ Rgb PreparedWaveletFog::behind(const Ray& ray, const scene::RayEnd& end, Visits&
 scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& execution) const {
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  film.add("mean"), film.add("transmittance"), film.add("surface");
-  if (ambient()) film.add("ambient");
-  if (sun_) film.add("airlight");
+  // Looked up once: by name for every pixel it would take as long as the rest of polar.
+  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
+  float *surface = film.add("surface").data(), *ambient = this->ambient() ? film.add("ambient").data() : nullptr;
+  float* airlight = sun_ ? film.add("airlight").data() : nullptr;
   scene::Stopwatch watch;
   std::vector<PolarTable> tables;
   if (options_.variant == Options::Variant::polar) {
@@ -134,6 +195,8 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     for (const LeveledFog& fog : fogs_) tables.push_back(fog.polar_table(view, execution));
     result.times.push_back({"polar tables", watch.lap()});
   }
+  const bool ends = this->ends();
+  const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;
   Visits total;
   SunVisits of_sun;
@@ -142,38 +205,48 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     Visits visits, of_surfaces;
     SunVisits sun_visits;
     for (int x = 0; x < view.width; ++x) {
-      const Ray ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-      const scene::RayEnd end = ends() ? scene::ray_end(*scene_, ray) : scene::RayEnd{};
-      const Rgb optical = depth(ray, end.t, visits, tables), clear = (-optical).exp();
-      const Rgb surface = clear.maxCoeff() > 0 ? Rgb(clear * behind(ray, end, of_surfaces)) : Rgb(Rgb::Zero());
-      Rgb mean = surface;
-      film.set("transmittance", x, y, clear);
-      film.set("surface", x, y, surface);
-      if (ambient()) {
-        // Eq. 4; opacity by expm1, since thin fog has a depth of 1e-8.
-        const Rgb fog = scene_->ambient_in_scatter * optical.unaryExpr([](double d) { return -std::expm1(-d); });
-        film.set("ambient", x, y, fog);
-        mean += fog;
+      const Ray ray = rays(x + 0.5, y + 0.5);
+      const scene::RayEnd end = ends ? scene::ray_end(*scene_, ray) : scene::RayEnd{};
+      const Rgb optical = depth(ray, end.t, visits, tables);
+      const auto [clear, dense] = fate(optical);
+      const Rgb reflected =
+          ends && clear.maxCoeff() > 0 ? Rgb(clear * behind(ray, end, of_surfaces)) : Rgb(Rgb::Zero());
+      Rgb sum = reflected;
+      const std::size_t pixel = 3 * (std::size_t(y) * view.width + x);
+      put(clear, transmittance + pixel);
+      put(reflected, surface + pixel);
+      if (ambient) {
+        const Rgb fog = scene_->ambient_in_scatter * dense;  // eq. 4
+        put(fog, ambient + pixel);
+        sum += fog;
       }
-      if (sun_) {
+      if (airlight) {
         const Rgb scattered = sun_->airlight(ray, end.t, sun_visits);
-        film.set("airlight", x, y, scattered);
-        mean += scattered;
+        put(scattered, airlight + pixel);
+        sum += scattered;
       }
-      film.set("mean", x, y, mean);
+      put(sum, mean + pixel);
     }
     const std::lock_guard lock(mutex);
     total.cells += visits.cells;
     total.coefficients += visits.coefficients;
+    total.lookups += visits.lookups;
     of_sun.points += sun_visits.points;
     of_sun.shadow_rays += sun_visits.shadow_rays;
   });
   result.times.push_back({"transmittance", watch.lap()});
   result.counters = {
       {"rays", double(film.pixels())}, {"cells", double(total.cells)}, {"coefficients", double(total.coefficients)}};
+  if (!tables.empty()) result.counters["lookups"] = double(total.lookups);
   if (sun_) {
     result.counters["sun_points"] = double(of_sun.points);
     result.counters["shadow_rays"] = double(of_sun.shadow_rays);
+  }
+  if (options_.keep < 1) {
+    for (const CompressionReport& report : compression_) {
+      result.counters["kept"] += double(report.kept);
+      result.counters["map_error_ppm"] = std::max(result.counters["map_error_ppm"], 1e6 * report.error);
+    }
   }
   return result;
 }

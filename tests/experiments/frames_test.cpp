@@ -99,11 +99,11 @@ settings = { nodes = 64 }
 [[method]]
 name = "moving"
 renderer = "shadow_planes"
-moving_lights = true
+moving = "lights"
 [[method]]
 name = "marcher"
 renderer = "ray_marcher"
-moving_lights = true
+moving = "lights"
 [profile.quick]
 runs = 3
 )");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/convert/fogmap_columns.h"
 #include "scene/error.h"
 #include "scene/math/elementary.h"
 #include "scene/math/random.h"
@@ -116,19 +117,8 @@ void Canvas::blur(double deviation) {
 }
 
 void Canvas::columns(const scene::DensityField& field, double x0, double z0, int samples, double height) {
-  const Box box = scene::varied_support(field);
-  if (scene::constant_part(field) > 0 || !std::isfinite(box.lo[1]) || !std::isfinite(box.hi[1]))
-    throw Error("the medium has no end in height, expected one with finite columns");
-  for (int j = 0; j < height_; ++j)
-    for (int i = 0; i < width_; ++i) {
-      double sum = 0;
-      for (int b = 0; b < samples; ++b)
-        for (int a = 0; a < samples; ++a) {
-          const Point3 foot(x0 + (i + (a + 0.5) / samples) * cell_, box.lo[1], z0 + (j + (b + 0.5) / samples) * cell_);
-          sum += scene::density_integral(field, {foot, Vec3::UnitY()}, {0, box.hi[1] - box.lo[1]});
-        }
-      values_[std::size_t(j) * width_ + i] += sum / (double(samples) * samples) / height;
-    }
+  const std::vector<double> columns = scene::column_densities(field, {width_, height_, cell_, x0, z0}, samples);
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += columns[i] / height;
 }
 
 }  // namespace airlight::wavelet_fog::authoring

@@ -150,6 +150,8 @@ TEST_CASE("wavelet fog: what the GPU refuses, it names", "[gpu][wavelet_fog]") {
   CHECK(refused({{"variant", "polar"}}));
   CHECK(refused({{"variant", "tele"}}));
   CHECK(refused({{"variant", "pre"}, {"levels", "0"}}));
+  scene->surfaces.emplace_back();
+  scene->lights = {scene::DirectionalLight{}};
   CHECK(refused({{"sun", "true"}}));
   scene->media[0].field = scene::Homogeneous{};
   CHECK(refused({}));

@@ -98,6 +98,24 @@ TEST_CASE("wavelet fog: tele equals paper equals pre, skip equals direct", "[wav
     }
 }
 
+TEST_CASE("wavelet fog: cubic maps need no wavelets where nothing is coarse", "[wavelet_fog]") {
+  std::mt19937_64 random(9);
+  const scene::Medium medium = medium_of(3, map_of(Kind::hard, 40, 40, 4), profiles()[1]);
+  Options direct, skip;
+  direct.variant = Options::Variant::direct;
+  const LeveledFog all(medium, direct), skipped(medium, skip);
+  double sum = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Ray ray = random_ray(random);
+    Visits visits;
+    const double exact = density_integral(medium, ray, {0, 60});
+    require_equal(all.column(ray, 60, visits), exact);
+    require_equal(skipped.column(ray, 60, visits), exact);
+    sum += exact;
+  }
+  CHECK(sum > 100);
+}
+
 TEST_CASE("wavelet fog: grids without negative values take no light twice", "[wavelet_fog]") {
   std::mt19937_64 random(5);
   using V = Options::Variant;

@@ -1,0 +1,17 @@
+// What it costs to drop details by the object's distance (Giroud and Biri 2010, section 4.4, eq. 12): errors, and seams, since the same fog
+// before a near and a far object is not the same.
+#pragma once
+#include "experiments/probe.h"
+
+namespace airlight::experiments {
+
+class WaveletSeams : public Probe {
+ public:
+  std::string name() const override { return "wavelet_seams"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> figures() const override;
+  Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
+};
+
+}  // namespace airlight::experiments
