@@ -35,6 +35,7 @@ struct Mean {
   double variance = 0;
   double degrees = 0;
   double third = 0;
+  bool widened = false;  // the variance is an upper end
 };
 
 Mean mean_over(const Image& image, const std::vector<std::size_t>& index) {
@@ -62,6 +63,7 @@ Mean mean_over(const Image& image, const std::vector<std::size_t>& index) {
     std::array<double, 3> most{};
     for (const std::size_t i : index) most[i % 3] = std::max(most[i % 3], double(unresolved[i]));
     const double missed = (most[0] + most[1] + most[2]) / double(index.size()), scatter = m.variance;
+    m.widened = missed > 0;
     m.variance += missed * missed;
     m.degrees *= scatter > 0 ? (m.variance / scatter) * (m.variance / scatter) : infinity;
   }
@@ -123,6 +125,15 @@ class Skewness {
   double image_third_ = 0, image_variance_ = 0, image_squared_cubes_ = 0;
 };
 
+struct SumOfSquares {
+  void add(double z) {
+    sum += z * z;
+    ++count;
+  }
+  double sum = 0;
+  std::size_t count = 0;
+};
+
 }  // namespace
 
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
@@ -137,11 +148,9 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   constexpr int side = 8;
   Equality e;
   std::vector<std::size_t> everything;
-  e.chi_square_probability = 1;
   for (std::size_t c = 0; c < 3; ++c) {
-    double chi_square = 0;
+    SumOfSquares all, known;  // known: blocks whose variance is no upper end
     Skewness skewness(std::max(first.batches.size(), second.batches.size()));
-    std::size_t m = 0;
     for (int y0 = 0; y0 < a.height; y0 += side)
       for (int x0 = 0; x0 < a.width; x0 += side) {
         std::vector<std::size_t> index;
@@ -152,25 +161,28 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
           }
         if (index.empty()) continue;
         everything.insert(everything.end(), index.begin(), index.end());
-        const Difference d = difference(mean_over(first, index), mean_over(second, index));
+        const Mean of_first = mean_over(first, index), of_second = mean_over(second, index);
+        const Difference d = difference(of_first, of_second);
         if (d.sigma == 0) {
           e.differing += d.z != 0;
           continue;
         }
-        ++m;
         skewness.add(d, double(index.size()));
-        chi_square += d.z * d.z;
+        all.add(d.z);
+        if (!of_first.widened && !of_second.widened) known.add(d.z);
         e.largest_z = std::max(e.largest_z, std::abs(d.z));
       }
-    e.blocks += m;
-    if (m == 0) continue;
+    e.blocks += all.count;
+    if (all.count == 0) continue;
     e.blocks_in_range = skewness.of_blocks(e.block_skewness) && e.blocks_in_range;
     e.image_in_range = skewness.of_image(e.image_skewness) && e.image_in_range;
-    const double tail = std::min(chi_square_above(chi_square, double(m)), chi_square_below(chi_square, double(m)));
-    const double probability = std::min(1.0, 2 * tail);  // both tails
+    const double above = chi_square_above(all.sum, double(all.count));
+    const double below = known.count ? chi_square_below(known.sum, double(known.count)) : 1;
+    const double probability = std::min(1.0, 2 * std::min(above, below));  // both tails
     if (probability <= e.chi_square_probability) {
       e.chi_square_probability = probability;
-      e.chi_square = chi_square;
+      e.chi_square = below < above ? known.sum : all.sum;
+      e.too_alike = below < above && probability < alpha / 9;
     }
   }
   if (everything.empty()) throw Error("every pixel is left out: nothing to compare");
@@ -205,7 +217,8 @@ int sure_objections(const Equality& e, double alpha) {
 }
 
 std::string text(const Equality& e) {
-  std::string why;
+  std::string why, verdict = e.equal ? "equal" : "different";
+  if (e.too_alike) verdict += ", too alike for their noise (do they share random numbers?)";
   if (!e.blocks_in_range || !e.image_in_range)
     why = fmt::format(" (skewness {:.2g} of blocks, {:.2g} of the image, over {:g}: not tested)", e.block_skewness,
                       e.image_skewness, most_skewness);
@@ -214,8 +227,8 @@ std::string text(const Equality& e) {
   return fmt::format(
       "{}: {} blocks, largest |z| {:.2f} (threshold {:.2f}), chi-square probability {:.2g}, whole image z {:.2f} "
       "(threshold {:.2f}), {} differ without noise, detectable bias {:.2g} %{}",
-      e.equal ? "equal" : "different", e.blocks, e.largest_z, e.largest_threshold, e.chi_square_probability, e.image_z,
-      e.image_threshold, e.differing, 100 * e.detectable_bias, why);
+      verdict, e.blocks, e.largest_z, e.largest_threshold, e.chi_square_probability, e.image_z, e.image_threshold,
+      e.differing, 100 * e.detectable_bias, why);
 }
 
 }  // namespace airlight::experiments

@@ -3,7 +3,9 @@
 // Each block and channel gives t = (mean A - mean B) / standard error, from the scatter of the sixteen batches of
 // whichever image is noisy (Welch's degrees of freedom), turned into the normal value z of the same probability. Tests,
 // each at a third of alpha: the largest |z| against Sidak's threshold; the sum of z^2 against chi-square, both tails
-// (channels share samples, so each channel by itself, at a third again); z of the whole image.
+// (channels share samples, so each channel by itself, at a third again); z of the whole image. Where an image knows of
+// more than its batches show (batches.h) the variance is an upper end: such blocks may well be too alike, and the lower
+// tail is that of the others.
 #pragma once
 #include <string>
 #include <vector>
@@ -19,6 +21,7 @@ struct Equality {
   double largest_threshold = 0;
   double chi_square = 0;  // of the channel with the smallest probability
   double chi_square_probability = 1;
+  bool too_alike = false;  // chi-square objects, and by its lower tail: the blocks scatter less than their noise
   double image_z = 0;
   double image_threshold = 0;
   double detectable_bias = 0;  // smallest relative bias found with probability 0.95, of the whole image; NaN: no noise

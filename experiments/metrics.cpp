@@ -13,6 +13,7 @@
 #include "experiments/metric_values.h"
 #include "experiments/statistics.h"
 #include "scene/error.h"
+#include "scene/nearest.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments {
@@ -350,8 +351,8 @@ void check_metric_name(const std::string& name, const std::string& where) {
   const std::string base = parse(name).base;
   const auto& names = metric_names();
   if (std::find(names.begin(), names.end(), base) == names.end())
-    throw Error(fmt::format("{}: unknown metric '{}', expected one of {} (nearest: {})", where, name,
-                            fmt::join(names, ", "), scene::nearest(base, names)));
+    throw Error(fmt::format("{}: unknown metric '{}', expected one of {}{}", where, name, fmt::join(names, ", "),
+                            scene::nearest_hint(base, names)));
   if (is_test(base) && name != base)
     throw Error(fmt::format("{}: metric '{}': expected '{}', which is of the whole picture", where, name, base));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 
 #include "scene/error.h"
 #include "scene/load/content_hash.h"
+#include "scene/printable.h"
 
 namespace airlight::gpu {
 namespace {
@@ -56,10 +58,16 @@ ShaderSource shader_source(const std::string& file, const std::map<std::string, 
   for (const auto& [name, value] : definitions) source.text += fmt::format("#define {} {}\n", name, value);
   append(file, "", source);
   if (const char* ulps = std::getenv("AIRLIGHT_GPU_ULPS"); ulps && *ulps) {
+    const std::string_view text(ulps);
+    int units = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), units);
+    if (code != std::errc() || end != text.data() + text.size() || units < 0 || units > 1024)
+      throw Error(
+          fmt::format("AIRLIGHT_GPU_ULPS = '{}': expected a whole number from 0 to 1024", scene::printable(text, 100)));
     ShaderSource errors;
     append("common/ulp_errors.glsl", "", errors);
     const std::size_t at = source.text.find("#line 1 0");
-    source.text.insert(at, fmt::format("#define ULP_ERRORS {}\n{}", ulps, errors.text));
+    source.text.insert(at, fmt::format("#define ULP_ERRORS {}\n{}", units, errors.text));
   }
   return source;
 }

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "scene/error.h"
+#include "scene/nearest.h"
 #include "scene/printable.h"
 
 namespace airlight::scene {
@@ -60,8 +61,8 @@ void check(const SettingSpec& spec, const std::string& text, const std::string& 
     if (text != "true" && text != "false")
       throw Error(fmt::format("{}: {} = '{}', expected true or false", where, spec.name, printable(text, most)));
   } else if (std::find(spec.choices.begin(), spec.choices.end(), text) == spec.choices.end()) {
-    throw Error(fmt::format("{}: {} = '{}', expected one of {} (nearest: {})", where, spec.name, printable(text, most),
-                            fmt::join(spec.choices, ", "), nearest(text, spec.choices)));
+    throw Error(fmt::format("{}: {} = '{}', expected one of {}{}", where, spec.name, printable(text, most),
+                            fmt::join(spec.choices, ", "), nearest_hint(text, spec.choices)));
   }
 }
 
@@ -75,6 +76,13 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
   return best == candidates.end() ? std::string() : *best;
 }
 
+std::string nearest_hint(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string start = word.substr(0, most), best = nearest(start, candidates);
+  const std::size_t distance = edit_distance(start, best);
+  const bool near = distance <= 1 || 2 * distance <= std::max(start.size(), best.size()) || start.rfind(best, 0) == 0;
+  return best.empty() || !near ? "" : fmt::format(" (nearest: {})", best);
+}
+
 Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, std::string>& given,
                    const std::string& where)
     : specs_(std::move(specs)) {
@@ -86,8 +94,8 @@ Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, s
   for (const auto& [name, text] : given) {
     const auto spec = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
     if (spec == specs_.end())
-      throw Error(fmt::format("{}: unknown setting '{}', expected one of {} (nearest: {})", where,
-                              printable(name, most), fmt::join(names, ", "), nearest(name, names)));
+      throw Error(fmt::format("{}: unknown setting '{}', expected one of {}{}", where, printable(name, most),
+                              fmt::join(names, ", "), nearest_hint(name, names)));
     check(*spec, text, where);
     values_[name] = text;
   }

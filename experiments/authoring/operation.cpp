@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene/error.h"
+#include "scene/nearest.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
 #include "scene/settings.h"
@@ -62,8 +63,8 @@ std::string Operation::name(const std::vector<std::string>& choices) {
 void Operation::allow(std::vector<std::string> keys) const {
   for (const auto& [key, value] : json_.items()) {
     if (key == "op" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    fail(fmt::format("unknown key '{}', expected one of {} (nearest: {})", scene::printable(key, 200),
-                     fmt::join(keys, ", "), scene::nearest(key, keys)));
+    fail(fmt::format("unknown key '{}', expected one of {}{}", scene::printable(key, 200), fmt::join(keys, ", "),
+                     scene::nearest_hint(key, keys)));
   }
 }
 
@@ -127,7 +128,7 @@ std::string Operation::choice(const std::string& key, const std::vector<std::str
   if (!value.is_string()) expected(key, words);
   const std::string found = value.get<std::string>();
   if (std::find(choices.begin(), choices.end(), found) == choices.end())
-    expected(key, fmt::format("{} (nearest: {})", words, scene::nearest(found, choices)));
+    expected(key, fmt::format("{}{}", words, scene::nearest_hint(found, choices)));
   return found;
 }
 

@@ -34,6 +34,7 @@ struct CompareOptions {
   std::string layer = "mean";
   std::vector<std::string> metrics;
   Pairs most;        // metric=bound
+  Pairs overrides;   // of the scene
   double alpha = 0;  // > 0: tests of equality at this false-alarm rate
 };
 // Exit code 1 if a metric is above its bound, beyond what noise explains, or the images differ.

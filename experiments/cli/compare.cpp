@@ -34,12 +34,13 @@ int compare(const CompareOptions& options) {
   std::map<std::string, double> bounds;
   for (const auto& [metric, text] : options.most) bounds[metric] = bound(metric, text);
   for (const std::string& metric : options.metrics) check_metric_name(metric, "--metric");
+  if (options.scene.empty() && !options.overrides.empty()) throw Error("--override: of what scene? expected --scene");
   const scene::Film image = scene::read_exr(options.image);
   const scene::Film reference = scene::read_exr(options.reference);
   Masks masks;
   masks.foreground = foreground_mask(reference);
   if (!options.scene.empty()) {
-    const scene::Scene scene = scene::load_scene(options.scene);
+    const scene::Scene scene = scene::load_scene(options.scene, options.overrides);
     const scene::View view = scene::view_of(scene);
     if (view.width != reference.width || view.height != reference.height)
       throw Error(fmt::format("{}: film is {}x{}, and the reference {}x{}", options.scene, view.width, view.height,

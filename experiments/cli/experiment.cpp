@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "experiments/cli/commands.h"
@@ -61,9 +62,12 @@ int name_failures(const std::vector<GateResult>& gates) {
 int list_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const auto root = project_root(options.root);
-  for (const std::string& id : choose_experiments(root, options.names)) {
+  const std::vector<std::string> ids = choose_experiments(root, options.names);
+  std::size_t widest = 0;
+  for (const std::string& id : ids) widest = std::max(widest, id.size());
+  for (const std::string& id : ids) {
     const Experiment e = read_experiment(root, id, options.profile);
-    fmt::print("{:28} {}{}{}\n", id, e.title, e.paper.empty() ? "" : "; ", e.paper);
+    fmt::print("{:{}}  {}{}{}\n", id, widest, e.title, e.paper.empty() ? "" : "; ", e.paper);
   }
   return 0;
 }

@@ -54,9 +54,9 @@ int explain(const ExplainOptions& options) {
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
   fmt::print("{}: {}x{} pixels\n", scene->name, scene->width, scene->height);
   for (const scene::Light& light : scene->lights) fmt::print("  light    {}\n", scene::light_name(light));
-  for (const scene::Medium& medium : scene->media)
-    fmt::print("  medium   {}, {}, phase {}\n", medium.name, scene::field_name(medium.field),
-               scene::phase_name(medium.phase));
+  for (std::size_t i = 0; i < scene->media.size(); ++i)
+    fmt::print("  {}, {}, phase {}\n", scene::label(scene->media, i), scene::field_name(scene->media[i].field),
+               scene::phase_name(scene->media[i].phase));
   for (const scene::Surface& surface : scene->surfaces) fmt::print("  surface  {}\n", surface.name);
   for (const auto& renderer : all_renderers()) {
     if (!options.method.empty() && renderer->name() != options.method) continue;

@@ -12,6 +12,7 @@
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
+#include "experiments/metrics.h"
 #include "experiments/renderers.h"
 #include "experiments/say.h"
 #include "experiments/verify/verify.h"
@@ -19,12 +20,17 @@
 #include "gpu/device_choice.h"
 #include "scene/data_folder.h"
 #include "scene/error.h"
-#include "scene/settings.h"
+#include "scene/nearest.h"
 
 namespace airlight::experiments::cli {
 namespace {
 
-// key=value, several times.
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+// key=value, several times; blanks around the "=" do not count.
 void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const std::string& doc) {
   command
       ->add_option_function<std::vector<std::string>>(
@@ -32,9 +38,10 @@ void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const s
           [&pairs, flag](const std::vector<std::string>& given) {
             for (const std::string& text : given) {
               const std::size_t equals = text.find('=');
-              if (equals == std::string::npos || equals == 0)
+              const std::string name = trimmed(text.substr(0, equals));
+              if (equals == std::string::npos || name.empty())
                 throw Error(fmt::format("{} '{}': expected name=value", flag, text));
-              pairs[text.substr(0, equals)] = text.substr(equals + 1);
+              pairs[name] = trimmed(text.substr(equals + 1));
             }
           },
           doc)
@@ -72,6 +79,11 @@ const CLI::App& chosen(const CLI::App& app) {
   return commands.empty() ? app : chosen(*commands.front());
 }
 
+// "airlight experiment run"
+std::string full_name(const CLI::App& command) {
+  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+}
+
 void refuse_extras(const CLI::App& app) {
   const CLI::App& command = chosen(app);
   const auto extras = app.remaining(true);
@@ -81,9 +93,9 @@ void refuse_extras(const CLI::App& app) {
     const bool option = word.size() > 1 && word[0] == '-';
     const auto candidates = option ? option_names(command) : commands;
     if (candidates.empty())
-      throw Error(fmt::format("unexpected argument '{}'; see {} --help", word, command.get_name()));
-    throw Error(fmt::format("unknown {} '{}' (nearest: {})", option ? "option" : "command", word,
-                            scene::nearest(word.substr(0, word.find('=')), candidates)));
+      throw Error(fmt::format("unexpected argument '{}'; see {} --help", word, full_name(command)));
+    throw Error(fmt::format("unknown {} '{}'{}; see {} --help", option ? "option" : "command", word,
+                            scene::nearest_hint(word.substr(0, word.find('=')), candidates), full_name(command)));
   }
   if (!commands.empty()) throw Error(fmt::format("expected a command: {}", fmt::join(commands, ", ")));
 }
@@ -159,12 +171,19 @@ int dispatch(int argc, char** argv) {
   c->add_option("IMAGE", compare_options.image, "OpenEXR file");
   c->add_option("REFERENCE", compare_options.reference, "OpenEXR file; its batches, if any, say how noisy it is");
   c->add_option("--layer", compare_options.layer, "default mean");
-  c->add_option("--metric", compare_options.metrics, "named metrics (default: all)");
+  c->add_option("--metric", compare_options.metrics,
+                fmt::format("any of {} (default: all)", fmt::join(metric_names(), ", ")));
   c->add_option("--scene", compare_options.scene, "scene file: leave out pixels that touch a light's ball");
+  add_pairs(c, "--override", compare_options.overrides, "a value of the scene file, as for the render");
   add_pairs(c, "--max", compare_options.most, "metric=bound: exit 1 if the error is certainly larger");
-  c->add_option("--equal", compare_options.alpha, "test for equality but for noise, at this false-alarm rate (1e-4)");
-  c->final_callback([&] {
-    action = [&] {
+  c->add_option("--equal", compare_options.alpha,
+                "test for equality but for noise at this rate of false alarms, e.g. 1e-4")
+      ->type_name("RATE");
+  CLI::App* const comparison = c;
+  c->final_callback([&, comparison] {
+    action = [&, comparison] {
+      if (comparison->count("--equal") && !(compare_options.alpha > 0 && compare_options.alpha < 1))
+        throw Error(fmt::format("--equal {}: expected a rate above 0 and below 1", compare_options.alpha));
       require(compare_options.image, "IMAGE");
       require(compare_options.reference, "REFERENCE");
       return compare(compare_options);
@@ -241,9 +260,14 @@ int dispatch(int argc, char** argv) {
   });
 
   AuthorOptions author_options;
-  c = command(app, "author", "make fog of Gaussians by a script: paint, erase, copy, emit, airbrush");
-  c->add_option("SCRIPT", author_options.script, "operations, one JSON object a line (methods/fogshop/README.md)");
-  c->add_option("--out,-o", author_options.out, "scene file to write; its Gaussians go into CSV beside it");
+  c = command(
+      app, "author",
+      "make fog by a script: Gaussians (paint, erase, copy, emit, airbrush), or a map of wavelet fog (noise, stroke, "
+      "blur, ...)");
+  c->add_option("SCRIPT", author_options.script,
+                "operations, one JSON object a line (methods/fogshop/README.md; maps: methods/wavelet_fog/README.md)");
+  c->add_option("--out,-o", author_options.out,
+                "scene file to write; its Gaussians go into CSV beside it, its map into PNG or EXR");
   data_option(c);
   c->final_callback([&] {
     action = [&] {

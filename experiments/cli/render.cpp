@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/output.h"
 #include "experiments/cli/samples.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
@@ -16,13 +16,6 @@
 
 namespace airlight::experiments::cli {
 namespace {
-
-// Better now than after an hour.
-void require_folder(const std::string& file) {
-  const auto folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw Error(fmt::format("{}: there is no folder {}", file, folder.string()));
-}
 
 // Film with its record, and preview.
 void write(const RenderOptions& options, const scene::Renderer& renderer, const scene::Scene& scene,
@@ -53,8 +46,8 @@ int render(const RenderOptions& options) {
   if (!options.cache.empty() && (part || !renderer.monte_carlo()))
     throw Error("--cache: only for path_tracer, and without a range of samples");
   const scene::Settings settings(renderer.settings(), given, options.method);
-  require_folder(options.out);
-  if (!options.png.empty()) require_folder(options.png);
+  require_output(options.out, ".exr");
+  if (!options.png.empty()) require_output(options.png, ".png");
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));

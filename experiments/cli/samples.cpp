@@ -7,6 +7,7 @@
 
 #include "experiments/build_info.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/output.h"
 #include "reference/path_tracer/accumulation.h"
 #include "scene/error.h"
 
@@ -47,6 +48,7 @@ scene::Film render_samples(std::shared_ptr<const scene::Scene> scene, const scen
 }
 
 int merge(const MergeOptions& options) {
+  require_output(options.out, ".exr");
   const path_tracer::Accumulation samples = path_tracer::merge_range_files(options.parts);
   // The parts say with which settings they were made: "name=value name=value ...".
   Pairs given{{"seed", std::to_string(samples.identity.seed)}, {"stream", std::to_string(samples.identity.stream)}};

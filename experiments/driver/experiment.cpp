@@ -14,6 +14,7 @@
 #include "scene/error.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
+#include "scene/nearest.h"
 #include "scene/read_file.h"
 #include "scene/settings.h"
 
@@ -90,7 +91,7 @@ class Reader {
 
   void profile(const TableReader& top, Pairs& scene_overrides, Pairs& reference_settings) {
     TimingRule& rule = experiment_.timing;
-    if (experiment_.profile == "paper") rule = {31, 2, 60, 0};  // spec/references.md section 7
+    if (experiment_.profile == "paper") rule = {31, 2, 60, 0};
     if (auto timing = top.table("timing")) {
       timing->allow({"threads"});
       rule.threads = int(timing->integer("threads", 0, 4096, 0));
@@ -140,11 +141,12 @@ class Reader {
   void figures() const {
     std::vector<std::string> known;
     for (const MethodCase& m : experiment_.methods)
-      for (const std::string& figure : find_probe(m.renderer, m.name).figures()) known.push_back(figure);
+      for (const std::string& figure : find_probe(m.renderer, m.name).figures())
+        if (std::find(known.begin(), known.end(), figure) == known.end()) known.push_back(figure);
     for (const std::string& metric : experiment_.metrics)
       if (std::find(known.begin(), known.end(), metric) == known.end())
-        throw Error(fmt::format("{}: unknown figure '{}' (nearest: {})", position("metrics"), metric,
-                                scene::nearest(metric, known)));
+        throw Error(fmt::format("{}: unknown figure '{}', expected one of {}{}", position("metrics"), metric,
+                                fmt::join(known, ", "), scene::nearest_hint(metric, known)));
   }
 
   void reference(const TableReader& top, const Pairs& finer) {
@@ -281,8 +283,7 @@ class Reader {
         for (const SceneCase& scene : experiment_.scenes) names.push_back(scene.name);
     }
     if (std::find(names.begin(), names.end(), value) == names.end())
-      reader.expected(key,
-                      fmt::format("one of {} (nearest: {})", fmt::join(names, ", "), scene::nearest(value, names)));
+      reader.expected(key, fmt::format("one of {}{}", fmt::join(names, ", "), scene::nearest_hint(value, names)));
   }
 
   // A gate must have a row to judge, and each of its rows a figure.
@@ -412,8 +413,8 @@ std::vector<std::string> choose_experiments(const fs::path& root, const std::vec
     for (const std::string& id : all)
       if (id == name || id.rfind(name + "/", 0) == 0) chosen.push_back(id);
     if (chosen.size() == before)
-      throw Error(fmt::format("unknown experiment '{}' (nearest: {}); airlight experiment list names them", name,
-                              scene::nearest(name, all)));
+      throw Error(fmt::format("unknown experiment '{}'{}; airlight experiment list names them", name,
+                              scene::nearest_hint(name, all)));
   }
   return chosen;
 }

@@ -1,6 +1,7 @@
 #include "experiments/driver/keeper.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
 #include <fstream>
@@ -186,11 +187,11 @@ void RowKeeper::say(const Row& row, const char* how) const {
   std::string line = fmt::format("{}:", how);
   for (const std::string& word : {row.scene, row.method, row.setting})
     if (!word.empty()) line += " " + word;
-  line += ": ";
-  if (!row.note.empty()) line += row.note + (row.measures.empty() ? "" : ", ");
-  if (!row.measures.empty()) line += fmt::format("{} {}, ", row.measures[0].name, text(row.measures[0]));
-  if (row.runs > 0) line += fmt::format("{:.3g} s", row.seconds.value);
-  fmt::print("  {}\n", line);
+  std::vector<std::string> told;
+  if (!row.note.empty()) told.push_back(row.note);
+  if (!row.measures.empty()) told.push_back(fmt::format("{} {}", row.measures[0].name, text(row.measures[0])));
+  if (row.runs > 0) told.push_back(fmt::format("{:.3g} s", row.seconds.value));
+  fmt::print("  {}: {}\n", line, fmt::join(told, ", "));
   std::fflush(stdout);
 }
 

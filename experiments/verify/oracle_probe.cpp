@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <ostream>
 
 #include "experiments/verify/check.h"
@@ -31,7 +32,8 @@ Findings OracleProbe::run(const ProbeInput& input, const scene::Settings& settin
                    exactly("not_yet", kind.not_yet)};
   if (kind.numbers > 0) {
     found.figures.push_back(exactly("worst_share", kind.worst_share));
-    found.figures.push_back(exactly("worst_relative_error", kind.worst_relative_error));
+    if (!std::isnan(kind.worst_relative_error))
+      found.figures.push_back(exactly("worst_relative_error", kind.worst_relative_error));
     if (!kind.worst.empty()) found.note = "worst: " + kind.worst;
   }
   return found;

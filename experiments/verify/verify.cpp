@@ -13,6 +13,7 @@
 #include "experiments/json_value.h"
 #include "experiments/verify/check.h"
 #include "scene/error.h"
+#include "scene/nearest.h"
 #include "scene/settings.h"
 
 namespace airlight::experiments {
@@ -47,8 +48,8 @@ std::vector<Vector> read_file(const std::string& path) {
     if (!read) {
       const std::vector<std::string> kinds = known_kinds(family);
       if (++unknown_count == 1)
-        unknown = fmt::format("{}: unknown kind '{}', expected one of {} (nearest: {})", named.where(), kind,
-                              fmt::join(kinds, ", "), scene::nearest(kind, kinds));
+        unknown = fmt::format("{}: unknown kind '{}', expected one of {}{}", named.where(), kind,
+                              fmt::join(kinds, ", "), scene::nearest_hint(kind, kinds));
       continue;
     }
     vectors_read.push_back({id, kind, read(named)});
@@ -66,8 +67,12 @@ Outcome computed(const Vector& w, const std::string& path, VerifyProfile profile
 }
 
 double relative_error(const Comparison& c) {
-  if (c.expected == c.got) return 0;
-  return c.expected == 0 ? infinity : std::abs(c.got - c.expected) / std::abs(c.expected);
+  return c.expected == c.got ? 0 : std::abs(c.got - c.expected) / std::abs(c.expected);
+}
+
+// Relative to 0 nothing is.
+std::string relative_text(const Comparison& c) {
+  return c.expected == 0 && c.got != 0 ? "-" : fmt::format("{:.1e}", relative_error(c));
 }
 
 // The line of a table for this file and kind, made if it is not there.
@@ -86,7 +91,7 @@ void count(VerifyKind& line, const std::string& id, const Outcome& outcome) {
   for (const Comparison& c : outcome.comparisons) {
     ++line.numbers;
     line.out += !c.ok();
-    line.worst_relative_error = std::max(line.worst_relative_error, relative_error(c));
+    if (c.expected != 0) line.worst_relative_error = std::fmax(line.worst_relative_error, relative_error(c));
     const double share = c.expected == c.got ? 0 : std::abs(c.got - c.expected) / c.tolerance;
     if (!(share <= line.worst_share)) {
       line.worst_share = share;
@@ -124,8 +129,8 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     for (const Vector& w : all.back().second) kinds.insert(w.kind);
   }
   if (!kind.empty() && !kinds.count(kind))
-    throw Error(fmt::format("no vector of kind '{}', expected one of {} (nearest: {})", kind, fmt::join(kinds, ", "),
-                            scene::nearest(kind, {kinds.begin(), kinds.end()})));
+    throw Error(fmt::format("no vector of kind '{}', expected one of {}{}", kind, fmt::join(kinds, ", "),
+                            scene::nearest_hint(kind, {kinds.begin(), kinds.end()})));
 
   std::vector<VerifyKind> kinds_found;
   std::map<std::string, int> waiting;
@@ -149,8 +154,8 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
       line.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       count(line, w.id, outcome);
       for (const Comparison& c : outcome.comparisons) {
-        out << fmt::format("{:<42} {:<32} {:<22} {:>20.13g} {:>20.13g} {:>9.1e}  {:<26} {}\n", w.id, w.kind, c.what,
-                           c.expected, c.got, relative_error(c), c.tolerance_text, c.ok() ? "ok" : "OUT");
+        out << fmt::format("{:<42} {:<32} {:<22} {:>20.13g} {:>20.13g} {:>9}  {:<26} {}\n", w.id, w.kind, c.what,
+                           c.expected, c.got, relative_text(c), c.tolerance_text, c.ok() ? "ok" : "OUT");
         if (!c.ok()) failures.push_back(w.id + (c.what.empty() ? "" : " " + c.what));
       }
       if (outcome.left_out)

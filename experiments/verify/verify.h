@@ -1,5 +1,6 @@
 // `airlight verify`: recomputes oracle vectors and compares.
 #pragma once
+#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -14,14 +15,14 @@ enum class VerifyProfile {
 // What became of the vectors of one kind in one file.
 struct VerifyKind {
   std::string file, kind;
-  int vectors = 0;   // with at least one number compared
-  int numbers = 0;   // compared
-  int out = 0;       // beyond their tolerance
-  int left_out = 0;  // numbers that the profile does not reach
-  int not_yet = 0;   // vectors of methods that are not built
-  double worst_relative_error = 0;
-  double worst_share = 0;  // largest |got - expected| / tolerance
-  std::string worst;       // the number with that share
+  int vectors = 0;                                                         // with at least one number compared
+  int numbers = 0;                                                         // compared
+  int out = 0;                                                             // beyond their tolerance
+  int left_out = 0;                                                        // numbers that the profile does not reach
+  int not_yet = 0;                                                         // vectors of methods that are not built
+  double worst_relative_error = std::numeric_limits<double>::quiet_NaN();  // NaN: all expected are 0
+  double worst_share = 0;                                                  // largest |got - expected| / tolerance
+  std::string worst;                                                       // the number with that share
   double seconds = 0;
 };
 

@@ -63,7 +63,7 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
   if (options_.sun && !fogs_.empty() && !suns_of(*scene_).empty())
     sun_ = std::make_unique<SunOnDevice>(context_, *fogs_.front(), options_);
   composition_ = &program(context_, "composition", 64);
-  timer.begin("levels");
+  timer.begin("maps");
   for (const auto& fog : fogs_) fog->refresh();
   times_ = timer.times();
 }
@@ -71,7 +71,7 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
 std::vector<scene::Stage> PreparedWaveletFogGpu::stages() const {
   const bool levels = wavelet_fog::uses_levels(options_.variant) && !fogs_.empty(), lit = surfaces_->shines();
   const std::string none = "no fog extinguishes";
-  return {{"levels", levels,
+  return {{"coarser grids", levels,
            fogs_.empty() ? none
            : levels ? fmt::format("{} coarser grids, made on the device when the map is another one", options_.levels)
                     : "the map itself is read"},
@@ -184,7 +184,7 @@ scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution
   const Buffer& lit = frame_.buffers.get("lit", surfaces_->shines() ? sizeof(LitData) * pixels : sizeof(LitData));
   const Buffer *distances = nullptr, *primitives = nullptr;
   if (std::any_of(fogs_.begin(), fogs_.end(), [](const auto& fog) { return fog->stale(); })) {
-    frame_.timer.begin("levels");
+    frame_.timer.begin("maps");
     for (const auto& fog : fogs_)
       if (fog->stale()) fog->refresh();
   }

@@ -85,11 +85,15 @@ std::string doubt_of(const scene::Scene& scene, const Fog& fog, const Options& o
   if (fog.sum.gaussians.empty() || !(by_paper || by_one_depth)) return "";
   std::vector<std::string> doubts;
   const double depth = greatest_depth(scene, fog), widths = nearest_light(scene, fog);
-  if (by_paper && (widths < least_widths || depth > deepest))
-    doubts.push_back(fmt::format(
-        "variant paper may be off by more than 25 %: a light {:.3g} widths from a Gaussian's centre (expected: {} or "
-        "more), Gaussians up to {:.3g} deep (expected: up to {}); S has no such limits",
-        widths, least_widths, depth, deepest));
+  std::vector<std::string> limits;
+  if (widths < least_widths)
+    limits.push_back(
+        fmt::format("a light {:.3g} widths from a Gaussian's centre (expected: {} or more)", widths, least_widths));
+  if (depth > deepest)
+    limits.push_back(fmt::format("Gaussians up to {:.3g} deep (expected: up to {})", depth, deepest));
+  if (by_paper && !limits.empty())
+    doubts.push_back(
+        fmt::format("variant paper may be off by more than 25 %: {}; S has no such limits", fmt::join(limits, ", ")));
   if (by_one_depth && depth > deepest_sky)
     doubts.push_back(fmt::format(
         "Eq. 28 may be off by more than 25 %: the environment shines on Gaussians up to {:.3g} deep (expected: up to "

@@ -104,7 +104,7 @@ std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::shared_ptr<const 
       fogs_.emplace_back(medium, options_);
     }
   }
-  times.push_back({"levels", watch.lap()});
+  times.push_back({"maps", watch.lap()});
   sun_.reset();
   if (!sunlit()) return times;
   sun_.emplace(*scene_, options_, execution);
@@ -127,7 +127,7 @@ std::vector<scene::Stage> PreparedWaveletFog::stages() const {
                         map.map.range().size[1], map.map.degree(), map.note.empty() ? "" : " (" + map.note + ")");
   }
   const std::string none = "no fog extinguishes";
-  return {{"levels", levels && !fogs_.empty(),
+  return {{"coarser grids", levels && !fogs_.empty(),
            fogs_.empty() ? none
            : levels      ? fmt::format("{} coarser grids of {}", options_.levels, maps)
                          : "the map itself is read: " + maps},

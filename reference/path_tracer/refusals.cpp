@@ -126,15 +126,16 @@ std::vector<std::string> refusals(const scene::Scene& scene, const Options& opti
   std::vector<std::string> reasons;
   const bool all_paths = options.paths == Options::Paths::all;  // else they end after one scattering
   if (options.max_order < 0 && all_paths)
-    for (const scene::Medium& medium : scene.media) {
+    for (std::size_t i = 0; i < scene.media.size(); ++i) {
+      const scene::Medium& medium = scene.media[i];
       double depth = 0;
       for (int c = 0; c < 3; ++c)
         if (all_scattered(medium, c)) depth = std::max(depth, thinnest_depth(medium, c));
       if (depth > thickest)
         reasons.push_back(fmt::format(
-            "medium '{}' scatters everything (albedo 1) and is {:.3g} optical depths thick, expected at most {:.3g}, "
+            "{} scatters everything (albedo 1) and is {:.3g} optical depths thick, expected at most {:.3g}, "
             "an albedo below 1, or a cap (max_order)",
-            medium.name, depth, thickest));
+            scene::label(scene.media, i), depth, thickest));
     }
   for (const scene::Light& light : scene.lights) {
     const auto ball = scene::ball(light);
@@ -166,12 +167,12 @@ std::vector<std::string> refusals(const scene::Scene& scene, const Options& opti
                     "expected at most {:.0e}: fewer supergrid_cells or Gaussians",
                     options.supergrid_cells, grids.cells, grids.terms, most_work));
   if (!options.column_transmittance)
-    for (const scene::Medium& medium : scene.media)
-      if (medium.sigma_t.minCoeff() != medium.sigma_t.maxCoeff())
+    for (std::size_t i = 0; i < scene.media.size(); ++i)
+      if (scene.media[i].sigma_t.minCoeff() != scene.media[i].sigma_t.maxCoeff())
         reasons.push_back(
-            fmt::format("medium '{}' has coloured extinction, which transmittance=ratio cannot weight; "
+            fmt::format("{} has coloured extinction, which transmittance=ratio cannot weight; "
                         "expected transmittance=column",
-                        medium.name));
+                        scene::label(scene.media, i)));
   return reasons;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/error.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
+#include "scene/nearest.h"
 #include "scene/printable.h"
 #include "scene/settings.h"
 
@@ -58,8 +59,8 @@ struct Walk {
     if (toml::node* child = table->get(parts[i])) return *child;
     std::vector<std::string> keys;
     for (const auto& [key, value] : *table) keys.emplace_back(key.str());
-    fail(fmt::format("there is no '{}'; {} has {} (nearest: {})", join(parts, i + 1), container(i),
-                     fmt::join(keys, ", "), nearest(parts[i], keys)));
+    fail(fmt::format("there is no '{}'; {} has {}{}", join(parts, i + 1), container(i), fmt::join(keys, ", "),
+                     nearest_hint(parts[i], keys)));
   }
 };
 

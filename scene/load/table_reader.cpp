@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/load/overrides.h"
 #include "scene/load/ranges.h"
+#include "scene/nearest.h"
 #include "scene/printable.h"
 #include "scene/settings.h"
 
@@ -27,9 +28,9 @@ void TableReader::allow(std::vector<std::string> keys) {
     const std::string name(key.str());
     if (std::find(keys_.begin(), keys_.end(), name) != keys_.end()) continue;
     const bool from_override = value.source().path && is_override(*value.source().path);
-    throw Error(fmt::format("{}: {}unknown key '{}', expected one of {} (nearest: {})",
+    throw Error(fmt::format("{}: {}unknown key '{}', expected one of {}{}",
                             location(from_override ? value.source() : key.source()), prefix(where_),
-                            printable(name, 100), fmt::join(keys_, ", "), nearest(name, keys_)));
+                            printable(name, 100), fmt::join(keys_, ", "), nearest_hint(name, keys_)));
   }
 }
 
@@ -140,7 +141,7 @@ std::string TableReader::choice(const std::string& key, const std::vector<std::s
   const auto* value = node.as_string();
   if (!value) wrong(node, key, what);
   if (std::find(choices.begin(), choices.end(), value->get()) == choices.end())
-    wrong(node, key, fmt::format("{} (nearest: {})", what, nearest(value->get(), choices)));
+    wrong(node, key, fmt::format("{}{}", what, nearest_hint(value->get(), choices)));
   return value->get();
 }
 

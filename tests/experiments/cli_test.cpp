@@ -56,6 +56,14 @@ TEST_CASE("usage errors are one line, exit code 2, and name the nearest", "[cli]
   refused("render x.toml -m fogshp -o a.exr", "nearest: fogshop");
   refused("render x.toml -m fogshop", "--out is missing");
   refused("", "expected a command");
+  refused("help", "unknown command 'help'; see airlight --help");
+  refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.png", "a.png: expected a name in .exr");
+  refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr --png b.exr",
+          "expected a name in .png");
+  refused("merge " + scenes + "constant_homogeneous.toml a.samples -o a.pfm", "a.pfm: expected a name in .exr");
+  refused("compare a.exr b.exr --equal 0", "--equal 0: expected a rate above 0");
+  refused("compare a.exr b.exr --override film.width=4", "expected --scene");
+  refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr --set ' =3'", "expected name=value");
   refused("render no_such_file.toml -m ray_marcher -o a.exr", "no_such_file.toml");
   refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o no/such/folder/a.exr", "no folder");
   refused("render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr --set stps=3", "nearest: step");
@@ -80,9 +88,9 @@ TEST_CASE("usage errors are one line, exit code 2, and name the nearest", "[cli]
 TEST_CASE("render, compare and convert", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = scenes + "constant_homogeneous.toml";
-  const std::string small = " --override film.width=16 --override film.height=12";
+  const std::string small = " --override 'film.width = 16' --override film.height=12";
   REQUIRE(run("render " + scene + small + " -m deterministic -o truth.exr --png truth.png", folder).code == 0);
-  REQUIRE(run("render " + scene + small + " -m ray_marcher --set steps=64 -o marched.exr", folder).code == 0);
+  REQUIRE(run("render " + scene + small + " -m ray_marcher --set 'steps = 64' -o marched.exr", folder).code == 0);
   const std::string one = " -m path_tracer --set max_order=1 --samples 256 -o ";
   REQUIRE(run("render " + scene + small + one + "traced.exr --threads 1", folder).code == 0);
   CHECK(std::filesystem::file_size(folder.path() / "truth.png") > 0);
@@ -100,6 +108,11 @@ TEST_CASE("render, compare and convert", "[cli]") {
   CAPTURE(equal.out);
   CHECK(equal.code == 0);
   CHECK_THAT(equal.out, Contains("equal: "));
+  const Result itself = run("compare traced.exr traced.exr --equal 1e-4 --metric bias", folder);
+  CHECK(itself.code == 1);
+  CHECK_THAT(itself.out, Contains("different, too alike"));
+  CHECK(run("compare marched.exr truth.exr --scene " + scene + small, folder).code == 0);
+  CHECK_THAT(run("compare marched.exr truth.exr --scene " + scene, folder).err, Contains("film is"));
   // A few steps are wrong beyond any noise.
   REQUIRE(run("render " + scene + small + " -m ray_marcher --set steps=1 -o bad.exr", folder).code == 0);
   const Result bad = run("compare bad.exr truth.exr --max rel_l2=0.0001", folder);
@@ -149,6 +162,7 @@ TEST_CASE("explain and doctor", "[cli]") {
   CHECK(explained.code == 0);
   CHECK_THAT(explained.out, Contains("computes") && Contains("leaves out") && Contains("cannot render this scene") &&
                                 Contains("path_tracer") && Contains("ray_marcher") && Contains("fogshop"));
+  CHECK_THAT(explained.out, Contains("\n  medium 0, homogeneous, phase "));  // it has no name
   const Result doctor = run("doctor", folder);
   CHECK(doctor.code == 0);
   CHECK_THAT(doctor.out, Contains("Embree 3") && Contains("processor") && Contains("graphics"));

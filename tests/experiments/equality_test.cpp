@@ -198,6 +198,44 @@ TEST_CASE("blocks without noise", "[equality]") {
   CHECK(objections(compare_equal(image, reference, "mean", {}, 1e-4), 1e-4) > 0);
 }
 
+// A standard error far above the scatter in every other block, whose batches are all equal at one pixel: those blocks are
+// far too alike, and say nothing of the noise. The others' lower tail is as rare as it should be: each of three
+// independent channels objects at 0.05, so that 0.1426 of images do (57 of 400, standard deviation 7.0; 28 is 4 of them).
+TEST_CASE("blocks whose variance is an upper end are not too alike", "[equality]") {
+  std::normal_distribution<double> normal(0, 0.05);
+  const Noise noise = [&](std::mt19937_64& random) {
+    const double r = normal(random), g = normal(random);
+    return std::array<double, 3>{r, g, normal(random)};
+  };
+  const auto know_more = [](Film film) {
+    auto& se = film.add("se");
+    se.assign(film.layers["mean"].size(), 0.0125f);
+    for (int y = 0; y < film.height; y += 8)
+      for (int x = (y / 8) % 2 * 8; x < film.width; x += 16)
+        for (int c = 0; c < 3; ++c) {
+          const auto i = std::size_t(3 * (y * film.width + x) + c);
+          se[i] = 2;
+          film.layers["mean"][i] = 1;
+          for (int b = 0; b < 16; ++b) film.layers[batch_name(b)][i] = 1;
+        }
+    return film;
+  };
+  int alarms = 0, others = 0;
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    const Film reference = know_more(noisy(64, 48, unit, noise, seed));
+    const Equality e = compare_equal(constant(64, 48, 1), reference, "mean", {}, 0.9);
+    REQUIRE(e.blocks == 144);
+    alarms += e.too_alike;
+    others += !e.too_alike && e.chi_square_probability < 0.1;
+  }
+  CAPTURE(alarms, others);
+  CHECK(std::abs(alarms - 57) < 28);
+  CHECK(others == 0);  // the upper tail is of all blocks
+  // Images that share their random numbers are still found out, by the blocks that know their noise.
+  const Film same = know_more(noisy(64, 48, unit, noise, 1));
+  CHECK(compare_equal(same, same, "mean", {}, 1e-4).too_alike);
+}
+
 // An image that is its reference: every z is 0, and no chance makes 36 of them so.
 TEST_CASE("shared random numbers scatter too little", "[equality]") {
   const Film reference = noisy(32, 24, gradient, 0.05, 1);
@@ -206,4 +244,7 @@ TEST_CASE("shared random numbers scatter too little", "[equality]") {
   CHECK(e.chi_square_probability < 1e-9);
   CHECK(objections(e, 1e-4) == 1);
   CHECK_FALSE(e.equal);
+  CHECK_THAT(text(e), Catch::StartsWith("different, too alike"));
+  const Equality biased = compare_equal(constant(32, 24, 1.01), normal_noise(32, 24, 0.05, 1), "mean", {}, 1e-4);
+  CHECK_THAT(text(biased), Catch::StartsWith("different: "));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <fstream>
 
 #include "gpu/buffer.h"
@@ -143,6 +144,19 @@ TEST_CASE("a shader's error names its file and line", "[gpu]") {
   // The context survives all of it.
   shaders.folder().write("test.comp", doubling);
   CHECK_NOTHROW(Program(*context, "test.comp", {}));
+}
+
+TEST_CASE("errors of units in the last place are a whole number of them", "[gpu]") {
+  const char* const before = std::getenv("AIRLIGHT_GPU_ULPS");
+  const std::string kept = before ? before : "";
+  for (const char* wrong : {"x", "2x", "1.5", "-1", "100000"}) {
+    setenv("AIRLIGHT_GPU_ULPS", wrong, 1);
+    CHECK_THROWS_WITH(shader_source("ray_marcher/march.comp", {}),
+                      Catch::Contains(fmt::format("AIRLIGHT_GPU_ULPS = '{}': expected a whole number", wrong)));
+  }
+  setenv("AIRLIGHT_GPU_ULPS", "2", 1);
+  CHECK_THAT(shader_source("ray_marcher/march.comp", {}).text, Catch::Contains("#define ULP_ERRORS 2\n"));
+  before ? setenv("AIRLIGHT_GPU_ULPS", kept.c_str(), 1) : unsetenv("AIRLIGHT_GPU_ULPS");
 }
 
 TEST_CASE("messages of compilers are translated", "[gpu]") {

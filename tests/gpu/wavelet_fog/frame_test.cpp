@@ -110,7 +110,7 @@ TEST_CASE("wavelet fog: a map that changes every frame stays on the device", "[g
     }
     // Nothing changed: nothing but settings goes up, no level is made.
     scene::Rendering still = prepared->render(view_of(*first), none);
-    for (const scene::StageTime& stage : still.times) CHECK(stage.name != "levels");
+    for (const scene::StageTime& stage : still.times) CHECK(stage.name != "maps");
     auto other = scene_with(3);
     other->media[0].field = scene::FogmapPointer(patches(1, 65, 48, 1, 3));
     other->surfaces = first->surfaces, other->geometry = first->geometry;

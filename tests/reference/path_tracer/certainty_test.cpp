@@ -173,7 +173,8 @@ TEST_CASE("work without end is refused in one line", "[path_tracer]") {
   options.samples = 256;
   // Endless fog that scatters everything: no end of collisions, unless paths end after one.
   const auto endless = scene_of({medium(scene::Unbounded{}, 1, 1)}, {scene::DirectionalLight{}});
-  CHECK(refusals(*endless, options).size() == 1);
+  REQUIRE(refusals(*endless, options).size() == 1);
+  CHECK_THAT(refusals(*endless, options).front(), Catch::StartsWith("medium 0 scatters everything"));  // it has no name
   options.paths = Options::Paths::scattered_to_surface;
   CHECK(refusals(*endless, options).empty());
 }
