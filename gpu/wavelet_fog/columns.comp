@@ -12,7 +12,8 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/loops_cut.glsl"
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_DEPTHS) buffer Depths { vec4 depths[]; };  // w: integral of this medium in the parts so far
-layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };  // low and high words: cells, coefficients; loops cut; 7, 8: lookups
+// Low and high words: cells, coefficients; loops cut; 7, 8: lookups.
+layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };
 uniform int has_distances, first, counts;
 
 shared uint cells_of_group, lookups_of_group;
