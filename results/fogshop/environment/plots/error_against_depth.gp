@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00174508:1.4326]
 set logscale y
 set format y "%g"
-set yrange [3.48126e-05:0.812982]
+set yrange [4.61033e-05:0.80161]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_depth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "npsf 4", \
@@ -40,7 +40,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "volume 24", \
      data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 21 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     6.86229e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     9.65838e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_depth.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "npsf 4", \
@@ -67,4 +67,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "volume 24", \
      data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 21 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     6.86229e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     9.65838e-05 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

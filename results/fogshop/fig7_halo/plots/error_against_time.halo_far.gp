@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [9.56494e-05:0.00790664]
+set xrange [0.000102333:0.00925691]
 set logscale y
 set format y "%g"
 set yrange [3.19286e-05:1.35993]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [9.61837e-05:0.00852377]
+set xrange [9.74769e-05:0.0171683]
 set logscale y
 set format y "%g"
 set yrange [3.26755e-05:0.978676]

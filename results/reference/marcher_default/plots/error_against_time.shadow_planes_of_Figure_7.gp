@@ -8,7 +8,9 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.0309241]
+set logscale x
+set format x "%g"
+set xrange [0.00780779:0.0388891]
 set logscale y
 set format y "%g"
 set yrange [0.00715146:0.0768708]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000674894:0.52076]
+set xrange [0.000722075:0.566081]
 set logscale y
 set format y "%g"
 set yrange [0.00627454:0.48724]

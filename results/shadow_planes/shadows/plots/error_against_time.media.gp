@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00195217:0.0273824]
+set xrange [0.00202061:0.0318138]
 set logscale y
 set format y "%g"
 set yrange [2.02722e-08:0.0262638]
