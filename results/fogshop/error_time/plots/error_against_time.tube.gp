@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00193986:5.30701]
 set logscale y
 set format y "%g"
-set yrange [0.00222506:4.5359]
+set yrange [0.00222506:4.53589]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.tube.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""tests/tools/loop_counts.py OUT [--program FILE]: how often the loops of the GPU side go round, in ten scenes at 800 x 600.
+
+Writes OUT/marked/SHADER, the shaders with every condition of a loop counted, renders Tables 1 and 2 with them (any driver, llvmpipe
+too), and reads the counts from the picture: the pixels of a block of 8 x 4, what a warp is on a GPU, all show the same loop's.
+OUT/loops.csv: of each scene, shader and loop the mean by invocation, and that of the greatest in each block. OUT/dump/SCENE holds the
+shaders, with `COUNT_TRIPS`, for scripts/frame_budgets."""
+import argparse
+import array
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+WIDTH, HEIGHT, SCALE = 800, 600, 1024
+FOGSHOP = [("fogshop/table1/" + name, name) for name in ("gargoyle", "box", "terrain", "city", "motorcycle")]
+PLANES = [("shadow_planes/" + file, name) for file, name in
+          (("fig8a", "pens"), ("fig8b", "media"), ("fig8c", "columns"), ("fig1", "nave"), ("fig7_shade", "Figure 7"))]
+OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": []}
+# Where a shader's counts go in the picture: statements replaced (by file), and the layer that then shows them.
+SHOWN = {
+    "raster/first_hits.comp": {"fogshop_gpu": "fogshop/surfaces.comp", "shadow_planes_gpu": "shadow_planes/shade.comp"},
+    "fogshop/paper.comp": ("pixels[place_of(pixel)] = vec4(airlight * albedo, depth);",
+                           "pixels[place_of(pixel)] = vec4(vec3(trips_shown(pixel, grid_width)), 0);", "airlight"),
+    "fogshop/surfaces.comp": ("  if (loops_cut())",
+                              "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = trips_shown(pixel, view_width);\n"
+                              "  if (loops_cut())", "surface"),
+    "fogshop/environment.comp": ("  pixels[index].rgb += max(sum * T * exp(-T), vec3(0));",
+                                 "  pixels[index].rgb = vec3(trips_shown(pixel, width)) + 0 * max(sum * T * exp(-T), vec3(0));",
+                                 "airlight"),
+    "shadow_planes/shade.comp": ("  lit_pixels[place] = lit;",
+                                 "  lit.airlight.rgb += trips_shown(pixel, view_width);\n  lit_pixels[place] = lit;", "airlight"),
+}
+
+
+def matching(text, at, brackets="()"):
+    """Behind the bracket that closes the one before `at`."""
+    depth = 1
+    while depth:
+        depth += {brackets[0]: 1, brackets[1]: -1}.get(text[at], 0)
+        at += 1
+    return at
+
+
+def loops_counted(text, number):
+    """The text with the condition of every loop counted; `number(text, at)` gives a place its number."""
+    out, at = [], 0
+    for match in re.finditer(r"\b(for|while) \(", text):
+        begin, end = match.end(), matching(text, match.end()) - 1
+        first, last = begin, end
+        if match.group(1) == "for":
+            first = text.index(";", begin) + 1
+            last = text.index(";", first)
+        condition = text[first:last].strip() or "true"
+        out += [text[at:first], f" trip({number(text, match.start())}) && ({condition})"]
+        at = last
+    return "".join(out) + text[at:]
+
+
+def branches_counted(text, number):
+    """What runs behind `if (...) continue;` or `return`, within the braces of a condition, and behind them."""
+    inserts = []
+    for match in re.finditer(r"\bif \(", text):
+        begin, end = match.end(), matching(text, match.end()) - 1
+        behind = text[end + 1:]
+        if re.match(r" (continue|return\b[^;]*);", behind):
+            inserts += [(begin, "("), (end, f") || !trip({number(text, begin)})")]
+        elif behind.startswith(" {"):
+            inserts += [(begin, "("), (end, f") && trip({number(text, begin)})")]
+            close = matching(text, end + 3, "{}")
+            if text.startswith(" else {", close):
+                inserts.append((close + 7, f" trip({number(text, close)});"))
+                close = matching(text, close + 7, "{}")
+            if not text.startswith(" else", close):
+                inserts.append((close, f" trip({number(text, close)});"))
+    for at, words in sorted(inserts, reverse=True, key=lambda i: i[0]):
+        text = text[:at] + words + text[at:]
+    return text
+
+
+def marked(target):
+    """All shaders by name, what runs in one of them counted; and the marked places, file:line."""
+    loops, texts = [], {}
+    for path in sorted((ROOT / "gpu").glob("**/*")):
+        name = str(path.relative_to(ROOT / "gpu"))
+        if path.suffix not in (".glsl", ".comp", ".vert", ".frag"):
+            continue
+        texts[name] = path.read_text()
+
+    def reached(name, seen):
+        if name not in seen:
+            seen.add(name)
+            for other in re.findall(r'^#include "(.*)"', texts[name], re.M):
+                reached(other, seen)
+        return seen
+    for name in sorted(reached(target, set()) - {"common/loops_cut.glsl"}):
+        def number(text, at, name=name):
+            loops.append(f"{name}:{text.count(chr(10), 0, at) + 1}")
+            return len(loops) - 1
+        texts[name] = loops_counted(branches_counted(texts[name], number), number)
+    definition = ("\n#define COUNT_TRIPS 1\n#if COUNT_TRIPS\nuint trips[%d];\nbool trip(int k) { ++trips[k]; return true; }\n"
+                  "float trips_shown(ivec2 pixel, int width) {\n  int k = (pixel.y / 4 * ((width + 7) / 8) + pixel.x / 8) %% %d;\n"
+                  "  uint sum = 0u;\n  for (int i = 0; i < %d; ++i) if (i == k) sum = trips[i];\n  return %d.0 * float(sum);\n}\n"
+                  "#endif\n" % (len(loops), len(loops), len(loops), SCALE))
+    for name, text in texts.items():
+        if name.endswith(".comp"):
+            added = definition if name == target else "#define trip(k) true\n"
+            texts[name] = re.sub(r"(layout\(local_size_x[^;]*;\n)", lambda m: m.group(1) + added, text, count=1)
+    zeroed = "void main() {\n#if COUNT_TRIPS\n  for (int i = 0; i < %d; ++i) trips[i] = 0u;\n#endif\n" % len(loops)
+    texts[target] = texts[target].replace("void main() {\n", zeroed)
+    return texts, loops
+
+
+def shown(texts, target, method):
+    """Has the counts of `target` shown in the picture; returns the layer."""
+    if target == "raster/first_hits.comp":
+        old = "if (keeps_primitives != 0) primitives[first_ray + place] = best.primitive;"
+        new = "#if COUNT_TRIPS\n  primitives[first_ray + place] = int(trips_shown(at, columns));\n#else\n  " + old + "\n#endif"
+        texts[target] = replaced(texts[target], "  " + old, new)
+        by = SHOWN[target][method]
+        if method == "fogshop_gpu":
+            main = ("void main() {\n  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n"
+                    "  if (pixel.x >= view_width || pixel.y >= view_height) return;\n"
+                    "  int place = pixel.y * view_width + pixel.x;\n"
+                    "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = float(primitive_of[place]);\n}\n")
+            texts[by] = texts[by][:texts[by].index("void main() {")] + main
+            return "surface"
+        texts[by] = replaced(texts[by], "int primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;",
+                             "int shown = primitive_of[place], primitive = -1, surface = -1;")
+        texts[by] = replaced(texts[by], "  lit_pixels[place] = lit;",
+                             "  lit.airlight.rgb = vec3(float(shown));\n  lit_pixels[place] = lit;")
+        return "airlight"
+    old, new, layer = SHOWN[target]
+    texts[target] = replaced(texts[target], old, "\n#if COUNT_TRIPS\n" + new + "\n#else\n" + old + "\n#endif\n")
+    return layer
+
+
+def replaced(text, old, new):
+    if text.count(old) != 1:
+        sys.exit(f"loop_counts: the shaders no longer hold once: {old}")
+    return text.replace(old, new)
+
+
+def picture(file):
+    """A PFM file's rows, top first: the first channel."""
+    data = file.read_bytes()
+    head = data.split(b"\n", 3)
+    width, height = map(int, head[1].split())
+    values = array.array("f", head[3])
+    channels = 3 if head[0] == b"PF" else 1
+    return [values[y * width * channels:(y + 1) * width * channels:channels] for y in reversed(range(height))]
+
+
+def counts(rows, loops):
+    """By loop: mean of an invocation, mean of the greatest of a block."""
+    sums, most, blocks = [0.0] * loops, [0.0] * loops, [0] * loops
+    across = (WIDTH + 7) // 8
+    for y in range(0, HEIGHT, 4):
+        for x in range(0, WIDTH, 8):
+            block = [round(v / SCALE) for row in rows[y:y + 4] for v in row[x:x + 8]]
+            k = (y // 4 * across + x // 8) % loops
+            sums[k] += sum(block) / len(block)
+            most[k] += max(block)
+            blocks[k] += 1
+    return [(sums[k] / blocks[k], most[k] / blocks[k]) for k in range(loops)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--program", default=str(ROOT / "build" / "release" / "airlight"))
+    parser.add_argument("--only", default="", help="a part of the scene's or shader's name")
+    arguments = parser.parse_args()
+    if not pathlib.Path(arguments.program).exists():
+        sys.exit(f"loop_counts: there is no program at {arguments.program}; run scripts/build first")
+    out = arguments.out.resolve()
+    rows, failed = [], 0
+    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES)):
+        targets = [name for name in SHOWN if name.startswith(("raster/", method.removesuffix("_gpu")))]
+        for target in targets:
+            texts, loops = marked(target)
+            layer = shown(texts, target, method)
+            folder = out / "marked" / method / target.replace("/", "-")
+            for name, text in texts.items():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                (folder / name).write_text(text)
+            for scene, title in scenes:
+                if arguments.only not in title + " " + target:
+                    continue
+                if target == "fogshop/environment.comp" and title in ("gargoyle", "box"):  # lit by points
+                    continue
+                image = out / f"{title}-{target.replace('/', '-')}.exr"
+                environment = dict(os.environ, AIRLIGHT_SHADERS=str(folder), AIRLIGHT_DUMP_SHADERS=str(out / "dump" / title))
+                (out / "dump" / title).mkdir(parents=True, exist_ok=True)
+                command = [arguments.program, "render", str(ROOT / "experiments/scenes" / (scene + ".toml")), "-m", method,
+                           *OPTIONS[method], "--override", f"film.width={WIDTH}", "--override", f"film.height={HEIGHT}",
+                           "-o", str(image)]
+                result = subprocess.run(command, env=environment, capture_output=True, text=True)
+                if result.returncode:
+                    print(f"{title} {target}: exit code {result.returncode}: {result.stderr.strip()[-400:]}", file=sys.stderr)
+                    failed += 1
+                    continue
+                plain = image.with_suffix(".pfm")
+                subprocess.run([arguments.program, "convert", str(image), str(plain), "--layer", layer], check=True)
+                found = counts(picture(plain), len(loops))
+                rows += [[title, target, k, place, f"{mean:.6g}", f"{most:.6g}"]
+                         for k, (place, (mean, most)) in enumerate(zip(loops, found))]
+                print(title, target, "done", flush=True)
+                with open(out / "loops.csv", "w", newline="") as file:
+                    csv.writer(file, lineterminator="\n").writerows([["scene", "shader", "loop", "place", "mean", "warp"], *rows])
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
