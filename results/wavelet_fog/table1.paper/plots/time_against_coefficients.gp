@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [7.69526e+06:4.50547e+08]
 set logscale y
 set format y "%g"
-set yrange [0.346335:7.66094]
+set yrange [0.0524673:0.937791]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_coefficients.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "direct, Haar 16x16", \
