@@ -4,7 +4,7 @@
 doubled_error.py [ROOT] [--profile quick|paper] [--gates]
 
 Reads the gates of experiments/*/*.toml, the bounds by row beside them and the rows of results/*/*/run.json, and doubles every error that a gate bounds
-(four times where it is a square, or of the size of rounding); its interval stays as wide as it was, so an error in the noise of its reference is not
+(four times where it is a square); its interval stays as wide as it was, so an error in the noise of its reference is not
 found. Prints for every renderer and variant how many of its rows are gated, how many gates
 would object, and the one nearest to objecting. Exit code 1 if some renderer and variant has no gate that would, 2 for
 files that cannot be read. What an error is compared with is the experiment's reference: against another method it is the
@@ -19,8 +19,6 @@ import sys
 import tomllib
 
 SQUARES = {"rel_l2_squared", "rel_mse"}
-# Below it an error is that of pictures in single precision; other arithmetic, as good, may double it.
-ROUNDING = 1e-7
 # Not errors: a method twice as wrong has other counters, times and objections, in no known proportion.
 NO_ERRORS = {"seconds", "prepare_seconds", "objections", "largest_z", "detectable_bias"}
 
@@ -75,7 +73,7 @@ def doubled(row, gate):
     for m in row["errors"]:
         if m["metric"] != gate["metric"] or m["value"] is None:
             continue
-        value = (4 if name in SQUARES or abs(m["value"]) < ROUNDING else 2) * m["value"]
+        value = (4 if name in SQUARES else 2) * m["value"]
         sure = value - (m["value"] - m["low"]) if upper else value + (m["high"] - m["value"])
         grows = value > 0 if upper else value < 0
         return (bound / value if grows else math.inf), (sure > bound if upper else sure < bound)
