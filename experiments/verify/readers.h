@@ -65,6 +65,10 @@ Check read_multiple_scattering(const Value&);
 // identity_kinds.cpp
 Check read_identity(const Value&);
 
+// fluid_kinds.cpp, fluid_flows.cpp
+Check read_fluid(const Value&);
+Check read_fluid_flow(const Value&);  // of a whole flow
+
 // statistics_kinds.cpp
 Check read_statistics(const Value&);
 

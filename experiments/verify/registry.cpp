@@ -38,7 +38,7 @@ Kinds references() {
       {"sampling", read_sampling},
       {"random_numbers", read_random_numbers},
       {"statistics", read_statistics},
-      {"fluid", waiting("fluid solver", {"input", "expected", "accuracy"})},
+      {"fluid", read_fluid},
   };
 }
 

@@ -1,9 +1,8 @@
 // finish(): what a scene holds beside its description: the ray queries and the hash of its content.
 #include <string>
 
-#include "scene/geometry/brdf_table.h"
 #include "scene/light_on_surface.h"
-#include "scene/load/content_hash.h"
+#include "scene/load/hash_parts.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {
@@ -66,17 +65,7 @@ void add(ContentHash& hash, const GaussianSum& field) {
   }
 }
 
-void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    hash.add(grid->size[axis]);
-    hash.add(grid->origin_index[axis]);
-  }
-  hash.add(grid->rotation);
-  hash.add(grid->voxel_size);
-  hash.add(grid->translation);
-  hash.add(int(grid->clamp_border));
-  hash.add(grid->values);
-}
+void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) { load::add(hash, *grid); }
 
 void add(ContentHash&, const SameAtAllHeights&) {}
 
@@ -102,67 +91,16 @@ void add(ContentHash& hash, const std::shared_ptr<const Fogmap>& fog) {
   std::visit([&](const auto& profile) { add(hash, profile); }, fog->profile);
 }
 
-void add(ContentHash&, const Unbounded&) {}
-
-void add(ContentHash& hash, const Sphere& sphere) {
-  hash.add(sphere.center);
-  hash.add(sphere.radius);
-}
-
-void add(ContentHash& hash, const Box& box) { hash.add(box); }
-
-void add(ContentHash& hash, const Slab& slab) {
-  hash.add(slab.normal);
-  hash.add(slab.lo);
-  hash.add(slab.hi);
-}
-
 void add(ContentHash& hash, const Medium& medium) {
   hash.add(int(medium.field.index()));
   std::visit([&](const auto& field) { add(hash, field); }, medium.field);
-  hash.add(int(medium.region.index()));
-  std::visit([&](const auto& region) { add(hash, region); }, medium.region);
+  load::add(hash, medium.region);
   hash.add(medium.sigma_t);
   hash.add(medium.albedo);
   hash.tag(phase_name(medium.phase));
   match(
       medium.phase, [](Isotropic) {}, [](Rayleigh) {}, [&](HenyeyGreenstein hg) { hash.add(hg.g); }, [](Hazy) {},
       [](Murky) {});
-}
-
-void add(ContentHash& hash, const TriangleMesh& mesh) {
-  hash.add(std::int64_t(mesh.vertices.size()));
-  for (const Point3& vertex : mesh.vertices) hash.add(vertex);
-  hash.add(std::int64_t(mesh.triangles.size()));
-  for (const auto& triangle : mesh.triangles)
-    for (const int index : triangle) hash.add(index);
-}
-
-void add(ContentHash& hash, const Plane& plane) {
-  hash.add(plane.point);
-  hash.add(plane.normal);
-}
-
-void add(ContentHash& hash, const Lambert& material) { hash.add(material.albedo); }
-
-void add(ContentHash& hash, const Phong& material) {
-  hash.add(material.diffuse);
-  hash.add(material.specular);
-  hash.add(material.exponent);
-}
-
-void add(ContentHash& hash, const Tabulated& material) {
-  const BrdfTable& table = *material.table;
-  hash.add(table.thetas());
-  hash.add(table.phis());
-  for (const Rgb& value : table.values()) hash.add(value);
-}
-
-void add(ContentHash& hash, const Surface& surface) {
-  hash.add(int(surface.shape.index()));
-  std::visit([&](const auto& shape) { add(hash, shape); }, surface.shape);
-  hash.add(int(surface.material.index()));
-  std::visit([&](const auto& material) { add(hash, material); }, surface.material);
 }
 
 std::string content_hash(const Scene& scene) {
@@ -183,7 +121,7 @@ std::string content_hash(const Scene& scene) {
   for (const Medium& medium : scene.media) add(hash, medium);
   hash.tag("surfaces");
   hash.add(std::int64_t(scene.surfaces.size()));
-  for (const Surface& surface : scene.surfaces) add(hash, surface);
+  for (const Surface& surface : scene.surfaces) load::add(hash, surface);
   return hash.digits();
 }
 

@@ -31,6 +31,21 @@ Slab read_slab(TableReader& reader) {
   return slab;
 }
 
+// Allows the keys of this kind and of every medium, for the reads that follow.
+DensityField read_field(const DensityField& kind, TableReader& reader, const std::string& folder) {
+  return match(
+      kind,
+      [&](const Homogeneous&) -> DensityField {
+        reader.allow(medium_keys_and({"density"}));
+        return Homogeneous{reader.number("density", density_range, 1)};
+      },
+      [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
+      [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); },
+      [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); });
+}
+
+}  // namespace
+
 Region read_region(TableReader reader) {
   const Region kind = read_kind(reader, region_name);
   return match(
@@ -49,21 +64,6 @@ Region read_region(TableReader reader) {
       },
       [&](const Slab&) -> Region { return read_slab(reader); });
 }
-
-// Allows the keys of this kind and of every medium, for the reads that follow.
-DensityField read_field(const DensityField& kind, TableReader& reader, const std::string& folder) {
-  return match(
-      kind,
-      [&](const Homogeneous&) -> DensityField {
-        reader.allow(medium_keys_and({"density"}));
-        return Homogeneous{reader.number("density", density_range, 1)};
-      },
-      [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
-      [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); },
-      [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); });
-}
-
-}  // namespace
 
 std::vector<std::string> medium_keys_and(const std::vector<std::string>& keys) {
   std::vector<std::string> all = {"name", "type", "sigma_t", "albedo", "phase", "region"};

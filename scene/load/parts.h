@@ -16,6 +16,7 @@ Light read_light(TableReader, const std::string& folder);
 EnvironmentLight read_environment(TableReader, const std::string& folder);
 Medium read_medium(TableReader, const std::string& folder);
 Surface read_surface(TableReader, const std::string& folder);
+Region read_region(TableReader);
 
 // The kind that the key `type` names, as it is by default; `name` names a kind.
 template <class Variant>

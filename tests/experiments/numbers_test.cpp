@@ -166,13 +166,13 @@ TEST_CASE("the experiment of oracle vectors forgets no kind", "[driver]") {
       if (is_on(m, c)) listed.insert(m.setting);
     const auto json = nlohmann::json::parse(read_bytes(c.file.string()));
     for (const auto& v : json["vectors"]) there.insert(v["kind"].get<std::string>());
-    there.erase("fluid");  // no solver is built
     CAPTURE(c.name);
     CHECK(listed == there);
   }
   const TemporaryFolder folder;
-  folder.write("vectors.json", R"({"part": "references", "vectors": [{"id": "a", "kind": "fluid", "input": {},)"
-                               R"( "expected": {}, "accuracy": {}}]})");
+  folder.write("vectors.json",
+               R"({"paper": "compensated_ray_marching_2008", "vectors": [{"id": "a", "kind": "sh_basis", "input": {},)"
+               R"( "expected": {}, "rtol": 0, "atol": 0}]})");
   folder.write("experiments/g/e.toml", R"(kind = "numbers"
 title = "Nothing"
 metrics = ["worst_share"]
@@ -180,7 +180,7 @@ metrics = ["worst_share"]
 file = "../vectors.json"
 [[method]]
 probe = "oracle_vectors"
-settings = { kind = "fluid" }
+settings = { kind = "sh_basis" }
 [[gate]]
 metric = "worst_share"
 at_most = 1

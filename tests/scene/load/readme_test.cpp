@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/flow_problem.h"
 #include "scene/scene.h"
 
 using namespace airlight;
@@ -43,7 +44,11 @@ std::vector<std::string> examples() {
 // The keys that may stand in a table: the loader lists them when it meets one that may not.
 std::vector<std::string> keys_of(const std::string& table) {
   try {
-    parse_scene(camera + table + "\nno_such_key = 1\n", "x", "");
+    const std::string text = table + "\nno_such_key = 1\n";
+    if (table.find("[flow]") == std::string::npos)
+      parse_scene(camera + text, "x", "");
+    else
+      parse_flow(text, "x", "");
   } catch (const Error& e) {
     const std::string what = e.what();
     const std::string before = "expected one of ";
@@ -69,6 +74,10 @@ TEST_CASE("every example of the format's documentation loads", "[load]") {
   REQUIRE(all.size() >= 18);
   for (const std::string& example : all) {
     INFO(example);
+    if (example.find("[flow]") != std::string::npos) {
+      CHECK(parse_flow(example, "example", root + "/experiments/scenes").hash.size() == 32);
+      continue;
+    }
     const bool whole = example.find("[camera]") != std::string::npos;
     Scene scene;
     CHECK_NOTHROW(scene = parse_scene(whole ? example : camera + example, "example", root + "/experiments/scenes"));
@@ -90,7 +99,7 @@ TEST_CASE("every kind has an example in the documentation", "[load]") {
 }
 
 TEST_CASE("the documentation names every key that the loader knows", "[load]") {
-  const std::string text = readme();
+  const std::string text = readme(), flow = "[flow]\nduration = 1\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }\n";
   const std::vector<std::string> tables = {
       "[film]",
       "[[light]]\ntype = 'point'",
@@ -119,6 +128,18 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'lambert'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'phong'",
       "[[surface]]\ntype = 'plane'\npoint = [0, 0, 0]\n[surface.material]\ntype = 'tabulated'",
+      "[flow]",
+      flow + "[sides]",
+      flow + "[sides.top]\ntype = 'moving'",
+      flow + "[sides.top]\ntype = 'inflow'",
+      flow + "[fluid]",
+      flow + "[start]",
+      flow + "[start.velocity]\ntype = 'taylor_green'",
+      flow + "[start.velocity]\ntype = 'rotation'",
+      flow + "[[start.blob]]",
+      flow + "[start.wave]",
+      flow + "[[source]]",
+      flow + "[[force]]",
   };
   for (const std::string& table : tables)
     for (const std::string& key : keys_of(table)) {

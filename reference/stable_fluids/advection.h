@@ -1,0 +1,33 @@
+// Transport along the flow: semi-Lagrangian, and the two corrections by going there and back.
+//
+// Stam 1999 (traces back in time, interpolates); Fedkiw, Stam and Jensen 2001 (monotone cubic); Kim, Liu, Llamas and
+// Rossignac 2005 (BFECC); Selle, Fedkiw, Kim, Liu and Rossignac 2008 (MacCormack and the limiters).
+#pragma once
+#include "reference/stable_fluids/field.h"
+#include "reference/stable_fluids/obstacles.h"
+
+namespace airlight::stable_fluids {
+
+enum class Scheme { semi_lagrangian, maccormack, bfecc };
+enum class Interpolation { linear, cubic };
+// Where a correction leaves the range of the samples around the foot: nothing, clamped into it, or dropped.
+enum class Limiter { none, clamp, revert };
+
+struct Advection {
+  Scheme scheme = Scheme::maccormack;
+  Interpolation interpolation = Interpolation::linear;
+  Limiter limiter = Limiter::clamp;
+  int trace = 2;  // order of the Runge-Kutta method that finds the foot: 1, 2 or 4
+};
+
+// What is at each sample after a time dt: `from` and the velocity with their ghosts filled; `to` and `spare` are of
+// from's shape, and to's ghosts stay as they were. Feet end at walls and obstacles, and wrap where it is periodic.
+template <class Real>
+void advect(const Advection&, const Lattice&, const Obstacles&, const Velocity<Real>&, double dt, Quantity,
+            const Field<Real>& from, Field<Real>& to, Field<Real>& spare);
+
+// At any place of the box [cells]; linear between samples.
+template <class Real>
+double interpolate(const Field<Real>&, const Lattice&, const Vec3& cells);
+
+}  // namespace airlight::stable_fluids

@@ -1,0 +1,309 @@
+#include "reference/stable_fluids/grid_flow.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/stable_fluids/diffusion.h"
+#include "reference/stable_fluids/forces.h"
+#include "reference/stable_fluids/saved_state.h"
+#include "reference/stable_fluids/totals.h"
+#include "scene/error.h"
+#include "scene/stopwatch.h"
+#include "scene/threads.h"
+
+namespace airlight::stable_fluids {
+namespace {
+
+// What the flow carries: density or temperature.
+template <class Real>
+struct Carried {
+  Quantity quantity;
+  Field<Real> now;
+  Diffusion<Real> diffusion;
+};
+
+bool carries_density(const scene::FlowProblem& p) {
+  bool any = p.density != 0 || p.wave || p.density_grid;
+  for (const auto& b : p.blobs) any |= b.density != 0;
+  for (const auto& s : p.sources) any |= s.density_rate != 0 || s.density;
+  for (const auto& axis : p.sides)
+    for (const auto& side : axis) any |= side.density != 0;
+  return any;
+}
+
+bool carries_temperature(const scene::FlowProblem& p) {
+  bool any = p.temperature != 0;
+  for (const auto& b : p.blobs) any |= b.temperature != 0;
+  for (const auto& s : p.sources) any |= s.temperature_rate != 0 || s.temperature;
+  for (const auto& axis : p.sides)
+    for (const auto& side : axis) any |= side.temperature != 0;
+  return any;
+}
+
+template <class Real>
+class GridFlow : public scene::Flow {
+ public:
+  GridFlow(std::shared_ptr<const scene::FlowProblem> problem, const Plan& plan)
+      : problem_(std::move(problem)),
+        plan_(plan),
+        l_(make_lattice(*problem_, plan.longest)),
+        obstacles_(make_obstacles(*problem_, l_)),
+        arena_(scene::threads_for(plan.threads)) {
+    arena_.execute([&] { begin(); });
+  }
+
+  double time() const override { return time_; }
+
+  void step(double dt) override {
+    arena_.execute([&] { advance(dt); });
+    last_step_ = dt;
+    time_ += dt;
+    ++steps_;
+  }
+
+  Vec3 velocity(const Point3& x) const override {
+    Vec3 v = Vec3::Zero();
+    for (int a = 0; a < l_.dimensions; ++a) v[a] = interpolate(u_[a], l_, (x - l_.low) / l_.h);
+    return v;
+  }
+  double density(const Point3& x) const override { return carried_at(Quantity::density, x); }
+  double temperature(const Point3& x) const override { return carried_at(Quantity::temperature, x); }
+
+  scene::DensityField medium() const override {
+    auto grid = std::make_shared<scene::VoxelGrid>();
+    grid->size = {l_.n[0], l_.n[1], l_.n[2]};
+    grid->voxel_size = l_.h;
+    grid->translation = l_.low + 0.5 * l_.h * Vec3::Ones();
+    grid->values.assign(count_of(l_.n), 0.0f);
+    for (const Carried<Real>& c : carried_)
+      if (c.quantity == Quantity::density)
+        for (int k = 0; k < l_.n[2]; ++k)
+          for (int j = 0; j < l_.n[1]; ++j)
+            for (int i = 0; i < l_.n[0]; ++i)
+              grid->values[i + std::size_t(l_.n[0]) * (j + std::size_t(l_.n[1]) * k)] =
+                  std::max(0.0f, float(c.now.at(i, j, k)));
+    return grid;
+  }
+
+  scene::Totals totals() const override {
+    scene::Totals t;
+    arena_.execute([&] {
+      const Field<Real>* density = find(Quantity::density);
+      t = totals_of(u_, density, l_, obstacles_);
+    });
+    t.cfl = t.greatest_speed * last_step_ / l_.h;
+    return t;
+  }
+
+  std::vector<scene::StageTime> times() const override { return times_; }
+  std::map<std::string, double> counters() const override {
+    return {{"steps", double(steps_)},
+            {"cells", double(count_of(l_.n))},
+            {"solid cells", double(obstacles_.count)},
+            {"pressure iterations", double(iterations_)},
+            {"diffusion iterations", double(iterations_of_diffusion_)},
+            {"greatest pressure residual", residual_}};
+  }
+
+  std::string state() const override {
+    StateWriter writer(shape());
+    writer.number(time_);
+    writer.number(last_step_);
+    writer.number(double(steps_));
+    for (int a = 0; a < l_.dimensions; ++a) writer.values(u_[a].values);
+    for (const Carried<Real>& c : carried_) writer.values(c.now.values);
+    return writer.done();
+  }
+  void restore(const std::string& state) override {
+    StateReader reader(state, shape());
+    time_ = reader.number();
+    last_step_ = reader.number();
+    steps_ = (long long)(reader.number());
+    for (int a = 0; a < l_.dimensions; ++a) reader.values(u_[a].values);
+    for (Carried<Real>& c : carried_) reader.values(c.now.values);
+    reader.done();
+  }
+
+ private:
+  std::string shape() const {
+    return fmt::format("stable fluids, {} x {} x {} cells, {} bytes a number, {} fields carried", l_.n[0], l_.n[1],
+                       l_.n[2], sizeof(Real), carried_.size());
+  }
+
+  void begin() {
+    projection_.emplace(l_, obstacles_, plan_.pressure, plan_.tolerance, plan_.iterations);
+    for (int a = 0; a < l_.dimensions; ++a) {
+      u_[a] = Field<Real>(l_, a);
+      each_sample(u_[a], [&](const Point3& x) { return scene::velocity_at(problem_->velocity, problem_->box, x)[a]; });
+      diffusion_.emplace_back(l_, obstacles_, a, plan_.tolerance, plan_.iterations);
+    }
+    advected_ = u_;
+    spare_ = u_;
+    hold_velocities(*problem_, l_, 0, u_);
+    settle();
+    if (!problem_->velocity_stays) project();
+    const auto carry = [&](Quantity quantity, auto value) {
+      carried_.push_back({quantity, Field<Real>(l_, at_centers),
+                          Diffusion<Real>(l_, obstacles_, at_centers, plan_.tolerance, plan_.iterations)});
+      Field<Real>& field = carried_.back().now;
+      each_sample(field, [&](const Point3& x) { return value(*problem_, x); });
+      if (obstacles_.any())
+        for_rows(l_.n, [&](int j, int k) {
+          for (int i = 0; i < l_.n[0]; ++i)
+            if (obstacles_.solid.at(i, j, k)) field.at(i, j, k) = 0;
+        });
+      fill_ghosts(field, quantity, l_);
+    };
+    carried_.reserve(2);
+    if (carries_density(*problem_)) carry(Quantity::density, scene::start_density);
+    if (carries_temperature(*problem_)) carry(Quantity::temperature, scene::start_temperature);
+    if (!carried_.empty()) center_ = center_spare_ = Field<Real>(l_, at_centers);
+  }
+
+  template <class Value>
+  void each_sample(Field<Real>& field, const Value& value) {
+    for_rows(field.n, [&](int j, int k) {
+      for (int i = 0; i < field.n[0]; ++i) field.at(i, j, k) = Real(value(field.position(l_, i, j, k)));
+    });
+  }
+
+  // Ghosts, walls and obstacles of the velocity.
+  void settle() {
+    for (int a = 0; a < l_.dimensions; ++a) {
+      stop_at_obstacles(obstacles_, u_[a]);
+      fill_ghosts(u_[a], Quantity::velocity, l_);
+    }
+  }
+
+  void project() {
+    const ProjectionReport report = (*projection_)(u_);
+    iterations_ += report.iterations;
+    residual_ = std::max(residual_, report.residual);
+    settle();
+  }
+
+  // The order of the paper (section 2.2), forces first.
+  void advance(double dt) {
+    for (Carried<Real>& c : carried_) {
+      timed("sources", [&] { add_sources(*problem_, l_, time_, dt, c.quantity, c.now); });
+      fill_ghosts(c.now, c.quantity, l_);
+    }
+    if (!problem_->velocity_stays) {
+      timed("forces", [&] { add_forces(dt); });
+      if (plan_.project_twice) timed("projection", [&] { project(); });
+      timed("advection of velocity", [&] {
+        for (int a = 0; a < l_.dimensions; ++a)
+          advect(plan_.advection, l_, obstacles_, u_, dt, Quantity::velocity, u_[a], advected_[a], spare_[a]);
+        std::swap(u_, advected_);
+        settle();
+      });
+      if (problem_->viscosity > 0)
+        timed("viscosity", [&] {
+          for (int a = 0; a < l_.dimensions; ++a)
+            iterations_of_diffusion_ += diffusion_[a](u_[a], Quantity::velocity, problem_->viscosity * dt);
+        });
+      timed("projection", [&] {
+        hold_velocities(*problem_, l_, time_, u_);
+        settle();
+        project();
+        require_finite();
+      });
+    }
+    for (Carried<Real>& c : carried_) carry(c, dt);
+  }
+
+  void add_forces(double dt) {
+    const Field<Real>* density = find(Quantity::density);
+    const Field<Real>* temperature = find(Quantity::temperature);
+    if ((density && problem_->weight != 0) || (temperature && problem_->expansion != 0)) {
+      const Field<Real>& some = density ? *density : *temperature;
+      add_buoyancy(density ? problem_->weight : 0, temperature ? problem_->expansion : 0, problem_->gravity, l_,
+                   density ? *density : some, temperature ? *temperature : some, dt, u_);
+    }
+    add_pushes(*problem_, l_, time_, dt, u_);
+    add_confinement(problem_->confinement, l_, obstacles_, dt, u_);
+    settle();
+  }
+
+  void carry(Carried<Real>& c, double dt) {
+    timed("advection of what is carried", [&] {
+      advect(plan_.advection, l_, obstacles_, u_, dt, c.quantity, c.now, center_, center_spare_);
+      std::swap(c.now.values, center_.values);
+    });
+    if (problem_->diffusivity > 0)
+      timed("diffusion",
+            [&] { iterations_of_diffusion_ += c.diffusion(c.now, c.quantity, problem_->diffusivity * dt); });
+    if (problem_->decay > 0) {
+      const Real factor = Real(std::exp(-problem_->decay * dt));
+      for_rows(c.now.n, [&](int j, int k) {
+        for (Real* v = c.now.row(j, k); v != c.now.row(j, k) + c.now.n[0]; ++v) *v *= factor;
+      });
+    }
+    fill_ghosts(c.now, c.quantity, l_);
+  }
+
+  void require_finite() const {
+    for (int a = 0; a < l_.dimensions; ++a)
+      for (int k = 0; k < u_[a].n[2]; ++k)
+        for (int j = 0; j < u_[a].n[1]; ++j) {
+          const Real* row = u_[a].row(j, k);
+          Real sum = 0;
+          for (int i = 0; i < u_[a].n[0]; ++i) sum += std::abs(row[i]);
+          if (std::isfinite(sum)) continue;
+          for (int i = 0; i < u_[a].n[0]; ++i)
+            if (!std::isfinite(row[i]))
+              throw Error(fmt::format("step {}, t = {:.6g} s: the velocity along {} at cell ({}, {}, {}) is {}",
+                                      steps_ + 1, time_, "xyz"[a], i, j, k, double(row[i])));
+        }
+  }
+
+  const Field<Real>* find(Quantity quantity) const {
+    for (const Carried<Real>& c : carried_)
+      if (c.quantity == quantity) return &c.now;
+    return nullptr;
+  }
+  double carried_at(Quantity quantity, const Point3& x) const {
+    const Field<Real>* field = find(quantity);
+    return field ? interpolate(*field, l_, (x - l_.low) / l_.h) : 0;
+  }
+
+  template <class Body>
+  void timed(const std::string& stage, const Body& body) {
+    scene::Stopwatch watch;
+    body();
+    const double seconds = watch.lap();
+    const auto at = std::find_if(times_.begin(), times_.end(), [&](const auto& t) { return t.name == stage; });
+    if (at == times_.end())
+      times_.push_back({stage, seconds});
+    else
+      at->seconds += seconds;
+  }
+
+  std::shared_ptr<const scene::FlowProblem> problem_;
+  Plan plan_;
+  Lattice l_;
+  Obstacles obstacles_;
+  mutable tbb::task_arena arena_;
+  std::optional<Projection<Real>> projection_;
+  std::vector<Diffusion<Real>> diffusion_;
+  Velocity<Real> u_, advected_, spare_;
+  std::vector<Carried<Real>> carried_;
+  Field<Real> center_, center_spare_;
+  double time_ = 0, last_step_ = 0, residual_ = 0;
+  long long steps_ = 0, iterations_ = 0, iterations_of_diffusion_ = 0;
+  std::vector<scene::StageTime> times_;
+};
+
+}  // namespace
+
+std::unique_ptr<scene::Flow> start_float(std::shared_ptr<const scene::FlowProblem> problem, const Plan& plan) {
+  return std::make_unique<GridFlow<float>>(std::move(problem), plan);
+}
+std::unique_ptr<scene::Flow> start_double(std::shared_ptr<const scene::FlowProblem> problem, const Plan& plan) {
+  return std::make_unique<GridFlow<double>>(std::move(problem), plan);
+}
+
+}  // namespace airlight::stable_fluids

@@ -1,0 +1,61 @@
+// The state of a flow as bytes, and back: what it is of stands first and must agree.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/content_key.h"
+#include "scene/error.h"
+
+namespace airlight::stable_fluids {
+
+class StateWriter {
+ public:
+  explicit StateWriter(const std::string& shape) : bytes_(shape + "\n") {}
+  void number(double value) { append(&value, sizeof value); }
+  template <class Real>
+  void values(const std::vector<Real>& v) {
+    append(v.data(), v.size() * sizeof(Real));
+  }
+  // With a checksum at the end.
+  std::string done() { return bytes_ + content_key(bytes_); }
+
+ private:
+  void append(const void* from, std::size_t size) { bytes_.append(static_cast<const char*>(from), size); }
+  std::string bytes_;
+};
+
+// Throws Error where the bytes are of another flow, too few, too many or damaged.
+class StateReader {
+ public:
+  StateReader(const std::string& bytes, const std::string& shape) : bytes_(bytes), at_(shape.size() + 1) {
+    if (bytes.compare(0, at_, shape + "\n") != 0)
+      throw Error("the state is of \"" + bytes.substr(0, bytes.find('\n')).substr(0, 120) + "\", expected \"" + shape +
+                  "\"");
+    end_ = bytes.size() - std::min(bytes.size() - at_, content_key(std::string_view()).size());
+    if (content_key(std::string_view(bytes).substr(0, end_)) != bytes.substr(end_))
+      throw Error("the state is damaged: its checksum does not match");
+  }
+  double number() {
+    double value;
+    take(&value, sizeof value);
+    return value;
+  }
+  template <class Real>
+  void values(std::vector<Real>& v) {
+    take(v.data(), v.size() * sizeof(Real));
+  }
+  void done() const {
+    if (at_ != end_) throw Error("the state is longer than expected");
+  }
+
+ private:
+  void take(void* to, std::size_t size) {
+    if (end_ - at_ < size) throw Error("the state is shorter than expected");
+    bytes_.copy(static_cast<char*>(to), size, at_);
+    at_ += size;
+  }
+  const std::string& bytes_;
+  std::size_t at_, end_;
+};
+
+}  // namespace airlight::stable_fluids

@@ -1,0 +1,67 @@
+#include "reference/stable_fluids/stable_fluids.h"
+
+#include <cmath>
+
+#include "reference/stable_fluids/grid_flow.h"
+
+namespace airlight::stable_fluids {
+
+using scene::FlowProblem;
+using scene::Settings;
+
+std::string StableFluids::about() const {
+  return "Stam 1999 on a staggered grid: semi-Lagrangian, MacCormack or BFECC advection, implicit diffusion, projection";
+}
+
+std::vector<scene::SettingSpec> StableFluids::settings() const {
+  return {
+      scene::integer_setting("n", "64", 1, 2048, "cells along the longest axis of the box"),
+      scene::real_setting("dt", "0", 0, 1e9, "longest step [s]; 0: a frame. Steps divide a frame evenly"),
+      scene::choice_setting("scheme", "maccormack", {"semi_lagrangian", "maccormack", "bfecc"}, "of advection"),
+      scene::choice_setting("interpolation", "linear", {"linear", "cubic"}, "between samples; cubic is monotone"),
+      scene::choice_setting("limiter", "clamp", {"none", "clamp", "revert"},
+                            "of what corrects beyond the samples around the foot"),
+      scene::choice_setting("trace", "2", {"1", "2", "4"}, "order of the Runge-Kutta method that finds the foot"),
+      scene::choice_setting("pressure", "auto", {"auto", "transforms", "incomplete_cholesky", "transforms_as_guess"},
+                            "auto: transforms, or conjugate gradients by them where there are obstacles"),
+      scene::real_setting("tolerance", "1e-6", 1e-15, 0.1, "of conjugate gradients: greatest residual, relative"),
+      scene::integer_setting("iterations", "2000", 1, 1'000'000, "at most, of conjugate gradients"),
+      scene::flag_setting("project_twice", false, "before advection too"),
+      scene::choice_setting("precision", "float", {"float", "double"}, "of all fields"),
+  };
+}
+
+std::vector<std::string> StableFluids::supports(const FlowProblem& problem, const Settings& settings) const {
+  std::vector<std::string> reasons;
+  if (settings.text("pressure") == "transforms" && !problem.obstacles.empty())
+    reasons.push_back("pressure = transforms solves in boxes without obstacles only");
+  return reasons;
+}
+
+int StableFluids::steps_per_frame(const FlowProblem& problem, const Settings& settings) const {
+  const double dt = settings.real("dt"), frame = 1 / problem.frame_rate;
+  if (dt == 0) return 1;
+  return std::max(1, int(std::ceil(frame / dt * (1 - 1e-9))));
+}
+
+std::unique_ptr<scene::Flow> StableFluids::start_supported(std::shared_ptr<const FlowProblem> problem,
+                                                           const Settings& settings,
+                                                           const scene::Execution& execution) const {
+  Plan plan;
+  plan.longest = int(settings.integer("n"));
+  plan.advection = {settings.choice<Scheme>("scheme"), settings.choice<Interpolation>("interpolation"),
+                    settings.choice<Limiter>("limiter"), std::stoi(settings.text("trace"))};
+  plan.tolerance = settings.real("tolerance");
+  plan.iterations = int(settings.integer("iterations"));
+  plan.project_twice = settings.flag("project_twice");
+  plan.threads = execution.threads;
+  const std::string& pressure = settings.text("pressure");
+  plan.pressure = pressure == "incomplete_cholesky"                   ? PressureSolver::incomplete_cholesky
+                  : pressure == "transforms_as_guess"                 ? PressureSolver::transforms_as_guess
+                  : pressure == "auto" && !problem->obstacles.empty() ? PressureSolver::transforms_as_guess
+                                                                      : PressureSolver::transforms;
+  if (settings.text("precision") == "double") return start_double(std::move(problem), plan);
+  return start_float(std::move(problem), plan);
+}
+
+}  // namespace airlight::stable_fluids

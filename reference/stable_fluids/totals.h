@@ -1,0 +1,12 @@
+// Sums over the box: what history.csv records and tests hold.
+#pragma once
+#include "reference/stable_fluids/obstacles.h"
+#include "scene/flow.h"
+
+namespace airlight::stable_fluids {
+
+// `density` may be null. Without cfl. The same for any number of threads.
+template <class Real>
+scene::Totals totals_of(const Velocity<Real>&, const Field<Real>* density, const Lattice&, const Obstacles&);
+
+}  // namespace airlight::stable_fluids

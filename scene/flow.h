@@ -1,0 +1,62 @@
+// Solvers of flow problems: what Stable Fluids and Legendre fluids have in common.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/component.h"
+#include "scene/flow_problem.h"
+#include "scene/media/medium.h"
+#include "scene/renderer.h"
+
+namespace airlight::scene {
+
+// Sums over the box at one time.
+struct Totals {
+  double energy = 0;     // kinetic, over the fluid's density: integral of |u|^2 / 2 [m^5/s^2]; in 2D per metre of depth
+  double enstrophy = 0;  // integral of |curl u|^2 / 2 [m^3/s^2]
+  double mass = 0;       // integral of the density of smoke [m^3]
+  double density_least = 0, density_greatest = 0;
+  double greatest_speed = 0;               // of a component [m/s]
+  double divergence = 0;                   // greatest |div u| times a cell, over the greatest speed [-]
+  double cfl = 0;                          // greatest speed times the last step, in cells [-]
+  Point3 center_of_mass = Point3::Zero();  // [m]; of the box where there is no mass
+};
+
+class Flow {
+ public:
+  virtual ~Flow() = default;
+  virtual double time() const = 0;  // [s]
+  // By dt > 0 [s]. Throws Error (step and cell) where a value is no longer finite.
+  virtual void step(double dt) = 0;
+  // At points of the box; outside it at the nearest one.
+  virtual Vec3 velocity(const Point3&) const = 0;  // [m/s]
+  virtual double density(const Point3&) const = 0;
+  virtual double temperature(const Point3&) const = 0;
+  // Its density as renderers know it, not below 0.
+  virtual DensityField medium() const = 0;
+  virtual Totals totals() const = 0;
+  // Wall clock of each stage, summed over the steps; what was counted.
+  virtual std::vector<StageTime> times() const = 0;
+  virtual std::map<std::string, double> counters() const = 0;
+  // All that the next step depends on, bit for bit, and back into a flow that was started alike. Throws Error.
+  virtual std::string state() const = 0;
+  virtual void restore(const std::string& state) = 0;
+};
+
+class Solver : public Component {
+ public:
+  // Empty: it can solve the problem. Else the reasons why not, one line each.
+  virtual std::vector<std::string> supports(const FlowProblem&, const Settings&) const = 0;
+  // Throws NotSupported if supports() objects.
+  std::unique_ptr<Flow> start(std::shared_ptr<const FlowProblem>, const Settings&, const Execution&) const;
+  // The steps that a frame takes, all of one length.
+  virtual int steps_per_frame(const FlowProblem&, const Settings&) const = 0;
+
+ private:
+  virtual std::unique_ptr<Flow> start_supported(std::shared_ptr<const FlowProblem>, const Settings&,
+                                                const Execution&) const = 0;
+};
+
+}  // namespace airlight::scene

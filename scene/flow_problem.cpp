@@ -1,0 +1,68 @@
+#include "scene/flow_problem.h"
+
+#include <cmath>
+
+#include "scene/kinds.h"
+
+namespace airlight::scene {
+
+std::string side_name(Side::Kind kind) {
+  switch (kind) {
+    case Side::Kind::periodic:
+      return "periodic";
+    case Side::Kind::free_slip:
+      return "free_slip";
+    case Side::Kind::no_slip:
+      return "no_slip";
+    case Side::Kind::open:
+      return "open";
+  }
+  return "";
+}
+
+Vec3 velocity_at(const StartVelocity& start, const Box& box, const Point3& x) {
+  return match(
+      start, [](const AtRest&) -> Vec3 { return Vec3::Zero(); },
+      [&](const TaylorGreen& v) -> Vec3 {
+        const double kx = 2 * pi * v.waves / box.size()[0], ky = 2 * pi * v.waves / box.size()[1];
+        const double px = kx * (x[0] - box.lo[0]), py = ky * (x[1] - box.lo[1]);
+        return v.speed * Vec3(std::sin(px) * std::cos(py), -kx / ky * std::cos(px) * std::sin(py), 0);
+      },
+      [&](const Swirl& v) -> Vec3 {
+        const double sx = pi / box.size()[0], sy = pi / box.size()[1];
+        const double px = sx * (x[0] - box.lo[0]), py = sy * (x[1] - box.lo[1]);
+        return v.speed * Vec3(std::pow(std::sin(px), 2) * std::sin(2 * py),
+                              -sx / sy * std::sin(2 * px) * std::pow(std::sin(py), 2), 0);
+      },
+      [&](const RigidRotation& v) -> Vec3 { return v.rate.cross(x - v.center); },
+      [&](const Wind& v) -> Vec3 { return v.velocity; });
+}
+
+namespace {
+
+double blob_at(const Blob& blob, const Point3& x) {
+  return std::exp(-(x - blob.center).squaredNorm() / (blob.width * blob.width));
+}
+
+}  // namespace
+
+double start_density(const FlowProblem& problem, const Point3& x) {
+  double sum = problem.density;
+  for (const Blob& blob : problem.blobs) sum += blob.density * blob_at(blob, x);
+  if (problem.wave) {
+    double phase = problem.wave->phase;
+    for (int a = 0; a < problem.dimensions; ++a)
+      phase += 2 * pi * problem.wave->waves[a] * (x[a] - problem.box.lo[a]) / problem.box.size()[a];
+    sum += problem.wave->density * std::cos(phase) + problem.wave->offset;
+  }
+  if (problem.density_grid) sum += density(*problem.density_grid, x);
+  return sum;
+}
+
+double start_temperature(const FlowProblem& problem, const Point3& x) {
+  double sum = problem.temperature;
+  for (const Blob& blob : problem.blobs) sum += blob.temperature * blob_at(blob, x);
+  return sum;
+}
+
+}  // namespace airlight::scene

@@ -1,0 +1,70 @@
+#include "scene/flow_problem.h"
+#include "scene/kinds.h"
+#include "scene/load/hash_parts.h"
+
+namespace airlight::scene {
+using load::ContentHash;
+
+std::string content_hash(const FlowProblem& p) {
+  ContentHash hash;
+  hash.tag("airlight flow 1");
+  hash.add(p.dimensions);
+  hash.add(p.box);
+  for (const auto& axis : p.sides)
+    for (const Side& side : axis) {
+      hash.tag(side_name(side.kind));
+      hash.add(side.velocity);
+      hash.add(int(side.regularized));
+      hash.add(side.density);
+      hash.add(side.temperature);
+    }
+  for (const double value : {p.viscosity, p.diffusivity, p.decay, p.weight, p.expansion, p.confinement, p.density,
+                             p.temperature, p.duration, p.frame_rate})
+    hash.add(value);
+  hash.add(p.gravity);
+  hash.add(int(p.velocity.index()));
+  match(
+      p.velocity, [](const AtRest&) {},
+      [&](const TaylorGreen& v) {
+        hash.add(v.speed);
+        hash.add(v.waves);
+      },
+      [&](const Swirl& v) { hash.add(v.speed); },
+      [&](const RigidRotation& v) {
+        hash.add(v.center);
+        hash.add(v.rate);
+      },
+      [&](const Wind& v) { hash.add(v.velocity); });
+  hash.add(int(p.velocity_stays));
+  hash.tag("blobs");
+  for (const Blob& blob : p.blobs) {
+    hash.add(blob.center);
+    for (const double value : {blob.width, blob.density, blob.temperature}) hash.add(value);
+  }
+  hash.tag(p.wave ? "wave" : "no wave");
+  if (p.wave) {
+    hash.add(p.wave->waves);
+    for (const double value : {p.wave->density, p.wave->offset, p.wave->phase}) hash.add(value);
+  }
+  hash.tag(p.density_grid ? "grid" : "no grid");
+  if (p.density_grid) add(hash, *p.density_grid);
+  hash.tag("sources");
+  for (const Source& s : p.sources) {
+    add(hash, s.region);
+    for (const double value : {s.time.lo, s.time.hi, s.density_rate, s.temperature_rate, s.density.value_or(-1),
+                               s.temperature.value_or(infinity)})
+      hash.add(value);
+    hash.add(s.velocity.value_or(Vec3::Constant(infinity)));
+  }
+  hash.tag("obstacles");
+  for (const Surface& surface : p.obstacles) add(hash, surface);
+  hash.tag("forces");
+  for (const Push& push : p.pushes) {
+    add(hash, push.region);
+    hash.add(push.acceleration);
+    for (const double value : {push.time.lo, push.time.hi, push.frequency}) hash.add(value);
+  }
+  return hash.digits();
+}
+
+}  // namespace airlight::scene

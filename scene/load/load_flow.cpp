@@ -1,0 +1,259 @@
+// A flow problem: a file with a [flow], its sides, what there is at first, what comes in.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "scene/error.h"
+#include "scene/flow_problem.h"
+#include "scene/load/assets.h"
+#include "scene/load/overrides.h"
+#include "scene/load/parse_toml.h"
+#include "scene/load/parts.h"
+#include "scene/load/ranges.h"
+#include "scene/load/transform.h"
+
+namespace airlight::scene {
+using namespace load;
+
+namespace {
+
+constexpr Range seconds = or_zero({1e-9, 1e9}), speed = either_sign(or_zero({1e-12, 1e6}));
+constexpr Range temperatures = either_sign(or_zero({1e-12, 1e6})), rate = either_sign(amount);
+
+Vec3 speeds(const TableReader& reader, const std::string& key) {
+  const auto v = reader.numbers(key, speed, 3);
+  return {v[0], v[1], v[2]};
+}
+
+void read_box(TableReader reader, FlowProblem& problem) {
+  reader.allow({"lo", "hi"});
+  if (problem.dimensions == 3) {
+    problem.box = read_corners(reader);
+    return;
+  }
+  const auto lo = reader.numbers("lo", coordinate, 2), hi = reader.numbers("hi", coordinate, 2);
+  for (int a = 0; a < 2; ++a)
+    if (!(hi[a] - lo[a] >= least_length)) reader.expected("hi", "each number above that of lo");
+  problem.box = {Point3(lo[0], lo[1], 0), Point3(hi[0], hi[1], 0)};
+}
+
+const std::vector<std::string> side_names = {"left", "right", "bottom", "top", "back", "front"};
+
+Side read_side(TableReader reader, int axis, int which) {
+  Side side;
+  const std::string type = reader.type({"periodic", "free_slip", "no_slip", "open", "moving", "inflow"});
+  if (type == "moving") {
+    reader.allow({"type", "velocity", "regularized"});
+    side.velocity = speeds(reader, "velocity");
+    if (side.velocity[axis] != 0)
+      reader.expected("velocity", fmt::format("0 along {}: a wall moves in its plane", "xyz"[axis]));
+    side.regularized = reader.flag("regularized", false);
+  } else if (type == "inflow") {
+    reader.allow({"type", "velocity", "density", "temperature"});
+    side.velocity = speeds(reader, "velocity");
+    if (side.velocity[axis] == 0)
+      reader.expected("velocity", fmt::format("a number other than 0 along {}, out of the box where it points outwards",
+                                              "xyz"[axis]));
+    side.density = reader.number("density", {0, density_range.greatest}, 0);
+    side.temperature = reader.number("temperature", temperatures, 0);
+    const bool inwards = which == 0 ? side.velocity[axis] > 0 : side.velocity[axis] < 0;
+    for (const char* key : {"density", "temperature"})
+      if (!inwards && reader.has(key))
+        reader.fail(key, fmt::format("{} has no effect: the velocity points outwards", key));
+  } else {
+    reader.allow({"type"});
+  }
+  side.kind = type == "periodic"    ? Side::Kind::periodic
+              : type == "free_slip" ? Side::Kind::free_slip
+              : type == "open"      ? Side::Kind::open
+                                    : Side::Kind::no_slip;
+  return side;
+}
+
+void read_sides(const TableReader& root, FlowProblem& problem) {
+  const auto table = root.table("sides");
+  if (!table) return;
+  TableReader reader = *table;
+  std::vector<std::string> keys(side_names.begin(), side_names.begin() + 2 * problem.dimensions);
+  keys.push_back("all");
+  reader.allow(keys);
+  for (int axis = 0; axis < problem.dimensions; ++axis)
+    for (int which = 0; which < 2; ++which) {
+      const std::string& name = side_names[2 * axis + which];
+      Side& side = problem.sides[axis][which];
+      if (const auto all = reader.table("all")) side = read_side(*all, axis, which);
+      if (const auto own = reader.table(name)) side = read_side(*own, axis, which);
+    }
+  for (int axis = 0; axis < problem.dimensions; ++axis)
+    if ((problem.sides[axis][0].kind == Side::Kind::periodic) != (problem.sides[axis][1].kind == Side::Kind::periodic))
+      reader.fail("", fmt::format("{} and {} are opposite sides, expected both periodic or none", side_names[2 * axis],
+                                  side_names[2 * axis + 1]));
+}
+
+StartVelocity read_velocity(TableReader reader) {
+  const std::string type = reader.type({"rest", "taylor_green", "swirl", "rotation", "wind"});
+  if (type == "taylor_green") {
+    reader.allow({"type", "speed", "waves"});
+    return TaylorGreen{reader.number("speed", speed, 1), int(reader.integer("waves", 1, 1024, 1))};
+  }
+  if (type == "swirl") {
+    reader.allow({"type", "speed"});
+    return Swirl{reader.number("speed", speed, 1)};
+  }
+  if (type == "rotation") {
+    reader.allow({"type", "center", "rate"});
+    return RigidRotation{reader.vector("center"), speeds(reader, "rate")};
+  }
+  if (type == "wind") {
+    reader.allow({"type", "velocity"});
+    return Wind{speeds(reader, "velocity")};
+  }
+  reader.allow({"type"});
+  return AtRest{};
+}
+
+Wave read_wave(TableReader reader) {
+  reader.allow({"waves", "density", "offset", "phase"});
+  Wave wave;
+  const auto waves = reader.integers("waves", 3, -4096, 4096);
+  wave.waves = {double(waves[0]), double(waves[1]), double(waves[2])};
+  wave.density = reader.number("density", density_range);
+  wave.offset = reader.number("offset", either_sign(density_range), 0);
+  wave.phase = reader.number("phase", coordinate, 0);
+  return wave;
+}
+
+void read_start(TableReader reader, const std::string& folder, FlowProblem& problem) {
+  reader.allow({"velocity", "velocity_stays", "density", "temperature", "blob", "wave", "file", "grid"});
+  if (const auto velocity = reader.table("velocity")) problem.velocity = read_velocity(*velocity);
+  problem.velocity_stays = reader.flag("velocity_stays", false);
+  problem.density = reader.number("density", {0, density_range.greatest}, 0);
+  problem.temperature = reader.number("temperature", temperatures, 0);
+  for (TableReader blob : reader.tables("blob")) {
+    blob.allow({"center", "width", "density", "temperature"});
+    problem.blobs.push_back({blob.vector("center"), blob.number("width", length),
+                             blob.number("density", {0, density_range.greatest}, 0),
+                             blob.number("temperature", temperatures, 0)});
+  }
+  if (const auto wave = reader.table("wave")) problem.wave = read_wave(*wave);
+  if (!reader.has("file")) {
+    if (reader.has("grid")) reader.fail("grid", "grid has no effect: there is no file");
+    return;
+  }
+  const std::string path = find_asset(reader, "file", folder);
+  try {
+    problem.density_grid = std::make_shared<const VoxelGrid>(read_vdb(path, reader.text("grid", "density")));
+  } catch (const Error& e) {
+    reader.fail("file", e.what());
+  }
+}
+
+Interval read_time(const TableReader& reader) {
+  const Interval time{reader.number("from", seconds, 0),
+                      reader.number("to", {0, infinity, false, false, true}, infinity)};
+  if (!(time.lo < time.hi)) reader.expected("to", fmt::format("a time after {} s", time.lo));
+  return time;
+}
+
+// What lies in the box, not beside it.
+Region read_place(const TableReader& reader, const FlowProblem& problem) {
+  const Region region = read_region(reader.required_table("region"));
+  const Box part = intersect(bounding_box(region), problem.box);
+  if (part.empty()) reader.fail("region", "region lies outside the box of the flow");
+  return region;
+}
+
+Source read_source(TableReader reader, const FlowProblem& problem) {
+  reader.allow({"region", "from", "to", "density_rate", "temperature_rate", "density", "temperature", "velocity"});
+  Source source;
+  source.region = read_place(reader, problem);
+  source.time = read_time(reader);
+  source.density_rate = reader.number("density_rate", rate, 0);
+  source.temperature_rate = reader.number("temperature_rate", rate, 0);
+  if (reader.has("density")) source.density = reader.number("density", {0, density_range.greatest});
+  if (reader.has("temperature")) source.temperature = reader.number("temperature", temperatures);
+  if (reader.has("velocity")) source.velocity = speeds(reader, "velocity");
+  if (source.density_rate == 0 && source.temperature_rate == 0 && !source.density && !source.temperature &&
+      !source.velocity)
+    reader.fail("", "nothing comes from it, expected density_rate, temperature_rate, density, temperature or velocity");
+  return source;
+}
+
+Push read_push(TableReader reader) {
+  reader.allow({"region", "from", "to", "acceleration", "frequency"});
+  Push push;
+  if (const auto region = reader.table("region")) push.region = read_region(*region);
+  push.time = read_time(reader);
+  push.acceleration = speeds(reader, "acceleration");
+  push.frequency = reader.number("frequency", or_zero({1e-9, 1e9}), 0);
+  return push;
+}
+
+// Every edge of a closed mesh is passed as often one way as the other.
+bool closed(const TriangleMesh& mesh) {
+  std::multiset<std::pair<int, int>> open;
+  for (const auto& t : mesh.triangles)
+    for (int e = 0; e < 3; ++e) {
+      const int a = t[e], b = t[(e + 1) % 3];
+      if (const auto opposite = open.find({b, a}); opposite != open.end())
+        open.erase(opposite);
+      else
+        open.insert({a, b});
+    }
+  return open.empty();
+}
+
+Surface read_obstacle(TableReader reader, const std::string& folder) {
+  const Surface surface = read_surface(reader, folder);
+  const bool solid = match(
+      surface.shape, [](const TriangleMesh& mesh) { return closed(mesh); }, [](const Sphere&) { return true; },
+      [](const Plane&) { return false; });
+  if (!solid) reader.fail("", "this surface encloses nothing, expected a sphere, a box or a closed mesh");
+  return surface;
+}
+
+}  // namespace
+
+FlowProblem parse_flow(const std::string& text, const std::string& name, const std::string& folder,
+                       const Overrides& overrides) {
+  toml::table root = parse_toml(text, name);
+  apply_overrides(root, overrides, name, {"fluid", "start"});
+  TableReader reader(root, "");
+  reader.allow({"name", "flow", "sides", "fluid", "start", "source", "obstacle", "force"});
+  FlowProblem problem;
+  problem.name = reader.text("name", std::filesystem::path(name).stem().string());
+  TableReader flow = reader.required_table("flow");
+  flow.allow({"dimensions", "box", "duration", "frame_rate"});
+  problem.dimensions = int(flow.integer("dimensions", 2, 3, 3));
+  read_box(flow.required_table("box"), problem);
+  problem.duration = flow.number("duration", {1e-9, 1e9});
+  problem.frame_rate = flow.number("frame_rate", {1e-9, 1e9}, problem.frame_rate);
+  read_sides(reader, problem);
+  if (auto fluid = reader.table("fluid")) {
+    fluid->allow({"viscosity", "diffusivity", "decay", "gravity", "weight", "expansion", "confinement"});
+    problem.viscosity = fluid->number("viscosity", amount, 0);
+    problem.diffusivity = fluid->number("diffusivity", amount, 0);
+    problem.decay = fluid->number("decay", amount, 0);
+    if (fluid->has("gravity")) problem.gravity = speeds(*fluid, "gravity");
+    problem.weight = fluid->number("weight", signed_amount, 0);
+    problem.expansion = fluid->number("expansion", signed_amount, 0);
+    problem.confinement = fluid->number("confinement", or_zero({1e-9, 1e9}), 0);
+  }
+  if (const auto start = reader.table("start")) read_start(*start, folder, problem);
+  for (const TableReader& source : reader.tables("source")) problem.sources.push_back(read_source(source, problem));
+  for (const TableReader& obstacle : reader.tables("obstacle"))
+    problem.obstacles.push_back(read_obstacle(obstacle, folder));
+  for (const TableReader& push : reader.tables("force")) problem.pushes.push_back(read_push(push));
+  problem.hash = content_hash(problem);
+  return problem;
+}
+
+FlowProblem load_flow(const std::string& path, const Overrides& overrides) {
+  return parse_flow(read_whole_file(path, most_toml_bytes), path, std::filesystem::path(path).parent_path().string(),
+                    overrides);
+}
+
+}  // namespace airlight::scene

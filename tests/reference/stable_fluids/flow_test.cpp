@@ -1,0 +1,224 @@
+// Whole flows: symmetry, rest, restart, threads, thin boxes, stiff coefficients.
+#include <cmath>
+
+#include "scene/error.h"
+#include "scene/geometry/shapes.h"
+#include "tests/reference/stable_fluids/problems.h"
+
+using namespace airlight;
+using namespace airlight::stable_fluids;
+using Catch::Contains;
+using testing::box_problem;
+using testing::Kind;
+using testing::plume;
+using testing::start;
+
+namespace {
+
+// All of a flow's state but the first line and the checksum.
+std::string fields(const scene::Flow& flow) {
+  const std::string state = flow.state();
+  const std::size_t first = state.find('\n') + 1;
+  return state.substr(first, state.size() - first - 32);
+}
+
+}  // namespace
+
+TEST_CASE("stable fluids: a plume is symmetric and rises", "[stable_fluids]") {
+  const auto flow = start(plume(3), {{"n", "20"}});
+  double height = 0, mass = 0;
+  for (int step = 0; step < 100; ++step) {
+    flow->step(0.01);
+    if (step % 10 != 9) continue;
+    const auto totals = flow->totals();
+    CHECK(totals.center_of_mass[1] > height);
+    CHECK(totals.mass > mass);
+    CHECK(totals.divergence < 1e-12);
+    height = totals.center_of_mass[1];
+    mass = totals.mass;
+  }
+  double mirror = 0, turned = 0;
+  for (int k = 0; k < 20; ++k)
+    for (int j = 0; j < 20; ++j)
+      for (int i = 0; i < 20; ++i) {
+        const auto at = [&](int x, int z) {
+          return flow->density(Point3((x + 0.5) / 20, (j + 0.5) / 20, (z + 0.5) / 20));
+        };
+        mirror = std::max(mirror, std::abs(at(i, k) - at(19 - i, k)));
+        turned = std::max(turned, std::abs(at(i, k) - at(k, i)));
+      }
+  CHECK(mirror < 1e-10);
+  CHECK(turned < 1e-10);
+  CHECK(height > 0.3);
+}
+
+TEST_CASE("stable fluids: one thread or many give the same bits", "[stable_fluids]") {
+  for (const bool obstacle : {false, true})
+    for (const char* precision : {"float", "double"}) {
+      scene::FlowProblem problem = plume(3);
+      problem.viscosity = 1e-3;
+      problem.diffusivity = 1e-4;
+      problem.confinement = 0.1;
+      if (obstacle) problem.obstacles = {{"ball", scene::Sphere{Point3(0.45, 0.6, 0.5), 0.15}, {}}};
+      const auto states = [&](int threads) {
+        const auto flow = start(problem, {{"n", "20"}, {"precision", precision}}, threads);
+        testing::run(*flow, 8, 0.02);
+        return fields(*flow);
+      };
+      const std::string one = states(1);
+      CHECK(one == states(2));
+      CHECK(one == states(16));
+    }
+}
+
+TEST_CASE("stable fluids: a restart goes on with the same bits", "[stable_fluids]") {
+  scene::FlowProblem problem = plume(2);
+  problem.obstacles = {{"ball", scene::Sphere{Point3(0.45, 0.6, 0), 0.15}, {}}};
+  const auto unbroken = start(problem, {});
+  testing::run(*unbroken, 5, 0.02);
+  const std::string middle = unbroken->state();
+  testing::run(*unbroken, 5, 0.02);
+
+  const auto resumed = start(problem, {});
+  resumed->restore(middle);
+  CHECK(resumed->time() == 5 * 0.02);
+  testing::run(*resumed, 5, 0.02);
+  CHECK(resumed->state() == unbroken->state());
+
+  const auto other = start(problem, {{"n", "8"}});
+  CHECK_THROWS_WITH(other->restore(middle), Contains("expected \"stable fluids, 8 x 8 x 1 cells"));
+  CHECK_THROWS_WITH(resumed->restore(middle.substr(0, middle.size() - 1)), Contains("checksum"));
+  std::string damaged = middle;
+  damaged[damaged.size() / 2] ^= 1;
+  CHECK_THROWS_WITH(resumed->restore(damaged), Contains("checksum"));
+}
+
+TEST_CASE("stable fluids: an axis of one cell is two dimensions", "[stable_fluids]") {
+  scene::FlowProblem flat = plume(2), thin = plume(3);
+  flat.viscosity = thin.viscosity = 1e-3;
+  thin.box = {Point3(0, 0, -1.0 / 32), Point3(1, 1, 1.0 / 32)};
+  thin.sources = flat.sources;
+  const auto two = start(flat, {}), three = start(thin, {});
+  testing::run(*two, 20, 0.02);
+  testing::run(*three, 20, 0.02);
+  double most = 0;
+  for (int j = 0; j < 16; ++j)
+    for (int i = 0; i < 16; ++i) {
+      const Point3 x((i + 0.5) / 16, (j + 0.5) / 16, 0);
+      most = std::max(
+          {most, (two->velocity(x) - three->velocity(x)).norm(), std::abs(two->density(x) - three->density(x))});
+    }
+  CHECK(most < 1e-12);
+  CHECK(three->velocity(Point3(0.4, 0.4, 0))[2] == 0);
+}
+
+TEST_CASE("stable fluids: boxes of a cell or two, and of prime sizes", "[stable_fluids]") {
+  for (const Vec3& cells : {Vec3(1, 1, 1), Vec3(2, 2, 2), Vec3(7, 129, 3), Vec3(1, 2, 31)})
+    for (const Kind sides : {Kind::free_slip, Kind::no_slip, Kind::open, Kind::periodic}) {
+      scene::FlowProblem problem = plume(3);
+      for (auto& axis : problem.sides)
+        for (scene::Side& side : axis) side.kind = sides;
+      problem.box = {Point3::Zero(), 0.1 * cells};
+      problem.sources[0].region = Box{Point3::Zero(), 0.06 * cells};
+      problem.viscosity = 0.01;
+      problem.confinement = 0.5;
+      const auto flow = start(problem, {{"n", std::to_string(int(cells.maxCoeff()))}});
+      testing::run(*flow, 3, 0.02);
+      INFO("cells " << cells.transpose() << ", sides " << scene::side_name(sides));
+      CHECK(std::isfinite(flow->totals().energy));
+      CHECK(flow->totals().divergence * flow->totals().greatest_speed <
+            1e-12 * std::max(flow->totals().greatest_speed, 0.01));
+      if (cells.maxCoeff() == 1 && (sides == Kind::free_slip || sides == Kind::no_slip))
+        CHECK(flow->totals().greatest_speed == 0);
+    }
+}
+
+TEST_CASE("stable fluids: viscosity from nothing to a million", "[stable_fluids]") {
+  for (const char* precision : {"double", "float"}) {
+    const double rounding = precision[0] == 'd' ? 1e-12 : 1e-5;
+    scene::FlowProblem problem = box_problem(2, Vec3(1, 1, 0), Kind::periodic);
+    problem.velocity = scene::Wind{Vec3(0.3, 0.1, 0)};
+    problem.viscosity = 1e6;
+    auto flow = start(problem, {{"precision", precision}});
+    testing::run(*flow, 3, 0.1);
+    CHECK(std::abs(flow->velocity(Point3(0.2, 0.2, 0))[0] - 0.3) < rounding);  // the mean stays
+
+    problem = box_problem(2, Vec3(1, 1, 0), Kind::no_slip);
+    problem.velocity = scene::Swirl{1};
+    problem.viscosity = 1e6;
+    flow = start(problem, {{"precision", precision}});
+    flow->step(0.1);
+    CHECK(flow->totals().greatest_speed < 1e-5);
+
+    // Cells of 0.1 mm and nu dt = 1e9.
+    problem.box = {Point3::Zero(), Point3(16e-4, 16e-4, 0)};
+    problem.viscosity = 1e9;
+    flow = start(problem, {{"precision", precision}});
+    testing::run(*flow, 2, 1);
+    CHECK(flow->totals().greatest_speed < 1e-12);
+    CHECK(std::isfinite(flow->totals().energy));
+  }
+}
+
+TEST_CASE("stable fluids: without a source, at rest, what is carried keeps its bits", "[stable_fluids]") {
+  scene::FlowProblem problem = box_problem(3, Vec3(1, 1, 1));
+  problem.blobs.push_back({Point3(0.4, 0.5, 0.6), 0.2, 1, 0});
+  for (const char* scheme : {"semi_lagrangian", "maccormack", "bfecc"}) {
+    const auto flow = start(problem, {{"scheme", scheme}});
+    const auto before = std::get<scene::GridPointer>(flow->medium())->values;
+    testing::run(*flow, 20, 0.1);
+    CHECK(std::get<scene::GridPointer>(flow->medium())->values == before);
+  }
+}
+
+TEST_CASE("stable fluids: confinement of nothing, of a little, of a thousand", "[stable_fluids]") {
+  for (const double epsilon : {0.0, 0.5, 1e3}) {
+    scene::FlowProblem problem = plume(3);
+    problem.confinement = epsilon;
+    const auto flow = start(problem, {});
+    testing::run(*flow, 20, 0.01);
+    CHECK(std::isfinite(flow->totals().energy));
+  }
+  // Without vorticity it does nothing.
+  scene::FlowProblem problem = box_problem(2, Vec3(1, 1, 0), Kind::periodic);
+  problem.velocity = scene::Wind{Vec3(0.25, 0.5, 0)};
+  problem.confinement = 1e3;
+  const auto flow = start(problem, {});
+  testing::run(*flow, 4, 0.0625);
+  CHECK(std::abs(flow->velocity(Point3(0.3, 0.3, 0))[0] - 0.25) < 1e-14);
+}
+
+TEST_CASE("stable fluids: what cannot be is told with step and cell, or refused", "[stable_fluids]") {
+  scene::FlowProblem problem = plume(2);
+  scene::Push push;
+  push.region = scene::Sphere{Point3(0.5, 0.5, 0), 0.05};
+  push.time = {0.05, 1};
+  push.acceleration = Vec3(0, std::nan(""), 0);
+  problem.pushes.push_back(push);
+  const auto flow = start(problem, {});
+  testing::run(*flow, 2, 0.02);
+  CHECK_THROWS_WITH(flow->step(0.02), Contains("step 3, t = 0.04 s: the velocity along"));
+
+  problem = plume(2);
+  problem.box.hi[1] = 0.9;
+  CHECK_THROWS_WITH(start(problem, {}), Contains("16 cells along the longest side of the box are 14.4 along y"));
+
+  problem = plume(2);
+  problem.obstacles = {{"all", scene::Sphere{Point3(0.5, 0.5, 0), 2}, {}}};
+  CHECK_THROWS_WITH(start(problem, {}), Contains("the obstacles fill the box"));
+  problem.obstacles = {{"some", scene::Sphere{Point3(0.5, 0.5, 0), 0.2}, {}}};
+  CHECK_THROWS_WITH(start(problem, {{"pressure", "transforms"}}), Contains("boxes without obstacles only"));
+}
+
+TEST_CASE("stable fluids: a lid drives its box, an inflow leaves by an open side", "[stable_fluids]") {
+  scene::FlowProblem problem = box_problem(2, Vec3(2, 1, 0));
+  problem.sides[0][0] = {Kind::no_slip, Vec3(0.5, 0, 0), false, 0.8, 0};
+  problem.sides[0][1] = {Kind::open};
+  const auto flow = start(problem, {{"n", "32"}});
+  testing::run(*flow, 200, 0.05);
+  // A plug flow: the same velocity and density everywhere.
+  for (const double x : {0.1, 0.7, 1.9}) {
+    CHECK(std::abs(flow->velocity(Point3(x, 0.4, 0))[0] - 0.5) < 1e-10);
+    CHECK(std::abs(flow->density(Point3(x, 0.4, 0)) - (x < 1.9 ? 0.8 : flow->density(Point3(1.9, 0.6, 0)))) < 1e-10);
+  }
+}
