@@ -24,6 +24,18 @@ struct Totals {
   Point3 center_of_mass = Point3::Zero();  // [m]; of the box where there is no mass
 };
 
+// What a flow has at one time, on a grid: what a file of OpenVDB holds (write_frame).
+struct Frame {
+  Eigen::Vector3i size = Eigen::Vector3i::Zero();  // cells
+  double cell = 1;                                 // [m]
+  Point3 low = Point3::Zero();                     // corner of the first cell [m]
+  // By cell, x fastest; empty where the flow carries none.
+  std::vector<float> density, temperature;
+  // On the low faces of each cell, and of one more cell along each axis, for the last faces: (u, v, w) [m/s], 3 numbers
+  // each, size + 1 of them along an axis.
+  std::vector<float> velocity;
+};
+
 class Flow {
  public:
   virtual ~Flow() = default;
@@ -36,6 +48,7 @@ class Flow {
   virtual double temperature(const Point3&) const = 0;
   // Its density as renderers know it, not below 0.
   virtual DensityField medium() const = 0;
+  virtual Frame frame() const = 0;
   virtual Totals totals() const = 0;
   // Wall clock of each stage, summed over the steps; what was counted.
   virtual std::vector<StageTime> times() const = 0;
@@ -44,6 +57,10 @@ class Flow {
   virtual std::string state() const = 0;
   virtual void restore(const std::string& state) = 0;
 };
+
+// Grids `density`, `temperature` (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`
+// as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Throws Error.
+void write_frame(const std::string& path, const Frame&, const std::map<std::string, std::string>& notes);
 
 class Solver : public Component {
  public:

@@ -56,6 +56,14 @@ struct ExplainOptions {
 };
 int explain(const ExplainOptions&);
 
+struct SimulateOptions {
+  std::string problem, method = "stable_fluids", out;
+  Pairs settings, overrides;
+  int threads = 0;
+};
+// Writes the frames of a flow problem into the folder `out` (experiments/simulation.h), or goes on with them.
+int simulate(const SimulateOptions&);
+
 struct AuthorOptions {
   std::string script, out;
 };

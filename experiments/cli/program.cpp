@@ -211,6 +211,23 @@ int dispatch(int argc, char** argv) {
     };
   });
 
+  SimulateOptions simulate_options;
+  c = command(app, "simulate", "solve a flow problem: frames as OpenVDB files, and their history");
+  c->add_option("PROBLEM", simulate_options.problem, "file with a [flow]");
+  c->add_option("--method,-m", simulate_options.method, "stable_fluids (default)");
+  c->add_option("--out,-o", simulate_options.out, "folder; what an earlier run left there is gone on with");
+  add_pairs(c, "--set", simulate_options.settings, "a setting of the method");
+  add_pairs(c, "--override", simulate_options.overrides, "a value of the problem file");
+  c->add_option("--threads", simulate_options.threads, "0: all")->check(CLI::Range(0, 4096));
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(simulate_options.problem, "PROBLEM");
+      require(simulate_options.out, "--out");
+      return simulate(simulate_options);
+    };
+  });
+
   ExperimentOptions experiment_options;
   const auto experiment_flags = [&](CLI::App* e, bool names) {
     if (names) e->add_option("NAME", experiment_options.names, "group/name, or a group; none: all");

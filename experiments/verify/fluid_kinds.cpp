@@ -56,12 +56,12 @@ void compare_amplification(const Row& row, double tolerance, Outcome& out) {
   const char* names[] = {"semi-Lagrangian", "MacCormack", "BFECC"};
   for (int s = 0; s < 3; ++s) {
     auto f = center_field<Real>(l, [&](const Point3& x) { return std::cos(2 * pi * k * x[0]); });
-    Field<Real> to = f, spare = f;
+    Field<Real> to = f;
+    Workspace<Real> work;
     const double before = squares(f);
     for (int step = 0; step < 10; ++step) {
       fill_ghosts(f, Quantity::density, l);
-      advect({Scheme(s), Interpolation::linear, Limiter::none, 1}, l, {}, u, cfl * l.h, Quantity::density, f, to,
-             spare);
+      advect({Scheme(s), Interpolation::linear, Limiter::none, 1}, l, {}, u, cfl * l.h, Quantity::density, f, to, work);
       std::swap(f, to);
     }
     out.comparisons.push_back(
@@ -140,11 +140,12 @@ void compare_rotation(const Row& row, double tolerance, Outcome& out) {
   auto f = center_field<double>(
       l, [](const Point3& x) { return std::exp(-(x - Point3(0.5, 0.75, 0)).squaredNorm() / (2 * 0.05 * 0.05)); });
   const Field<double> first = f;
-  Field<double> to = f, spare = f;
+  Field<double> to = f;
+  Workspace<double> work;
   for (int i = 0; i < steps; ++i) {
     fill_ghosts(f, Quantity::density, l);
     advect({row.advection(), Interpolation::linear, Limiter::none, 4}, l, {}, u, 1.0 / steps, Quantity::density, f, to,
-           spare);
+           work);
     std::swap(f, to);
   }
   double mass = 0, mass_before = 0, error = 0, greatest = -infinity;

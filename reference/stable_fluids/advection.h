@@ -20,11 +20,25 @@ struct Advection {
   int trace = 2;  // order of the Runge-Kutta method that finds the foot: 1, 2 or 4
 };
 
-// What is at each sample after a time dt: `from` and the velocity with their ghosts filled; `to` and `spare` are of
-// from's shape, and to's ghosts stay as they were. Feet end at walls and obstacles, and wrap where it is periodic.
+// The least and greatest of the samples around each foot, laid out as a field.
+template <class Real>
+struct Range {
+  std::vector<Real> least, greatest;
+};
+
+// What corrections need beside two fields; of any shape at first.
+template <class Real>
+struct Workspace {
+  Field<Real> first, second;
+  Range<Real> range;
+  void shape_as(const Field<Real>&);
+};
+
+// What is at each sample after a time dt: `from` and the velocity with their ghosts filled; `to` is of from's shape, and
+// its ghosts stay as they were. Feet end at walls and obstacles, and wrap where it is periodic.
 template <class Real>
 void advect(const Advection&, const Lattice&, const Obstacles&, const Velocity<Real>&, double dt, Quantity,
-            const Field<Real>& from, Field<Real>& to, Field<Real>& spare);
+            const Field<Real>& from, Field<Real>& to, Workspace<Real>&);
 
 // At any place of the box [cells]; linear between samples.
 template <class Real>

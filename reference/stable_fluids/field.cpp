@@ -40,7 +40,9 @@ Field<Real>::Field(const Lattice& l, int axis_) : axis(axis_), n(l.n) {
   stride = {1, n[0] + 2 * margin[0], 0};
   stride[2] = stride[1] * (n[1] + 2 * margin[1]);
   first = margin[0] + margin[1] * stride[1] + margin[2] * stride[2];
-  values.assign(std::size_t(stride[2]) * std::size_t(n[2] + 2 * margin[2]), Real(0));
+  // Kernels load whole vectors, beyond the end too.
+  constexpr std::size_t beyond_end = 64;
+  values.assign(std::size_t(stride[2]) * std::size_t(n[2] + 2 * margin[2]) + beyond_end, Real(0));
 }
 
 namespace {

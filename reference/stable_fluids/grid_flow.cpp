@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "reference/stable_fluids/diffusion.h"
@@ -59,8 +60,13 @@ class GridFlow : public scene::Flow {
 
   void step(double dt) override {
     arena_.execute([&] { advance(dt); });
+    // Of equal steps a product, not a sum that drifts.
+    if (dt != last_step_) {
+      since_ = time_;
+      equal_steps_ = 0;
+    }
     last_step_ = dt;
-    time_ += dt;
+    time_ = since_ + double(++equal_steps_) * dt;
     ++steps_;
   }
 
@@ -77,15 +83,27 @@ class GridFlow : public scene::Flow {
     grid->size = {l_.n[0], l_.n[1], l_.n[2]};
     grid->voxel_size = l_.h;
     grid->translation = l_.low + 0.5 * l_.h * Vec3::Ones();
-    grid->values.assign(count_of(l_.n), 0.0f);
-    for (const Carried<Real>& c : carried_)
-      if (c.quantity == Quantity::density)
-        for (int k = 0; k < l_.n[2]; ++k)
-          for (int j = 0; j < l_.n[1]; ++j)
-            for (int i = 0; i < l_.n[0]; ++i)
-              grid->values[i + std::size_t(l_.n[0]) * (j + std::size_t(l_.n[1]) * k)] =
-                  std::max(0.0f, float(c.now.at(i, j, k)));
+    grid->values = by_cell(find(Quantity::density));
+    grid->values.resize(count_of(l_.n), 0.0f);
+    for (float& value : grid->values) value = std::max(0.0f, value);
     return grid;
+  }
+
+  scene::Frame frame() const override {
+    scene::Frame f;
+    f.size = {l_.n[0], l_.n[1], l_.n[2]};
+    f.cell = l_.h;
+    f.low = l_.low;
+    f.density = by_cell(find(Quantity::density));
+    f.temperature = by_cell(find(Quantity::temperature));
+    const int nx = l_.n[0] + 1, ny = l_.n[1] + 1;
+    f.velocity.assign(3 * std::size_t(nx) * ny * (l_.n[2] + 1), 0.0f);
+    for (int a = 0; a < l_.dimensions; ++a)
+      for (int k = 0; k < l_.n[2] + (a == 2); ++k)
+        for (int j = 0; j < l_.n[1] + (a == 1); ++j)
+          for (int i = 0; i < l_.n[0] + (a == 0); ++i)  // of a periodic axis the last face is a ghost
+            f.velocity[3 * (i + std::size_t(nx) * (j + std::size_t(ny) * k)) + a] = float(u_[a].at(i, j, k));
+    return f;
   }
 
   scene::Totals totals() const override {
@@ -110,18 +128,15 @@ class GridFlow : public scene::Flow {
 
   std::string state() const override {
     StateWriter writer(shape());
-    writer.number(time_);
-    writer.number(last_step_);
-    writer.number(double(steps_));
+    for (const double value : {time_, since_, last_step_, double(equal_steps_), double(steps_)}) writer.number(value);
     for (int a = 0; a < l_.dimensions; ++a) writer.values(u_[a].values);
     for (const Carried<Real>& c : carried_) writer.values(c.now.values);
     return writer.done();
   }
   void restore(const std::string& state) override {
     StateReader reader(state, shape());
-    time_ = reader.number();
-    last_step_ = reader.number();
-    steps_ = (long long)(reader.number());
+    for (double* value : {&time_, &since_, &last_step_}) *value = reader.number();
+    for (long long* value : {&equal_steps_, &steps_}) *value = (long long)(reader.number());
     for (int a = 0; a < l_.dimensions; ++a) reader.values(u_[a].values);
     for (Carried<Real>& c : carried_) reader.values(c.now.values);
     reader.done();
@@ -141,7 +156,6 @@ class GridFlow : public scene::Flow {
       diffusion_.emplace_back(l_, obstacles_, a, plan_.tolerance, plan_.iterations);
     }
     advected_ = u_;
-    spare_ = u_;
     hold_velocities(*problem_, l_, 0, u_);
     settle();
     if (!problem_->velocity_stays) project();
@@ -160,7 +174,7 @@ class GridFlow : public scene::Flow {
     carried_.reserve(2);
     if (carries_density(*problem_)) carry(Quantity::density, scene::start_density);
     if (carries_temperature(*problem_)) carry(Quantity::temperature, scene::start_temperature);
-    if (!carried_.empty()) center_ = center_spare_ = Field<Real>(l_, at_centers);
+    if (!carried_.empty()) center_ = Field<Real>(l_, at_centers);
   }
 
   template <class Value>
@@ -192,11 +206,14 @@ class GridFlow : public scene::Flow {
       fill_ghosts(c.now, c.quantity, l_);
     }
     if (!problem_->velocity_stays) {
-      timed("forces", [&] { add_forces(dt); });
+      timed("forces", [&] {
+        add_forces(dt);
+        require_finite();  // limiters would swallow what is not
+      });
       if (plan_.project_twice) timed("projection", [&] { project(); });
       timed("advection of velocity", [&] {
         for (int a = 0; a < l_.dimensions; ++a)
-          advect(plan_.advection, l_, obstacles_, u_, dt, Quantity::velocity, u_[a], advected_[a], spare_[a]);
+          advect(plan_.advection, l_, obstacles_, u_, dt, Quantity::velocity, u_[a], advected_[a], work_);
         std::swap(u_, advected_);
         settle();
       });
@@ -230,7 +247,7 @@ class GridFlow : public scene::Flow {
 
   void carry(Carried<Real>& c, double dt) {
     timed("advection of what is carried", [&] {
-      advect(plan_.advection, l_, obstacles_, u_, dt, c.quantity, c.now, center_, center_spare_);
+      advect(plan_.advection, l_, obstacles_, u_, dt, c.quantity, c.now, center_, work_);
       std::swap(c.now.values, center_.values);
     });
     if (problem_->diffusivity > 0)
@@ -246,18 +263,37 @@ class GridFlow : public scene::Flow {
   }
 
   void require_finite() const {
-    for (int a = 0; a < l_.dimensions; ++a)
-      for (int k = 0; k < u_[a].n[2]; ++k)
-        for (int j = 0; j < u_[a].n[1]; ++j) {
-          const Real* row = u_[a].row(j, k);
-          Real sum = 0;
-          for (int i = 0; i < u_[a].n[0]; ++i) sum += std::abs(row[i]);
-          if (std::isfinite(sum)) continue;
-          for (int i = 0; i < u_[a].n[0]; ++i)
-            if (!std::isfinite(row[i]))
-              throw Error(fmt::format("step {}, t = {:.6g} s: the velocity along {} at cell ({}, {}, {}) is {}",
-                                      steps_ + 1, time_, "xyz"[a], i, j, k, double(row[i])));
-        }
+    for (int a = 0; a < l_.dimensions; ++a) {
+      std::atomic<bool> finite{true};
+      for_rows(u_[a].n, [&](int j, int k) {
+        const Real* row = u_[a].row(j, k);
+        Real sum = 0;
+        for (int i = 0; i < u_[a].n[0]; ++i) sum += row[i] * Real(0);  // NaN or infinity leave NaN
+        if (!(sum == 0)) finite = false;
+      });
+      if (!finite) name_first_not_finite(a);
+    }
+  }
+  [[noreturn]] void name_first_not_finite(int a) const {
+    for (int k = 0; k < u_[a].n[2]; ++k)
+      for (int j = 0; j < u_[a].n[1]; ++j)
+        for (int i = 0; i < u_[a].n[0]; ++i)
+          if (!std::isfinite(u_[a].at(i, j, k)))
+            throw Error(fmt::format("step {}, t = {:.6g} s: the velocity along {} at cell ({}, {}, {}) is {}",
+                                    steps_ + 1, time_, "xyz"[a], i, j, k, double(u_[a].at(i, j, k))));
+    throw std::logic_error("a velocity is not finite, and all are");
+  }
+
+  static std::vector<float> by_cell(const Field<Real>* field) {
+    std::vector<float> values;
+    if (!field) return values;
+    values.reserve(count_of(field->n));
+    for (int k = 0; k < field->n[2]; ++k)
+      for (int j = 0; j < field->n[1]; ++j) {
+        const Real* row = field->row(j, k);
+        values.insert(values.end(), row, row + field->n[0]);
+      }
+    return values;
   }
 
   const Field<Real>* find(Quantity quantity) const {
@@ -289,11 +325,12 @@ class GridFlow : public scene::Flow {
   mutable tbb::task_arena arena_;
   std::optional<Projection<Real>> projection_;
   std::vector<Diffusion<Real>> diffusion_;
-  Velocity<Real> u_, advected_, spare_;
+  Velocity<Real> u_, advected_;
   std::vector<Carried<Real>> carried_;
-  Field<Real> center_, center_spare_;
-  double time_ = 0, last_step_ = 0, residual_ = 0;
-  long long steps_ = 0, iterations_ = 0, iterations_of_diffusion_ = 0;
+  Field<Real> center_;
+  Workspace<Real> work_;
+  double time_ = 0, since_ = 0, last_step_ = 0, residual_ = 0;
+  long long steps_ = 0, equal_steps_ = 0, iterations_ = 0, iterations_of_diffusion_ = 0;
   std::vector<scene::StageTime> times_;
 };
 

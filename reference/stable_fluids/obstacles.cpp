@@ -43,6 +43,31 @@ void continue_beyond(const Lattice& l, Solids& solid) {
         solid.at(i, j, k) = solid.at(inside(i, 0), inside(j, 1), inside(k, 2));
 }
 
+// By growing what is solid, a layer at a time along each axis.
+std::vector<std::uint8_t> clear_cells(const Lattice& l, const Solids& solid) {
+  constexpr int most = 15;  // a way that is longer is followed from cell to cell
+  std::vector<std::uint8_t> clear(count_of(l.n), most);
+  Solids grown = solid;
+  for (int layer = 0; layer <= most; ++layer) {
+    for_rows(l.n, [&](int j, int k) {
+      std::uint8_t* row = clear.data() + std::size_t(l.n[0]) * (j + std::size_t(l.n[1]) * k);
+      for (int i = 0; i < l.n[0]; ++i)
+        if (grown.at(i, j, k) && row[i] == most) row[i] = std::uint8_t(std::max(0, layer - 1));
+    });
+    for (int a = 0; a < l.dimensions; ++a) {
+      continue_beyond(l, grown);
+      const Solids before = grown;
+      for_rows(l.n, [&](int j, int k) {
+        for (int i = 0; i < l.n[0]; ++i) {
+          const std::uint8_t* at = before.row(j, k) + i;
+          grown.at(i, j, k) = at[0] | at[before.stride[a]] | at[-before.stride[a]];
+        }
+      });
+    }
+  }
+  return clear;
+}
+
 }  // namespace
 
 Obstacles make_obstacles(const scene::FlowProblem& problem, const Lattice& l) {
@@ -55,6 +80,7 @@ Obstacles make_obstacles(const scene::FlowProblem& problem, const Lattice& l) {
       obstacles.count += std::size_t(std::count(obstacles.solid.row(j, k), obstacles.solid.row(j, k) + l.n[0], 1));
   if (obstacles.count == count_of(l.n)) throw Error("the obstacles fill the box: no cell of fluid is left");
   continue_beyond(l, obstacles.solid);
+  obstacles.clear = clear_cells(l, obstacles.solid);
   return obstacles;
 }
 

@@ -1,14 +1,23 @@
 // Which cells are solid.
 #pragma once
+#include <algorithm>
+
 #include "reference/stable_fluids/field.h"
 
 namespace airlight::stable_fluids {
 
 struct Obstacles {
-  Field<std::uint8_t> solid;  // 1 where a cell is, its ghosts mirrored or wrapped; empty where there are none
-  std::size_t count = 0;      // of solid cells
+  Field<std::uint8_t> solid;        // 1 where a cell is, its ghosts mirrored or wrapped; empty where there are none
+  std::size_t count = 0;            // of solid cells
+  std::vector<std::uint8_t> clear;  // of each cell: no solid one as many cells away along any axis
 
   bool any() const { return count > 0; }
+  // How far one may go from a place along any axis without entering a solid cell [cells].
+  int clear_around(const Lattice& l, const Vec3& cells) const {
+    std::size_t cell = 0;
+    for (int a = 2; a >= 0; --a) cell = cell * l.n[a] + std::min(int(cells[a]), l.n[a] - 1);
+    return clear[cell];
+  }
 };
 
 // Cells whose centre lies in an obstacle. Throws Error where none is left.

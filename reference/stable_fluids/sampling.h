@@ -1,164 +1,264 @@
-// Reading a field between its samples, and finding where what arrives at a place came from. For kernels: no checks.
+// Reading a field between its samples, and finding where what arrives at a place came from, for as many places at once
+// as a vector has lanes. For kernels: no checks. The same bits for any width: no operation is fused.
 #pragma once
-#include <algorithm>
-#include <cmath>
+#include <hwy/highway.h>
+
+#include <array>
 
 #include "reference/stable_fluids/obstacles.h"
 
 namespace airlight::stable_fluids {
 
-template <class Real>
-using Cells = std::array<Real, 3>;  // a place [cells]
+namespace hn = hwy::HWY_NAMESPACE;
 
-// The sample before a coordinate that is at least -1, and the share of the way to the next.
 template <class Real>
-struct Between {
-  int i;
-  Real share;
-  explicit Between(Real x) : i(int(x)) {
-    i -= x < Real(i);
-    share = x - Real(i);
-  }
-};
+using Lanes = hn::ScalableTag<Real>;
+template <class Real>
+using Vector = hn::Vec<Lanes<Real>>;
+template <class Real>
+using Places = std::array<Vector<Real>, 3>;  // [cells]
+
+template <class Real>
+Vector<Real> all(Real x) {
+  return hn::Set(Lanes<Real>(), x);
+}
+
+// a + t (b - a): a where t is 0, and where both are the same.
+template <class V>
+V between(V a, V b, V t) {
+  return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+}
 
 // Cubic through b and c with slopes limited so that it stays between them: Fedkiw et al. 2001, appendix B, and the
 // factor of Fritsch and Carlson 1980.
 template <class Real>
-Real monotone_cubic(Real a, Real b, Real c, Real d, Real t) {
-  const Real rise = c - b;
-  const auto limited = [&](Real slope) {
-    return rise > 0 ? std::clamp(slope, Real(0), 3 * rise) : std::clamp(slope, 3 * rise, Real(0));
+Vector<Real> monotone_cubic(Vector<Real> a, Vector<Real> b, Vector<Real> c, Vector<Real> d, Vector<Real> t) {
+  const auto zero = all(Real(0)), half = all(Real(0.5)), two = all(Real(2)), three = all(Real(3));
+  const auto rise = hn::Sub(c, b), most = hn::Mul(three, rise);
+  const auto limited = [&](Vector<Real> slope) {
+    return hn::Max(hn::Min(slope, hn::Max(most, zero)), hn::Min(most, zero));
   };
-  const Real before = limited((c - a) / 2), after = limited((d - b) / 2);
-  return b + t * (before + t * (3 * rise - 2 * before - after + t * (before + after - 2 * rise)));
+  const auto before = limited(hn::Mul(half, hn::Sub(c, a))), after = limited(hn::Mul(half, hn::Sub(d, b)));
+  const auto cube = hn::Sub(hn::Add(before, after), hn::Mul(two, rise));
+  const auto square = hn::Sub(hn::Sub(most, hn::Mul(two, before)), after);
+  return hn::Add(b, hn::Mul(t, hn::Add(before, hn::Mul(t, hn::Add(square, hn::Mul(t, cube))))));
 }
 
-template <class Real, int D>
-struct Sampler {
-  const Real* origin;
-  std::ptrdiff_t sy, sz;
-  Real offset[3];
-
-  explicit Sampler(const Field<Real>& f)
-      : origin(f.values.data() + f.first),
-        sy(f.stride[1]),
-        sz(f.stride[2]),
-        offset{Real(f.offset(0)), Real(f.offset(1)), Real(f.offset(2))} {}
-
-  // The corner before a place and the shares beyond it.
-  struct Foot {
-    const Real* at;
-    Real x, y, z;
-  };
-  Foot foot(const Cells<Real>& p) const {
-    const Between<Real> x(p[0] - offset[0]), y(p[1] - offset[1]);
-    if constexpr (D == 2) return {origin + x.i + y.i * sy, x.share, y.share, 0};
-    const Between<Real> z(p[2] - offset[2]);
-    return {origin + x.i + y.i * sy + z.i * sz, x.share, y.share, z.share};
-  }
-
-  Real linear(const Foot& f) const {
-    const auto row = [&](const Real* at) { return at[0] + f.x * (at[1] - at[0]); };
-    const auto slab = [&](const Real* at) {
-      const Real low = row(at);
-      return low + f.y * (row(at + sy) - low);
-    };
-    const Real low = slab(f.at);
-    if constexpr (D == 2) return low;
-    return low + f.z * (slab(f.at + sz) - low);
-  }
-  Real linear(const Cells<Real>& p) const { return linear(foot(p)); }
-
-  Real cubic(const Foot& f) const {
-    const auto row = [&](const Real* at) { return monotone_cubic(at[-1], at[0], at[1], at[2], f.x); };
-    const auto slab = [&](const Real* at) {
-      return monotone_cubic(row(at - sy), row(at), row(at + sy), row(at + 2 * sy), f.y);
-    };
-    if constexpr (D == 2) return slab(f.at);
-    return monotone_cubic(slab(f.at - sz), slab(f.at), slab(f.at + sz), slab(f.at + 2 * sz), f.z);
-  }
-
-  // Least and greatest of the samples around a place.
-  std::pair<Real, Real> range(const Foot& f) const {
-    Real least = f.at[0], greatest = f.at[0];
-    for (int k = 0; k < (D == 2 ? 1 : 2); ++k)
-      for (int j = 0; j < 2; ++j)
-        for (int i = 0; i < 2; ++i) {
-          const Real value = f.at[i + j * sy + k * sz];
-          least = std::min(least, value);
-          greatest = std::max(greatest, value);
-        }
-    return {least, greatest};
-  }
+// Interpolated values, and the least and greatest of the samples around.
+template <class Real>
+struct Read {
+  Vector<Real> value, least, greatest;
 };
 
-// Where what arrives at a place was a time ago, the velocity being the same all the while.
+template <class Real, int D>
+class Sampler {
+ public:
+  using V = Vector<Real>;
+  using Indices = hn::Vec<hn::RebindToSigned<Lanes<Real>>>;
+
+  // The samples before places, as distances from the first one, and the shares beyond them.
+  struct Foot {
+    Indices at;
+    V x, y, z;
+  };
+
+  explicit Sampler(const Field<Real>& f) : origin_(f.values.data() + f.first), stride_(f.stride) {
+    for (int a = 0; a < 3; ++a) offset_[a] = Real(f.offset(a));
+  }
+
+  Foot foot(const Places<Real>& p) const {
+    const auto x = split(p[0], 0), y = split(p[1], 1);
+    if constexpr (D == 2) return {index(x.first, y.first, all(Real(0))), x.second, y.second, all(Real(0))};
+    const auto z = split(p[2], 2);
+    return {index(x.first, y.first, z.first), x.second, y.second, z.second};
+  }
+
+  V linear(const Foot& f) const {
+    const auto row = [&](std::ptrdiff_t to) { return between(get(f, to), get(f, to + 1), f.x); };
+    const auto slab = [&](std::ptrdiff_t to) { return between(row(to), row(to + stride_[1]), f.y); };
+    if constexpr (D == 2) return slab(0);
+    return between(slab(0), slab(stride_[2]), f.z);
+  }
+  V linear(const Places<Real>& p) const { return linear(foot(p)); }
+
+  V cubic(const Foot& f) const {
+    const auto row = [&](std::ptrdiff_t to) {
+      return monotone_cubic<Real>(get(f, to - 1), get(f, to), get(f, to + 1), get(f, to + 2), f.x);
+    };
+    const auto slab = [&](std::ptrdiff_t to) {
+      const std::ptrdiff_t s = stride_[1];
+      return monotone_cubic<Real>(row(to - s), row(to), row(to + s), row(to + 2 * s), f.y);
+    };
+    const std::ptrdiff_t s = stride_[2];
+    if constexpr (D == 2) return slab(0);
+    return monotone_cubic<Real>(slab(-s), slab(0), slab(s), slab(2 * s), f.z);
+  }
+
+  // With the range of the samples around.
+  Read<Real> linear_in_range(const Foot& f) const {
+    Read<Real> all_of;
+    all_of.least = all_of.greatest = get(f, 0);
+    const auto seen = [&](std::ptrdiff_t to) {
+      const V value = get(f, to);
+      all_of.least = hn::Min(all_of.least, value);
+      all_of.greatest = hn::Max(all_of.greatest, value);
+      return value;
+    };
+    const auto row = [&](std::ptrdiff_t to) {
+      const V first = seen(to), second = seen(to + 1);
+      return between(first, second, f.x);
+    };
+    const auto slab = [&](std::ptrdiff_t to) {
+      const V first = row(to), second = row(to + stride_[1]);
+      return between(first, second, f.y);
+    };
+    const V low = slab(0);
+    all_of.value = D == 2 ? low : between(low, slab(D == 2 ? 0 : stride_[2]), f.z);
+    return all_of;
+  }
+
+ private:
+  std::pair<V, V> split(V x, int axis) const {
+    const V from = hn::Sub(x, all(offset_[axis])), floor = hn::Floor(from);
+    return {floor, hn::Sub(from, floor)};
+  }
+  // Whole numbers of samples: exact in double, and as integers where a float would not be.
+  Indices index(V x, V y, V z) const {
+    const hn::RebindToSigned<Lanes<Real>> integers;
+    if constexpr (sizeof(Real) == 8) {
+      const V rows = hn::Mul(y, all(Real(stride_[1]))), slabs = hn::Mul(z, all(Real(stride_[2])));
+      return hn::ConvertTo(integers, hn::Add(x, hn::Add(rows, slabs)));
+    } else {
+      const auto of = [&](V v) { return hn::ConvertTo(integers, v); };
+      const auto step = [&](int a) { return hn::Set(integers, std::int32_t(stride_[a])); };
+      return hn::Add(of(x), hn::Add(hn::Mul(of(y), step(1)), hn::Mul(of(z), step(2))));
+    }
+  }
+  V get(const Foot& f, std::ptrdiff_t to) const { return hn::GatherIndex(Lanes<Real>(), origin_ + to, f.at); }
+
+  const Real* origin_;
+  std::array<std::ptrdiff_t, 3> stride_;
+  Real offset_[3];
+};
+
+// Where what arrives at samples of one kind of field was a time ago, the velocity being the same all the while.
 template <class Real, int D>
 class Tracer {
  public:
-  // `cells` is the time over h: velocities times it are ways in cells. Negative: where it will be.
-  Tracer(const Lattice& l, const Obstacles& obstacles, const Velocity<Real>& u, double cells, int order)
-      : u_{Sampler<Real, D>(u[0]), Sampler<Real, D>(u[1]), Sampler<Real, D>(u[D == 2 ? 1 : 2])},
+  using V = Vector<Real>;
+
+  // For fields on the faces of `axis`, or at centres. `cells` is the time over h: velocities times it are ways in cells;
+  // negative: where it will be.
+  Tracer(const Lattice& l, const Obstacles& obstacles, const Velocity<Real>& u, int axis, double cells, int order)
+      : fields_(u),
+        u_{Sampler<Real, D>(u[0]), Sampler<Real, D>(u[1]), Sampler<Real, D>(u[D == 2 ? 1 : 2])},
         l_(l),
         obstacles_(obstacles),
-        cells_(Real(cells)),
-        order_(order) {
-    for (int a = 0; a < 3; ++a) {
-      n_[a] = Real(l.n[a]);
-      wraps_[a] = l.periodic(a);
-    }
-  }
+        axis_(axis),
+        cells_(all(Real(cells))),
+        order_(order) {}
 
-  Cells<Real> foot(const Cells<Real>& p) const {
-    const Cells<Real> first = way(p);
-    Cells<Real> total = first;
-    if (order_ == 2) total = way(inside(minus(p, first, Real(0.5))));
+  // Of the samples from (i, j, k) along x, which are at p.
+  Places<Real> feet(int i, int j, int k, const Places<Real>& p) const {
+    const Places<Real> first = way_at_samples(i, j, k);
+    Places<Real> total = first;
+    const auto half = all(Real(0.5)), one = all(Real(1));
+    if (order_ == 2) total = way(inside(minus(p, first, half)));
     if (order_ == 4) {
-      const Cells<Real> second = way(inside(minus(p, first, Real(0.5))));
-      const Cells<Real> third = way(inside(minus(p, second, Real(0.5))));
-      const Cells<Real> fourth = way(inside(minus(p, third, Real(1))));
-      for (int a = 0; a < D; ++a) total[a] = (first[a] + 2 * (second[a] + third[a]) + fourth[a]) / 6;
+      const Places<Real> second = way(inside(minus(p, first, half)));
+      const Places<Real> third = way(inside(minus(p, second, half)));
+      const Places<Real> fourth = way(inside(minus(p, third, one)));
+      for (int a = 0; a < D; ++a) {
+        const V middle = hn::Mul(all(Real(2)), hn::Add(second[a], third[a]));
+        total[a] = hn::Mul(all(Real(1) / 6), hn::Add(hn::Add(first[a], middle), fourth[a]));
+      }
     }
-    Cells<Real> q = minus(p, total, Real(1));
-    if (obstacles_.any()) {
-      // Not through what is solid; a wall ends the way first.
-      for (int a = 0; a < D; ++a)
-        if (!wraps_[a]) q[a] = q[a] > 0 ? std::min(q[a], n_[a]) : Real(0);
-      const Vec3 end = until_solid(obstacles_, l_, Vec3(p[0], p[1], p[2]), Vec3(q[0], q[1], q[2]));
-      for (int a = 0; a < D; ++a) q[a] = Real(end[a]);
-    }
+    Places<Real> q = minus(p, total, one);
+    if (obstacles_.any()) q = before_solids(p, q);
     return inside(q);
   }
 
  private:
-  Cells<Real> way(const Cells<Real>& p) const {
-    Cells<Real> v{cells_ * u_[0].linear(p), cells_ * u_[1].linear(p), 0};
-    if constexpr (D == 3) v[2] = cells_ * u_[2].linear(p);
+  // There no interpolation is needed: the mean of the faces around.
+  Places<Real> way_at_samples(int i, int j, int k) const {
+    Places<Real> v{all(Real(0)), all(Real(0)), all(Real(0))};
+    for (int a = 0; a < D; ++a) {
+      const Field<Real>& f = fields_[a];
+      const Real* at = f.row(j, k) + i;
+      const auto load = [&](std::ptrdiff_t to) { return hn::LoadU(Lanes<Real>(), at + to); };
+      const std::ptrdiff_t along = f.stride[a];
+      if (a == axis_) {
+        v[a] = load(0);
+      } else if (axis_ == at_centers) {
+        v[a] = hn::Mul(all(Real(0.5)), hn::Add(load(0), load(along)));
+      } else {
+        const std::ptrdiff_t before = -f.stride[axis_];
+        v[a] = hn::Mul(all(Real(0.25)),
+                       hn::Add(hn::Add(load(0), load(along)), hn::Add(load(before), load(before + along))));
+      }
+      v[a] = hn::Mul(cells_, v[a]);
+    }
     return v;
   }
-  Cells<Real> minus(const Cells<Real>& p, const Cells<Real>& v, Real share) const {
-    Cells<Real> q = p;
-    for (int a = 0; a < D; ++a) q[a] -= share * v[a];
+
+  Places<Real> way(const Places<Real>& p) const {
+    Places<Real> v{hn::Mul(cells_, u_[0].linear(p)), hn::Mul(cells_, u_[1].linear(p)), all(Real(0))};
+    if constexpr (D == 3) v[2] = hn::Mul(cells_, u_[2].linear(p));
+    return v;
+  }
+  Places<Real> minus(const Places<Real>& p, const Places<Real>& v, V share) const {
+    Places<Real> q = p;
+    for (int a = 0; a < D; ++a) q[a] = hn::Sub(p[a], hn::Mul(share, v[a]));
     return q;
   }
+
   // Within the box whatever comes: what is not finite, or too far away to be wrapped, is at its low side.
-  Cells<Real> inside(Cells<Real> p) const {
+  Places<Real> inside(const Places<Real>& p) const {
+    Places<Real> q = p;
+    const V zero = all(Real(0));
     for (int a = 0; a < D; ++a) {
-      if (wraps_[a]) {
-        p[a] -= n_[a] * std::floor(p[a] / n_[a]);
-        if (!(p[a] >= 0 && p[a] < n_[a])) p[a] = 0;
+      const V n = all(Real(l_.n[a]));
+      if (l_.periodic(a)) {
+        const V wrapped = hn::Sub(p[a], hn::Mul(n, hn::Floor(hn::Div(p[a], n))));
+        q[a] = hn::IfThenElseZero(hn::And(hn::Ge(wrapped, zero), hn::Lt(wrapped, n)), wrapped);
       } else {
-        p[a] = p[a] > 0 ? std::min(p[a], n_[a]) : Real(0);
+        q[a] = hn::IfThenElseZero(hn::Gt(p[a], zero), hn::Min(p[a], n));
       }
     }
-    return p;
+    return q;
   }
 
+  // Not through what is solid; a wall ends the way first. Ways shorter than to the next solid cell are left alone.
+  Places<Real> before_solids(const Places<Real>& p, const Places<Real>& q) const {
+    constexpr std::size_t most = 64;
+    Real from[3][most], to[3][most];
+    for (int a = 0; a < 3; ++a) {
+      hn::StoreU(p[a], Lanes<Real>(), from[a]);
+      hn::StoreU(q[a], Lanes<Real>(), to[a]);
+    }
+    for (std::size_t lane = 0; lane < hn::Lanes(Lanes<Real>()); ++lane) {
+      Vec3 start = Vec3::Zero(), end = Vec3::Zero();
+      double longest = 0;
+      for (int a = 0; a < D; ++a) {
+        start[a] = from[a][lane];
+        end[a] = l_.periodic(a) ? to[a][lane] : to[a][lane] > 0 ? std::min(double(to[a][lane]), double(l_.n[a])) : 0;
+        longest = std::max(longest, std::abs(end[a] - start[a]));
+      }
+      if (longest <= obstacles_.clear_around(l_, start)) continue;
+      const Vec3 stop = until_solid(obstacles_, l_, start, end);
+      for (int a = 0; a < D; ++a) to[a][lane] = Real(stop[a]);
+    }
+    Places<Real> result = q;
+    for (int a = 0; a < D; ++a) result[a] = hn::LoadU(Lanes<Real>(), to[a]);
+    return result;
+  }
+
+  const Velocity<Real>& fields_;
   Sampler<Real, D> u_[3];
   const Lattice& l_;
   const Obstacles& obstacles_;
-  Real cells_, n_[3];
-  bool wraps_[3];
+  int axis_;
+  V cells_;
   int order_;
 };
 

@@ -23,6 +23,7 @@
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/flow.h"
 #include "scene/media/vdb_layout.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/printable.h"
@@ -100,9 +101,16 @@ class Reader : public openvdb::io::Archive {
 
 class Writer : public openvdb::io::Archive {
  public:
-  void write_to(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
-    openvdb::GridCPtrVec grids{grid};
-    Archive::write(stream, grids, /*seekable=*/true);
+  // The same grids give the same bytes: OpenVDB marks each file with a random number, which is made from the rest here.
+  std::string bytes_of(const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& notes = {}) const {
+    std::ostringstream stream;
+    Archive::write(stream, grids, /*seekable=*/true, notes);
+    std::string bytes = std::move(stream).str();
+    constexpr std::size_t mark = 21, length = 36;  // after magic, three versions and a flag: 8-4-4-4-12 digits
+    bytes.replace(mark, length, length, '0');
+    std::string digits = hex128(XXH3_128bits(bytes.data(), bytes.size()));
+    for (const std::size_t dash : {8, 13, 18, 23}) digits.insert(dash, "-");
+    return bytes.replace(mark, length, digits);
   }
 };
 
@@ -253,8 +261,9 @@ VoxelGrid read_vdb(const std::string& path, const std::string& name, std::size_t
   return grid;
 }
 
-void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string& name) {
-  initialize_once();
+namespace {
+
+openvdb::FloatGrid::Ptr fog_volume(const VoxelGrid& grid, const std::string& name) {
   auto target = openvdb::FloatGrid::create(0.0f);
   target->setName(name);
   target->setGridClass(openvdb::GRID_FOG_VOLUME);
@@ -265,9 +274,7 @@ void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string
   target->setTransform(openvdb::math::Transform::createLinearTransform(m));
   target->insertMeta(origin_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.origin_index.data())));
   target->insertMeta(size_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.size.data())));
-
   target->insertMeta(checksum_key, openvdb::StringMetadata(checksum(grid)));
-
   auto accessor = target->getAccessor();
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
@@ -275,10 +282,50 @@ void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string
         if (const float value = grid.at(i, j, k); !is_plain_zero(value))
           accessor.setValue(
               openvdb::Coord(grid.origin_index[0] + i, grid.origin_index[1] + j, grid.origin_index[2] + k), value);
+  return target;
+}
 
-  std::ostringstream stream;
-  Writer().write_to(stream, target);
-  write_file_atomically(path, stream.view());
+// Signed values, which read_vdb would refuse, are for other programs.
+openvdb::Vec3SGrid::Ptr staggered(const Frame& frame, const openvdb::math::Transform& transform) {
+  auto target = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
+  target->setName("velocity");
+  target->setGridClass(openvdb::GRID_STAGGERED);
+  target->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+  target->setTransform(transform.copy());
+  auto accessor = target->getAccessor();
+  const float* value = frame.velocity.data();
+  for (int k = 0; k <= frame.size[2]; ++k)
+    for (int j = 0; j <= frame.size[1]; ++j)
+      for (int i = 0; i <= frame.size[0]; ++i, value += 3)
+        if (value[0] != 0 || value[1] != 0 || value[2] != 0)
+          accessor.setValue(openvdb::Coord(i, j, k), openvdb::Vec3s(value));
+  return target;
+}
+
+}  // namespace
+
+void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string& name) {
+  initialize_once();
+  write_file_atomically(path, Writer().bytes_of({fog_volume(grid, name)}));
+}
+
+void write_frame(const std::string& path, const Frame& frame, const std::map<std::string, std::string>& notes) {
+  initialize_once();
+  VoxelGrid cells;
+  cells.size = frame.size;
+  cells.voxel_size = frame.cell;
+  cells.translation = frame.low + 0.5 * frame.cell * Vec3::Ones();
+  openvdb::GridCPtrVec grids;
+  const auto add = [&](const std::vector<float>& values, const char* name) {
+    cells.values = values.empty() ? std::vector<float>(std::size_t(frame.size.prod()), 0.0f) : values;
+    grids.push_back(fog_volume(cells, name));
+  };
+  add(frame.density, "density");
+  if (!frame.temperature.empty()) add(frame.temperature, "temperature");
+  grids.push_back(staggered(frame, grids.front()->transform()));
+  openvdb::MetaMap metadata;
+  for (const auto& [key, value] : notes) metadata.insertMeta(key, openvdb::StringMetadata(value));
+  write_file_atomically(path, Writer().bytes_of(grids, metadata));
 }
 
 }  // namespace airlight::scene

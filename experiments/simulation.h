@@ -1,0 +1,36 @@
+// A flow as a sequence of files, in a folder that can be gone on with after any end.
+//
+//   NAME.0000.vdb, NAME.0001.vdb, ...   the frames, from the start on
+//   history.csv                         a row for each: sums over the box
+//   state                               what goes on after the last of them, whose files are complete
+//
+// Each file is written whole or not at all, `state` last: whatever happens in between, the same frames follow, bit for
+// bit.
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "scene/flow.h"
+
+namespace airlight::experiments {
+
+struct Simulation {
+  std::shared_ptr<const scene::FlowProblem> problem;
+  const scene::Solver& solver;
+  scene::Settings settings;
+  std::filesystem::path folder;
+};
+
+struct SimulationReport {
+  int frames = 0;                       // there are now, the start included
+  int resumed = 0;                      // of them there were
+  std::vector<scene::StageTime> times;  // of this run
+  std::map<std::string, double> counters;
+  scene::Totals totals;  // at the end
+};
+
+// frames = duration * frame_rate, rounded, and the start. Throws Error: a folder that holds another simulation, a frame
+// that is gone, whatever a step throws; Interrupted after the frame during which it was asked to stop.
+SimulationReport simulate(const Simulation&, const scene::Execution&);
+
+}  // namespace airlight::experiments

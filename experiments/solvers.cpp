@@ -1,0 +1,21 @@
+#include "experiments/solvers.h"
+
+#include "experiments/find_component.h"
+#include "reference/stable_fluids/stable_fluids.h"
+
+namespace airlight::experiments {
+
+const std::vector<std::unique_ptr<scene::Solver>>& all_solvers() {
+  static const auto solvers = [] {
+    std::vector<std::unique_ptr<scene::Solver>> list;
+    list.push_back(std::make_unique<stable_fluids::StableFluids>());
+    return list;
+  }();
+  return solvers;
+}
+
+const scene::Solver& find_solver(const std::string& name, const std::string& where) {
+  return find_component(all_solvers(), "solver", name, where);
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,138 @@
+// Sequences of frames: what they hold, and that an end at any moment changes none of them.
+#include "experiments/simulation.h"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "experiments/solvers.h"
+#include "scene/error.h"
+#include "scene/read_file.h"
+#include "tests/experiments/run_program.h"
+
+using namespace airlight;
+using namespace airlight::experiments;
+using Catch::Contains;
+
+namespace {
+
+const std::string smoke = R"(
+[flow]
+duration = 0.5
+frame_rate = 20
+box = { lo = [0, 0, 0], hi = [1, 2, 1] }
+[sides]
+top = { type = "open" }
+[fluid]
+gravity = [0, -9.81, 0]
+expansion = 0.0033
+[[source]]
+region = { type = "sphere", center = [0.5, 0.3, 0.5], radius = 0.25 }
+density = 1
+temperature = 100
+)";
+
+Simulation simulation(const TemporaryFolder& folder, std::map<std::string, std::string> settings = {}) {
+  const scene::Solver& solver = find_solver("stable_fluids", "test");
+  settings.try_emplace("n", "24");
+  return {std::make_shared<const scene::FlowProblem>(scene::parse_flow(smoke, "smoke.toml", "")),
+          solver,
+          {solver.settings(), settings},
+          folder.path()};
+}
+
+std::map<std::string, std::string> files(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    all[entry.path().filename().string()] = scene::read_whole_file(entry.path().string(), 1 << 28);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a simulation leaves frames that a scene can show, and its history", "[simulation]") {
+  const TemporaryFolder folder;
+  const SimulationReport report = simulate(simulation(folder, {{"dt", "0.02"}}), {});
+  CHECK(report.frames == 11);
+  CHECK(report.resumed == 0);
+  CHECK(report.counters.at("steps") == 30);
+  const auto all = files(folder.path());
+  CHECK(all.size() == 13);
+  const std::string& history = all.at("history.csv");
+  CHECK(std::count(history.begin(), history.end(), '\n') == 12);
+  CHECK_THAT(history, Contains("\n10,0.5"));
+  const auto frame = scene::read_vdb((folder.path() / "smoke.0010.vdb").string());
+  CHECK(frame.size == Eigen::Vector3i(12, 24, 12));
+  CHECK(frame.voxel_size == Approx(2.0 / 24));
+  CHECK(frame.translation.isApprox(Vec3::Constant(1.0 / 24)));
+  CHECK(*std::max_element(frame.values.begin(), frame.values.end()) > 0.5f);
+  CHECK(scene::read_vdb((folder.path() / "smoke.0010.vdb").string(), "temperature").values.size() ==
+        frame.values.size());
+  CHECK_THROWS_WITH(scene::read_vdb((folder.path() / "smoke.0010.vdb").string(), "velocity"),
+                    Contains("expected Tree_float_5_4_3"));
+
+  // What is written is what the flow had.
+  const Simulation again = simulation(folder, {{"dt", "0.02"}});
+  const auto flow = again.solver.start(again.problem, again.settings, {});
+  for (int step = 0; step < 30; ++step) flow->step(1.0 / 60);
+  CHECK(flow->frame().density == frame.values);
+
+  // All is there: nothing is computed again.
+  const SimulationReport second = simulate(again, {});
+  CHECK(second.resumed == 11);
+  CHECK(second.times.empty());
+  CHECK(files(folder.path()) == all);
+}
+
+TEST_CASE("a simulation that is interrupted after any step goes on with the same bits", "[simulation]") {
+  const TemporaryFolder whole, broken;
+  const std::map<std::string, std::string> two_steps = {{"dt", "0.025"}};
+  simulate(simulation(whole, two_steps), {});
+  for (int most = 1;; ++most) {
+    int asked = 0;
+    scene::Execution execution;
+    execution.progress = [&](double) { return ++asked < most; };
+    try {
+      if (simulate(simulation(broken, two_steps), execution).frames == 11) break;
+    } catch (const scene::Interrupted&) {
+    }
+  }
+  CHECK(files(broken.path()) == files(whole.path()));
+}
+
+// The program itself, ended by a signal that it cannot catch.
+TEST_CASE("a simulation that is killed fifty times goes on with the same bits", "[simulation]") {
+  const TemporaryFolder folder;
+  folder.write("smoke.toml", smoke);
+  const std::string arguments = "'" + airlight::test::program + "' simulate smoke.toml --set n=24 --out ";
+  REQUIRE(airlight::test::run_command(arguments + "whole", folder).code == 0);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> seconds(0, 0.25);
+  int killed = 0;
+  for (int run = 0; run < 400 && killed < 50; ++run) {
+    const auto result =
+        airlight::test::run_command(fmt::format("timeout -s KILL {:.3f} {}broken", seconds(random), arguments), folder);
+    if (result.code == 0)  // it reached its end: from the start again
+      std::filesystem::remove_all(folder.path() / "broken");
+    else
+      ++killed;
+  }
+  CHECK(killed == 50);
+  REQUIRE(airlight::test::run_command(arguments + "broken", folder).code == 0);
+  CHECK(files(folder.path() / "broken") == files(folder.path() / "whole"));
+}
+
+TEST_CASE("a folder of another simulation is refused", "[simulation]") {
+  const TemporaryFolder folder;
+  simulate(simulation(folder), {});
+  const auto all = files(folder.path());
+  CHECK_THROWS_WITH(simulate(simulation(folder, {{"scheme", "bfecc"}}), {}),
+                    Contains("of another problem, solver, settings or program"));
+  CHECK(files(folder.path()) == all);
+  std::filesystem::remove(folder.path() / "smoke.0004.vdb");
+  CHECK_THROWS_WITH(simulate(simulation(folder), {}), Contains("smoke.0004.vdb: is gone"));
+  Simulation elsewhere = simulation(folder);
+  elsewhere.folder = "/proc/nowhere";
+  CHECK_THROWS_AS(simulate(elsewhere, {}), Error);
+}
