@@ -161,12 +161,13 @@ void advect_in(const Advection& how, const Lattice& l, const Obstacles& obstacle
   if (how.scheme == Scheme::semi_lagrangian) return transport.carry(from, to);
   work.shape_as(from);
   transport.carry(from, to, &work.range);
-  fill_ghosts(to, quantity, l);
+  const Walls walls = quantity == Quantity::velocity ? Walls::as_they_are : Walls::carried;
+  fill_ghosts(to, quantity, l, walls);
   if (how.scheme == Scheme::maccormack) {
     transport.correct(to, work.range, work.first);
   } else {
     transport.compensate(to, work.second);
-    fill_ghosts(work.second, quantity, l);
+    fill_ghosts(work.second, quantity, l, walls);
     transport.carry(work.second, work.first);
     transport.limit(to, work.range, work.first);
   }

@@ -131,7 +131,7 @@ class Ghosts {
         cells[c] = v + f_.offset(c);
         const Real wall =
             walls_ == Walls::zero ? Real(0) : Real(value_at_side(l_, f_.axis, quantity_, axis, side, cells));
-        ghost = layer == 0 ? wall : 2 * wall - inside;
+        ghost = layer == 0 || walls_ == Walls::carried ? wall : 2 * wall - inside;
       }
   }
 

@@ -74,10 +74,11 @@ bool on_side(const Field<Real>& field, int axis, int i, const Lattice& l) {
 enum class Beyond { periodic, even, odd };
 Beyond beyond(const Lattice&, int axis_of_field, int axis, int side);
 
-// Sets ghosts, and velocities on walls, of a field that `quantity` names: a component of the velocity by its axis. Or of
-// a difference of two of them, for which everything that walls bring is 0.
+// Sets ghosts, and velocities on walls, of a field that `quantity` names: a component of the velocity by its axis.
+// `zero`: of a difference of two such fields, for which all that walls bring is 0. `carried`: where what is carried has a
+// value at a side, all of its ghosts have it, so that what is interpolated is never beyond it.
 enum class Quantity { velocity, density, temperature };
-enum class Walls { as_they_are, zero };
+enum class Walls { as_they_are, zero, carried };
 template <class Real>
 void fill_ghosts(Field<Real>&, Quantity, const Lattice&, Walls = Walls::as_they_are);
 

@@ -169,7 +169,7 @@ class GridFlow : public scene::Flow {
           for (int i = 0; i < l_.n[0]; ++i)
             if (obstacles_.solid.at(i, j, k)) field.at(i, j, k) = 0;
         });
-      fill_ghosts(field, quantity, l_);
+      fill_ghosts(field, quantity, l_, Walls::carried);
     };
     carried_.reserve(2);
     if (carries_density(*problem_)) carry(Quantity::density, scene::start_density);
@@ -203,7 +203,7 @@ class GridFlow : public scene::Flow {
   void advance(double dt) {
     for (Carried<Real>& c : carried_) {
       timed("sources", [&] { add_sources(*problem_, l_, time_, dt, c.quantity, c.now); });
-      fill_ghosts(c.now, c.quantity, l_);
+      fill_ghosts(c.now, c.quantity, l_, Walls::carried);
     }
     if (!problem_->velocity_stays) {
       timed("forces", [&] {
@@ -259,7 +259,7 @@ class GridFlow : public scene::Flow {
         for (Real* v = c.now.row(j, k); v != c.now.row(j, k) + c.now.n[0]; ++v) *v *= factor;
       });
     }
-    fill_ghosts(c.now, c.quantity, l_);
+    fill_ghosts(c.now, c.quantity, l_, Walls::carried);
   }
 
   void require_finite() const {
