@@ -53,12 +53,22 @@ SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, cons
   places_.transfer.clear();
   const Use use(context_);
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+  const bool harmonics = lighting_.reflectances != nullptr, environment = lighting_.environment != nullptr,
+             transfer = lighting_.transfer != nullptr;
+  const bool tabulated =
+      harmonics && std::any_of(lighting_.reflectances->tables().begin(), lighting_.reflectances->tables().end(),
+                               [](const auto& table) { return table.has_value(); });
+  const bool turned = tabulated && (environment || transfer);
+  // Of harmonics.glsl's rows in shared memory those of 8 x 8 invocations take more than 32 KiB from 9 bands on.
+  const int order = model_.options.sh_order;
   Definitions definitions{{"LOCAL_SIZE_X", "8"},
-                          {"LOCAL_SIZE_Y", "8"},
-                          {"SH_ORDER", std::to_string(model_.options.sh_order)},
-                          {"HARMONICS", flag(lighting_.reflectances != nullptr)},
-                          {"TRANSFER", flag(lighting_.transfer != nullptr)},
-                          {"ENVIRONMENT", flag(lighting_.environment != nullptr)},
+                          {"LOCAL_SIZE_Y", turned && order > 8 ? "4" : "8"},
+                          {"TABULATED", flag(tabulated)},
+                          {"TURNED", flag(turned)},
+                          {"SH_ORDER", std::to_string(order)},
+                          {"HARMONICS", flag(harmonics)},
+                          {"TRANSFER", flag(transfer)},
+                          {"ENVIRONMENT", flag(environment)},
                           {"DEPTH_TREE", flag(lighting_.depths != nullptr)},
                           {"TREE_DEGREE", std::to_string(fogshop::CellPolynomial::degree)},
                           {"TREE_COEFFICIENTS", std::to_string(fogshop::CellPolynomial::size)},
