@@ -3,16 +3,15 @@
 // by row, SH_ORDER^2 + 1 first entries, then (column, value) pairs.
 uniform int turn_at;  // its place in the tables
 
-// Coefficient m at place l + m, what a step reads and what it writes. Not arguments: each call would copy them whole.
+// Coefficient m in row l + m, what a step reads and what it writes.
 const int band_size = 2 * SH_ORDER - 1;
-vec3 band_of[2 * band_size];
 
 void turn_about_z(int at, int l, float cosine, float sine) {
   float c = cosine, s = sine;  // of m times the angle
   for (int m = 1; m <= l; ++m) {
-    vec3 even = band_of[at + l + m], odd = band_of[at + l - m];
-    band_of[at + l + m] = c * even - s * odd;
-    band_of[at + l - m] = s * even + c * odd;
+    vec3 even = row_at(at + l + m), odd = row_at(at + l - m);
+    set_row(at + l + m, c * even - s * odd);
+    set_row(at + l - m, s * even + c * odd);
     float next = c * cosine - s * sine;
     s = c * sine + s * cosine;
     c = next;
@@ -25,8 +24,8 @@ void quarter_turn(int l, int from, int to) {
   for (int i = 0; i <= 2 * l; ++i) {
     vec3 sum = vec3(0);
     for (int end = int(tables[turn_at + first + i + 1]); k < end; ++k)
-      sum += tables[pairs_at + 2 * k + 1] * band_of[from + int(tables[pairs_at + 2 * k]) - first];
-    band_of[to + i] = sum;
+      sum += tables[pairs_at + 2 * k + 1] * row_at(from + int(tables[pairs_at + 2 * k]) - first);
+    set_row(to + i, sum);
   }
 }
 

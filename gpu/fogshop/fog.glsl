@@ -83,10 +83,13 @@ Crossing cross_geometry(Gaussian g, vec3 origin, vec3 direction, float length_) 
   bool met = chord_squared >= 0 && middle + chord >= 0 && middle - chord <= length_;
   return Crossing(met, middle, chord, g.a, 0, Place(0, 0));
 }
-Crossing cross_line(Gaussian g, vec3 origin, vec3 direction, float length_) {
-  Crossing c = cross_geometry(g, origin, direction, length_);
+void complete(inout Crossing c, Gaussian g, vec3 origin, vec3 direction) {
   c.depth = depth_beside(g, origin, direction);
   c.start = place_at(-g.a * c.middle);
+}
+Crossing cross_line(Gaussian g, vec3 origin, vec3 direction, float length_) {
+  Crossing c = cross_geometry(g, origin, direction, length_);
+  complete(c, g, origin, direction);
   return c;
 }
 Place place_at(Crossing c, float t) { return place_at(c.a * (t - c.middle)); }

@@ -49,7 +49,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
       fog_.fill_light_depths();
       timer.stage("depths to centres");
     }
-    lighting_ = fogshop::make_lighting(*scene_, options, needs_, execution,
+    lighting_ = fogshop::make_lighting(*scene_, model_, needs_, execution,
                                        [&](const std::string& stage) { timer.stage(stage); });
     if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*lighting_.environment);
     if (needs_.sky_volume) {
@@ -207,6 +207,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   result.counters["rays"] = double(film.pixels());
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
+  if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());
   return result;
 }
 

@@ -1,15 +1,21 @@
 // Light and reflectance in harmonics: Zhou et al. 2007, Eqs. 20 to 27 (methods/fogshop/surface_lighting.h). Needs `tables`. Sums
 // over coefficients run along with the harmonics; only a band is held where it must be turned, all of them only for TRANSFER.
+// TABULATED: there are reflectances other than Lambert's; TURNED: which must be turned.
 #include "common/spherical_harmonics.glsl"
+#define LANE_ROWS ((TURNED != 0 ? 2 * (2 * SH_ORDER - 1) : 0) + SH_ORDER)
+#include "common/lane_rows.glsl"
+#if TURNED
 #include "common/turn_band.glsl"
+#endif
 
 const int SH_SIZE = SH_ORDER * SH_ORDER;
+const int weights_from = LANE_ROWS - SH_ORDER;         // rows: of each band, per channel
 uniform int cosine_at;                                 // bands of the clamped cosine
 uniform int point_bands_at, point_depths;              // g_l of a point light's PSF, [depth][l]; one depth: for all
 uniform int environment_bands_at, environment_depths;  // of an environment's
 uniform int environment_at;                            // its radiance L_lm, rgb
 uniform float least_depth, greatest_depth;             // of the bands, even in log T
-vec3 weight_of[SH_ORDER];                              // of each band, per channel
+vec3 weight_of(int l) { return row_at(weights_from + l); }
 
 // Turns g_l of a function about z into the factor of Y_lm of its axis: Eqs. 21 and 23.
 float zonal_factor(int l) { return sqrt(4 * pi / float(2 * l + 1)); }
@@ -25,7 +31,7 @@ struct Reflected {
 };
 Reflected reflectance_of(Material m, vec3 normal, vec3 to_view) {
   float cosine = dot(normal, to_view);
-  if (m.diffuse.w == 0 || !(cosine > 0))
+  if (TABULATED == 0 || m.diffuse.w == 0 || !(cosine > 0))
     return Reflected(true, cosine > 0 ? m.diffuse.rgb / pi : vec3(0), vec3(0), normal, 0, 0);
   vec3 aside = to_view - cosine * normal, other = abs(normal.x) < 0.5 ? vec3(1, 0, 0) : vec3(0, 1, 0);
   float sine = length(aside), place = min(angle_of(sine, cosine) / (0.5 * pi), 1.0) * float(m.places.y - 1);
@@ -60,17 +66,17 @@ vec3 band(int at, int depths, int l, vec3 place) {
 // What the medium at depth T from a light scatters onto the surface, reflected, per unit of I/d^2 and albedo: Eq. 25.
 vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
   vec3 place = band_place(T, point_depths), sum = vec3(0);
-  for (int l = 0; l < sh_order; ++l) weight_of[l] = zonal_factor(l) * band(point_bands_at, point_depths, l, place);
+  for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));
 #if TRANSFER
   for (ShPair y = first_pair(to_light); y.m < sh_order; next_pair(y, to_light)) {
     int i = r.low + y.l * (y.l + 1);
-    sum += weight_of[y.l] * (y.plus * functions[i + y.m] + y.minus * functions[i - y.m]);
+    sum += weight_of(y.l) * (y.plus * functions[i + y.m] + y.minus * functions[i - y.m]);
   }
 #else
-  if (r.lambert) {  // the addition theorem: Legendre polynomials of the angle to the normal
+  if (TABULATED == 0 || r.lambert) {  // the addition theorem: Legendre polynomials of the angle to the normal
     float cosine = dot(r.z, to_light), now = 1, before = 0;
     for (int l = 0; l < sh_order; ++l) {
-      sum += weight_of[l] * (tables[cosine_at + l] / zonal_factor(l) * now);
+      sum += weight_of(l) * (tables[cosine_at + l] / zonal_factor(l) * now);
       float next = (float(2 * l + 1) * cosine * now - float(l) * before) / float(l + 1);
       before = now;
       now = next;
@@ -80,7 +86,7 @@ vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
     vec3 w = vec3(dot(r.x, to_light), dot(cross(r.z, r.x), to_light), dot(r.z, to_light));
     for (ShPair y = first_pair(w); y.m < sh_order; next_pair(y, w)) {
       int i = y.l * (y.l + 1);
-      sum += weight_of[y.l] * (y.plus * own_coefficient(r, i + y.m) + y.minus * own_coefficient(r, i - y.m));
+      sum += weight_of(y.l) * (y.plus * own_coefficient(r, i + y.m) + y.minus * own_coefficient(r, i - y.m));
     }
   }
 #endif
@@ -90,16 +96,16 @@ vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
 // L_lm and the reflectance of a band, summed.
 vec3 reflect_band(Reflected r, int l) {
   vec3 sum = vec3(0);
-#if !TRANSFER
-  for (int i = 0; i <= 2 * l; ++i) band_of[i] = own_coefficient(r, l * l + i);
+#if TURNED && !TRANSFER
+  for (int i = 0; i <= 2 * l; ++i) set_row(i, own_coefficient(r, l * l + i));
   turn_band(l, r.x, r.z);
 #endif
   for (int i = 0; i <= 2 * l; ++i) {
     vec3 light = rgb_at(environment_at + 3 * (l * l + i));
 #if TRANSFER
     sum += light * functions[r.low + l * l + i];
-#else
-    sum += light * band_of[i];
+#elif TURNED
+    sum += light * row_at(i);
 #endif
   }
   return sum;
@@ -111,20 +117,21 @@ void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattere
   vec3 place = band_place(T, environment_depths);
   direct = scattered = vec3(0);
   for (int l = 0; l < sh_order; ++l)
-    weight_of[l] = has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0);
-  if (TRANSFER == 0 && r.lambert) {
+    set_row(weights_from + l,
+            has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0));
+  if (TRANSFER == 0 && (TABULATED == 0 || r.lambert)) {
     for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
       int at = environment_at + 3 * y.l * (y.l + 1);
       vec3 light = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
       vec3 value = zonal_factor(y.l) * tables[cosine_at + y.l] * r.diffuse * light;
       direct += value;
-      scattered += weight_of[y.l] * value;
+      scattered += weight_of(y.l) * value;
     }
   } else {
     for (int l = 0; l < sh_order; ++l) {
       vec3 value = reflect_band(r, l);
       direct += value;
-      scattered += weight_of[l] * value;
+      scattered += weight_of(l) * value;
     }
   }
   direct = max(direct * exp(-T), vec3(0));

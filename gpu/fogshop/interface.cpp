@@ -1,8 +1,11 @@
 #include "gpu/fogshop/interface.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 
 #include "gpu/interface.h"
+#include "methods/fogshop/surface_psf.h"
 
 namespace airlight::gpu::fog {
 namespace {
@@ -40,7 +43,20 @@ const std::vector<Layout> layouts = {{"gaussians[0].a", offsetof(GaussianData, a
                                      {"lights[0].map_offset", offsetof(LightData, map_offset), sizeof(LightData)},
                                      {"lights[0].axis_z", offsetof(LightData, axis_z), sizeof(LightData)}};
 
+template <class Values>
+std::string listed(const Values& values) {
+  std::string text;
+  for (const double v : values) text += fmt::format("{}{:.9e}", text.empty() ? "" : ", ", v);
+  return text;
+}
+
 }  // namespace
+
+std::map<std::string, std::string> dawson_definitions() {
+  return {{"DAWSON_END", fmt::format("{:.9e}", fogshop::DawsonFit::end)},
+          {"DAWSON_NUMERATOR", listed(fogshop::DawsonFit::numerator)},
+          {"DAWSON_DENOMINATOR", listed(fogshop::DawsonFit::denominator)}};
+}
 
 Program& program(Context& context, const std::string& file, std::map<std::string, std::string> definitions) {
   define(bindings, definitions);

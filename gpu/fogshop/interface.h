@@ -67,6 +67,9 @@ struct LightData {
   float unused;
 };
 
+// What average_depth.glsl needs.
+std::map<std::string, std::string> dawson_definitions();
+
 // A program with the bindings defined. Throws Error if the driver lays out the structures above otherwise than the
 // compiler of the host.
 Program& program(Context&, const std::string& file, std::map<std::string, std::string> definitions);

@@ -30,9 +30,12 @@ void main() {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
       Gaussian g = near_block[i];
-      Crossing c = cross_line(g, origin, direction, end);
+      Crossing c = cross_geometry(g, origin, direction, end);
       if (!c.met) continue;
-      float whole = depth_at(c, end), t = clamp(c.middle, 0, end), before = depth_at(c, t);  // Eq. 10, clamped
+      complete(c, g, origin, direction);
+      // Eq. 10, clamped; up to the middle, where the tail is 1.
+      float whole = depth_at(c, end), t = clamp(c.middle, 0, end);
+      float before = c.middle <= 0 ? 0 : c.middle >= end ? whole : c.depth * erf_between(c.start, Place(0, 1));
 #if NOISE
       whole = bent_depth(g, c, origin, direction, end);
 #endif

@@ -53,13 +53,28 @@ SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, cons
   places_.transfer.clear();
   const Use use(context_);
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-  program_ = &fog.program("fogshop/surfaces.comp", {{"LOCAL_SIZE_X", "8"},
-                                                    {"LOCAL_SIZE_Y", "8"},
-                                                    {"SH_ORDER", std::to_string(model_.options.sh_order)},
-                                                    {"HARMONICS", flag(lighting_.reflectances != nullptr)},
-                                                    {"TRANSFER", flag(lighting_.transfer != nullptr)},
-                                                    {"ENVIRONMENT", flag(lighting_.environment != nullptr)},
-                                                    {"SUN", flag(lighting_.points && lighting_.points->sun())}});
+  const bool harmonics = lighting_.reflectances != nullptr, environment = lighting_.environment != nullptr,
+             transfer = lighting_.transfer != nullptr;
+  const bool tabulated =
+      harmonics && std::any_of(lighting_.reflectances->tables().begin(), lighting_.reflectances->tables().end(),
+                               [](const auto& table) { return table.has_value(); });
+  const bool turned = tabulated && (environment || transfer);
+  // Of harmonics.glsl's rows in shared memory those of 8 x 8 invocations take more than 32 KiB from 9 bands on.
+  const int order = model_.options.sh_order;
+  Definitions definitions{{"LOCAL_SIZE_X", "8"},
+                          {"LOCAL_SIZE_Y", turned && order > 8 ? "4" : "8"},
+                          {"TABULATED", flag(tabulated)},
+                          {"TURNED", flag(turned)},
+                          {"SH_ORDER", std::to_string(order)},
+                          {"HARMONICS", flag(harmonics)},
+                          {"TRANSFER", flag(transfer)},
+                          {"ENVIRONMENT", flag(environment)},
+                          {"DEPTH_TREE", flag(lighting_.depths != nullptr)},
+                          {"TREE_DEGREE", std::to_string(fogshop::CellPolynomial::degree)},
+                          {"TREE_COEFFICIENTS", std::to_string(fogshop::CellPolynomial::size)},
+                          {"SUN", flag(lighting_.points && lighting_.points->sun())}};
+  definitions.merge(dawson_definitions());
+  program_ = &fog.program("fogshop/surfaces.comp", definitions);
   if (!model_.lights.empty() && model_.gaussians.count > 0) list_gaussians(fog);
   check_iterations(context_,
                    double(model_.lights.size()) * (model_.gaussians.count + 60 + places_.light_iterations) +
@@ -144,6 +159,12 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   }
   const double constant = model_.fog.sum.constant;
   p.set("environment_depth", constant > 0 ? constant * model_.options.environment_distance : 0.0);
+  if (const fogshop::DepthTree* tree = lighting_.depths.get()) {
+    p.set_double("tree_corner", tree->corner());
+    p.set_double("tree_scale", tree->side() > 0 ? 4294967296.0 / tree->side() : 0.0);
+    p.set("tree_center", tree->center());
+    p.set("tree_far", tree->far());
+  }
   // As Geometry::offset_origin: 32 ulp of the largest coordinate, of what is seen too.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);

@@ -11,6 +11,7 @@ SurfaceTables::SurfaceTables(const scene::Scene& scene, const fogshop::SurfaceLi
   if (lighting.points && lighting.points->sun()) add_sun(*lighting.points->sun());
   if (lighting.reflectances) add_harmonics(lighting);
   if (lighting.transfer) add_transfer(*lighting.transfer, lighting.reflectances->order());
+  if (lighting.depths) add_depth_tree(*lighting.depths);
 }
 
 int SurfaceTables::add(const std::vector<double>& table) {
@@ -70,6 +71,19 @@ void SurfaceTables::add_harmonics(const fogshop::SurfaceLighting& lighting) {
     }
     iterations += size + 4.0 * order;
   }
+}
+
+// Places are floats, whole up to 2^24: fewer fit into a tree.
+void SurfaceTables::add_depth_tree(const fogshop::DepthTree& tree) {
+  uniforms["tree_children_at"] = add(std::vector<double>(tree.children().begin(), tree.children().end()));
+  std::vector<double> cells;
+  for (const fogshop::DepthCell& cell : tree.cells()) {
+    cells.insert(cells.end(), cell.polynomial.coefficients.begin(), cell.polynomial.coefficients.end());
+    cells.insert(cells.end(), {double(cell.begin), double(cell.end)});
+  }
+  uniforms["tree_cells_at"] = add(cells);
+  uniforms["tree_lists_at"] = add(std::vector<double>(tree.listed().begin(), tree.listed().end()));
+  iterations += 200;  // levels and coefficients
 }
 
 void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, int order) {

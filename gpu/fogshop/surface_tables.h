@@ -25,6 +25,7 @@ struct SurfaceTables {
   void add_materials(const scene::Scene&, const fogshop::SurfaceLighting&);
   void add_sun(const fogshop::SunReflection&);
   void add_harmonics(const fogshop::SurfaceLighting&);
+  void add_depth_tree(const fogshop::DepthTree&);
   void add_transfer(const fogshop::RadianceTransfer&, int order);
 };
 

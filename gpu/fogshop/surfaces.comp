@@ -1,7 +1,7 @@
 // Surfaces seen through the medium: Zhou et al. 2007, Eq. 29 with L_p by Eqs. 19 to 27, every pixel that a surface ends
 // (methods/fogshop/surface_pass.cpp, surface_lighting.cpp). Points are met again in double precision: shadows start there.
 // HARMONICS: light or reflectance in harmonics of SH_ORDER bands; SUN: what points scatter without them; TRANSFER: shadows of
-// what is in harmonics; ENVIRONMENT: light of one.
+// what is in harmonics; ENVIRONMENT: light of one, DEPTH_TREE: through average depths by a tree.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/light_distances.glsl"
@@ -20,6 +20,9 @@ layout(std430, binding = AT_SCATTERED) writeonly buffer Scattered { float scatte
 uniform int has_airlight, has_scattered;
 uniform float environment_depth;  // of the constant up to the environment [-]
 #include "common/reflection.glsl"
+#if DEPTH_TREE
+#include "fogshop/depth_tree.glsl"
+#endif
 #if HARMONICS
 #include "fogshop/harmonics.glsl"
 #endif
@@ -75,8 +78,13 @@ void main() {
       }
       scattered = max(scattered * albedo, vec3(0));  // harmonics cut off at a band may swing below 0
 #if ENVIRONMENT
+#if DEPTH_TREE
+      float depth = tree_depth(point);
+#else
+      float depth = average_depth(vec3(point));
+#endif
       vec3 arriving, spread;
-      reflect_environment(reflected, (average_depth(vec3(point)) + environment_depth) * hue, arriving, spread);
+      reflect_environment(reflected, (depth + environment_depth) * hue, arriving, spread);
       direct += arriving;
       scattered += albedo * spread;
 #endif

@@ -14,13 +14,16 @@ void turn_reflectance(inout Reflected r) {
       functions[i + y.m] = factor * y.plus;
       if (y.m > 0) functions[i - y.m] = factor * y.minus;
     }
-  } else {
+  }
+#if TURNED
+  else {
     for (int l = 0; l < sh_order; ++l) {
-      for (int i = 0; i <= 2 * l; ++i) band_of[i] = own_coefficient(r, l * l + i);
+      for (int i = 0; i <= 2 * l; ++i) set_row(i, own_coefficient(r, l * l + i));
       turn_band(l, r.x, r.z);
-      for (int i = 0; i <= 2 * l; ++i) functions[l * l + i] = band_of[i];
+      for (int i = 0; i <= 2 * l; ++i) functions[l * l + i] = row_at(i);
     }
   }
+#endif
   r.low = 0;
 }
 

@@ -17,36 +17,35 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, GaussianArrays::padding>;
 using V = hn::Vec<D>;
 
-double SumAverageDepths(const GaussianArrays& g, const Point3& point, const double* nodes, int count) {
+// D(u)/u for w = u^2.
+V DawsonOver(V w) {
   constexpr D d;
-  constexpr hn::Rebind<std::int64_t, D> integers;
-  const V px = hn::Set(d, point.x()), py = hn::Set(d, point.y()), pz = hn::Set(d, point.z()), one = hn::Set(d, 1.0);
-  const V end = hn::Set(d, AverageDepthNode::end), per_unit = hn::Set(d, count / AverageDepthNode::end);
-  const V series[] = {hn::Set(d, 1.0), hn::Set(d, 3.0), hn::Set(d, 15.0), hn::Set(d, 105.0), hn::Set(d, 945.0)};
+  const V one = hn::Set(d, 1.0), limit = hn::Set(d, DawsonFit::end), v = hn::Min(w, limit);
+  V p = hn::Set(d, DawsonFit::numerator[9]), q = hn::Set(d, DawsonFit::denominator[9]);
+  for (int k = 8; k >= 0; --k) {
+    p = hn::MulAdd(p, v, hn::Set(d, DawsonFit::numerator[k]));
+    q = hn::MulAdd(q, v, hn::Set(d, DawsonFit::denominator[k]));
+  }
+  const V near = hn::Div(p, hn::MulAdd(q, v, one));
+  const auto far = hn::Ge(w, limit);
+  if (hn::AllFalse(d, far)) return near;
+  const V over = hn::Div(hn::Set(d, 0.5), hn::Max(w, limit));
+  V tail = hn::MulAdd(over, hn::Set(d, 5.0), one);
+  tail = hn::MulAdd(hn::Mul(over, hn::Set(d, 3.0)), tail, one);
+  return hn::IfThenElse(far, hn::Mul(over, hn::MulAdd(over, tail, one)), near);
+}
+
+double SumAverageDepths(const GaussianArrays& g, int begin, int end, const Point3& point) {
+  constexpr D d;
+  const int lanes = int(hn::Lanes(d));
+  const V px = hn::Set(d, point.x()), py = hn::Set(d, point.y()), pz = hn::Set(d, point.z());
   V sum = hn::Zero(d);
-  for (int i = 0; i < g.count; i += int(hn::Lanes(d))) {
+  for (int i = begin; i < end; i += lanes) {
     const V x = hn::Sub(hn::LoadU(d, &g.x[i]), px), y = hn::Sub(hn::LoadU(d, &g.y[i]), py),
-            z = hn::Sub(hn::LoadU(d, &g.z[i]), pz);
-    const V u = hn::Mul(hn::LoadU(d, &g.a[i]), hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))));
-    // Cubic between values and slopes.
-    const V place = hn::Mul(hn::Min(u, end), per_unit);
-    const V k = hn::Min(hn::Floor(place), hn::Set(d, count - 1.0));
-    const V s = hn::Sub(place, k), r = hn::Sub(one, s);
-    const auto at = hn::ShiftLeft<1>(hn::ConvertTo(integers, k));
-    const V value = hn::GatherIndex(d, nodes, at), slope = hn::GatherIndex(d, nodes + 1, at);
-    const V next = hn::GatherIndex(d, nodes + 2, at), next_slope = hn::GatherIndex(d, nodes + 3, at);
-    const V low = hn::MulAdd(value, hn::MulAdd(s, hn::Set(d, 2.0), one), hn::Mul(slope, s));
-    const V high = hn::MulSub(next, hn::MulAdd(r, hn::Set(d, 2.0), one), hn::Mul(next_slope, r));
-    V f = hn::MulAdd(hn::Mul(r, r), low, hn::Mul(hn::Mul(s, s), high));
-    if (const auto far = hn::Ge(u, end); !hn::AllFalse(d, far)) {
-      const V inverse = hn::Div(one, hn::Mul(u, u)), w = hn::Mul(inverse, hn::Set(d, 0.5));
-      V tail = series[4];
-      for (int n = 3; n >= 0; --n) tail = hn::MulAdd(tail, w, series[n]);
-      tail = hn::MulAdd(tail, w, one);
-      f = hn::IfThenElse(far, hn::Mul(hn::Mul(inverse, tail), hn::Set(d, 0.25 * std::sqrt(pi))), f);
-    }
-    const V term = hn::Mul(hn::LoadU(d, &g.half_depth[i]), f);
-    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, std::size_t(g.count - i)), term));
+            z = hn::Sub(hn::LoadU(d, &g.z[i]), pz), a = hn::LoadU(d, &g.a[i]);
+    const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const V term = hn::Mul(hn::LoadU(d, &g.half_depth[i]), DawsonOver(hn::Mul(hn::Mul(a, a), square)));
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, std::size_t(end - i)), term));
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -60,11 +59,11 @@ namespace airlight::fogshop {
 HWY_EXPORT(SumAverageDepths);
 
 double average_depth_of(const GaussianArrays& gaussians, const Point3& point) {
-  static_assert(sizeof(AverageDepthNode) == 2 * sizeof(double));
-  static const std::vector<AverageDepthNode>& nodes = average_depth_nodes();
-  // half_depth is c sqrt(pi) / (2 a).
-  return 2 / std::sqrt(pi) *
-         HWY_DYNAMIC_DISPATCH(SumAverageDepths)(gaussians, point, &nodes[0].value, int(nodes.size()) - 1);
+  return average_depth_of(gaussians, 0, gaussians.count, point);
+}
+
+double average_depth_of(const GaussianArrays& gaussians, int begin, int end, const Point3& point) {
+  return HWY_DYNAMIC_DISPATCH(SumAverageDepths)(gaussians, begin, end, point);
 }
 
 }  // namespace airlight::fogshop

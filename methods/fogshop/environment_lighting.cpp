@@ -49,8 +49,9 @@ IncidentHarmonics EnvironmentLighting::incident(const Fog& fog, double depth, bo
   return result;
 }
 
-double average_depth(const Model& model, const Point3& point) {
-  const double constant = model.fog.sum.constant, sum = average_depth_of(model.gaussians, point);
+double average_depth(const Model& model, const Point3& point, const DepthTree* tree) {
+  const double constant = model.fog.sum.constant;
+  const double sum = tree ? (*tree)(point) : average_depth_of(model.gaussians, point);
   return constant > 0 ? sum + constant * model.options.environment_distance : sum;
 }
 

@@ -5,6 +5,7 @@
 // averaged over all directions for light that reaches a surface (Eq. 26): it takes the medium around a point as a ball
 // of that depth.
 #pragma once
+#include "methods/fogshop/depth_tree.h"
 #include "methods/fogshop/environment_psf.h"
 #include "methods/fogshop/model.h"
 
@@ -44,8 +45,9 @@ class EnvironmentLighting {
 };
 
 // Eq. 26: optical depth from a point to the environment, averaged over all directions [-], hue 1; the constant reaches
-// Options::environment_distance far. All Gaussians are summed: the average falls as 1/distance^2 only.
-double average_depth(const Model&, const Point3&);
+// Options::environment_distance far. By the tree where there is one (then the point is on a surface), else all Gaussians
+// are summed: the average falls as 1/distance^2 only.
+double average_depth(const Model&, const Point3&, const DepthTree* = nullptr);
 
 // What ends the view rays that no surface ends, if the environment is not infinitely far away: replaces infinite
 // distances.

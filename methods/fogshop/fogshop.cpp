@@ -60,7 +60,7 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
     model_.f_table = std::make_unique<FTable>();
     times_.push_back({"table of F", watch.lap()});
   }
-  lighting_ = make_lighting(*scene_, options, needs, execution, [&](const std::string& stage) {
+  lighting_ = make_lighting(*scene_, model_, needs, execution, [&](const std::string& stage) {
     times_.push_back({stage, watch.lap()});
   });
   if (needs.sky_volume) {
@@ -139,6 +139,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   result.counters["erf_evaluations_prepare"] = model_.evaluations;
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
+  if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());
   return result;
 }
 

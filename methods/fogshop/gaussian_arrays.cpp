@@ -37,7 +37,7 @@ CulledGaussians make_arrays(const std::vector<scene::Gaussian>& gaussians, Cull 
   CulledGaussians result;
   double deepest = 0;
   for (const scene::Gaussian& g : gaussians) deepest = std::max(deepest, std::sqrt(pi) * g.amplitude * g.width);
-  threshold *= std::min(1.0, deepest);
+  result.threshold = threshold *= std::min(1.0, deepest);
   for (std::size_t i = 0; i < gaussians.size(); ++i) {
     const scene::Gaussian& g = gaussians[i];
     const double a = 1 / g.width;

@@ -44,6 +44,7 @@ struct GaussianArrays {
 struct CulledGaussians {
   GaussianArrays arrays;
   int dropped = 0;
+  double threshold = 0;  // what it comes to [-]
 };
 CulledGaussians make_arrays(const std::vector<scene::Gaussian>&, Cull, double threshold,
                             const std::vector<Rgb>& colours = {});

@@ -45,6 +45,8 @@ std::vector<scene::SettingSpec> setting_specs() {
       scene::integer_setting("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
       scene::real_setting("environment_distance", "inf", 0, infinity,
                           "D [m]: how far the constant medium reaches to the environment"),
+      scene::choice_setting("average_depth", "tree", {"tree", "exact"},
+                            "Eq. 26 on surfaces: by polynomials in cells, to eps_T, or by sums over all Gaussians"),
       scene::choice_setting("downsample", "1", {"1", "2", "4"},
                             "airlight for one ray per so many pixels to each side, section 5.4"),
       scene::choice_setting(
@@ -80,6 +82,7 @@ Options read_options(const scene::Settings& settings) {
   o.sky_volume = settings.text("environment_airlight") == "volume";
   o.sky_cells = int(settings.integer("sky_cells"));
   o.sky_directions = int(settings.integer("sky_directions"));
+  o.depth_tree = settings.text("average_depth") == "tree";
   o.environment_distance = settings.real("environment_distance");
   o.noise_scale = settings.real("noise_scale");
   o.noise_frequency = settings.real("noise_frequency");
@@ -101,6 +104,7 @@ Model make_model(const scene::Scene& scene, const Options& options) {
       make_arrays(model.fog.sum.gaussians, options.cull, options.depth_threshold, model.fog.colours);
   model.gaussians = std::move(culled.arrays);
   model.dropped = culled.dropped;
+  model.threshold = culled.threshold;
   if (options.noise_scale > 0 && model.gaussians.count > 0) {
     model.noise =
         std::make_unique<Noise>(options.noise_scale, options.noise_frequency, options.noise_seed, options.noise_phase);

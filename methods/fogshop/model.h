@@ -38,6 +38,7 @@ struct Options {
   bool sky_volume = false;              // airlight of the environment by SkyVolume instead of Eq. 28
   int sky_cells = 24;
   int sky_directions = 64;
+  bool depth_tree = true;                  // Eq. 26 by a DepthTree
   double environment_distance = infinity;  // D [m]: view rays that nothing ends, and Eq. 26, reach so far
   // Airlight for one pixel in downsample^2; how the others get theirs.
   enum class Upsample { bilinear, paper, recompute };
@@ -65,6 +66,7 @@ struct Model {
   Fog fog;
   GaussianArrays gaussians;
   int dropped = 0;                 // Gaussians that nothing would see
+  double threshold = 0;            // CulledGaussians::threshold
   std::vector<LightModel> lights;  // the point lights
   bool environment = false;        // an environment light shines
   std::unique_ptr<FTable> f_table;

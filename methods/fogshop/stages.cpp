@@ -11,6 +11,10 @@
 namespace airlight::fogshop {
 namespace {
 
+// Of Gaussians, for a tree to be worth its while; the tolerance that rounding of the sums leaves room for.
+constexpr int few = 24;
+constexpr double finest = 1e-6;
+
 bool has_ball(const scene::Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
     const auto ball = scene::ball(light);
@@ -144,6 +148,13 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
                                      no_medium.holds    ? "no medium is in the way"
                                      : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
                                                         : fmt::format("Eqs. 26 and 27, {}", psf));
+  needs.depth_tree =
+      stage("tree of average depths",
+            {{!sky_on_surfaces || !gaussians, "nothing reads it"},
+             {!o.depth_tree, "average_depth = exact: sums over all Gaussians"},
+             {model.gaussians.count < few, fmt::format("fewer than {} Gaussians: their sum is as fast", few)},
+             {o.depth_threshold < finest, fmt::format("eps_T is below {}: sums over all Gaussians", finest)}},
+            fmt::format("Eq. 26 by polynomials in cells around the surfaces, to {:.2g}", model.threshold));
   needs.reflectances = sky_on_surfaces || (needs.point_harmonics && o.reflectance != Options::Reflectance::sun);
   return {needs, std::move(stage.stages), doubt};
 }

@@ -18,6 +18,7 @@ struct Needs {
   bool environment;            // an environment light that reaches the scene: the background
   bool environment_harmonics;  // its projection
   bool environment_airlight;   // light of the environment in the air
+  bool depth_tree;             // average depths on surfaces
   bool environment_psf;        // what Eqs. 27 and 28 spread it by
   bool transfer;               // surfaces that shadow scattered light and environments
   bool sky_volume;             // the grid instead of Eq. 28

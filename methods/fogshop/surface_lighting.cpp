@@ -5,8 +5,9 @@
 
 namespace airlight::fogshop {
 
-SurfaceLighting make_lighting(const scene::Scene& scene, const Options& options, const Needs& needs,
+SurfaceLighting make_lighting(const scene::Scene& scene, const Model& model, const Needs& needs,
                               const scene::Execution& execution, const std::function<void(const std::string&)>& stage) {
+  const Options& options = model.options;
   SurfaceLighting lighting;
   if (needs.point_harmonics) {
     lighting.points = make_reflection(scene, options);
@@ -25,6 +26,10 @@ SurfaceLighting make_lighting(const scene::Scene& scene, const Options& options,
     lighting.environment = std::make_unique<EnvironmentLighting>(scene, options, needs.environment_psf);
     stage("harmonics of the environment");
   }
+  if (needs.depth_tree) {
+    lighting.depths = std::make_unique<DepthTree>(model.gaussians, scene.surfaces, model.threshold, execution);
+    stage("tree of average depths");
+  }
   return lighting;
 }
 
@@ -36,10 +41,10 @@ std::vector<Rgb> shadowed_reflectance(const scene::Scene& scene, const SurfaceLi
   return visibility.empty() ? reflectance : triple_product(lighting.reflectances->order())(reflectance, visibility);
 }
 
-void reflect_environment(const Model& model, const EnvironmentLighting& environment, const SurfacePoint& point,
+void reflect_environment(const Model& model, const SurfaceLighting& lighting, const SurfacePoint& point,
                          const std::vector<Rgb>& reflectance, Rgb& direct, Rgb* scattered) {
-  const IncidentHarmonics in =
-      environment.incident(model.fog, average_depth(model, point.position), scattered != nullptr);
+  const double depth = average_depth(model, point.position, lighting.depths.get());
+  const IncidentHarmonics in = lighting.environment->incident(model.fog, depth, scattered != nullptr);
   direct += reflect_harmonics(reflectance, in.attenuated).max(0.0);
   if (scattered) *scattered += reflect_harmonics(reflectance, in.scattered).max(0.0);
 }

@@ -20,20 +20,21 @@ struct SurfaceLighting {
   std::unique_ptr<const EnvironmentLighting> environment;   // light of the environment, for the air too
   std::unique_ptr<const SurfaceReflectances> reflectances;  // for all that is in harmonics
   std::unique_ptr<const RadianceTransfer> transfer;         // shadows of that
+  std::unique_ptr<const DepthTree> depths;                  // Eq. 26
 };
 
 // `stage` is called after each part, with its name.
-SurfaceLighting make_lighting(const scene::Scene&, const Options&, const Needs&, const scene::Execution&,
+SurfaceLighting make_lighting(const scene::Scene&, const Model&, const Needs&, const scene::Execution&,
                               const std::function<void(const std::string&)>& stage);
 
 // B_pv of Eq. 20 in the world's axes, times V_p where there is a visibility. Requires `reflectances`.
 std::vector<Rgb> shadowed_reflectance(const scene::Scene&, const SurfaceLighting&, const SurfacePoint&,
                                       const Vec3& to_view);
 
-// L_p lit by the environment [W/m^2/sr], Eqs. 26, 27 and 20: what reaches the point unscattered is added to `direct`,
+// L_p lit by the environment, which there is [W/m^2/sr], Eqs. 26, 27 and 20: what reaches the point unscattered is added to `direct`,
 // what the medium scatters onto it, if asked for, to `scattered`. Harmonics cut off at a band may swing below 0: then a
 // part is 0.
-void reflect_environment(const Model&, const EnvironmentLighting&, const SurfacePoint&,
-                         const std::vector<Rgb>& reflectance, Rgb& direct, Rgb* scattered);
+void reflect_environment(const Model&, const SurfaceLighting&, const SurfacePoint&, const std::vector<Rgb>& reflectance,
+                         Rgb& direct, Rgb* scattered);
 
 }  // namespace airlight::fogshop

@@ -72,7 +72,7 @@ double surface_pass(const scene::Scene& scene, const Model& model, const Surface
       if (lighting.points)
         part = (*lighting.points)(scene, model, hits[i], to_view, reflectance, crossings, calls[y], &found);
       if (lighting.environment)
-        reflect_environment(model, *lighting.environment, hits[i], reflectance, radiance, scattered ? &part : nullptr);
+        reflect_environment(model, lighting, hits[i], reflectance, radiance, scattered ? &part : nullptr);
       for (int c = 0; scattered && c < 3; ++c) (*scattered)[3 * i + c] = float(transmittance[3 * i + c] * part[c]);
       radiance += part;
       for (int c = 0; c < 3; ++c) surface[3 * i + c] = float(transmittance[3 * i + c] * radiance[c]);

@@ -42,20 +42,4 @@ double average_depth(double u) {
   return std::abs(u) < 1e-9 ? half_root_pi : half_root_pi * dawson(u) / u;
 }
 
-const std::vector<AverageDepthNode>& average_depth_nodes() {
-  static const std::vector<AverageDepthNode> nodes = [] {
-    constexpr int count = 1280;
-    constexpr double step = AverageDepthNode::end / count;
-    std::vector<AverageDepthNode> table;
-    for (int i = 0; i <= count; ++i) {
-      const double x = i * step, f = average_depth(x);
-      // D' = 1 - 2 u D.
-      const double slope = i == 0 ? 0 : (0.5 * std::sqrt(pi) - f * (2 * x * x + 1)) / x;
-      table.push_back({f, slope * step});
-    }
-    return table;
-  }();
-  return nodes;
-}
-
 }  // namespace airlight::fogshop

@@ -1,7 +1,7 @@
 // How the airlight around a point light spreads over the directions in which a surface receives it: the point spread
 // function of Zhou et al. 2007, Eqs. 18 to 24, after Sun et al. 2005.
 #pragma once
-#include <vector>
+#include <array>
 
 namespace airlight::fogshop {
 
@@ -20,13 +20,19 @@ double npsf_coefficient(int l, double T);
 // away: c / a times this [-]. sqrt(pi)/2 D(u)/u with Dawson's integral D, the paper's table in closed form.
 double average_depth(double u);
 
-// As a table, for loops over Gaussians at every pixel: values and slopes per step at u = 0, step, 2 step, ... up to
-// AverageDepthNode::end, cubic between them to 1e-8 of the value; beyond it the asymptotic series, sqrt(pi)/(4 u^2) (1
-// + w + 3 w^2 + 15 w^3 + ...) with w = 1/(2 u^2).
-struct AverageDepthNode {
-  static constexpr double end = 10;
-  double value, slope;
+// D(u)/u for loops over Gaussians at every point: of w = u^2 up to `end` the quotient of two polynomials (of the
+// denominator from the power 1 on, the first coefficient is 1), a minimax fit; beyond it the series o (1 + o + 3 o^2 + 15
+// o^3 + ...) with o = 1/(2 w). Relative error 1.1e-9, no term negative.
+struct DawsonFit {
+  static constexpr double end = 1e3;
+  static constexpr std::array<double, 10> numerator = {
+      9.999999989557623e-01, 7.464124689114666e-02, 4.265108086531265e-02, 5.763826170027294e-03,
+      8.238391861228267e-04, 8.954605078752411e-05, 7.392692268597690e-06, 7.415749272984226e-07,
+      1.242839665557778e-08, 3.953943625724011e-09};
+  static constexpr std::array<double, 10> denominator = {
+      7.413078485587338e-01, 2.701903123064369e-01, 6.439637865529978e-02, 1.125923508571226e-02,
+      1.528618842718418e-03, 1.712559093267873e-04, 1.401755214300180e-05, 1.466790333212743e-06,
+      2.090279060204737e-08, 7.907887297411495e-09};
 };
-const std::vector<AverageDepthNode>& average_depth_nodes();
 
 }  // namespace airlight::fogshop

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/interface.h"
 #include "gpu/program.h"
 #include "methods/fogshop/surface_psf.h"
 #include "tests/gpu/device.h"
@@ -188,7 +189,9 @@ void main() {
   depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
 }
 )");
-  gpu::Program program(*context, "test.comp", {{"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"AT_GAUSSIANS", "0"}});
+  gpu::fog::Definitions definitions = gpu::fog::dawson_definitions();
+  definitions.insert({{"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"AT_GAUSSIANS", "0"}});
+  gpu::Program program(*context, "test.comp", definitions);
   // At the origin, width 1, half_depth so that the sum is average_depth(u).
   const gpu::Buffer gaussian(*context, "Gaussian",
                              std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0});

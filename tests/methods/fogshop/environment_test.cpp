@@ -130,6 +130,30 @@ TEST_CASE("average depth around a point", "[fogshop]") {
   CHECK(average_depth(fog, Point3(0, 0, -3)) == Approx(average_depth(model, Point3(0, 0, -3)) + 5).epsilon(1e-12));
 }
 
+TEST_CASE("the tree of average depths is made where it is read", "[fogshop]") {
+  Scene scene = gaussians_under(sky_light());
+  scene.surfaces.push_back({"floor", scene::Plane{Point3(0, -1, 0), Vec3::UnitY()}, scene::Lambert{}});
+  auto& gaussians = std::get<scene::GaussianSum>(scene.media[0].field).gaussians;
+  finish(scene);
+  const char* stage = "tree of average depths";
+  CHECK_FALSE(kept(scene, stage));  // three Gaussians
+  while (gaussians.size() < 30) gaussians.push_back({Point3(0.1 * double(gaussians.size()), 0, -3), 0.3, 0.1});
+  finish(scene);
+  CHECK(kept(scene, stage));
+  CHECK_FALSE(kept(scene, stage, {{"average_depth", "exact"}}));
+  CHECK_FALSE(kept(scene, stage, {{"eps_T", "1e-7"}}));
+  const Film tree = render(scene).film, exact = render(scene, {{"average_depth", "exact"}}).film;
+  CHECK(tree.layer("surface") != exact.layer("surface"));
+  CHECK(airlight::test::relative_l2(tree, exact, "surface") < 1e-5);
+  scene.lights = {scene::PointLight{Point3(0, 1, -2), Rgb::Ones(), 0}};
+  finish(scene);
+  CHECK_FALSE(kept(scene, stage));
+  scene.lights = {sky_light()};
+  scene.surfaces.clear();
+  finish(scene);
+  CHECK_FALSE(kept(scene, stage));
+}
+
 TEST_CASE("harmonics reflected by Lambert and Phong", "[fogshop]") {
   const Vec3 normal = Vec3(0.2, 1, 0.3).normalized();
   const std::vector<Rgb> light = sky();

@@ -1,0 +1,28 @@
+// A smooth function in a cube as a polynomial of total degree 5, made from its values at points of the cube.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "scene/math/types.h"
+
+namespace airlight::fogshop {
+
+struct CellPolynomial {
+  static constexpr int degree = 5;
+  static constexpr int size = (degree + 1) * (degree + 2) * (degree + 3) / 6;  // coefficients
+  static constexpr int points = (degree + 1) * (degree + 1) * (degree + 1);    // what it is made from
+
+  // Of x^a y^b z^c, a + b + c <= degree; c runs fastest, then b.
+  std::array<double, size> coefficients{};
+
+  // At a place of the cube [-1, 1]^3, or a little beyond.
+  double operator()(const Vec3& place) const;
+};
+
+// Places in [-1, 1]^3: zeros of Chebyshev's polynomials along every axis.
+const std::vector<Vec3>& cell_points();
+
+// Of the values at cell_points(): their Chebyshev series up to the total degree. Polynomials of that degree it gives back.
+CellPolynomial fit_cell(const std::vector<double>& values);
+
+}  // namespace airlight::fogshop
