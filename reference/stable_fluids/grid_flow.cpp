@@ -4,11 +4,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "reference/stable_fluids/diffusion.h"
 #include "reference/stable_fluids/forces.h"
+#include "reference/stable_fluids/frames.h"
 #include "reference/stable_fluids/saved_state.h"
 #include "reference/stable_fluids/totals.h"
 #include "scene/error.h"
@@ -78,33 +78,8 @@ class GridFlow : public scene::Flow {
   double density(const Point3& x) const override { return carried_at(Quantity::density, x); }
   double temperature(const Point3& x) const override { return carried_at(Quantity::temperature, x); }
 
-  scene::DensityField medium() const override {
-    auto grid = std::make_shared<scene::VoxelGrid>();
-    grid->size = {l_.n[0], l_.n[1], l_.n[2]};
-    grid->voxel_size = l_.h;
-    grid->translation = l_.low + 0.5 * l_.h * Vec3::Ones();
-    grid->values = by_cell(find(Quantity::density));
-    grid->values.resize(count_of(l_.n), 0.0f);
-    for (float& value : grid->values) value = std::max(0.0f, value);
-    return grid;
-  }
-
-  scene::Frame frame() const override {
-    scene::Frame f;
-    f.size = {l_.n[0], l_.n[1], l_.n[2]};
-    f.cell = l_.h;
-    f.low = l_.low;
-    f.density = by_cell(find(Quantity::density));
-    f.temperature = by_cell(find(Quantity::temperature));
-    const int nx = l_.n[0] + 1, ny = l_.n[1] + 1;
-    f.velocity.assign(3 * std::size_t(nx) * ny * (l_.n[2] + 1), 0.0f);
-    for (int a = 0; a < l_.dimensions; ++a)
-      for (int k = 0; k < l_.n[2] + (a == 2); ++k)
-        for (int j = 0; j < l_.n[1] + (a == 1); ++j)
-          for (int i = 0; i < l_.n[0] + (a == 0); ++i)  // of a periodic axis the last face is a ghost
-            f.velocity[3 * (i + std::size_t(nx) * (j + std::size_t(ny) * k)) + a] = float(u_[a].at(i, j, k));
-    return f;
-  }
+  scene::DensityField medium() const override { return density_grid(l_, find(Quantity::density)); }
+  scene::Frame frame() const override { return frame_of(l_, u_, find(Quantity::density), find(Quantity::temperature)); }
 
   scene::Totals totals() const override {
     scene::Totals t;
@@ -263,37 +238,8 @@ class GridFlow : public scene::Flow {
   }
 
   void require_finite() const {
-    for (int a = 0; a < l_.dimensions; ++a) {
-      std::atomic<bool> finite{true};
-      for_rows(u_[a].n, [&](int j, int k) {
-        const Real* row = u_[a].row(j, k);
-        Real sum = 0;
-        for (int i = 0; i < u_[a].n[0]; ++i) sum += row[i] * Real(0);  // NaN or infinity leave NaN
-        if (!(sum == 0)) finite = false;
-      });
-      if (!finite) name_first_not_finite(a);
-    }
-  }
-  [[noreturn]] void name_first_not_finite(int a) const {
-    for (int k = 0; k < u_[a].n[2]; ++k)
-      for (int j = 0; j < u_[a].n[1]; ++j)
-        for (int i = 0; i < u_[a].n[0]; ++i)
-          if (!std::isfinite(u_[a].at(i, j, k)))
-            throw Error(fmt::format("step {}, t = {:.6g} s: the velocity along {} at cell ({}, {}, {}) is {}",
-                                    steps_ + 1, time_, "xyz"[a], i, j, k, double(u_[a].at(i, j, k))));
-    throw std::logic_error("a velocity is not finite, and all are");
-  }
-
-  static std::vector<float> by_cell(const Field<Real>* field) {
-    std::vector<float> values;
-    if (!field) return values;
-    values.reserve(count_of(field->n));
-    for (int k = 0; k < field->n[2]; ++k)
-      for (int j = 0; j < field->n[1]; ++j) {
-        const Real* row = field->row(j, k);
-        values.insert(values.end(), row, row + field->n[0]);
-      }
-    return values;
+    const std::string what = what_is_not_finite(u_, l_);
+    if (!what.empty()) throw Error(fmt::format("step {}, t = {:.6g} s: {}", steps_ + 1, time_, what));
   }
 
   const Field<Real>* find(Quantity quantity) const {

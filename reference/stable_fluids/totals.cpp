@@ -1,6 +1,9 @@
 #include "reference/stable_fluids/totals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "reference/stable_fluids/forces.h"
@@ -81,6 +84,29 @@ scene::Totals totals_of(const Velocity<Real>& u, const Field<Real>* density, con
   return t;
 }
 
+template <class Real>
+std::string what_is_not_finite(const Velocity<Real>& u, const Lattice& l) {
+  for (int a = 0; a < l.dimensions; ++a) {
+    std::atomic<bool> finite{true};
+    for_rows(u[a].n, [&](int j, int k) {
+      const Real* row = u[a].row(j, k);
+      Real sum = 0;
+      for (int i = 0; i < u[a].n[0]; ++i) sum += row[i] * Real(0);  // NaN and infinity leave NaN
+      if (!(sum == 0)) finite = false;
+    });
+    if (finite) continue;
+    for (int k = 0; k < u[a].n[2]; ++k)
+      for (int j = 0; j < u[a].n[1]; ++j)
+        for (int i = 0; i < u[a].n[0]; ++i)
+          if (!std::isfinite(u[a].at(i, j, k)))
+            return fmt::format("the velocity along {} at cell ({}, {}, {}) is {}", "xyz"[a], i, j, k,
+                               double(u[a].at(i, j, k)));
+  }
+  return "";
+}
+
+template std::string what_is_not_finite(const Velocity<float>&, const Lattice&);
+template std::string what_is_not_finite(const Velocity<double>&, const Lattice&);
 template scene::Totals totals_of(const Velocity<float>&, const Field<float>*, const Lattice&, const Obstacles&);
 template scene::Totals totals_of(const Velocity<double>&, const Field<double>*, const Lattice&, const Obstacles&);
 

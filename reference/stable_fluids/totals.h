@@ -9,4 +9,8 @@ namespace airlight::stable_fluids {
 template <class Real>
 scene::Totals totals_of(const Velocity<Real>&, const Field<Real>* density, const Lattice&, const Obstacles&);
 
+// "the velocity along y at cell (1, 2, 3) is nan": the first that is not finite; empty where all are.
+template <class Real>
+std::string what_is_not_finite(const Velocity<Real>&, const Lattice&);
+
 }  // namespace airlight::stable_fluids
