@@ -157,12 +157,12 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
     }
   vec3 n = vec3(ray.n), direction = vec3(ray.direction);
   dvec3 start = ray.origin + from * ray.direction;
-  vec3 first = vec3(start - light);
   for (int c = 0; c < channels; ++c) {
     float k = extinction[c];
     if (!(k > 0)) continue;
     // The light's way may get less along the part, by as much as dims it where that begins.
     float dimmed = 0;
+    vec3 first = vec3(start - light);
     for (int m = 0; m < media_count; ++m)
       dimmed += media[m].extinction[c] * way_to_light(m, start, vec3(0), first / max(length(first), 1e-30), length(first));
     Mapped map = map_part(width_, k, 0.5 * k * depth_cut / (depth_cut + dimmed), d0, length_, h);
