@@ -86,11 +86,21 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
 std::optional<LinkedProgram::Place> LinkedProgram::place_of(const std::string& variable) const {
   const Gl& gl = context_.gl();
   const GLuint index = gl.GetProgramResourceIndex(id_, GL_BUFFER_VARIABLE, variable.c_str());
-  if (index == GL_INVALID_INDEX) return std::nullopt;
+  if (index == GL_INVALID_INDEX) return place_of_uniform(variable);
   const GLenum wanted[2] = {GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE};
   GLint found[2] = {0, 0};
   gl.GetProgramResourceiv(id_, GL_BUFFER_VARIABLE, index, 2, wanted, 2, nullptr, found);
   return Place{found[0], found[1]};
+}
+
+std::optional<LinkedProgram::Place> LinkedProgram::place_of_uniform(const std::string& variable) const {
+  const Gl& gl = context_.gl();
+  const GLuint index = gl.GetProgramResourceIndex(id_, GL_UNIFORM, variable.c_str());
+  if (index == GL_INVALID_INDEX) return std::nullopt;
+  const GLenum wanted = GL_OFFSET;
+  GLint offset = 0;
+  gl.GetProgramResourceiv(id_, GL_UNIFORM, index, 1, &wanted, 1, nullptr, &offset);
+  return Place{offset, 0};
 }
 
 int LinkedProgram::location(const std::string& name) {

@@ -31,7 +31,7 @@ class LinkedProgram {
   void set_double(const std::string& name, const Vec3& value);  // a uniform dvec3
 
   // Where the driver has a variable of a storage block, "edges[0].a[0]": bytes from the block's beginning, and between
-  // the elements of the block's array that it is in (0: in none). Nothing where the compiler removed it.
+  // the elements of the block's array that it is in (0: in none, or the block is a uniform one). Nothing where the compiler removed it.
   struct Place {
     int offset, stride;
   };
@@ -43,6 +43,7 @@ class LinkedProgram {
   Handle id_;
 
  private:
+  std::optional<Place> place_of_uniform(const std::string& variable) const;
   int location(const std::string& name);
 
   std::string text_;

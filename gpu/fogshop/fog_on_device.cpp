@@ -49,6 +49,7 @@ std::vector<LightData> light_data(const fogshop::Model& model, bool maps) {
                     float3(frame.axes.row(0)), float(frame.tangent), float3(frame.axes.row(1)),
                     int(l * map_values(model.options)), float3(frame.axes.row(2)), 0});
   }
+  data.resize(most_lights);  // as many as the block has
   return data;
 }
 
@@ -132,7 +133,7 @@ void FogOnDevice::use(Program& p) const {
 
 void FogOnDevice::bind() const {
   gaussians_.bind(at::gaussians);
-  lights_.bind(at::lights);
+  lights_.bind_as(GL_UNIFORM_BUFFER, at::lights);
   maps_.bind(at::light_maps);
   depths_.bind(at::depths);
   tables_.bind(at::fog_tables);

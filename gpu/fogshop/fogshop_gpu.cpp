@@ -7,6 +7,7 @@
 
 #include "gpu/fogshop/background.h"
 #include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/interface.h"
 #include "gpu/fogshop/surface_shading.h"
 #include "gpu/raster/first_hits.h"
 #include "methods/fogshop/fogshop.h"
@@ -19,7 +20,6 @@ namespace airlight::gpu {
 namespace {
 
 // Steps of nodes from each light are unrolled in the shaders.
-constexpr std::size_t most_lights = 16;
 
 using scene::Execution;
 using scene::Scene;
@@ -228,8 +228,8 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  if (scene.lights.size() > most_lights)
-    reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
+  if (scene.lights.size() > fog::most_lights)
+    reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), fog::most_lights));
   return reasons;
 }
 

@@ -39,9 +39,9 @@ const std::vector<Binding> bindings = {{"GAUSSIANS", at::gaussians},
 
 const std::vector<Layout> layouts = {{"gaussians[0].a", offsetof(GaussianData, a), sizeof(GaussianData)},
                                      {"gaussians[0].place", offsetof(GaussianData, place), sizeof(GaussianData)},
-                                     {"lights[0].intensity", offsetof(LightData, intensity), sizeof(LightData)},
-                                     {"lights[0].map_offset", offsetof(LightData, map_offset), sizeof(LightData)},
-                                     {"lights[0].axis_z", offsetof(LightData, axis_z), sizeof(LightData)}};
+                                     {"lights[0].intensity", offsetof(LightData, intensity), 0},
+                                     {"lights[0].map_offset", offsetof(LightData, map_offset), 0},
+                                     {"lights[1].axis_z", sizeof(LightData) + offsetof(LightData, axis_z), 0}};
 
 template <class Values>
 std::string listed(const Values& values) {
@@ -60,6 +60,7 @@ std::map<std::string, std::string> dawson_definitions() {
 
 Program& program(Context& context, const std::string& file, std::map<std::string, std::string> definitions) {
   define(bindings, definitions);
+  definitions["MOST_LIGHTS"] = std::to_string(most_lights);
   Program& made = context.program(file, definitions);
   check_layouts(made, file, layouts);
   return made;

@@ -9,7 +9,7 @@
 namespace airlight::gpu::fog {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree) and 5 (what lights see),
-// gpu/common 9 (values of an environment). What no shader has at the same time shares a number.
+// gpu/common 9 (values of an environment). What no shader has at the same time shares a number. `lights` is a uniform block.
 namespace at {
 enum Binding {
   gaussians = 0,
@@ -46,6 +46,8 @@ enum Binding {
   mean_layer = 3,
 };
 }  // namespace at
+
+constexpr int most_lights = 16;
 
 using Float3 = std::array<float, 3>;
 

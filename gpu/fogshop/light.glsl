@@ -12,7 +12,7 @@ struct Light {
   float unused;
 };
 
-layout(std430, binding = AT_LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std140, binding = AT_LIGHTS) uniform Lights { Light lights[MOST_LIGHTS]; };
 uniform int light_count;
 uniform float source_radius;  // [m]
 

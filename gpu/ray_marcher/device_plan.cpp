@@ -106,7 +106,7 @@ PlanOnDevice::PlanOnDevice(Context& context, const ray_marcher::Plan& plan, Grid
 // What marching and reflecting have in common.
 void PlanOnDevice::bind(Program& p) const {
   const ray_marcher::Options& o = plan_.options;
-  layers_.bind(at::layers);
+  layers_.bind_as(GL_UNIFORM_BUFFER, at::layers);
   gaussians_.bind(at::gaussians);
   grids_.bind();
   bricks_.bind(at::free_distances);

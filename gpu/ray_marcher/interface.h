@@ -8,7 +8,7 @@
 namespace airlight::gpu::marcher {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9 (values of an
-// environment). What no shader has at the same time shares a number.
+// environment). What no shader has at the same time shares a number. `layers` is a uniform block.
 namespace at {
 enum Binding {
   layers = 0,

@@ -37,7 +37,7 @@ struct Gaussian {
   float unused[2];
 };
 
-layout(std430, binding = AT_LAYERS) readonly buffer Layers { Layer layers[]; };
+layout(std140, binding = AT_LAYERS) uniform Layers { Layer layers[LAYERS > 0 ? LAYERS : 1]; };
 #if GAUSSIANS
 layout(std430, binding = AT_GAUSSIANS) readonly buffer GaussianList { Gaussian gaussians[]; };
 #endif

@@ -88,6 +88,7 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
         [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); });
     data.push_back(d);
   }
+  if (data.empty()) data.emplace_back();  // the block has one at least
   return data;
 }
 

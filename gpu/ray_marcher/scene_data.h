@@ -1,4 +1,4 @@
-// Layers and lights as the shaders of the ray marcher read them: std430, single precision.
+// Layers and lights as the shaders of the ray marcher read them: std140 and std430, single precision.
 //
 // World coordinates on the device are relative to a middle of the scene, so that a scene far from the origin keeps its
 // digits; whatever is subtracted from is in double.

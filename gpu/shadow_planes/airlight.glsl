@@ -6,6 +6,7 @@
 #include "common/pi.glsl"
 #include "shadow_planes/length.glsl"
 #include "shadow_planes/media.glsl"
+#include "shadow_planes/evaluator.glsl"
 #if POLYNOMIAL
 #include "shadow_planes/polynomial.glsl"
 #else
@@ -48,15 +49,15 @@ void meet_kinks(Ray ray, int m, double from) {
   }
   if (kind != region_box) return;
   dvec3 side = cross(ray.direction, ray.to_light);
-  lo -= light;
-  hi -= light;
   for (int edge = 0; edge < 12; ++edge) {
     int axis = edge >> 2, next = (axis + 1) % 3, last = (axis + 2) % 3;
-    dvec3 a = lo, b;
+    dvec3 a = lo;
     if ((edge & 1) != 0) a[next] = hi[next];
     if ((edge & 2) != 0) a[last] = hi[last];
-    b = a;
+    dvec3 b = a;
     b[axis] = hi[axis];
+    a -= light;
+    b -= light;
     double sa = dot(side, a), sb = dot(side, b);
     if ((sa >= 0) == (sb >= 0)) continue;
     dvec3 p = a + (b - a) * (sa / (sa - sb));
@@ -69,15 +70,14 @@ void meet_kinks(Ray ray, int m, double from) {
 // light. All but `start` in single precision: near the region, however far the light is.
 float way_to_light(int m, dvec3 start, vec3 further, vec3 d, float r) {
   int kind = media[m].region;
-  if (kind == region_unbounded) return r;
   float begin = 0, end = r;
   if (kind == region_sphere) {
     vec3 to_center = vec3(region_lo(m) - start) - further, across = cross(d, to_center);
     float radius = float(media[m].hi[0]), middle = -dot(to_center, d), reach2 = radius * radius - dot(across, across);
-    if (!(reach2 > 0)) return 0;
-    begin = max(begin, middle - sqrt(reach2));
-    end = min(end, middle + sqrt(reach2));
-  } else {
+    float reach = sqrt(max(reach2, 0));
+    begin = max(begin, middle - reach);
+    end = reach2 > 0 ? min(end, middle + reach) : 0;
+  } else if (kind != region_unbounded) {
     vec3 low, high, speed = -d;
     if (kind == region_slab) {  // as a box without ends across its normal
       dvec3 normal = region_lo(m), heights = region_hi(m) - dot(normal, start);
@@ -90,12 +90,12 @@ float way_to_light(int m, dvec3 start, vec3 further, vec3 d, float r) {
       high = vec3(region_hi(m) - start) - further;
     }
     bvec3 still = equal(speed, vec3(0));
-    if (any(bvec3(vec3(still) * vec3(greaterThan(max(low, -high), vec3(0)))))) return 0;
+    bool beside = any(bvec3(vec3(still) * vec3(greaterThan(max(low, -high), vec3(0)))));
     vec3 a = low / speed, b = high / speed, first = mix(min(a, b), vec3(0), still), last = mix(max(a, b), vec3(r), still);
     begin = max(begin, max(first.x, max(first.y, first.z)));
-    end = min(end, min(last.x, min(last.y, last.z)));
+    end = beside ? 0 : min(end, min(last.x, min(last.y, last.z)));
   }
-  return max(end - begin, 0);
+  return end > begin ? end - begin : 0;
 }
 #endif
 
@@ -157,12 +157,12 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
     }
   vec3 n = vec3(ray.n), direction = vec3(ray.direction);
   dvec3 start = ray.origin + from * ray.direction;
-  vec3 first = vec3(start - light);
   for (int c = 0; c < channels; ++c) {
     float k = extinction[c];
     if (!(k > 0)) continue;
     // The light's way may get less along the part, by as much as dims it where that begins.
     float dimmed = 0;
+    vec3 first = vec3(start - light);
     for (int m = 0; m < media_count; ++m)
       dimmed += media[m].extinction[c] * way_to_light(m, start, vec3(0), first / max(length(first), 1e-30), length(first));
     Mapped map = map_part(width_, k, 0.5 * k * depth_cut / (depth_cut + dimmed), d0, length_, h);
@@ -194,12 +194,13 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
 }
 
 // Over [from, to] [m], to 1e37 where the ray does not end; per W/sr of the light.
-vec3 lit_airlight(Ray ray, double from, double to) {
+vec3 lit_airlight(Line line, double from, double to) {
 #if !BOUNDED && !SPOT
-  return smooth_airlight(ray, from, to);
+  return smooth_airlight(ray_on(line), from, to);
 #else
   vec3 sum = vec3(0);
   while (from < to) {
+    Ray ray = ray_on(line);
     nearest_place = to;
 #if SPOT
     meet_cone(ray, cos_inner, from);

@@ -39,7 +39,7 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
     const shadow_planes::PhaseForm phase = shadow_planes::phase_form(medium.phase, printed);
     const RegionNumbers region = numbers(medium.region);
     MediumData d{
-        {}, {}, {}, {}, int(region.kind), int(phase.kind), float(phase.g), float(phase.scale), float(phase.width()), 0};
+        {}, {}, {}, {}, int(phase.kind), float(phase.g), float(phase.scale), float(phase.width()), int(region.kind)};
     for (int i = 0; i < 3; ++i) {
       d.lo[i] = region.lo[i];
       d.hi[i] = region.hi[i];
@@ -48,6 +48,7 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
     }
     data.push_back(d);
   }
+  data.resize(most_media);  // as many as the block has
   return data;
 }
 
@@ -89,6 +90,7 @@ AirlightTermsOnDevice::AirlightTerm AirlightTermsOnDevice::make(int medium, bool
     term.degree = int(rows.size()) - 1;
     for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
   }
+  numbers.resize(4 * most_nodes);  // as many as the block has
   term.evaluator = std::make_unique<Buffer>(context_, "evaluator", numbers);
   return term;
 }
@@ -108,7 +110,7 @@ std::map<std::string, std::string> AirlightTermsOnDevice::definitions(int light,
 }
 
 void AirlightTermsOnDevice::bind_media(LinkedProgram& program) const {
-  media_.bind(at::media);
+  media_.bind_as(GL_UNIFORM_BUFFER, at::media);
   program.set("media_count", int(scene_->media.size()));
 }
 
@@ -123,7 +125,7 @@ void AirlightTermsOnDevice::bind(LinkedProgram& program, int index, int term) co
   }
   if (term < 0) return;
   const AirlightTerm& of = airlight_terms_[term];
-  of.evaluator->bind(at::evaluator);
+  of.evaluator->bind_as(GL_UNIFORM_BUFFER, at::evaluator);
   program.set("air_medium", of.medium);
   if (of.paper) program.set("mean_distance", of.mean_distance);
   if (options_.evaluator == Options::Evaluator::polynomial)

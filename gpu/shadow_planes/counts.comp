@@ -9,6 +9,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "shadow_planes/counters.glsl"
 #include "shadow_planes/edge_meshes.glsl"
 #include "shadow_planes/facing.glsl"
+#define FINDS_LIGHT_STATE 1
 #include "shadow_planes/light_state.glsl"
 #include "shadow_planes/ray.glsl"
 #include "shadow_planes/spheres.glsl"

@@ -5,15 +5,28 @@
 #include "shadow_planes/fan.glsl"
 #include "shadow_planes/spheres.glsl"
 layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
-layout(std430, binding = AT_STARTS) readonly buffer Starts { ivec2 sector_list[]; };  // begin and end in lists
-layout(std430, binding = AT_LISTS) readonly buffer Lists { int lists[]; };
+layout(std430, binding = AT_LISTS) readonly buffer Lists {
+  ivec2 sector_list[FAN_SECTORS];  // begin and end in lists
+  int lists[];
+};
 uniform int solid_count, edge_split;
 
-// Of every invocation, slot by slot: in registers they would spill. A crossing's name tells all but its key: twice the edge, + 1
+// Of every invocation, slot by slot: in registers they would spill. `hit_order` has the slots in the order of keys, 4 bits each, so
+// that sorting moves nothing in memory. A crossing's name tells all but its key: twice the edge, + 1
 // where the ray leaves a shadow; of spheres ~(twice the crossing's number, + 1 where it enters).
 shared double hit_key[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
 shared int hit_name[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
-int slot_of(int hit) { return hit * LOCAL_SIZE_X * LOCAL_SIZE_Y + int(gl_LocalInvocationIndex); }
+uvec2 hit_order;
+int place_in_memory(int slot) { return slot * LOCAL_SIZE_X * LOCAL_SIZE_Y + int(gl_LocalInvocationIndex); }
+int nth_slot(int n) { return int((n < 8 ? hit_order.x : hit_order.y) >> 4 * (n & 7) & 15u); }
+int slot_of(int hit) { return place_in_memory(nth_slot(hit)); }
+
+// As the n-th; what is behind moves by one, the last of MOST_HITS drops out.
+void insert_slot(int n, int slot) {
+  uint word = n < 8 ? hit_order.x : hit_order.y, before = (1u << 4 * (n & 7)) - 1u;
+  word = (word & before) | uint(slot) << 4 * (n & 7) | (word & ~before) << 4;
+  hit_order = n < 8 ? uvec2(word, hit_order.y << 4 | hit_order.x >> 28) : uvec2(hit_order.x, word);
+}
 
 #if STENCIL
 double stencil_end;  // [m]: changes before it sum up to
@@ -41,52 +54,58 @@ void keep_crossing(double key, int name, int change, double place) {
   ++crossing_count;
 #if SHADOWS
   if (key < last_key || (key == last_key && origin_of(name) <= last_origin)) return;
-  int to = min(hit_count, MOST_HITS);
+  int kept = min(hit_count, MOST_HITS), to = kept;
   ++hit_count;
-  if (to == MOST_HITS) {
-    --to;
-    double last = hit_key[slot_of(to)];
-    if (key > last || (key == last && origin_of(name) > origin_of(hit_name[slot_of(to)]))) return;
-  }
   for (; to > 0; --to) {
     int before = slot_of(to - 1);
     double other = hit_key[before];
     if (other < key || (other == key && origin_of(hit_name[before]) <= origin_of(name))) break;
-    hit_key[slot_of(to)] = other;
-    hit_name[slot_of(to)] = hit_name[before];
   }
-  hit_key[slot_of(to)] = key;
-  hit_name[slot_of(to)] = name;
+  if (to == MOST_HITS) return;
+  int slot = kept < MOST_HITS ? kept : nth_slot(MOST_HITS - 1);  // the last makes room
+  insert_slot(to, slot);
+  hit_key[place_in_memory(slot)] = key;
+  hit_name[place_in_memory(slot)] = name;
 #endif
 }
 
-// Where the plane of edge e is crossed: at `place` on the ray [m], `share` of the edge, `times` as far from the light. False:
-// nowhere between light and ray. `side`: normal to the plane through light and ray.
-bool cross_plane(Ray ray, int e, dvec3 side, out double place, out double share, out double times) {
+// Where the plane of edge e is crossed: at `place` on the ray [m], `share` of the edge, `times` as far from the light; `leaves`: out of
+// the shadow. False: nowhere between light and ray. `side`: normal to the plane through light and ray.
+bool cross_plane(Ray ray, int e, dvec3 side, out double place, out double share, out double times, out bool leaves) {
   dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
   double sa = precise_dot(side, a), sb = precise_dot(side, b);  // edges that share a vertex agree about it
+  bool crossed = (sa >= 0) != (sb >= 0);
+  leaves = sa >= 0;  // the sign of dot(cross(a, b), ray.direction), where p is towards the ray
   place = share = times = 0;
-  if ((sa >= 0) == (sb >= 0)) return false;
-  share = sa / (sa - sb);
-  dvec3 p = a + (b - a) * share;
-  double towards = dot(p, ray.n);
-  if (!(towards > 0) || towards > ray.h) return false;
-  times = ray.h / towards;
-  place = ray.T + ray.h * dot(p, ray.direction) / towards;
-  return true;
+  if (crossed) {
+    share = sa / (sa - sb);
+    dvec3 p = a + (b - a) * share;
+    double towards = dot(p, ray.n);
+    crossed = towards > 0 && towards <= ray.h;
+    times = ray.h / towards;
+    place = ray.T + ray.h * dot(p, ray.direction) / towards;
+  }
+  return crossed;
 }
 
-// `normal`: the direction of `side`; `to_origin`: from the light, unit.
-void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_origin) {
-  if (surely_beside(edges[e].near_a, edges[e].near_b, normal)) return;
+// The triangle's planes are as exact as light and ends are apart; where these are not, no edge is told to be beyond.
+Wedge wedge_of(Ray ray, double end, dvec3 side) {
+  dvec3 before = ray.T * ray.n + ray.h * ray.direction, beyond = before - end * ray.n;
+  double apart = length(beyond);
+  beyond = apart > 1e-6LF * length(before) ? beyond / apart : dvec3(0);
+  return Wedge(vec3(normalize(side)), vec3(-normalize(before)), vec3(beyond), vec3(ray.n), float(ray.h));
+}
+
+void cross_edge(Ray ray, double end, int e, dvec3 side, Wedge wedge) {
+  if (surely_beside(edges[e].near_a.xyz, edges[e].near_b, edges[e].near_a.w, wedge)) return;
   double place, share, times;
-  if (!cross_plane(ray, e, side, place, share, times) || !(place > 0) || !(place < end)) return;
-  dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
-  bool leaves = dot(cross(a, b), ray.direction) > 0;
+  bool leaves;
+  if (!cross_plane(ray, e, side, place, share, times, leaves) || !(place > 0) || !(place < end)) return;
   double key = place;
 #if STENCIL
+  dvec3 a = dvec3(edges[e].a[0], edges[e].a[1], edges[e].a[2]), b = dvec3(edges[e].b[0], edges[e].b[1], edges[e].b[2]);
   double pieces = double(edge_split), middle = (min(floor(share * pieces), pieces - 1) + 0.5LF) / pieces;
-  key = dot(normalize(a + (b - a) * middle), to_origin);
+  key = dot(normalize(a + (b - a) * middle), -normalize(ray.to_light));
 #endif
   keep_crossing(key, 2 * e + int(leaves), leaves ? -edges[e].multiplicity : edges[e].multiplicity, place);
 }
@@ -94,21 +113,20 @@ void cross_edge(Ray ray, double end, int e, dvec3 side, vec3 normal, dvec3 to_or
 // Of the edges that the ray may cross: those of its sectors in the fan.
 void cross_edges(Ray ray, double end) {
   if (!(ray.h > 1e-12LF * length(ray.to_light))) return;
-  dvec3 side = cross(ray.direction, ray.to_light), to_origin = -normalize(ray.to_light);
-  vec3 normal = vec3(normalize(side));
+  dvec3 side = cross(ray.direction, ray.to_light);
+  Wedge wedge = wedge_of(ray, end, side);
   dvec3 v = view_perspective != 0 ? ray.direction : -ray.to_light;
   dvec2 across = across_line(v);
-  if (is_across(across, v)) {
-    double turn = turn_of(across);
-    for (int level = 0; level < FAN_LEVELS; ++level) {
-      ivec2 list = sector_list[first_sector(level) + min(int(turn * 0.25LF * sectors_of(level)), sectors_of(level) - 1)];
-      for (int i = list.x; i < list.y; ++i) cross_edge(ray, end, lists[i], side, normal, to_origin);
-    }
-  } else {
-    for (int e = 0; e < edge_count; ++e) cross_edge(ray, end, e, side, normal, to_origin);
+  bool all = !is_across(across, v);
+  double turn = turn_of(across);
+  for (int level = 0; level < (all ? 1 : FAN_LEVELS); ++level) {
+    ivec2 list = ivec2(0, edge_count);
+    if (!all) list = sector_list[first_sector(level) + min(int(turn * 0.25LF * sectors_of(level)), sectors_of(level) - 1)];
+    for (int i = list.x; i < list.y; ++i) cross_edge(ray, end, all ? i : lists[i], side, wedge);
   }
 }
 
+#if SPHERES
 // Places where the shadow of a sphere may begin or end: on its tangent cone, or on itself.
 struct SphereShadow {
   dvec3 center;  // from the light [m]
@@ -158,34 +176,40 @@ void cross_spheres(Ray ray, double end) {
     }
   }
 }
+#endif
 
 #if STENCIL
 // Where crossing `name` lies on the ray [m]; of an edge also where on its plane.
 double place_of(Ray ray, double end, int name, out double share, out double times) {
   double place = 0;
   share = times = 0;
-  if (name >= 0) {
-    cross_plane(ray, name >> 1, cross(ray.direction, ray.to_light), place, share, times);
-  } else {
+  bool leaves;
+  if (name >= 0) cross_plane(ray, name >> 1, cross(ray.direction, ray.to_light), place, share, times, leaves);
+#if SPHERES
+  if (name < 0) {
     int number = ~name >> 1;
     SphereShadow s = shadow_of(solids[number / 5], ray);
     for (int k = number % 5; k > 0; --k) place = next_place(s, place, end * (1 - 1e-10LF));
   }
+#endif
   return place;
 }
 #endif
 
 // Gathers the next crossings within (0, end) in order, after `key` and `origin`, which then are those of the last; true if
-// more are left. `ray` in general position.
-bool gather(Ray ray, double end, inout double key, inout int origin) {
+// more are left.
+bool gather(Line line, double end, inout double key, inout int origin) {
   hit_count = crossing_sum = crossing_count = 0;
 #if STENCIL
   stencil_sum = 0;
 #endif
   last_key = key;
   last_origin = origin;
+  Ray ray = ray_in_general_position(line);
   cross_edges(ray, end);
+#if SPHERES
   cross_spheres(ray, end);
+#endif
   if (hit_count <= MOST_HITS) return false;
   hit_count = MOST_HITS;
   key = hit_key[slot_of(MOST_HITS - 1)];

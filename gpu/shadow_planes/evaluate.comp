@@ -4,6 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "common/pi.glsl"
 #include "shadow_planes/phase.glsl"
 #include "shadow_planes/length.glsl"
+#include "shadow_planes/evaluator.glsl"
 #if POLYNOMIAL
 #include "shadow_planes/polynomial.glsl"
 #else

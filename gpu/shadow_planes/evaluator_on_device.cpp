@@ -24,9 +24,10 @@ std::vector<float> integrals_on_device(Context& context, const DeviceEvaluator& 
       numbers.insert(numbers.end(), row.begin(), row.end());
   else
     numbers = rule_nodes(evaluator.nodes, evaluator.stretch, false);
+  numbers.resize(4 * most_nodes);  // as many as the block has
   const Buffer table(context, "evaluator", numbers), input(context, "cases", cases);
   const Buffer output(context, "integrals", cases.size() * 4);
-  table.bind(at::evaluator);
+  table.bind_as(GL_UNIFORM_BUFFER, at::evaluator);
   input.bind(at::cases);
   output.bind(at::integrals);
   Program& p =

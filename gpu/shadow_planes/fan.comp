@@ -7,8 +7,10 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 
 layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
 layout(std430, binding = AT_SECTORS) buffer Sectors { int listed, sector_count[]; };
-layout(std430, binding = AT_STARTS) readonly buffer Starts { ivec2 sector_list[]; };
-layout(std430, binding = AT_LISTS) writeonly buffer Lists { int lists[]; };
+layout(std430, binding = AT_LISTS) buffer Lists {
+  ivec2 sector_list[FAN_SECTORS];
+  int lists[];
+};
 
 void main() {
   int e = int(gl_GlobalInvocationID.x);

@@ -9,8 +9,8 @@ using shadow_planes::EdgeFan;
 FanOnDevice::FanOnDevice(Context& context, int most_edges)
     : context_(context),
       sectors_(context, "edges of sectors", 4 * std::size_t(EdgeFan::total_sectors() + 1)),
-      starts_(context, "lists of sectors", 8 * std::size_t(EdgeFan::total_sectors()), Contents::undefined),
-      lists_(context, "edges by sector", 16 * std::size_t(most_edges), Contents::undefined),
+      lists_(context, "edges by sector", 8 * std::size_t(EdgeFan::total_sectors()) + 16 * std::size_t(most_edges),
+             Contents::undefined),
       count_(&program(context, "fan", edges_per_group, 1, {{"FILL", "0"}})),
       begin_(&program(context, "fan_starts", 128)),
       list_(&program(context, "fan", edges_per_group, 1, {{"FILL", "1"}})) {}
@@ -30,7 +30,6 @@ void FanOnDevice::fill(const scene::Camera& camera, const Point3& light, const L
 }
 
 void FanOnDevice::bind(LinkedProgram& program) const {
-  starts_.bind(at::starts);
   lists_.bind(at::lists);
   program.set_double("fan_x", x_);
   program.set_double("fan_y", y_);

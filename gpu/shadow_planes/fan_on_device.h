@@ -20,7 +20,7 @@ class FanOnDevice {
 
  private:
   Context& context_;
-  Buffer sectors_, starts_, lists_;
+  Buffer sectors_, lists_;
   Program *count_, *begin_, *list_;
   Vec3 x_, y_;
 };

@@ -2,7 +2,10 @@
 layout(local_size_x = LOCAL_SIZE_X) in;
 
 layout(std430, binding = AT_SECTORS) buffer Sectors { int listed, sector_count[]; };
-layout(std430, binding = AT_STARTS) writeonly buffer Starts { ivec2 sector_list[]; };
+layout(std430, binding = AT_LISTS) writeonly buffer Lists {
+  ivec2 sector_list[FAN_SECTORS];
+  int lists[];
+};
 
 shared int of_group, first_of_group;
 

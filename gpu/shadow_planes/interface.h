@@ -9,13 +9,12 @@
 namespace airlight::gpu::planes {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials). What no
-// shader has at the same time shares a number, so that the largest needs 16.
+// shader has at the same time shares a number; the largest has 12.
 namespace at {
 enum Binding {
   edges = 0,
   primitives = 1,
   materials = 2,
-  starts = 3,
   lists = 4,
   evaluator = 5,
   pixels = 6,
@@ -44,16 +43,21 @@ enum Binding {
 };
 }  // namespace at
 
+// Uniform blocks have numbers of their own: `evaluator`, `media`, and `light_state` where it is only read.
+
 enum class RegionKind { unbounded, box, sphere, slab };
 constexpr int edges_per_group = 64;  // of indirect dispatches
 constexpr int sectors_per_group = 1024;
-constexpr int most_hits = 32;  // crossings that a pixel gathers at a time
+constexpr int most_media = 32;    // bits of a word
+constexpr int most_nodes = 1024;  // of the rule: what a uniform block holds on every device
+constexpr int most_hits = 16;     // crossings that a pixel gathers at a time: 4 bits number them (crossings.glsl)
 
 // The layouts of edge.glsl, state.glsl, pixels.glsl and media.glsl.
 struct alignas(16) EdgeData {
-  float near_a[4], near_b[4];
+  float near_a[4], near_b[3];
+  int multiplicity;
   double a[3], b[3];
-  int multiplicity, origin;
+  int origin, left_out;
 };
 struct alignas(16) StateData {
   double last_key, from;
@@ -63,18 +67,18 @@ struct alignas(16) StateData {
 struct LitPixelData {
   float airlight[4], reflected[4];
 };
-struct MediumData {
-  double lo[3], hi[3];
-  float extinction[3], albedo[3];
-  int region, phase;
+struct alignas(32) MediumData {
+  double lo[4], hi[4];
+  float extinction[4], albedo[4];
+  int phase;
   float g, scale, width;
-  int unused;
+  int region;
 };
 
-// That of light_state.glsl, without left_out.
+// That of light_state.glsl.
 struct LightStateData {
-  unsigned edge_groups[3], plane_groups[3];
   int edge_count, count_at_camera;
+  unsigned edge_groups[3], plane_groups[3];
 };
 
 // That of counters.glsl, with the first of resume_groups.

@@ -3,7 +3,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "shadow_planes/edge.glsl"
 #include "shadow_planes/light_state.glsl"
 
-layout(std430, binding = AT_EDGES) readonly buffer Edges { Edge edges[]; };
+layout(std430, binding = AT_EDGES) buffer Edges { Edge edges[]; };
 uniform dvec3 box_lo, box_hi;  // [m] from the light
 void main() {
   int i = int(gl_GlobalInvocationID.x);
@@ -20,5 +20,5 @@ void main() {
     outside_b += int(dot(by_b, c) < 0);
     before += int(dot(across, c - a) > 0);
   }
-  left_out[i] = int(above == 8 || below == 8 || outside_a == 8 || outside_b == 8 || before == 8);
+  edges[i].left_out = int(above == 8 || below == 8 || outside_a == 8 || outside_b == 8 || before == 8);
 }

@@ -1,8 +1,11 @@
-// What the device knows of one light: the host never waits for it. The groups are those of indirect dispatches.
+// What the device knows of one light: the host never waits for it. Those who only read do so through a uniform block.
+#if FINDS_LIGHT_STATE
 layout(std430, binding = AT_LIGHT_STATE) buffer LightState {
-  uint edge_groups[3];   // an invocation per silhouette edge
-  uint plane_groups[3];  // the same, by rows of vertices of its plane
   int edge_count;
-  int count_at_camera;  // m there
-  int left_out[];       // by edge: its plane cannot cut the medium in question (left_out.comp)
+  int count_at_camera;   // m there
+  uint edge_groups[3];   // of indirect dispatches: an invocation per silhouette edge
+  uint plane_groups[3];  // the same, by rows of vertices of its plane
 };
+#else
+layout(std140, binding = AT_LIGHT_STATE) uniform LightState { int edge_count, count_at_camera; };
+#endif

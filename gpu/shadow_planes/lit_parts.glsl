@@ -1,20 +1,17 @@
 // Airlight of the lit parts of a ray, by counting (SHADOWS 1) or as a signed sum (2), or of all of it (0):
 // methods/shadow_planes/lit_parts.cpp. `state.unfinished` on return: there are more crossings. `m_end`: m where it ends.
-vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State state, out int m_end, out Work work) {
+vec3 airlight_of(Line line, double end, int primitive, int m_origin, inout State state, out int m_end, out Work work) {
   work = Work(0, 0, 0);
   m_end = m_origin;
   bool more = false;
-#if CROSSINGS
-  Ray from_aside = ray_in_general_position(ray);
-#endif
   for (int gathering = 0;; ++gathering) {
 #if CROSSINGS
-    more = gather(from_aside, end, state.last_key, state.last_origin);
+    more = gather(line, end, state.last_key, state.last_origin);
     m_end = m_origin + crossing_sum;
     work.crossings = crossing_count;
 #endif
 #if AIRLIGHT && (SHADOWS == 0 || !CROSSINGS)
-    state.sum.rgb = intensity * lit_airlight(ray, 0, end);
+    state.sum.rgb = intensity * lit_airlight(line, 0, end);
     work.parts = 1;
     more = false;
 #elif AIRLIGHT
@@ -24,7 +21,7 @@ vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State s
       double to = last ? end : hit_key[slot_of(min(e, MOST_HITS - 1))];
       float share = SHADOWS == 1 ? (state.m == 0 ? 1 : 0) : 1 - 0.5 * float(state.m);
       if (to > state.from && share != 0) {
-        state.sum.rgb += share * intensity * lit_airlight(ray, state.from, to);
+        state.sum.rgb += share * intensity * lit_airlight(line, state.from, to);
         ++work.parts;
       }
       if (last) break;

@@ -3,8 +3,8 @@
 uniform float mean_distance;  // R [m]
 
 // The part of the ray in it.
-dvec2 domain_of(Ray ray, double end) {
-  return clip_to_region(air_medium, ray.origin, ray.direction, dvec2(0, end));
+dvec2 domain_of(Line line, double end) {
+  return clip_to_region(air_medium, line.origin, line.direction, dvec2(0, end));
 }
 
 #if !POLYNOMIAL
@@ -24,12 +24,12 @@ float before_foot(Ray ray, double from, float k, float h, float begin, float len
     float span = arsinh(step_ * (d + next) / (d * hypotenuse(next, h) + next * hypotenuse(d, h)));
     float piece = 0, q_piece = exp(-t);
     for (int i = 0; i < rule_nodes; ++i) {
-      float back = span * rule[i].x, q = exp(back - t), v = 1 / (1 + q * q), half_ = sinh_of(0.5 * back);
+      float back = span * rule_node(i).x, q = exp(back - t), v = 1 / (1 + q * q), half_ = sinh_of(0.5 * back);
       float factor = exp(-k * 2 * h * cosh(t - 0.5 * back) * half_) * phase_of_halves(media[air_medium].phase, v, q * q * v);
 #if SPOT
       factor *= spot_towards(spot, q, q_piece - q_first + q_piece * 2 * half_ * exp(0.5 * back));
 #endif
-      piece += rule[i].z * factor * 2 * q * v;
+      piece += rule_node(i).z * factor * 2 * q * v;
     }
     sum += exp(-k * done) * span * piece;
     done += step_;
@@ -85,8 +85,9 @@ vec3 smooth_airlight(Ray ray, double x_in, double from, double to) {
 }
 
 // Over what of [from, to] [m] is inside.
-vec3 lit_airlight(Ray ray, double from, double to) {
-  dvec2 inside = domain_of(ray, 1e37LF);
+vec3 lit_airlight(Line line, double from, double to) {
+  Ray ray = ray_on(line);
+  dvec2 inside = domain_of(line, 1e37LF);
   from = max(from, inside.x);
   to = min(to, inside.y);
   vec3 sum = vec3(0);

@@ -1,22 +1,27 @@
 // A ray as a light is seen from it: methods/shadow_planes/light_from_ray.h, and where it meets cones. In double precision.
 uniform dvec3 light;  // [m]
 
+// What of a ray lives across loops: the rest is cheap to compute again and takes 20 registers.
+struct Line {
+  dvec3 origin, direction;  // the latter unit
+};
+
 struct Ray {
   dvec3 origin, direction;
   dvec3 to_light;  // from the origin [m]
   double T, h;     // methods/shadow_planes/light_from_ray.h
   dvec3 n;
 };
-Ray ray_to(dvec3 origin, dvec3 direction) {
+Ray ray_on(Line line) {
   Ray ray;
-  ray.origin = origin;
-  ray.direction = direction;
-  ray.to_light = light - origin;
-  ray.T = dot(ray.to_light, direction);
-  dvec3 foot = ray.T * direction - ray.to_light;
+  ray.origin = line.origin;
+  ray.direction = line.direction;
+  ray.to_light = light - ray.origin;
+  ray.T = dot(ray.to_light, ray.direction);
+  dvec3 foot = ray.T * ray.direction - ray.to_light;
   ray.h = length(foot);
-  dvec3 other = abs(direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(direction, other));
+  dvec3 other = abs(ray.direction.x) < 0.5LF ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  ray.n = ray.h > 0 ? foot / ray.h : normalize(cross(ray.direction, other));
   return ray;
 }
 
@@ -26,7 +31,7 @@ dvec3 in_general_position(dvec3 origin) {
   precise dvec3 result = origin + aside * dvec3(0.5377LF, 0.3171LF, 0.7812LF);
   return result;
 }
-Ray ray_in_general_position(Ray ray) { return ray_to(in_general_position(ray.origin), ray.direction); }
+Ray ray_in_general_position(Line line) { return ray_on(Line(in_general_position(line.origin), line.direction)); }
 
 // Roots of a t^2 + 2 b t + c; -1 for those that are not real.
 dvec2 roots_of(double a, double b, double c) {

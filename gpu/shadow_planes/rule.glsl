@@ -2,7 +2,7 @@
 // nodes. Needs POWER, m of the map.
 #include "shadow_planes/length.glsl"
 
-layout(std430, binding = AT_EVALUATOR) readonly buffer Rule { vec4 rule[]; };  // node on [0, 1], 1 - node, weight
+vec3 rule_node(int i) { return evaluator[i].xyz; }  // on [0, 1], 1 - node, weight
 uniform int rule_nodes;
 
 const float depth_cut = 20, endless = 1e30;
@@ -42,7 +42,8 @@ struct Node {
   float weight;    // of (1/h) times the integral over q of 2/(1 + q^2) [1/m]
 };
 Node node_of(Mapped map, int i) {
-  float s = map.s1 * rule[i].x, t = map.rest + map.s1 * rule[i].y;
+  vec3 of_rule = rule_node(i);
+  float s = map.s1 * of_rule.x, t = map.rest + map.s1 * of_rule.y;
   float power = 1, series = 0;  // t^m, 1 + t + ... + t^(m-1)
   for (int k = 0; k < POWER; ++k) {
     series += power;
@@ -53,6 +54,6 @@ Node node_of(Mapped map, int i) {
   node.q = min(map.q0 + node.further, 1e18);
   node.v = 1 / (1 + node.q * node.q);
   node.w = node.q > 1 ? 1 / (1 + 1 / (node.q * node.q)) : node.q * node.q * node.v;
-  node.weight = rule[i].z * 2 * node.v * map.c * float(POWER) / (power * t) * (map.s1 / map.h);
+  node.weight = of_rule.z * 2 * node.v * map.c * float(POWER) / (power * t) * (map.s1 / map.h);
   return node;
 }

@@ -40,9 +40,9 @@ shared bool unfinished_here;
 
 #if SURFACES
 // What a surface reflects of the light, without what is lost on the way to the eye.
-vec3 reflected_light(Ray ray, double end, int surface, dvec3 normal) {
-  if (dot(normal, ray.direction) > 0) normal = -normal;
-  dvec3 offset = ray.to_light - end * ray.direction;
+vec3 reflected_light(Line line, double end, int surface, dvec3 normal) {
+  if (dot(normal, line.direction) > 0) normal = -normal;
+  dvec3 offset = light - line.origin - end * line.direction;
   double distance_ = length(offset);
   dvec3 to_light = offset / distance_;
   float cosine = float(dot(normal, to_light)), d = float(distance_), factor = 1;
@@ -51,18 +51,25 @@ vec3 reflected_light(Ray ray, double end, int surface, dvec3 normal) {
   factor = from_axis > cos_outer ? spot_factor(float(1 - from_axis)) : 0;
 #endif
   if (!(cosine > 0 && factor > 0)) return vec3(0);
-  return brdf(materials[surface], vec3(normal), vec3(to_light), vec3(-ray.direction)) * cosine * factor * intensity / (d * d) *
-         exp(-depth_along(ray.origin + end * ray.direction, to_light, distance_));
+  return brdf(materials[surface], vec3(normal), vec3(to_light), vec3(-line.direction)) * cosine * factor * intensity / (d * d) *
+         exp(-depth_along(line.origin + end * line.direction, to_light, distance_));
 }
 #endif
 
 void shade(ivec2 pixel, int place) {
   int primitive = has_primitives != 0 ? primitive_of[place] : -1, surface = -1;
-  dvec3 origin, direction, normal = dvec3(0);
-  view_ray(dvec2(pixel) + 0.5LF, origin, direction);
+  dvec3 normal = dvec3(0);
+  Line line;
+  view_ray(dvec2(pixel) + 0.5LF, line.origin, line.direction);
+#if CROSSINGS && !COUNT_BY_PIXEL
+  line.origin = view_position;  // what it is, and takes no registers
+#endif
   double end = 1e37LF;
-  if (primitive >= 0) end = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
-  Ray ray = ray_to(origin, direction);
+  if (primitive >= 0) end = meet_primitive(primitive, line.origin, line.direction, view_forward, normal, surface);
+  vec3 reflected = vec3(0);  // if m is 0 there: computed first, so that normals need not be kept
+#if SURFACES
+  if (reflects != 0 && surface >= 0) reflected = reflected_light(line, end, surface, normal);
+#endif
   int m = 0, m_end;
 #if COUNT_BY_PIXEL
   m = states[place].m_origin;
@@ -70,11 +77,9 @@ void shade(ivec2 pixel, int place) {
   m = count_at_camera;
 #endif
   Work work;
-  LitPixel lit = LitPixel(vec4(0), vec4(0));
-  if (adds != 0) lit = lit_pixels[place];
   State state = begin_state(place, m);
-  if (frame_buffer != 0 && resume == 0) state.sum.rgb = lit.airlight.rgb;  // that of all lights
-  vec3 in_air = airlight_of(ray, end, primitive, m, state, m_end, work);
+  if (frame_buffer != 0 && resume == 0 && adds != 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // that of all lights
+  vec3 in_air = airlight_of(line, end, primitive, m, state, m_end, work);
 #if CROSSINGS
   if (resume == 0) atomicAdd(crossing_total, uint(work.crossings));
   if (work.gatherings != 0) atomicAdd(gathering_total, uint(work.gatherings));
@@ -86,10 +91,10 @@ void shade(ivec2 pixel, int place) {
 #endif
   atomicAdd(part_sum, uint(work.parts));
   if (state.unfinished != 0) return;
+  LitPixel lit = LitPixel(vec4(0), vec4(0));
+  if (adds != 0) lit = lit_pixels[place];
   lit.airlight.rgb = in_air + (frame_buffer != 0 ? vec3(0) : lit.airlight.rgb);
-#if SURFACES
-  if (reflects != 0 && surface >= 0 && m_end == 0) lit.reflected.rgb += reflected_light(ray, end, surface, normal);
-#endif
+  if (m_end == 0) lit.reflected.rgb += reflected;
   lit_pixels[place] = lit;
 }
 

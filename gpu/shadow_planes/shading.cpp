@@ -1,5 +1,7 @@
 #include "gpu/shadow_planes/shading.h"
 
+#include <algorithm>
+
 #include "gpu/material_tables.h"
 #include "gpu/view_uniforms.h"
 #include "methods/shadow_planes/paper_stages.h"
@@ -19,6 +21,16 @@ LitPicture::LitPicture(Frame& frame, const scene::View& v, bool hits, bool cross
   counters.clear();
 }
 
+namespace {
+
+bool any_sphere(const scene::Scene& scene) {
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [](const scene::Surface& surface) {
+    return std::holds_alternative<scene::Sphere>(surface.shape);
+  });
+}
+
+}  // namespace
+
 PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::Scene>& scene, const Options& options,
                            const AirlightTermsOnDevice& airlight_terms, const SurfacesOnDevice* surfaces)
     : context_(context),
@@ -26,8 +38,9 @@ PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::
       options_(options),
       airlight_terms_(airlight_terms),
       surfaces_(surfaces),
+      spheres_(any_sphere(*scene)),
       // llvmpipe's limit on loops is that of a dispatch.
-      most_gatherings_(context.software() ? 2 : 64),
+      most_gatherings_(context.software() ? 4 : 128),
       materials_(context, "materials", MaterialTables(*scene).materials),
       tables_(context, "reflectance tables", MaterialTables(*scene).values),
       left_out_(program(context, "left_out", edges_per_group)),
@@ -59,6 +72,7 @@ Program& PlaneShading::shade_program(int light, int term, const LitPicture& pict
                       {"COUNT_BY_PIXEL", flag(parallel)},
                       {"CROSSINGS", flag(crossings)},
                       {"SHADOWS", std::to_string(int(options_.shadows))},
+                      {"SPHERES", flag(spheres_)},
                       {"STENCIL", flag(stages)},
                       {"SURFACES", flag(!scene_->surfaces.empty())},
                       {"VERTICES", flag(values)}});

@@ -59,6 +59,7 @@ class PlaneShading {
   shadow_planes::Options options_;
   const AirlightTermsOnDevice& airlight_terms_;
   const SurfacesOnDevice* surfaces_;
+  bool spheres_;  // among surfaces
   int most_gatherings_;
   Buffer materials_, tables_;
   Program &left_out_, &composition_;

@@ -23,7 +23,7 @@ using scene::Scene;
 using scene::View;
 using shadow_planes::Options;
 
-constexpr int most_degree = 16, most_media = 32;  // single precision; bits of a word
+constexpr int most_degree = 16;  // single precision
 
 class PreparedShadowPlanesGpu final : public scene::Prepared {
  public:
@@ -84,8 +84,7 @@ void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
   if (lit && surfaces) {
     timer.begin("edges");
     const shadow_planes::Occluders occluders(scene_);
-    silhouettes_ = std::make_unique<Silhouettes>(context_, occluders, VertexValues::plane_rows(options_),
-                                                 options_.bounded == Options::Bounded::paper);
+    silhouettes_ = std::make_unique<Silhouettes>(context_, occluders, VertexValues::plane_rows(options_));
     counts_ = std::make_unique<OriginCounts>(context_, *silhouettes_, *first_hits_);
     fan_ = std::make_unique<FanOnDevice>(context_, silhouettes_->most());
     edges_.resize(scene_->lights.size());
@@ -206,7 +205,7 @@ bool PreparedShadowPlanesGpu::finish(scene::Rendering& result) const {
   if (counted.unfinished[0]) return false;
   result.counters["lit_parts"] = counted.lit_parts;
   result.counters["crossings"] = counted.crossings;
-  result.counters["gatherings_beyond_32"] = counted.gatherings_after_first;
+  result.counters["gatherings_after_first"] = counted.gatherings_after_first;
   if (!values_) return true;
   double vertices = 0;
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) {

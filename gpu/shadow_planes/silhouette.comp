@@ -4,6 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "shadow_planes/edge.glsl"
 #include "shadow_planes/edge_meshes.glsl"
 #include "shadow_planes/facing.glsl"
+#define FINDS_LIGHT_STATE 1
 #include "shadow_planes/light_state.glsl"
 
 layout(std430, binding = AT_MESH_EDGES) readonly buffer MeshEdges { ivec4 mesh_edges[]; };  // ends, first side, sides
@@ -27,8 +28,9 @@ void main() {
   if (sum == 0) return;
   dvec3 a = place_of_vertex(sum > 0 ? edge.x : edge.y) - light, b = place_of_vertex(sum > 0 ? edge.y : edge.x) - light;
   int place = atomicAdd(edge_count, 1);
+  float slack = 1e-6 * float(max(length(a), length(b)));
   edges[place] =
-      Edge(vec4(vec3(a), length(a)), vec4(vec3(b), length(b)), double[3](a.x, a.y, a.z), double[3](b.x, b.y, b.z), abs(sum), i);
+      Edge(vec4(vec3(a), slack), vec3(b), abs(sum), double[3](a.x, a.y, a.z), double[3](b.x, b.y, b.z), i, 0);
   if (place % EDGES_PER_GROUP != 0) return;
   atomicAdd(edge_groups[0], 1);
   atomicAdd(plane_groups[0], 1);

@@ -32,14 +32,13 @@ Silhouettes::Arrays Silhouettes::arrays(const shadow_planes::Occluders& occluder
   return all;
 }
 
-Silhouettes::Silhouettes(Context& context, const shadow_planes::Occluders& occluders, int plane_rows, bool left_out)
-    : Silhouettes(context, arrays(occluders), plane_rows, left_out) {}
+Silhouettes::Silhouettes(Context& context, const shadow_planes::Occluders& occluders, int plane_rows)
+    : Silhouettes(context, arrays(occluders), plane_rows) {}
 
-Silhouettes::Silhouettes(Context& context, const Arrays& arrays, int plane_rows, bool left_out)
+Silhouettes::Silhouettes(Context& context, const Arrays& arrays, int plane_rows)
     : context_(context),
       mesh_edges_(int(arrays.edges.size())),
       plane_rows_(plane_rows),
-      left_out_(left_out),
       vertices_(context, "vertices of edges", arrays.vertices),
       triangles_(context, "triangles of edges", arrays.triangles),
       numbers_(context, "numbers of triangles", arrays.numbers),
@@ -52,8 +51,7 @@ void Silhouettes::find(const Point3& light, LightEdges& found) const {
   if (!found.edges) {
     found.edges = std::make_unique<Buffer>(context_, "silhouette", sizeof(EdgeData) * std::size_t(mesh_edges_),
                                            Contents::undefined);
-    found.state = std::make_unique<Buffer>(context_, "state of a light",
-                                           sizeof(LightStateData) + (left_out_ ? 4 * std::size_t(mesh_edges_) : 0));
+    found.state = std::make_unique<Buffer>(context_, "state of a light", sizeof(LightStateData));
   }
   found.state->clear();
   bind_meshes();

@@ -16,18 +16,20 @@ struct LightEdges {
   void bind() const {
     edges->bind(at::edges);
     state->bind(at::light_state);
+    state->bind_as(GL_UNIFORM_BUFFER, at::light_state);
   }
   // An invocation per edge, rows of them with `planes`; of programs whose groups are edges_per_group edges.
   void dispatch(Program& program, bool planes = false) const {
-    program.dispatch_indirect(*state, planes ? offsetof(LightStateData, plane_groups) : 0);
+    program.dispatch_indirect(*state,
+                              planes ? offsetof(LightStateData, plane_groups) : offsetof(LightStateData, edge_groups));
   }
 };
 
 class Silhouettes {
  public:
-  // Uploads the edges of all meshes. `plane_rows`: vertices of a plane, for LightEdges::dispatch; `left_out`: the state
-  // of a light has room for these marks. Throws Unavailable where they pass the device's limits.
-  Silhouettes(Context&, const shadow_planes::Occluders&, int plane_rows, bool left_out);
+  // Uploads the edges of all meshes. `plane_rows`: vertices of a plane, for LightEdges::dispatch. Throws
+  // Unavailable where they pass the device's limits.
+  Silhouettes(Context&, const shadow_planes::Occluders&, int plane_rows);
 
   // Finds those of a light, on the device.
   void find(const Point3& light, LightEdges&) const;
@@ -39,11 +41,10 @@ class Silhouettes {
  private:
   struct Arrays;
   static Arrays arrays(const shadow_planes::Occluders&);
-  Silhouettes(Context&, const Arrays&, int plane_rows, bool left_out);
+  Silhouettes(Context&, const Arrays&, int plane_rows);
 
   Context& context_;
   int mesh_edges_, plane_rows_;
-  bool left_out_;
   Buffer vertices_, triangles_, numbers_, edges_, sides_;
   Program& program_;
 };

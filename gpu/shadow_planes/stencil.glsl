@@ -34,15 +34,15 @@ vec3 gamma_on_triangle(ivec4 corners, dvec3 point) {
 #endif
 
 // The part of a ray that is drawn.
-dvec2 drawn_part(Ray ray, double end) {
+dvec2 drawn_part(Line line, double end) {
 #if PAPER_MEDIUM
-  return domain_of(ray, end);
+  return domain_of(line, end);
 #elif VERTICES && BOUNDED
   // From where the ray enters the first medium to where it leaves the last: Gamma is constant elsewhere.
   if (media_end != 0) {
     dvec2 part = dvec2(1e37LF, 0);
     for (int k = 0; k < media_count; ++k) {
-      dvec2 inside = clip_to_region(k, ray.origin, ray.direction, dvec2(0, end));
+      dvec2 inside = clip_to_region(k, line.origin, line.direction, dvec2(0, end));
       if (inside.y > inside.x) part = dvec2(min(part.x, inside.x), max(part.y, inside.y));
     }
     return part;
@@ -53,31 +53,31 @@ dvec2 drawn_part(Ray ray, double end) {
 
 #if PAPER_MEDIUM
 // In the order of planes, the triangle of the boundary through which a ray enters.
-double key_of_entry(Ray ray, double place) {
+double key_of_entry(Line line, double place) {
   dvec3 corners[3];
   ivec3 numbers;
   vec3 weight;
-  locate_on_boundary(ray.origin + place * ray.direction, corners, numbers, weight);
-  return dot(normalize((corners[0] + corners[1] + corners[2]) / 3 - light), -normalize(ray.to_light));
+  locate_on_boundary(line.origin + place * line.direction, corners, numbers, weight);
+  return dot(normalize((corners[0] + corners[1] + corners[2]) / 3 - light), -normalize(light - line.origin));
 }
 #endif
 
 #if VERTICES
 // Where the ray leaves the air at `place`, or ends. False: no vertices are there.
-bool gamma_at_end(Ray ray, double end, double place, int primitive, out vec3 gamma) {
+bool gamma_at_end(Line line, double end, double place, int primitive, out vec3 gamma) {
   gamma = vec3(0);
 #if PAPER_MEDIUM
   if (place < end) {
     dvec3 corners[3];
     ivec3 numbers;
     vec3 weight;
-    locate_on_boundary(ray.origin + place * ray.direction, corners, numbers, weight);
+    locate_on_boundary(line.origin + place * line.direction, corners, numbers, weight);
     gamma = mix_values(first_boundary + numbers, weight);
     return true;
   }
 #endif
   if (primitive < 0 || primitive >= triangle_count) return false;
-  gamma = gamma_on_triangle(triangles[primitive], ray.origin + end * ray.direction);
+  gamma = gamma_on_triangle(triangles[primitive], line.origin + end * line.direction);
   return true;
 }
 #endif
@@ -85,16 +85,16 @@ bool gamma_at_end(Ray ray, double end, double place, int primitive, out vec3 gam
 #if CROSSINGS
 // What the next plane does to the light in front of it: 1 adds, -1 takes away. `entry`: nothing that is sorted in front of it is
 // drawn, there the stencil becomes 255; false from there on.
-bool meet_plane(Ray from_aside, double end, dvec2 part, double entry, int e, inout int stencil, out float share, out int name,
+bool meet_plane(Line line, double end, dvec2 part, double entry, int e, inout int stencil, out float share, out int name,
                 out double place, out double on_edge, out double times) {
   share = 0;
   name = hit_name[slot_of(e)];
   place = on_edge = times = 0;
   if (hit_key[slot_of(e)] >= entry) return false;
-  place = place_of(from_aside, end, name, on_edge, times);
+  place = place_of(ray_in_general_position(line), end, name, on_edge, times);
   if (place >= part.y) return true;
 #if PAPER_MEDIUM
-  if (name >= 0 && left_out[name >> 1] != 0) return true;
+  if (name >= 0 && edges[name >> 1].left_out != 0) return true;
 #endif
   int change = change_of(name);
   if (change > 0 && stencil == change) share = 1;
@@ -108,7 +108,7 @@ bool meet_plane(Ray from_aside, double end, dvec2 part, double entry, int e, ino
 #endif
 
 // Stage 3, the end of the ray (e = -1), and stage 5, planes. False: no other will be drawn.
-bool draw(Ray ray, Ray from_aside, double end, dvec2 part, double entry, int primitive, bool first, inout State state,
+bool draw(Line line, double end, dvec2 part, double entry, int primitive, bool first, inout State state,
           inout int parts) {
   for (int e = first ? -1 : 0; e < hit_count; ++e) {
     float share = state.m == 0 ? 1 : 0;
@@ -116,14 +116,14 @@ bool draw(Ray ray, Ray from_aside, double end, dvec2 part, double entry, int pri
     int name = -1;
 #if CROSSINGS
     double on_edge = 0, times = 0;
-    if (e >= 0 && !meet_plane(from_aside, end, part, entry, e, state.m, share, name, place, on_edge, times)) return false;
+    if (e >= 0 && !meet_plane(line, end, part, entry, e, state.m, share, name, place, on_edge, times)) return false;
 #endif
     if (share == 0) continue;
     ++parts;
     bool by_pixel = true;
     vec3 gamma = vec3(0);
 #if VERTICES
-    if (e < 0) by_pixel = !gamma_at_end(ray, end, place, primitive, gamma);
+    if (e < 0) by_pixel = !gamma_at_end(line, end, place, primitive, gamma);
 #if CROSSINGS
     if (name >= 0) {
       gamma = gamma_on_plane(name >> 1, float(on_edge), float(min(times, 1e37LF)));
@@ -131,7 +131,7 @@ bool draw(Ray ray, Ray from_aside, double end, dvec2 part, double entry, int pri
     }
 #endif
 #endif
-    if (by_pixel) gamma = intensity * lit_airlight(ray, 0, place);
+    if (by_pixel) gamma = intensity * lit_airlight(line, 0, place);
     state.sum.rgb += share * gamma;
     if (frame_buffer != 0) state.sum.rgb = clamp(floor(state.sum.rgb * 255 + 0.5) / 255, vec3(0), vec3(1));
   }
@@ -139,21 +139,20 @@ bool draw(Ray ray, Ray from_aside, double end, dvec2 part, double entry, int pri
 }
 
 // `state.unfinished` on return: there are more crossings. `m_end`: m where the ray ends.
-vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State state, out int m_end, out Work work) {
-  dvec2 part = drawn_part(ray, end);
+vec3 airlight_of(Line line, double end, int primitive, int m_origin, inout State state, out int m_end, out Work work) {
+  dvec2 part = drawn_part(line, end);
   double entry = 1e300LF;
   work = Work(0, 0, 0);
   m_end = m_origin;
   bool more = false, drawn = part.y > part.x;
 #if PAPER_MEDIUM
-  if (drawn && part.x > 0) entry = key_of_entry(ray, part.x);
+  if (drawn && part.x > 0) entry = key_of_entry(line, part.x);
 #endif
-  Ray from_aside = ray_in_general_position(ray);
   for (int gathering = 0;; ++gathering) {
     bool first = resume == 0 && gathering == 0;
 #if CROSSINGS
     stencil_end = part.y;
-    more = gather(from_aside, end, state.last_key, state.last_origin) && drawn;
+    more = gather(line, end, state.last_key, state.last_origin) && drawn;
     m_end = m_origin + crossing_sum;
     work.crossings = crossing_count;
     if (first) state.m = m_origin + stencil_sum;
@@ -161,7 +160,7 @@ vec3 airlight_of(Ray ray, double end, int primitive, int m_origin, inout State s
 #if SHADOWS == 0
     state.m = 0;
 #endif
-    if (drawn && !draw(ray, from_aside, end, part, entry, primitive, first, state, work.parts)) more = false;
+    if (drawn && !draw(line, end, part, entry, primitive, first, state, work.parts)) more = false;
     work.gatherings += int(more);
     if (!more || gathering + 1 >= most_gatherings) break;
   }

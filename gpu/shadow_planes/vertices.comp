@@ -63,14 +63,15 @@ void main() {
   double length_ = length(way), end = at_infinity ? 1e37LF : length_;
   vec3 value = vec3(0);
   if (length_ > 0) {
-    Ray ray = ray_to(camera, way / length_);
+    Line line = Line(camera, way / length_);
+    Ray ray = ray_on(line);
     // As an image's rays do, it ends on the light's ball, or close to the light.
     double radius = max(ball_radius, 1e-6LF * length(ray.to_light));
     if (ray.h < radius) {
       double half_chord = sqrt((radius - ray.h) * (radius + ray.h));
       if (ray.T + half_chord > 0) end = min(end, ray.T - half_chord);
     }
-    if (end > 0) value = intensity * lit_airlight(ray, 0, end);
+    if (end > 0) value = intensity * lit_airlight(line, 0, end);
   }
   if (loops_cut()) atomicOr(loops_were_cut, 1);
   values[first_value + i] = vec4(value, 0);

@@ -23,7 +23,7 @@ Counted compare(gpu::Context& context, const std::shared_ptr<const scene::Scene>
                 const Point3& light) {
   const auto occluders = std::make_shared<const shadow_planes::Occluders>(scene);
   const shadow_planes::SurfaceCount expected(occluders, light);
-  const gpu::planes::Silhouettes silhouettes(context, *occluders, 1, false);
+  const gpu::planes::Silhouettes silhouettes(context, *occluders, 1);
   const gpu::FirstHits hits(context, *scene);
   const gpu::planes::OriginCounts counts(context, silhouettes, hits);
   gpu::planes::LightEdges edges;

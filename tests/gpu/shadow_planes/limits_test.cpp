@@ -46,7 +46,7 @@ TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_plan
   compare(scene, {{"shadows", "signed_sum"}});
   compare(scene, {{"shadows", "stencil"}}, 2e-5, 1.5e-5);
   const scene::Rendering many = render(gpu::ShadowPlanesGpu(), scene, {});
-  CHECK(many.counters.at("gatherings_beyond_32") > 100);
+  CHECK(many.counters.at("gatherings_after_first") > 100);
   CHECK(many.counters.at("crossings") == render(shadow_planes::ShadowPlanes(), scene, {}).counters.at("crossings"));
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
                                                                            {"surface.0.columns", "129"},
                                                                            {"surface.0.lot", "0.0775193798"}}));
   compare(scene, {});
-  CHECK(render(gpu::ShadowPlanesGpu(), scene, {}).counters.at("gatherings_beyond_32") > 100);
+  CHECK(render(gpu::ShadowPlanesGpu(), scene, {}).counters.at("gatherings_after_first") > 100);
   if (!context->software()) return;
   const auto media = scene_of("shadow_planes/media", 16, 12);
   for (const Pairs& given :

@@ -24,7 +24,7 @@ layout(std430, binding = 0) writeonly buffer Radiance { float radiance[]; };
 uniform double from_place, to_place;
 uniform float intensity;
 void main() {
-  radiance[0] = (intensity * lit_airlight(ray_to(dvec3(0), dvec3(0, 0, 1)), from_place, to_place)).x;
+  radiance[0] = (intensity * lit_airlight(Line(dvec3(0), dvec3(0, 0, 1)), from_place, to_place)).x;
 }
 )";
 
