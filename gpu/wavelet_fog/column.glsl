@@ -23,69 +23,6 @@ double reach_of(int m, double length_) {
 }
 #endif
 
-#if VARIANT == VARIANT_BOUND
-// Level of the block around a cell that is passed at once, and whether there is nothing in it.
-int block_around(ivec2 cell, float most, out bool empty) {
-  int nothing = empty_around(cell), level = fog.levels;
-  empty = nothing >= 0;
-  if (empty) return nothing;
-  while (level > 0 && !(value_in(grids[fog.errors + level - 1], cell >> level) <= most)) --level;
-  return level;
-}
-
-// bounded_depth of methods/wavelet_fog/blocks.cpp.
-float bounded(Line line, dvec2 t, float most) {
-  t = clip_to_support(grids[0], line, t);
-  ivec2 least = lo_of(grids[0]), last = least + size_of(grids[0]) + DEGREE - 1;
-  dvec2 run = dvec2(1, 0);  // of blocks of one level
-  int run_level = 0;
-  float sum = 0;
-  double from = t.x;
-  while (true) {
-    bool ends = !(from < t.y) || sum > fog.enough, empty = false;
-    int level = 0;
-    double to = from;
-    if (!ends) {
-      // The next grid lines behind `from`, the cell before them, and the block around it.
-      dvec2 met = dvec2(t.y);
-      for (int a = 0; a < 2; ++a) {
-        if (line.along[a] == 0) continue;
-        double here = line.start[a] + from * line.along[a], towards = sign(line.along[a]);
-        double next = towards > 0 ? floor(here) + 1 : ceil(here) - 1;
-        met[a] = (next - line.start[a]) / line.along[a];
-        while (!(met[a] > from)) {
-          next += towards;
-          met[a] = (next - line.start[a]) / line.along[a];
-        }
-      }
-      to = min(min(met.x, met.y), t.y);
-      ivec2 cell = clamp(ivec2(floor(line.start + 0.5LF * (from + to) * line.along)), least, last);
-      level = block_around(cell, most, empty);
-      if (level > 0) {
-        double rim = t.y;
-        for (int a = 0; a < 2; ++a) {
-          if (line.along[a] == 0) continue;
-          int block = (cell[a] >> level) + (line.along[a] > 0 ? 1 : 0);
-          rim = min(rim, (double(block << level) - line.start[a]) / line.along[a]);
-        }
-        to = max(to, rim);
-      }
-    }
-    if (run.y > run.x && (ends || empty || level != run_level)) {
-      sum += integral_of_level(run_level, line, run);
-      run = dvec2(1, 0);
-    }
-    if (ends) return sum;
-    if (!empty) {
-      run = dvec2(run.y > run.x ? run.x : from, to);
-      run_level = level;
-    }
-    from = to;
-  }
-  return sum;
-}
-#endif
-
 // From the ray's origin to `length_` [m], of the part of it that this dispatch does.
 float column(dvec3 origin, dvec3 direction, double length_) {
   Line line = line_over(origin, direction);
@@ -99,7 +36,8 @@ float column(dvec3 origin, dvec3 direction, double length_) {
   dvec2 done = dvec2(way.x + (way.y - way.x) * (double(part) / parts), way.x + (way.y - way.x) * (double(part + 1) / parts));
 #if VARIANT == VARIANT_BOUND
   dvec2 of_map = clip_to_support(grids[0], line, inside);
-  return of_map.y > of_map.x ? bounded(line, both(of_map, done), fog.allowed / float(of_map.y - of_map.x)) : 0.0;
+  allowed_error = fog.allowed / float(max(of_map.y - of_map.x, 0.0LF));
+  return integral_of_level(0, line, both(of_map, done));
 #elif VARIANT == VARIANT_TELE || VARIANT == VARIANT_PAPER
   // |OP| ends where the ray leaves the ground's box of the coarsest grid.
   dvec2 box = clip_to_support(grids[fog.levels], coarser(line, fog.levels), dvec2(0, length_));

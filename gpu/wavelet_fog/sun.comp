@@ -54,7 +54,7 @@ float phase_of(double c, int kind, float g) {  // per steradian
 void add_medium(dvec2 t, double middle, bool lit) {
   vec3 sigma = vec3(fog.sigma_t[0], fog.sigma_t[1], fog.sigma_t[2]);
   ivec2 cell = cell_of(middle);
-  bool there = is_in_medium(middle) && empty_around(cell) < 0;
+  bool there = is_in_medium(middle) && empty_around(grids[fog.cells], cell) < 0;
   if (!there && !lit) return;
   Grid g = grids[fog.map];
   Cell c = Cell(0);

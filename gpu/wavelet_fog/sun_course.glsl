@@ -53,7 +53,7 @@ bool something_at(double t) {
   for (int i = 0; i < media; ++i) {
     take_medium(i);
     COUNT_LOOP
-    if (!is_in_medium(t) || empty_around(cell_of(t)) >= 0) continue;
+    if (!is_in_medium(t) || empty_around(grids[fog.cells], cell_of(t)) >= 0) continue;
     if (PROFILE != PROFILE_LAYERS || factor_at(course_origin.y + t * course_direction.y) > 0) something = true;
   }
   return something;

@@ -2,7 +2,7 @@
 // cells of spline_map.h or, with SKIPS, of methods/wavelet_fog/blocks.cpp.
 //
 // The walk is in single precision, from an anchor that is computed in double every 32 cells or so: places are rounded to 4e-6
-// of a cell however large the map and however far away the eye.
+// of a cell however large the map and however far away the eye (with bound 256, and 3e-5).
 #ifndef FALL_BASE  // height and scale height where the factor falls [m]
 #define FALL_BASE knot_height(0)
 #define FALL_SCALE double(fog.scale_height)
@@ -12,17 +12,31 @@
 #if SKIPS || VARIANT == VARIANT_BOUND
 #include "wavelet_fog/empty_cells.glsl"
 #endif
+#if VARIANT == VARIANT_BOUND  // a walk that begins anew may find the cell empty in a block that it would have taken as a whole
+const double cells_at_once = 256;
+#else
 const double cells_at_once = 32;
+#endif
 
 uint cells_read = 0u;
 
-// Where a line crosses the next grid line of an axis.
-float crossing(float at, float along, float next) { return along == 0 ? 1e37 : (next - at) / along; }
+#define BLOCKS (SKIPS || VARIANT == VARIANT_BOUND)
+#if VARIANT == VARIANT_BOUND
+float allowed_error;  // of the ray in hand, in f
 
-// Of the line from `t` on, `end` long, over cells of the grid; ends once it is above `enough`.
+// Level of the block around a cell that may be taken from its coarser grid.
+int coarse_level(ivec2 cell) {
+  int level = fog.levels;
+  while (level > 0 && !(value_in(grids[fog.errors + level - 1], cell >> level) <= allowed_error)) --level;
+  return level;
+}
+#endif
+
+// Of the line from `t` on, `end` long, over cells of the grid, or over blocks of them: empty ones, those that a coarser grid knows well
+// enough. Ends once it is above `enough_`.
 float walk(Grid g, Line line, double t, float end, Factor factor, float enough_) {
   dvec2 exact = line.start + t * line.along, corner = floor(exact);
-  ivec2 anchor = ivec2(corner), last = lo_of(g) + size_of(g) + DEGREE - 1;
+  ivec2 anchor = ivec2(corner), first = lo_of(g), last = first + size_of(g) + DEGREE - 1;
   vec2 at = vec2(exact - corner), along = vec2(line.along);
   float height = 0, fall = 0;
   if (PROFILE == PROFILE_EXPONENTIAL) {
@@ -30,43 +44,59 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
     fall = float(line.rise / FALL_SCALE);
   }
   vec2 linear = vec2(factor.value + t * factor.slope, factor.slope);
+  // A cell's rim is met at (rim - at) / along, never where the line does not move.
+  bvec2 moves = greaterThan(abs(along), vec2(1e-30)), falls_back = lessThan(along, vec2(0));
+  vec2 inverse = mix(vec2(0), 1 / along, moves), never = mix(vec2(1e37), vec2(0), moves);
+  ivec2 ahead = ivec2(greaterThan(along, vec2(0)));
+  ivec2 cell = clamp(anchor + ivec2(mix(floor(at), ceil(at) - 1, falls_back)), first, last);
+#if BLOCKS
+  Grid all = grids[fog.cells];
+#endif
   float s = 0, sum = 0;
-  vec2 towards = sign(along), next = mix(ceil(at) - 1, floor(at) + 1, greaterThan(along, vec2(0)));
-  vec2 met = vec2(crossing(at.x, along.x, next.x), crossing(at.y, along.y, next.y));
   while (s < end) {
     COUNT_LOOP
-    float to = min(min(met.x, met.y), end);
-    ivec2 cell = clamp(anchor + ivec2(floor(at + 0.5 * (s + to) * along)), lo_of(g), last);
-    bool passed = false;
-    if (to > s) {
-#if SKIPS
-      int empty = empty_around(cell);
-      passed = empty >= 0;
-      if (empty > 0) {
-        ivec2 block = (cell >> empty) + ivec2(greaterThan(along, vec2(0)));
-        vec2 rim = vec2((block << empty) - anchor);
-        to = max(to, min(end, min(crossing(at.x, along.x, rim.x), crossing(at.y, along.y, rim.y))));
-        next = mix(ceil(at + to * along) - 1, floor(at + to * along) + 1, greaterThan(along, vec2(0)));
-        met = vec2(crossing(at.x, along.x, next.x), crossing(at.y, along.y, next.y));
-      }
+    int level = 0;
+    bool empty = false;
+#if BLOCKS
+    int nothing = empty_around(all, cell);
+    empty = nothing >= 0;
+    level = max(nothing, 0);
+#if VARIANT == VARIANT_BOUND
+    if (!empty) level = coarse_level(cell);
 #endif
-      if (!passed) {
-        ++cells_read;
-        Cell c = cell_at(place_of(g, cell), g.stride);
-        vec2 local = at - vec2(cell - anchor), piece = vec2(s, to);
+#endif
+    ivec2 block = cell >> level;
+    vec2 met = (vec2(((block + ahead) << level) - anchor) - at) * inverse + never;
+    float to = max(s, min(min(met.x, met.y), end));
+    if (!empty && to > s) {
+      ++cells_read;
+      vec2 local = at + vec2(anchor - (block << level)), over = along, piece = vec2(s, to);
+#if VARIANT == VARIANT_BOUND
+      Grid grid = grids[level];
+      float scale = exp2(-float(level));
+      local *= scale;
+      over *= scale;
+      Cell c = cell_at(place_of(grid, block), grid.stride);
+#else
+      Cell c = cell_at(place_of(g, cell), g.stride);
+#endif
 #if FALLS
-        if (factor.falls)
-          sum += falling_in_cell(c, local, along, piece, height, fall);
-        else
+      if (factor.falls)
+        sum += falling_in_cell(c, local, over, piece, height, fall);
+      else
 #endif
-          sum += PROFILE == PROFILE_LAYERS ? dot(linear, moments_in_cell(c, local, along, piece))
-                                           : linear.x * moments_in_cell(c, local, along, piece).x;
-        if (sum > enough_) return sum;
-      }
-      s = to;
+        sum += PROFILE == PROFILE_LAYERS ? dot(linear, moments_in_cell(c, local, over, piece))
+                                         : linear.x * moments_in_cell(c, local, over, piece).x;
+      if (sum > enough_) return sum;
     }
-    if (met.x <= s) next.x += towards.x, met.x = crossing(at.x, along.x, next.x);
-    if (met.y <= s) next.y += towards.y, met.y = crossing(at.y, along.y, next.y);
+    ivec2 next = cell;
+#if BLOCKS
+    ivec2 low = block << level;
+    next = clamp(anchor + ivec2(floor(at + to * along)), low, low + (1 << level) - 1);
+#endif
+    cell = mix(next, ((block + ahead) << level) + ahead - 1, lessThanEqual(met, vec2(to)));
+    if (any(lessThan(cell, first)) || any(greaterThan(cell, last))) return sum;  // the rest is rounding
+    s = to;
   }
   return sum;
 }
