@@ -106,7 +106,8 @@ std::optional<LinkedProgram::Place> LinkedProgram::place_of_uniform(const std::s
 int LinkedProgram::location(const std::string& name) {
   const auto known = locations_.find(name);
   if (known != locations_.end()) return known->second;
-  if (text_.find(name) == std::string::npos) throw Error(fmt::format("{} has no uniform '{}'", files_, name));
+  if (text_.find(name.substr(0, name.find('['))) == std::string::npos)  // of an array, its name
+    throw Error(fmt::format("{} has no uniform '{}'", files_, name));
   return locations_[name] = context_.gl().GetUniformLocation(id_, name.c_str());
 }
 

@@ -2,53 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "experiments/wavelet_fog/rays.h"
-#include "methods/wavelet_fog/compression.h"
+#include "experiments/wavelet_fog/errata_setup.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "scene/error.h"
-#include "scene/media/spline_integral.h"
 
 namespace airlight::experiments {
 namespace {
 
-namespace fog = airlight::wavelet_fog;
+using namespace errata;
 using fog::Coefficients;
 using fog::Levels;
 using scene::MapLine;
 using scene::SplineMap;
 
-const scene::HeightProfile same = scene::SameAtAllHeights{};
 const char* const families[] = {"haar", "cdf22", "cdf33"};  // by degree
-
-struct Figures {
-  double printed, right;
-};
-
-// What the errata share: the map, its rays, its levels.
-struct Setup {
-  MapRays rays;
-  const fog::Family& family;
-  Coefficients map;
-  Levels levels;
-  double threshold;
-
-  double rms(const std::function<double(std::size_t)>& f) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < rays.lines.size(); ++i) sum += f(i) * f(i);
-    return std::sqrt(sum / double(rays.lines.size()));
-  }
-  double depth(std::size_t i) const {
-    return rays.sigma * scene::integral(rays.map, same, rays.lines[i], {0, rays.lengths[i]});
-  }
-};
-
-double relative(const Coefficients& a, const Coefficients& b, int degree) {
-  Coefficients off = a;
-  for (std::size_t i = 0; i < off.values.size(); ++i) off.values[i] -= b.values[i];
-  return fog::l2_norm(off, degree) / fog::l2_norm(b, degree);
-}
 
 // Eq. 10 and 11 print psi-psi twice; the first (beta) is phi-psi. Relative L2 error of K after one level.
 Figures psi_psi_twice(const Setup& s) {
@@ -289,19 +257,26 @@ struct Erratum {
   const char* name;
   Figures (*measure)(const Setup&);
 };
-constexpr Erratum errata[] = {{"psi_psi_twice", psi_psi_twice},
-                              {"no_exponential", no_exponential},
-                              {"one_layer_less", one_layer_less},
-                              {"blend", blend},
-                              {"readings", readings},
-                              {"one_coefficient", one_coefficient},
-                              {"no_cell_size", no_cell_size},
-                              {"cells_that_take_away", cells_that_take_away},
-                              {"early_end", early_end},
-                              {"up_to_two", up_to_two},
-                              {"products_of_levels", products_of_levels},
-                              {"widths", widths},
-                              {"seen_from_both_ends", seen_from_both_ends}};
+constexpr Erratum all_errata[] = {{"psi_psi_twice", psi_psi_twice},
+                                  {"no_exponential", no_exponential},
+                                  {"one_layer_less", one_layer_less},
+                                  {"blend", blend},
+                                  {"readings", readings},
+                                  {"one_coefficient", one_coefficient},
+                                  {"no_cell_size", no_cell_size},
+                                  {"cells_that_take_away", cells_that_take_away},
+                                  {"early_end", early_end},
+                                  {"up_to_two", up_to_two},
+                                  {"products_of_levels", products_of_levels},
+                                  {"widths", widths},
+                                  {"seen_from_both_ends", seen_from_both_ends},
+                                  {"union_of_spaces", union_of_spaces},
+                                  {"from_zero", from_zero},
+                                  {"exit_by_equality", exit_by_equality},
+                                  {"no_distance", no_distance},
+                                  {"no_threshold", no_threshold},
+                                  {"tabulated", tabulated},
+                                  {"haar_steps", haar_steps}};
 
 }  // namespace
 
@@ -311,12 +286,16 @@ std::string WaveletErrata::about() const {
 
 std::vector<scene::SettingSpec> WaveletErrata::settings() const {
   std::vector<std::string> names;
-  for (const Erratum& e : errata) names.push_back(e.name);
-  return {scene::choice_setting("erratum", names.front(), names, "what is measured; errata_probe.cpp says how"),
-          scene::integer_setting("levels", "3", 1, 20, "of the decomposition"),
-          scene::real_setting("mean_depth", "1", 1e-6, 1e3, "mean optical depth of the rays"),
-          scene::real_setting("threshold", "0.02", 1e-9, 0.999, "transmittance at which early_end ends a ray"),
-          scene::integer_setting("angles", "24", 1, 100000, "directions of each of six eyes, five lengths each")};
+  for (const Erratum& e : all_errata) names.push_back(e.name);
+  return {
+      scene::choice_setting("erratum", names.front(), names,
+                            "what is measured; errata_probe.cpp and errata_claims.cpp say how"),
+      scene::integer_setting("levels", "3", 1, 20, "of the decomposition"),
+      scene::real_setting("mean_depth", "1", 1e-6, 1e3, "mean optical depth of the rays"),
+      scene::real_setting("threshold", "0.02", 1e-9, 0.999,
+                          "transmittance at which early_end and no_threshold end a ray"),
+      scene::integer_setting("places", "16", 1, 64, "of tabulated: R, a fourth of the places on a cell's perimeter"),
+      scene::integer_setting("angles", "24", 1, 100000, "directions of each of six eyes, five lengths each")};
 }
 
 std::vector<std::string> WaveletErrata::figures() const { return {"printed", "right"}; }
@@ -327,8 +306,9 @@ Findings WaveletErrata::run(const ProbeInput& input, const scene::Settings& s, c
   const fog::Family& family = fog::family(families[rays.map.degree()]);
   Levels levels = fog::make_levels(rays.map, family.name, fog::Coarse::wavelet, int(s.integer("levels")), true);
   Coefficients map{rays.map.range(), rays.map.coefficients()};
-  const Setup setup{std::move(rays), family, std::move(map), std::move(levels), s.real("threshold")};
-  for (const Erratum& e : errata)
+  const Setup setup{std::move(rays),         family, std::move(map), std::move(levels), s.real("threshold"),
+                    int(s.integer("places"))};
+  for (const Erratum& e : all_errata)
     if (s.text("erratum") == e.name) {
       const Figures f = e.measure(setup);
       Findings found;

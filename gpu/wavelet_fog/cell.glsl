@@ -1,4 +1,30 @@
 // The splines of degree DEGREE in one cell, and exact integrals over a piece of a line in it: scene/media/spline_integral.h.
+#if MEDIA > 1  // of each medium's degree; rows and cells hold zeros beyond it
+#define Row vec4
+#define Cell mat4
+Row row_at(int p) {
+  Row row = Row(values[p], 0, 0, 0);
+  if (DEGREE > 0) row.y = values[p - 1];
+  if (DEGREE > 1) row.z = values[p - 2];
+  if (DEGREE > 2) row.w = values[p - 3];
+  return row;
+}
+Cell cell_at(int p, int stride) {
+  Cell cell = Cell(row_at(p), Row(0), Row(0), Row(0));
+  if (DEGREE > 0) cell[1] = row_at(p - stride);
+  if (DEGREE > 1) cell[2] = row_at(p - 2 * stride);
+  if (DEGREE > 2) cell[3] = row_at(p - 3 * stride);
+  return cell;
+}
+Row basis(float u) {
+  float w = 1 - u;
+  if (DEGREE == 0) return Row(1, 0, 0, 0);
+  if (DEGREE == 1) return Row(u, w, 0, 0);
+  if (DEGREE == 2) return Row(0.5 * u * u, 0.5 + u * w, 0.5 * w * w, 0);
+  return Row(u * u * u, 1 + 3 * u * (1 + u * w), 1 + 3 * w * (1 + u * w), w * w * w) * (1.0 / 6);
+}
+float in_cell(Cell c, vec2 x) { return dot(basis(x.x) * c, basis(x.y)); }
+#else
 #if DEGREE == 0
 #define Row float
 #define Cell float
@@ -34,6 +60,7 @@ Row basis(float u) {
 // Column k of the cell belongs to v, entry m of it to u.
 float in_cell(Cell c, vec2 x) { return dot(basis(x.x) * c, basis(x.y)); }
 #endif
+#endif
 
 const float node[POINTS] = float[](NODES), weight[POINTS] = float[](WEIGHTS);
 
@@ -42,13 +69,14 @@ vec2 moments_in_cell(Cell c, vec2 at, vec2 along, vec2 s) {
   float length_ = s.y - s.x;
   vec2 sum = vec2(0);
   for (int k = 0; k < POINTS; ++k) {
+    COUNT_LOOP
     float here = s.x + node[k] * length_;
     sum += weight[k] * in_cell(c, at + here * along) * vec2(1, here);
   }
   return length_ * sum;
 }
 
-#if PROFILE == PROFILE_EXPONENTIAL
+#if FALLS
 const float fall_node[FALL_POINTS] = float[](FALL_NODES), fall_weight[FALL_POINTS] = float[](FALL_WEIGHTS);
 
 // Of f exp(-(least + |fall| s)): heights over the base in scale heights, `height` at s = 0, `fall` per unit of s. Pieces of at most one
@@ -59,9 +87,12 @@ float falling_in_cell(Cell c, vec2 at, vec2 along, vec2 s, float height, float f
   float part = length_ / parts, fallen = zeta / parts, low = fall > 0 ? s.x : s.y, step_ = fall > 0 ? part : -part;
   float least = height + low * fall, sum = 0;
   for (float i = 0; i < parts && i * fallen < deep; ++i) {
+    COUNT_LOOP
     float of_part = 0;
-    for (int k = 0; k < FALL_POINTS; ++k)
+    for (int k = 0; k < FALL_POINTS; ++k) {
+      COUNT_LOOP
       of_part += fall_weight[k] * exp(-fallen * fall_node[k]) * in_cell(c, at + (low + (i + fall_node[k]) * step_) * along);
+    }
     sum += exp(-(least + i * fallen)) * of_part;
   }
   return part * sum;

@@ -23,7 +23,7 @@ void add_to_counter(int low, uint amount) {
 #endif
 
 // Details may leave less than nothing; a channel without extinction stays clear over any length.
-vec3 depth_of(float integral) { return vec3(sigma_t[0], sigma_t[1], sigma_t[2]) * max(integral, 0); }
+vec3 depth_of(float integral) { return vec3(fog.sigma_t[0], fog.sigma_t[1], fog.sigma_t[2]) * max(integral, 0); }
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);

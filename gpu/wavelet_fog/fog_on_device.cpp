@@ -24,18 +24,6 @@ constexpr double most_iterations = 40000;  // of a ray in one dispatch where loo
 
 const scene::Fogmap& fogmap(const scene::Medium& medium) { return *std::get<scene::FogmapPointer>(medium.field); }
 
-// Nodes on [0, 1].
-void add_rule(Definitions& definitions, const std::string& prefix, int points) {
-  scene::GaussLegendre rule = scene::gauss_legendre(points);
-  for (int k = 0; k < points; ++k) {
-    rule.node[k] = 0.5 + 0.5 * rule.node[k];
-    rule.weight[k] *= 0.5;
-  }
-  definitions[prefix + "POINTS"] = std::to_string(points);
-  definitions[prefix + "NODES"] = listed(rule.node);
-  definitions[prefix + "WEIGHTS"] = listed(rule.weight);
-}
-
 Profile kind_of(const scene::HeightProfile& profile) {
   return scene::match(
       profile, [](const scene::SameAtAllHeights&) { return Profile::none; },
@@ -70,6 +58,24 @@ void write_region(FogData& d, const scene::Region& region) {
 float finite(double value) { return float(std::min(value, double(far_away))); }
 
 }  // namespace
+
+void add_rule(Definitions& definitions, const std::string& prefix, int points) {
+  scene::GaussLegendre rule = scene::gauss_legendre(points);
+  for (int k = 0; k < points; ++k) {
+    rule.node[k] = 0.5 + 0.5 * rule.node[k];
+    rule.weight[k] *= 0.5;
+  }
+  definitions[prefix + "POINTS"] = std::to_string(points);
+  definitions[prefix + "NODES"] = listed(rule.node);
+  definitions[prefix + "WEIGHTS"] = listed(rule.weight);
+}
+
+std::vector<char> bytes_of(const std::vector<FogData>& media, const std::vector<double>& knots) {
+  std::vector<char> bytes(sizeof(FogData) * media.size() + sizeof(double) * knots.size());
+  std::memcpy(bytes.data(), media.data(), sizeof(FogData) * media.size());
+  std::memcpy(bytes.data() + sizeof(FogData) * media.size(), knots.data(), sizeof(double) * knots.size());
+  return bytes;
+}
 
 FogOnDevice::FogOnDevice(Context& context, const scene::Medium& medium, const Options& options, int number,
                          bool light_rays)
@@ -106,6 +112,7 @@ Definitions FogOnDevice::definitions() const {
                           {"VARIANT", std::to_string(int(options_.variant))},
                           {"SKIPS", skips ? "1" : "0"},
                           {"FADES", fades ? "1" : "0"},
+                          {"FALLS", profile == Profile::exponential ? "1" : "0"},
                           {"LIGHT_RAYS", "0"}};
   add_rule(definitions, "", n + 1);
   if (profile == Profile::exponential) add_rule(definitions, "FALL_", n + 3);  // enough for single precision
@@ -247,12 +254,11 @@ void FogOnDevice::write(const scene::Medium& medium) {
   data_.allowed = thickest > 0 ? finite(options_.tolerance / thickest) : 0;
   const auto* fall = std::get_if<scene::ExponentialFall>(&profile);
   data_.scale_height = fall ? float(fall->scale_height) : 1;
-  const std::vector<double> knots = knots_of(profile);
-  data_.knots = int(knots.size() / 2);
-  std::vector<char> bytes(sizeof(FogData) + sizeof(double) * knots.size());
-  std::memcpy(bytes.data(), &data_, sizeof(FogData));
-  std::copy_n(reinterpret_cast<const char*>(knots.data()), sizeof(double) * knots.size(),
-              bytes.data() + sizeof(FogData));
+  knots_ = knots_of(profile);
+  data_.knots = int(knots_.size() / 2);
+  data_.degree = fog.map.degree();
+  data_.profile = int(fades ? Profile::exponential : kind_of(fog.profile));
+  const std::vector<char> bytes = bytes_of({data_}, knots_);
   if (!fog_ || fog_->bytes() != bytes.size()) fog_ = std::make_unique<Buffer>(context_, "fog", bytes.size());
   fog_->upload(bytes);
   // Cells that a ray may cross, in the levels that it reads, an iteration each and one for every node; a scale height more takes

@@ -10,6 +10,11 @@
 
 namespace airlight::gpu::fogmaps {
 
+// Of the block of fog.glsl: media, then the knots of all.
+std::vector<char> bytes_of(const std::vector<FogData>&, const std::vector<double>& knots);
+// NAME_POINTS, _NODES and _WEIGHTS of a Gauss rule on [0, 1].
+void add_rule(Definitions&, const std::string& prefix, int points);
+
 class FogOnDevice {
  public:
   // The medium is a fogmap, `number` tells it from others of the frame. Throws Unavailable where the device has no room for its
@@ -36,6 +41,10 @@ class FogOnDevice {
   Definitions definitions() const;
   void bind() const;
   const scene::Medium& medium() const { return medium_; }
+  const FogData& data() const { return data_; }
+  const std::vector<double>& knots() const { return knots_; }
+  const GridData& grid(int number) const { return grids_.data(number); }
+  std::size_t words() const { return emptiness_->bytes() / 4; }  // of empty cells
 
  private:
   void add_grids();
@@ -48,7 +57,7 @@ class FogOnDevice {
   int number_;
   Grids grids_;
   FogData data_{};
-  std::size_t knots_ = 0;
+  std::vector<double> knots_;  // heights and factors, alternating
   std::unique_ptr<Buffer> fog_, emptiness_;
   Program *camera_rays_ = nullptr, *light_rays_ = nullptr, *table_steps_ = nullptr,
           *table_sums_ = nullptr;  // null: not needed

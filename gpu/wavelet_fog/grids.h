@@ -23,6 +23,7 @@ class Grids {
   int scratch(const scene::IndexRange&);
   void reuse_scratch() { scratch_used_ = 0; }
   const scene::IndexRange& range(int grid) const { return ranges_[grid]; }
+  const GridData& data(int grid) const { return data_[grid]; }
 
   // Passes over grids, in their order.
   // Along u, then along v, of what coarse_range says.

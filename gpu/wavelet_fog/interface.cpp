@@ -41,6 +41,9 @@ Definitions shared_definitions() {
                                                   {"COUNTERS", at::counters},
                                                   {"LIT", at::lit},
                                                   {"AIRLIGHT", at::airlight},
+                                                  {"SUN_RAYS", at::sun_rays},
+                                                  {"PACKED_VALUES", at::packed_values},
+                                                  {"PACKED_EMPTINESS", at::packed_emptiness},
                                                   {"AIRLIGHT_LAYER", at::airlight_layer},
                                                   {"PRIMITIVES", at::primitives},
                                                   {"MATERIALS", at::materials},
@@ -53,18 +56,21 @@ Definitions shared_definitions() {
   return definitions;
 }
 
-void check_layouts(const Program& program, const std::string& file) {
+void check_layouts(const Program& program, const std::string& file, std::size_t media) {
   const struct {
     const char* variable;
     std::size_t offset, stride;
-  } expected[] = {{"region_hi[0]", offsetof(FogData, region_hi), 0},
-                  {"highest", offsetof(FogData, highest), 0},
-                  {"enough", offsetof(FogData, enough), 0},
-                  {"region", offsetof(FogData, region), 0},
-                  {"errors", offsetof(FogData, errors), 0},
-                  {"knot[0]", sizeof(FogData), 0},
+  } expected[] = {{"fogs[0].region_hi[0]", offsetof(FogData, region_hi), sizeof(FogData)},
+                  {"fogs[0].highest", offsetof(FogData, highest), sizeof(FogData)},
+                  {"fogs[0].enough", offsetof(FogData, enough), sizeof(FogData)},
+                  {"fogs[0].region", offsetof(FogData, region), sizeof(FogData)},
+                  {"fogs[0].first_word", offsetof(FogData, first_word), sizeof(FogData)},
+                  {"knot[0]", media * sizeof(FogData), 0},
                   {"grids[0].stride", offsetof(GridData, stride), sizeof(GridData)},
-                  {"lit[0].t", offsetof(LitData, t), sizeof(LitData)}};
+                  {"lit[0].t", offsetof(LitData, t), sizeof(LitData)},
+                  {"sun_rays[0].state.way", offsetof(SunState, way), 0},
+                  {"sun_rays[0].state.read", offsetof(SunState, read), 0},
+                  {"sun_rays[0].edge[0]", sizeof(SunState), 0}};
   for (const auto& [variable, offset, stride] : expected) {
     const auto found = program.place_of(variable);
     if (!found || found->offset == 0) continue;  // so Mesa says of what is not used
@@ -84,10 +90,11 @@ std::string listed(const std::vector<double>& values) {
 
 Program& program(Context& context, const std::string& file, int x, int y, Definitions definitions) {
   definitions.merge(shared_definitions());
+  const auto media = definitions.find("MEDIA");
   definitions["LOCAL_SIZE_X"] = std::to_string(x);
   definitions["LOCAL_SIZE_Y"] = std::to_string(y);
   Program& made = context.program("wavelet_fog/" + file + ".comp", definitions);
-  check_layouts(made, file);
+  check_layouts(made, file, media == definitions.end() ? 1 : std::stoul(media->second));
   return made;
 }
 

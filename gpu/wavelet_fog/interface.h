@@ -22,6 +22,10 @@ enum Binding {
   counters = 7,
   lit = 8,
   airlight = 6,  // sun.comp
+  sun_rays = 8,
+  // pack.comp
+  packed_values = 4,
+  packed_emptiness = 5,
   // surfaces.comp, background.comp
   primitives = 0,
   materials = 1,
@@ -38,13 +42,14 @@ enum Binding {
 enum class RegionKind { unbounded, box, sphere, slab };
 enum class Profile { none, layers, exponential };
 
-// The layouts of fog.glsl, without the knots, of grids.glsl, lit.glsl.
+// The layouts of fog.glsl, without the knots, of grids.glsl, lit.glsl, sun_ray.glsl.
 struct FogData {
   double map_x0, map_z0, cos_over_cell, sin_over_cell;
   double region_lo[3], region_hi[3];
   double lowest, highest, least_near, mu;
   float sigma_t[3], enough, allowed, scale_height;
   int region, knots, levels, details, cells, errors;
+  int map, degree, profile, first_knot, first_word, unused;
 };
 struct GridData {
   int lo[2], size[2], offset, stride;
@@ -53,8 +58,15 @@ struct LitData {
   float reflected[4], sum[4];
   double t, unused;
 };
-// Low and high words of cells and coefficients, whether loops were cut, low and high words of points under a sun and of lookups.
-constexpr int counter_words = 9;
+// Of a ray under a sun, without the edges of shadows that it keeps.
+struct SunState {
+  double end, from, known, cell, before, low, high, way;
+  float light[3], depth[3];
+  int shadow_ray, flags, halvings, index, edges, read, shadow_rays, unused;
+};
+// Low and high words of cells and coefficients, whether loops were cut, low and high words of points under a sun and of lookups, whether
+// rays under a sun are unfinished, low and high words of their shadow rays.
+constexpr int counter_words = 12;
 
 using Definitions = std::map<std::string, std::string>;
 

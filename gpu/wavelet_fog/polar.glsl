@@ -49,17 +49,9 @@ float column_of_table(dvec3 origin, dvec3 direction, double length_, inout uint 
   dvec2 before = dvec2(0);
   if (t.x > 0) before = looked_up(along, float(t.x * across)), ++lookups;
   float sum = 0;
-  bool rises = line.rise != 0;
-  int level_below = 0;
-  for (int k = 0; k < breaks() && !rises; ++k)
-    if (knot_height(k) <= line.height) level_below = k + 1;
-  for (int k = 0; k <= (rises ? breaks() : 0); ++k) {
-    dvec2 piece = t;
-    int below = !rises ? level_below : line.rise > 0 ? k : breaks() - k;
-    if (rises) {
-      double lo = below > 0 ? knot_height(below - 1) : -1e37LF, hi = below < breaks() ? knot_height(below) : 1e37LF;
-      piece = clip_axis(line.height, line.rise, lo, hi, t);
-    }
+  for (int k = 0; k < pieces_of(line); ++k) {
+    int below;
+    dvec2 piece = between_knots(line, t, k, below);
     if (!(piece.y > piece.x)) continue;
     dvec2 upto = looked_up(along, float(piece.y * across)), of_piece = upto - before;
     ++lookups;

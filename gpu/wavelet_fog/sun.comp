@@ -1,6 +1,9 @@
 // Light of a sun that the fog scatters once towards the camera, a ray per invocation: SunScattering of
-// methods/wavelet_fog/sun_scattering.cpp, with one medium and nothing that stands in the way.
+// methods/wavelet_fog/sun_scattering.cpp. A ray stops when it has done its share of loops, or its shadows are not known any farther, and
+// goes on in the next dispatch.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+uint work = 0u;
+#define COUNT_LOOP ++work;
 #define SUN_MAP_ACCESS readonly
 #define VALUES_ACCESS readonly
 #include "raster/view.glsl"
@@ -9,160 +12,180 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "wavelet_fog/walk.glsl"
 #include "wavelet_fog/sun_map.glsl"
 #include "wavelet_fog/sun_column.glsl"
+#include "wavelet_fog/sun_course.glsl"
+#include "wavelet_fog/sun_ray.glsl"
 #include "common/loops_cut.glsl"
-layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_AIRLIGHT) buffer AirlightLayer { float airlight_layer[]; };
 layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };
-uniform int has_distances, first, counts;
-uniform float least;   // transmittance at which a ray ends
-uniform vec3 scattered;  // albedo sigma_t E [W/m^3]
-uniform int phase_kind;
-uniform float phase_g;
+uniform int first, counts;       // first: of the suns
+uniform int budget;              // iterations of loops, about
+uniform int mark;                // left in counters[9] by rays that are to be gone on with; 0: not asked for
+uniform float least;             // transmittance at which a ray ends
+uniform vec3 scattered[MEDIA];   // albedo sigma_t E [W/m^3]
+uniform int phase_kind[MEDIA];
+uniform float phase_g[MEDIA], climb;  // climb: scale heights per metre upwards, of the steepest medium
 
 const float sun_node[SUN_POINTS] = float[](SUN_NODES), sun_weight[SUN_POINTS] = float[](SUN_WEIGHTS);
 const float upto[SUN_POINTS * SUN_POINTS] = float[](SUN_UPTO);  // [node][term]: integral from 0 to the node
 const float opaque = 40, most_change = 0.5;
 const int most_halvings = 12;
-// Farther than in walk.glsl: where a walk begins anew it cuts a cell in two, which the rule of a cell tells.
-const double cells_of_a_walk = 128;
 
-float column_so_far = 0;
-vec3 light = vec3(0);
+vec3 source_of[MEDIA];  // per density
+vec3 depth, light;
 uint points_done = 0u;
+vec3 extinction[SUN_POINTS], scattering[SUN_POINTS], to_sun[SUN_POINTS];  // at the points of a piece
 
-float phase_of(double c) {  // per steradian
+float phase_of(double c, int kind, float g) {  // per steradian
   const float per_sphere = 0.0795774715459477;
-  float v = float(0.5LF * (1 + c)), w = float(0.5LF * (1 - c)), g = phase_g;
-  if (phase_kind == PHASE_RAYLEIGH) return per_sphere * 0.75 * (1 + (v - w) * (v - w));
-  if (phase_kind == PHASE_HENYEY_GREENSTEIN) {
+  float v = float(0.5LF * (1 + c)), w = float(0.5LF * (1 - c));
+  if (kind == PHASE_RAYLEIGH) return per_sphere * 0.75 * (1 + (v - w) * (v - w));
+  if (kind == PHASE_HENYEY_GREENSTEIN) {
     float d = g > 0 ? (1 - g) * (1 - g) + 4 * g * w : (1 + g) * (1 + g) - 4 * g * v;
     return per_sphere * (1 - g) * (1 + g) / (d * sqrt(d));
   }
   float p = v * v;
   p *= p, p *= p;
-  if (phase_kind == PHASE_HAZY) return per_sphere * 0.5 * (1 + 9 * p);
+  if (kind == PHASE_HAZY) return per_sphere * 0.5 * (1 + 9 * p);
   p *= p, p *= p;
-  return phase_kind == PHASE_MURKY ? per_sphere * (33.0 / 83.0) * (1 + 50 * p) : per_sphere;
+  return kind == PHASE_MURKY ? per_sphere * (33.0 / 83.0) * (1 + 50 * p) : per_sphere;
 }
 
-// A piece of a cell, s from x to y behind the anchor at t; halved where an optical depth changes much. False: the ray has ended.
-bool scatter_in_cell(Cell c, vec2 at, vec2 along, vec2 s, double t, Line line, Factor factor, dvec3 origin, dvec3 direction) {
-  vec3 sigma = vec3(sigma_t[0], sigma_t[1], sigma_t[2]);
-  float thickest = max(sigma.x, max(sigma.y, sigma.z)), thinnest = min(sigma.x, min(sigma.y, sigma.z)), climb = 0;
-#if PROFILE == PROFILE_EXPONENTIAL
-  float height = float((line.height + t * line.rise - FALL_BASE) / FALL_SCALE), fall = float(line.rise / FALL_SCALE);
-  climb = abs(fall);
-#endif
-  float density[SUN_POINTS], column[SUN_POINTS];
-  int halvings = 0, index = 0;
+// The medium in hand at the points from t.x to t.y, of a cell around `middle`.
+void add_medium(dvec2 t, double middle, bool lit) {
+  vec3 sigma = vec3(fog.sigma_t[0], fog.sigma_t[1], fog.sigma_t[2]);
+  ivec2 cell = cell_of(middle);
+  bool there = is_in_medium(middle) && empty_around(grids[fog.cells], cell) < 0;
+  if (!there && !lit) return;
+  Grid g = grids[fog.map];
+  Cell c = Cell(0);
+  if (there) c = cell_at(place_of(g, cell), g.stride);
+  Line line = Line(dvec2(0), dvec2(0), course_origin.y + middle * course_direction.y, 0);
+  int below = knots_below(line);
+  line = Line(dvec2(0), dvec2(0), course_origin.y, course_direction.y);
+  Factor factor = factor_between(line, below);
+  for (int k = 0; k < SUN_POINTS; ++k) {
+    ++work;
+    double here = t.x + double(sun_node[k]) * (t.y - t.x);
+    if (there) {
+      float h = float(factor.value + here * factor.slope);
+      if (PROFILE == PROFILE_EXPONENTIAL && factor.falls)
+        h = exp(-float((course_origin.y + here * course_direction.y - FALL_BASE) / FALL_SCALE));
+      float density = max(in_cell(c, vec2(start_in[medium] + here * along_in[medium] - dvec2(cell))) * h, 0);
+      extinction[k] += sigma * density;
+      scattering[k] += source_of[medium] * density;
+    }
+    // Without end it is infinite, and no light comes.
+    if (lit) to_sun[k] += sigma * min(sun_column(course_origin + here * course_direction), 1e30);
+  }
+}
+
+bool has_ended() { return !(exp(-min(depth.x, min(depth.y, depth.z))) > least); }
+
+// A piece of a cell without edge of a shadow; halved where an optical depth changes much. False: to be gone on with.
+bool scatter(dvec2 t, bool lit, inout int halvings, inout int index) {
   do {
-    if (!(exp(-thinnest * column_so_far) > least)) return false;
-    float length_ = (s.y - s.x) * exp2(float(-halvings)), start = s.x + float(index) * length_;
-    float total = 0, low = 1e37, high = 0;
+    if (has_ended()) return true;
+    if (work > uint(budget)) return false;
+    ++work;
+    double length_ = (t.y - t.x) * double(exp2(float(-halvings))), start = t.x + double(index) * length_;
+    for (int k = 0; k < SUN_POINTS; ++k) extinction[k] = scattering[k] = to_sun[k] = vec3(0);
+    for (int i = 0; i < media; ++i) {
+      ++work;
+      take_medium(i);
+      add_medium(dvec2(start, start + length_), 0.5LF * (t.x + t.y), lit);
+    }
+    vec3 total = vec3(0), low = vec3(1e37), high = vec3(0);
+    float s = float(length_);
     for (int k = 0; k < SUN_POINTS; ++k) {
-      float here = start + sun_node[k] * length_, h = 1;
-#if PROFILE == PROFILE_LAYERS
-      h = float(factor.value + (t + here) * factor.slope);
-#elif PROFILE == PROFILE_EXPONENTIAL
-      h = factor.falls ? exp(-(height + here * fall)) : float(factor.value);
-#endif
-      density[k] = max(in_cell(c, at + here * along) * h, 0);
-      column[k] = sun_column(origin + (t + here) * direction);
-      total += length_ * sun_weight[k] * density[k];
-      low = min(low, column[k]);
-      high = max(high, column[k]);
+      total += s * sun_weight[k] * extinction[k];
+      low = min(low, to_sun[k]);
+      high = max(high, to_sun[k]);
     }
     points_done += uint(SUN_POINTS);
-    bool coarse = thickest * total > most_change || climb * length_ > 1;
-    for (int a = 0; a < 3; ++a) coarse = coarse || (sigma[a] * low < opaque && sigma[a] * (high - low) > most_change);
+    bool coarse = max(total.x, max(total.y, total.z)) > most_change || climb * abs(float(course_direction.y)) * s > 1;
+    for (int a = 0; a < 3; ++a) coarse = coarse || (lit && low[a] < opaque && high[a] - low[a] > most_change);
     if (coarse && halvings < most_halvings) {
       ++halvings;
       index *= 2;
       continue;
     }
-    for (int k = 0; k < SUN_POINTS; ++k) {
-      float before = column_so_far + column[k];
-      for (int term = 0; term < SUN_POINTS; ++term) before += length_ * upto[k * SUN_POINTS + term] * density[term];
-      light += length_ * sun_weight[k] * density[k] * exp(-sigma * before);
+    for (int k = 0; k < SUN_POINTS && lit; ++k) {
+      work += uint(SUN_POINTS);
+      vec3 before = depth + to_sun[k];
+      for (int term = 0; term < SUN_POINTS; ++term) before += s * upto[k * SUN_POINTS + term] * extinction[term];
+      light += s * sun_weight[k] * scattering[k] * exp(-before);
     }
-    column_so_far += total;
+    depth += total;
     ++index;
     while (halvings > 0 && (index & 1) == 0) {
       index /= 2;
       --halvings;
     }
   } while (halvings > 0);
+  index = 0;
   return true;
 }
 
-// As walk() and integral_of of walk.glsl, which cannot call back. False: the ray has ended.
-bool scatter_from(Line line, double t, float end, Factor factor, dvec3 origin, dvec3 direction) {
-  Grid g = grids[0], all = grids[cells];
-  dvec2 exact = line.start + t * line.along, corner = floor(exact);
-  ivec2 anchor = ivec2(corner), last = lo_of(g) + size_of(g) + DEGREE - 1;
-  vec2 at = vec2(exact - corner), along = vec2(line.along), towards = sign(along);
-  vec2 next = mix(ceil(at) - 1, floor(at) + 1, greaterThan(along, vec2(0)));
-  vec2 met = vec2(crossing(at.x, along.x, next.x), crossing(at.y, along.y, next.y));
-  float s = 0;
-  while (s < end) {
-    float to = min(min(met.x, met.y), end);
-    if (to > s) {
-      ivec2 cell = clamp(anchor + ivec2(floor(at + 0.5 * (s + to) * along)), lo_of(g), last), index = cell - lo_of(all);
-      uint empty = emptiness[index.y * words_in_row(all) + index.x / 8] >> (4 * (index.x & 7)) & 15u;
-      if (empty == 0u && !scatter_in_cell(cell_at(place_of(g, cell), g.stride), at - vec2(cell - anchor), along, vec2(s, to), t, line,
-                                          factor, origin, direction))
-        return false;
-      s = to;
+// As far as shadows are known; false: to be gone on with.
+bool march(int place, inout SunState ray) {
+  while (ray.from < ray.end) {
+    if (has_ended()) return true;
+    if (work > uint(budget)) return false;
+    ++work;
+    bool to_edge = ray.read < ray.edges;
+    double next = min(next_cut(ray.from), ray.end), edge = 1e37LF;
+    if (to_edge) edge = sun_rays[place].edge[ray.read];
+    if (!to_edge && next > ray.known) return false;
+    double to = min(next, edge);
+    bool lit = (ray.flags & lit_here) != 0;
+    if (to > ray.from && something_at(0.5LF * (ray.from + to)) && !scatter(dvec2(ray.from, to), lit, ray.halvings, ray.index))
+      return false;
+    ray.from = max(ray.from, to);
+    if (!(edge > next)) {
+      ++ray.read;
+      ray.flags ^= lit_here;
     }
-    if (met.x <= s) next.x += towards.x, met.x = crossing(at.x, along.x, next.x);
-    if (met.y <= s) next.y += towards.y, met.y = crossing(at.y, along.y, next.y);
   }
   return true;
 }
-void scatter(Line line, dvec2 way, dvec3 origin, dvec3 direction) {
-  int level_below = 0;
-  bool rises = line.rise != 0, goes_on = true;
-  for (int k = 0; k < breaks() && !rises; ++k)
-    if (knot_height(k) < line.height || (PROFILE == PROFILE_LAYERS && knot_height(k) == line.height)) level_below = k + 1;
-  for (int k = 0; k <= (rises ? breaks() : 0) && goes_on; ++k) {
-    dvec2 part = way;
-    int below = !rises ? level_below : line.rise > 0 ? k : breaks() - k;
-    if (rises) {
-      double lo = below > 0 ? knot_height(below - 1) : -1e37LF, hi = below < breaks() ? knot_height(below) : 1e37LF;
-      part = clip_axis(line.height, line.rise, lo, hi, way);
-    }
-    if (!(part.y > part.x)) continue;
-    Factor factor = factor_between(line, below);
-    if (factor.value == 0 && factor.slope == 0) continue;
-    double length_ = part.y - part.x;
-    double spans = max(1.0LF, ceil((abs(line.along.x) + abs(line.along.y)) * length_ / cells_of_a_walk));
-    for (double i = 0; i < spans && goes_on; ++i)
-      goes_on = scatter_from(line, part.x + length_ * (i / spans), float(length_ / spans), factor, origin, direction);
-  }
-}
 
-shared uint points_of_group;
+shared uint points_of_group, shadow_rays_of_group;
+void add_to_counter(int low, uint amount) {
+  if (atomicAdd(counters[low], amount) > 0xffffffffu - amount) atomicAdd(counters[low + 1], 1u);
+}
 
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  bool inside = at.x < view_width && at.y < view_height;
-  if (gl_LocalInvocationIndex == 0u) points_of_group = 0u;
-  if (inside) {
-    int place = at.y * view_width + at.x;
-    dvec3 origin, direction, to_sun = dvec3(sun_x, sun_y, sun_z);
-    view_ray(dvec2(at) + 0.5LF, origin, direction);
-    Line line = line_over(origin, direction);
-    double end = has_distances != 0 ? double(distances[place]) : 1e37LF;
-    dvec2 way = clip_to_support(grids[0], line, clip_to_region(origin, direction, dvec2(0, end)));
-    if (way.y > way.x) scatter(line, way, origin, direction);
-    vec3 result = scattered * light * phase_of(dot(to_sun, direction));
-    for (int c = 0; c < 3; ++c) airlight_layer[3 * place + c] = result[c] + (first != 0 ? 0 : airlight_layer[3 * place + c]);
-    if (counts != 0 && loops_cut()) counters[4] = 1u;
+  ivec2 pixel;
+  int place = ray_in_hand(pixel);
+  if (gl_LocalInvocationIndex == 0u) points_of_group = shadow_rays_of_group = 0u;
+  uint shadow_rays = 0u;
+  if (place >= 0 && sun_rays[place].state.from < 1e37LF) {
+    SunState ray = sun_rays[place].state;
+    dvec3 origin, direction;
+    view_ray(dvec2(pixel) + 0.5LF, origin, direction);
+    set_course(origin, direction, ray.end);
+    double c = dot(dvec3(sun_x, sun_y, sun_z), direction);
+    for (int i = 0; i < media; ++i) source_of[i] = scattered[i] * phase_of(c, phase_kind[i], phase_g[i]);
+    light = vec3(ray.light[0], ray.light[1], ray.light[2]);
+    depth = vec3(ray.depth[0], ray.depth[1], ray.depth[2]);
+    if (march(place, ray)) {
+      ray.from = 1e37LF;
+      shadow_rays = uint(ray.shadow_rays);
+      int to = 3 * (pixel.y * view_width + pixel.x);
+      for (int c = 0; c < 3; ++c) airlight_layer[to + c] = light[c] + (first != 0 ? 0 : airlight_layer[to + c]);
+    } else if (mark != 0) {
+      counters[9] = uint(mark);
+    }
+    for (int c = 0; c < 3; ++c) ray.light[c] = light[c], ray.depth[c] = depth[c];
+    if (counts != 0 && (loops_cut() || (ray.flags & cut_short) != 0)) counters[4] = 1u;
+    sun_rays[place].state = ray;
   }
   if (counts == 0) return;
   barrier();
   atomicAdd(points_of_group, points_done);
+  atomicAdd(shadow_rays_of_group, shadow_rays);
   barrier();
-  if (gl_LocalInvocationIndex == 0u && atomicAdd(counters[5], points_of_group) > 0xffffffffu - points_of_group)
-    atomicAdd(counters[6], 1u);
+  if (gl_LocalInvocationIndex != 0u) return;
+  add_to_counter(5, points_of_group);
+  add_to_counter(10, shadow_rays_of_group);
 }

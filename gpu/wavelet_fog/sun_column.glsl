@@ -1,4 +1,4 @@
-// Columns from any place to the sun: SunMap::column of methods/wavelet_fog/sun_map.cpp.
+// Columns of the medium in hand from any place to the sun: SunMap::column of methods/wavelet_fog/sun_map.cpp.
 uniform double sun_x, sun_y, sun_z;  // towards the sun, unit
 const double least_way = LEAST_WAY;  // [cells] over the ground up to which the walk is as short as a lookup
 
@@ -10,24 +10,21 @@ float hermite(float t, float a, float slope_a, float b, float slope_b) {
 
 // p: from the first entry [cells].
 vec3 on_row(int row, double p) {
-  int first = clamp(row, 0, sun_rows - 1) * sun_columns;
+  int columns = sun_columns[medium], first = sun_first[medium] + clamp(row, 0, sun_rows[medium] - 1) * columns;
   double place = p / sun_step;
   if (!(place > 0)) return sun_map[first].xyz;
-  if (!(place < sun_columns - 1)) return vec3(0);
+  if (!(place < columns - 1)) return vec3(0);
   int c = int(place);
   vec4 a = sun_map[first + c], b = sun_map[first + c + 1];
-  float t = float(place - c), s = float(sun_step), k = float(sun_climb);
+  float t = float(place - c), s = float(sun_step), k = float(sun_climb[medium]);
   vec3 sum = vec3(hermite(t, a.x, -s * a.w, b.x, -s * b.w), 0, 0);
-#if PROFILE == PROFILE_LAYERS
-  sum.y = hermite(t, a.y, -s * a.x, b.y, -s * b.x);
-#elif PROFILE == PROFILE_EXPONENTIAL
-  sum.z = hermite(t, a.z, s * (k * a.z - a.w), b.z, s * (k * b.z - b.w));
-#endif
+  if (PROFILE == PROFILE_LAYERS) sum.y = hermite(t, a.y, -s * a.x, b.y, -s * b.x);
+  if (PROFILE == PROFILE_EXPONENTIAL) sum.z = hermite(t, a.z, s * (k * a.z - a.w), b.z, s * (k * b.z - b.w));
   return sum;
 }
 vec3 sums_at(double p, double q) {
-  double place = (q - sun_lo_q) / sun_step;
-  if (!(place > -1 && place < sun_rows)) return vec3(0);
+  double place = (q - sun_lo_q[medium]) / sun_step;
+  if (!(place > -1 && place < sun_rows[medium])) return vec3(0);
   int row = int(floor(place));
   float t = float(place - row);
   vec3 a = on_row(row - 1, p), b = on_row(row, p), c = on_row(row + 1, p), d = on_row(row + 2, p);
@@ -37,38 +34,28 @@ vec3 sums_at(double p, double q) {
 float sun_column(dvec3 x) {
   dvec3 to_sun = dvec3(sun_x, sun_y, sun_z);
   Line line = line_over(x, to_sun);
-  dvec2 way = clip_to_support(grids[0], line, clip_to_region(x, to_sun, dvec2(0, 1e37)));
+  dvec2 way = clip_to_support(grids[fog.map], line, clip_to_region(x, to_sun, dvec2(0, 1e37)));
   if (!(way.y > way.x)) return 0;
   double across = length(line.along);
-  if (!(across * (way.y - way.x) > least_way)) return integral_of(grids[0], line, way, 1e37);
-  double p = line.start.x * sun_along_u + line.start.y * sun_along_v - sun_lo_p,
-         q = line.start.y * sun_along_u - line.start.x * sun_along_v;
+  if (!(across * (way.y - way.x) > least_way)) return integral_of(grids[fog.map], line, way, 1e37);
+  double u = sun_along_u[medium], v = sun_along_v[medium];
+  double p = line.start.x * u + line.start.y * v - sun_lo_p[medium], q = line.start.y * u - line.start.x * v;
   vec3 from = sums_at(p + way.x * across, q);
   float sum = 0;
-  bool rises = line.rise != 0;
-  int level_below = 0;
-  for (int k = 0; k < breaks() && !rises; ++k)
-    if (knot_height(k) < line.height || (PROFILE == PROFILE_LAYERS && knot_height(k) == line.height)) level_below = k + 1;
-  for (int k = 0; k <= (rises ? breaks() : 0); ++k) {
-    dvec2 piece = way;
-    int below = !rises ? level_below : line.rise > 0 ? k : breaks() - k;
-    if (rises) {
-      double lo = below > 0 ? knot_height(below - 1) : -1e37LF, hi = below < breaks() ? knot_height(below) : 1e37LF;
-      piece = clip_axis(line.height, line.rise, lo, hi, way);
-    }
+  for (int k = 0; k < pieces_of(line); ++k) {
+    COUNT_LOOP
+    int below;
+    dvec2 piece = between_knots(line, way, k, below);
     if (!(piece.y > piece.x)) continue;
     vec3 to = sums_at(p + piece.y * across, q);
     Factor factor = factor_between(line, below);
-#if PROFILE == PROFILE_EXPONENTIAL
-    if (factor.falls) {
+    if (PROFILE == PROFILE_EXPONENTIAL && factor.falls) {
       vec2 heights = vec2((line.height + piece * line.rise - FALL_BASE) / FALL_SCALE);
       sum += exp(-heights.x) * from.z - exp(-heights.y) * to.z;
-      from = to;
-      continue;
+    } else {
+      sum += float(factor.value + factor.slope * piece.x) * (from.x - to.x) +
+             float(factor.slope / across) * (from.y - to.y - float((piece.y - piece.x) * across) * to.x);
     }
-#endif
-    sum += float(factor.value + factor.slope * piece.x) * (from.x - to.x) +
-           float(factor.slope / across) * (from.y - to.y - float((piece.y - piece.x) * across) * to.x);
     from = to;
   }
   return max(sum, 0) / float(across);

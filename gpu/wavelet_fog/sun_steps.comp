@@ -4,7 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #define VALUES_ACCESS readonly
 double segment_base = 0;
 #define FALL_BASE segment_base
-#define FALL_SCALE (1 / sun_climb)
+#define FALL_SCALE (1 / sun_climb[0])
 #define SUN_MAP_ACCESS writeonly
 #include "wavelet_fog/grids.glsl"
 #include "wavelet_fog/fog.glsl"
@@ -20,23 +20,20 @@ float value_at(Grid g, dvec2 x) {
 
 void main() {
   int c = int(gl_GlobalInvocationID.x), row = int(gl_GlobalInvocationID.y);
-  if (c >= sun_columns || row >= sun_rows) return;
-  double q = sun_lo_q + row * sun_step, start = c * sun_step;
-  dvec2 along = dvec2(sun_along_u, sun_along_v);
-  Line line = Line(sun_lo_p * along + q * dvec2(-along.y, along.x), along, 0, 1);
+  if (c >= sun_columns[0] || row >= sun_rows[0]) return;
+  double q = sun_lo_q[0] + row * sun_step, start = c * sun_step;
+  dvec2 along = dvec2(sun_along_u[0], sun_along_v[0]);
+  Line line = Line(sun_lo_p[0] * along + q * dvec2(-along.y, along.x), along, 0, 1);
   Grid map = grids[0];
   dvec2 t = clip_to_support(map, line, dvec2(start, start + sun_step));
   vec3 sum = vec3(0);
-  if (c + 1 < sun_columns && t.y > t.x) {
+  if (c + 1 < sun_columns[0] && t.y > t.x) {
     float length_ = float(t.y - t.x);
     sum.x = walk(map, line, t.x, length_, Factor(1, 0, false), 1e37);
-#if PROFILE == PROFILE_LAYERS
-    sum.y = walk(map, line, t.x, length_, Factor(-start, 1, false), 1e37);
-#elif PROFILE == PROFILE_EXPONENTIAL
+    if (PROFILE == PROFILE_LAYERS) sum.y = walk(map, line, t.x, length_, Factor(-start, 1, false), 1e37);
     segment_base = start;
     sum.z = sum.x;
-    if (sun_climb > 0) sum.z = walk(map, line, t.x, length_, Factor(1, 0, true), 1e37);
-#endif
+    if (PROFILE == PROFILE_EXPONENTIAL && sun_climb[0] > 0) sum.z = walk(map, line, t.x, length_, Factor(1, 0, true), 1e37);
   }
-  sun_map[row * sun_columns + c] = vec4(sum, value_at(map, line.start + start * along));
+  sun_map[sun_first[0] + row * sun_columns[0] + c] = vec4(sum, value_at(map, line.start + start * along));
 }

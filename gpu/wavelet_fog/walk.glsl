@@ -2,114 +2,112 @@
 // cells of spline_map.h or, with SKIPS, of methods/wavelet_fog/blocks.cpp.
 //
 // The walk is in single precision, from an anchor that is computed in double every 32 cells or so: places are rounded to 4e-6
-// of a cell however large the map and however far away the eye.
-#include "wavelet_fog/cell.glsl"
+// of a cell however large the map and however far away the eye (with bound 256, and 3e-5).
 #ifndef FALL_BASE  // height and scale height where the factor falls [m]
 #define FALL_BASE knot_height(0)
-#define FALL_SCALE double(scale_height)
+#define FALL_SCALE double(fog.scale_height)
 #endif
+#include "wavelet_fog/heights.glsl"
+#include "wavelet_fog/cell.glsl"
 #if SKIPS || VARIANT == VARIANT_BOUND
-#define EMPTINESS_ACCESS readonly
-#include "wavelet_fog/emptiness.glsl"
+#include "wavelet_fog/empty_cells.glsl"
 #endif
+#if VARIANT == VARIANT_BOUND  // a walk that begins anew may find the cell empty in a block that it would have taken as a whole
+const double cells_at_once = 256;
+#else
 const double cells_at_once = 32;
+#endif
 
 uint cells_read = 0u;
 
-// The factor of the height along a part of the line: value + slope t, or falling.
-struct Factor {
-  double value, slope;
-  bool falls;
-};
+#define BLOCKS (SKIPS || VARIANT == VARIANT_BOUND)
+#if VARIANT == VARIANT_BOUND
+float allowed_error;  // of the ray in hand, in f
 
-// Where a line crosses the next grid line of an axis.
-float crossing(float at, float along, float next) { return along == 0 ? 1e37 : (next - at) / along; }
+// Level of the block around a cell that may be taken from its coarser grid.
+int coarse_level(ivec2 cell) {
+  int level = fog.levels;
+  while (level > 0 && !(value_in(grids[fog.errors + level - 1], cell >> level) <= allowed_error)) --level;
+  return level;
+}
+#endif
 
-// Of the line from `t` on, `end` long, over cells of the grid; ends once it is above `enough`.
+// Of the line from `t` on, `end` long, over cells of the grid, or over blocks of them: empty ones, those that a coarser grid knows well
+// enough. Ends once it is above `enough_`.
 float walk(Grid g, Line line, double t, float end, Factor factor, float enough_) {
   dvec2 exact = line.start + t * line.along, corner = floor(exact);
-  ivec2 anchor = ivec2(corner), last = lo_of(g) + size_of(g) + DEGREE - 1;
+  ivec2 anchor = ivec2(corner), first = lo_of(g), last = first + size_of(g) + DEGREE - 1;
   vec2 at = vec2(exact - corner), along = vec2(line.along);
-#if PROFILE == PROFILE_EXPONENTIAL
-  float height = float((line.height + t * line.rise - FALL_BASE) / FALL_SCALE), fall = float(line.rise / FALL_SCALE);
-#endif
-#if PROFILE == PROFILE_LAYERS || PROFILE == PROFILE_EXPONENTIAL
+  float height = 0, fall = 0;
+  if (PROFILE == PROFILE_EXPONENTIAL) {
+    height = float((line.height + t * line.rise - FALL_BASE) / FALL_SCALE);
+    fall = float(line.rise / FALL_SCALE);
+  }
   vec2 linear = vec2(factor.value + t * factor.slope, factor.slope);
+  // A cell's rim is met at (rim - at) / along, never where the line does not move.
+  bvec2 moves = greaterThan(abs(along), vec2(1e-30)), falls_back = lessThan(along, vec2(0));
+  vec2 inverse = mix(vec2(0), 1 / along, moves), never = mix(vec2(1e37), vec2(0), moves);
+  ivec2 ahead = ivec2(greaterThan(along, vec2(0)));
+  ivec2 cell = clamp(anchor + ivec2(mix(floor(at), ceil(at) - 1, falls_back)), first, last);
+#if BLOCKS
+  Grid all = grids[fog.cells];
 #endif
   float s = 0, sum = 0;
-  vec2 towards = sign(along), next = mix(ceil(at) - 1, floor(at) + 1, greaterThan(along, vec2(0)));
-  vec2 met = vec2(crossing(at.x, along.x, next.x), crossing(at.y, along.y, next.y));
   while (s < end) {
-    float to = min(min(met.x, met.y), end);
-    ivec2 cell = clamp(anchor + ivec2(floor(at + 0.5 * (s + to) * along)), lo_of(g), last);
-    bool passed = false;
-    if (to > s) {
-#if SKIPS
-      Grid all = grids[cells];
-      ivec2 index = cell - lo_of(all);
-      int empty = int(emptiness[index.y * words_in_row(all) + index.x / 8] >> (4 * (index.x & 7)) & 15u) - 1;
-      passed = empty >= 0;
-      if (empty > 0) {
-        ivec2 block = (cell >> empty) + ivec2(greaterThan(along, vec2(0)));
-        vec2 rim = vec2((block << empty) - anchor);
-        to = max(to, min(end, min(crossing(at.x, along.x, rim.x), crossing(at.y, along.y, rim.y))));
-        next = mix(ceil(at + to * along) - 1, floor(at + to * along) + 1, greaterThan(along, vec2(0)));
-        met = vec2(crossing(at.x, along.x, next.x), crossing(at.y, along.y, next.y));
-      }
+    COUNT_LOOP
+    int level = 0;
+    bool empty = false;
+#if BLOCKS
+    int nothing = empty_around(all, cell);
+    empty = nothing >= 0;
+    level = max(nothing, 0);
+#if VARIANT == VARIANT_BOUND
+    if (!empty) level = coarse_level(cell);
 #endif
-      if (!passed) {
-        ++cells_read;
-        Cell c = cell_at(place_of(g, cell), g.stride);
-        vec2 local = at - vec2(cell - anchor), piece = vec2(s, to);
-#if PROFILE == PROFILE_EXPONENTIAL
-        sum += factor.falls ? falling_in_cell(c, local, along, piece, height, fall)
-                            : linear.x * moments_in_cell(c, local, along, piece).x;
-#elif PROFILE == PROFILE_LAYERS
-        sum += dot(linear, moments_in_cell(c, local, along, piece));
+#endif
+    ivec2 block = cell >> level;
+    vec2 met = (vec2(((block + ahead) << level) - anchor) - at) * inverse + never;
+    float to = max(s, min(min(met.x, met.y), end));
+    if (!empty && to > s) {
+      ++cells_read;
+      vec2 local = at + vec2(anchor - (block << level)), over = along, piece = vec2(s, to);
+#if VARIANT == VARIANT_BOUND
+      Grid grid = grids[level];
+      float scale = exp2(-float(level));
+      local *= scale;
+      over *= scale;
+      Cell c = cell_at(place_of(grid, block), grid.stride);
 #else
-        sum += moments_in_cell(c, local, along, piece).x;
+      Cell c = cell_at(place_of(g, cell), g.stride);
 #endif
-        if (sum > enough_) return sum;
-      }
-      s = to;
+#if FALLS
+      if (factor.falls)
+        sum += falling_in_cell(c, local, over, piece, height, fall);
+      else
+#endif
+        sum += PROFILE == PROFILE_LAYERS ? dot(linear, moments_in_cell(c, local, over, piece))
+                                         : linear.x * moments_in_cell(c, local, over, piece).x;
+      if (sum > enough_) return sum;
     }
-    if (met.x <= s) next.x += towards.x, met.x = crossing(at.x, along.x, next.x);
-    if (met.y <= s) next.y += towards.y, met.y = crossing(at.y, along.y, next.y);
+    ivec2 next = cell;
+#if BLOCKS
+    ivec2 low = block << level;
+    next = clamp(anchor + ivec2(floor(at + to * along)), low, low + (1 << level) - 1);
+#endif
+    cell = mix(next, ((block + ahead) << level) + ahead - 1, lessThanEqual(met, vec2(to)));
+    if (any(lessThan(cell, first)) || any(greaterThan(cell, last))) return sum;  // the rest is rounding
+    s = to;
   }
   return sum;
-}
-
-int breaks() { return PROFILE == PROFILE_NONE ? 0 : knots; }
-
-// Along a line that has that many knots below it.
-Factor factor_between(Line line, int below) {
-#if PROFILE == PROFILE_LAYERS
-  if (below == 0 || below == knots) return Factor(knot_factor(max(below - 1, 0)), 0, false);
-  double lo = knot_height(below - 1), slope = (knot_factor(below) - knot_factor(below - 1)) / (knot_height(below) - lo);
-  return Factor(knot_factor(below - 1) + slope * (line.height - lo), slope * line.rise, false);
-#elif PROFILE == PROFILE_EXPONENTIAL
-  if (below == 0) return Factor(1, 0, false);
-  if (line.rise == 0) return Factor(double(exp(float((knot_height(0) - line.height) / double(scale_height)))), 0, false);
-  return Factor(1, 0, true);
-#else
-  return Factor(1, 0, false);
-#endif
 }
 
 // Integral of f h over t [m], which is a part of the grid's support; ends once it is above `enough_`.
 float integral_of(Grid g, Line line, dvec2 t, float enough_) {
   float sum = 0;
-  int level_below = 0;  // knots below a line that does not rise
-  bool rises = line.rise != 0;
-  for (int k = 0; k < breaks() && !rises; ++k)
-    if (knot_height(k) < line.height || (PROFILE == PROFILE_LAYERS && knot_height(k) == line.height)) level_below = k + 1;
-  for (int k = 0; k <= (rises ? breaks() : 0); ++k) {
-    dvec2 part = t;
-    int below = !rises ? level_below : line.rise > 0 ? k : breaks() - k;
-    if (rises) {
-      double lo = below > 0 ? knot_height(below - 1) : -1e37LF, hi = below < breaks() ? knot_height(below) : 1e37LF;
-      part = clip_axis(line.height, line.rise, lo, hi, t);
-    }
+  for (int k = 0; k < pieces_of(line); ++k) {
+    COUNT_LOOP
+    int below;
+    dvec2 part = between_knots(line, t, k, below);
     if (!(part.y > part.x)) continue;
     Factor factor = factor_between(line, below);
     if (factor.value == 0 && factor.slope == 0) continue;

@@ -34,7 +34,8 @@ class PreparedWaveletFogGpu final : public scene::Prepared {
   bool polar() const { return options_.variant == Options::Variant::polar && !fogs_.empty(); }
   void find_depths(const View&, const Buffer* distances, const Buffer& depths, const Buffer& counters) const;
   void compose(const View&, const Buffer& depths, const Buffer& lit) const;
-  void finish(scene::Rendering&) const;
+  scene::Rendering draw(const View&, const Execution&, std::vector<unsigned>& counters) const;
+  std::vector<unsigned> finish(scene::Rendering&) const;
 
   std::shared_ptr<const Scene> scene_;
   Options options_;
@@ -61,10 +62,11 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
       fogs_.push_back(
           std::make_unique<FogOnDevice>(context_, medium, options_, int(fogs_.size()), lamps_light_surfaces(*scene_)));
   if (options_.sun && !fogs_.empty() && !suns_of(*scene_).empty())
-    sun_ = std::make_unique<SunOnDevice>(context_, *fogs_.front(), options_);
+    sun_ = std::make_unique<SunOnDevice>(context_, *scene_, fogs_, first_hits_.get(), options_);
   composition_ = &program(context_, "composition", 64);
   timer.begin("maps");
   for (const auto& fog : fogs_) fog->refresh();
+  if (sun_) sun_->refresh();
   times_ = timer.times();
 }
 
@@ -111,6 +113,7 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
   const Use use(context_);
   if (first_hits_ && !first_hits_->move_balls(*scene)) return std::nullopt;
   for (std::size_t i = 0; i < media.size(); ++i) fogs_[i]->become(*media[i]);
+  if (sun_) sun_->write();
   scene_ = std::move(scene);
   return std::vector<scene::StageTime>{};
 }
@@ -157,24 +160,38 @@ void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, cons
   p.dispatch(int(pixels));
 }
 
-void PreparedWaveletFogGpu::finish(scene::Rendering& result) const {
+// The words of the counters, none where no layer is wanted.
+std::vector<unsigned> PreparedWaveletFogGpu::finish(scene::Rendering& result) const {
   frame_.finish(result);
   result.counters["rays"] = double(result.film.pixels());
   const std::vector<unsigned> words = frame_.download.values<unsigned>("counters");
-  if (words.empty()) return;
+  if (words.empty()) return words;
   result.counters["cells"] = words[0] + 4294967296.0 * words[1];
   result.counters["coefficients"] = words[2] + 4294967296.0 * words[3];
   if (polar()) result.counters["lookups"] = words[7] + 4294967296.0 * words[8];
-  if (sun_) result.counters["sun_points"] = words[5] + 4294967296.0 * words[6];
+  if (sun_) {
+    result.counters["sun_points"] = words[5] + 4294967296.0 * words[6];
+    result.counters["shadow_rays"] = words[10] + 4294967296.0 * words[11];
+  }
   if (words[4] != 0)
     throw Unavailable(fmt::format("gpu: {} ends the loops of a ray after 65535 iterations, too few for this map",
                                   context_.renderer()));
+  return words;
 }
 
 scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution& execution) const {
   if (polar() && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("variant = polar is for perspective cameras");
   const Use use(context_);
+  while (true) {
+    std::vector<unsigned> counters;
+    scene::Rendering result = draw(view, execution, counters);
+    if (!sun_ || counters.empty() || !sun_->left_rays(counters)) return result;
+  }
+}
+
+scene::Rendering PreparedWaveletFogGpu::draw(const View& view, const Execution& execution,
+                                             std::vector<unsigned>& words) const {
   const std::size_t pixels = std::size_t(view.width) * view.height;
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   frame_.begin(execution);
@@ -187,6 +204,7 @@ scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution
     frame_.timer.begin("maps");
     for (const auto& fog : fogs_)
       if (fog->stale()) fog->refresh();
+    if (sun_) sun_->refresh();
   }
   if (first_hits_) {
     distances = &frame_.buffers.get("distances", 4 * pixels);
@@ -207,7 +225,7 @@ scene::Rendering PreparedWaveletFogGpu::render(const View& view, const Execution
   frame_.timer.begin("composition");
   compose(view, depths, lit);
   frame_.download.add_values("counters", counters, 4 * counter_words);
-  finish(result);
+  words = finish(result);
   return result;
 }
 
@@ -229,10 +247,6 @@ std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene
   std::vector<std::string> reasons = wavelet_fog::WaveletFog().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = wavelet_fog::read_options(settings);
-  if (options.sun && !scene.surfaces.empty())
-    reasons.push_back("sun with surfaces is for the CPU: no shader looks for their shadows in the fog");
-  if (options.sun && scene.media.size() > 1)
-    reasons.push_back("sun with several media is for the CPU: the shader scatters in one");
   if (options.variant == Options::Variant::pre)
     reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
   if (options.keep < 1) reasons.push_back("keep is for the CPU: no shader compresses maps");

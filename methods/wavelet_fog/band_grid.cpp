@@ -79,10 +79,15 @@ double BandGrid::in_cell(int i, int j, double u, double v) const {
   return sum;
 }
 
-double BandGrid::looked_up(int i, int j, double entry, double exit, const PathTable& table) const {
-  double integrals[most_pieces * most_pieces];
+// factor: at the entry, and what it gains until the exit.
+double BandGrid::looked_up(int i, int j, double entry, double exit, const double (&factor)[2],
+                           const PathTable& table) const {
+  double integrals[2 * most_pieces * most_pieces];
   table.integrals(entry, exit, integrals);
   const int count = table.pieces();
+  if (table.moments())
+    for (int k = 0; k < count * count; ++k)
+      integrals[k] = factor[0] * integrals[k] + factor[1] * integrals[count * count + k];
   double sum = 0;
   for (const Band& band : bands_) {
     const int a = band.wavelet_u ? pieces_.scaling() : 0, b = band.wavelet_v ? pieces_.scaling() : 0;
@@ -122,6 +127,28 @@ double BandGrid::walked(const HeightProfile& profile, const MapLine& line, int i
   return sum;
 }
 
+namespace {
+
+// The factor of the height as a straight line over t: at its beginning, and what it gains. Nothing where it breaks, or falls too much.
+bool straight(const HeightProfile& profile, const MapLine& line, Interval t, double (&factor)[2]) {
+  factor[0] = 1;
+  factor[1] = 0;
+  if (std::holds_alternative<scene::SameAtAllHeights>(profile)) return true;
+  const double a = line.y + t.lo * line.dy, b = line.y + t.hi * line.dy;
+  for (const double height : height_breaks(profile))
+    if (height > std::min(a, b) && height < std::max(a, b)) return false;
+  if (const auto* fall = std::get_if<scene::ExponentialFall>(&profile);
+      fall && std::abs(b - a) > BandGrid::most_fall * fall->scale_height && std::max(a, b) > fall->base)
+    return false;
+  const double off = 0.5 / std::sqrt(3.0), middle = 0.5 * (a + b);  // two Gauss points
+  const double first = factor_at(profile, middle - off * (b - a)), second = factor_at(profile, middle + off * (b - a));
+  factor[1] = (second - first) / (2 * off);
+  factor[0] = 0.5 * (first + second - factor[1]);
+  return true;
+}
+
+}  // namespace
+
 double BandGrid::integral(const HeightProfile& profile, const MapLine& line, Interval t, const PathTable* table,
                           Visits& visits) const {
   const MapLine here = coarser(line, level_);
@@ -143,8 +170,10 @@ double BandGrid::integral(const HeightProfile& profile, const MapLine& line, Int
     visits.coefficients += per_cell_;
     const double u = here.u + from * here.du - i, v = here.v + from * here.dv - j;
     const double u1 = here.u + to * here.du - i, v1 = here.v + to * here.dv - j;
-    if (table && across > 0 && on_perimeter(u, v) && on_perimeter(u1, v1))
-      sum += looked_up(i, j, PathTable::place(u, v), PathTable::place(u1, v1), *table) / across;
+    double factor[2];
+    if (table && across > 0 && on_perimeter(u, v) && on_perimeter(u1, v1) &&
+        straight(profile, here, {from, to}, factor))
+      sum += looked_up(i, j, PathTable::place(u, v), PathTable::place(u1, v1), factor, *table) / across;
     else
       sum += walked(profile, here, i, j, {from, to});
     return false;

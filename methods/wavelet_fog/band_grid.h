@@ -15,8 +15,11 @@ class BandGrid {
   BandGrid(const Bands&, const Family&, int level);
 
   const UnitPieces& pieces() const { return pieces_; }
-  // Integral over t [its unit], of f h without a table. With one, whole cells are lookups: for a factor of the height that
-  // is 1 everywhere.
+  // A cell in which an exponential falls by more than that many scale heights is no lookup.
+  static constexpr double most_fall = 0.3;
+
+  // Integral over t [its unit] of f h. With a table, whole cells are lookups where h has no break in them; h is taken along them as the
+  // straight line through its values at two Gauss points, which it is but for an exponential. A table without moments is for h = 1.
   double integral(const scene::HeightProfile&, const scene::MapLine&, Interval t, const PathTable*, Visits&) const;
 
  private:
@@ -30,7 +33,7 @@ class BandGrid {
   void lay_cells();
   double coefficient(const Band&, int i, int j) const;
   double in_cell(int i, int j, double u, double v) const;
-  double looked_up(int i, int j, double entry, double exit, const PathTable&) const;
+  double looked_up(int i, int j, double entry, double exit, const double (&factor)[2], const PathTable&) const;
   double walked(const scene::HeightProfile&, const scene::MapLine&, int i, int j, Interval t) const;
 
   UnitPieces pieces_;

@@ -41,13 +41,19 @@ LeveledFog::LeveledFog(const scene::Medium& medium, const Options& options)
 
 void LeveledFog::become(const scene::Medium& medium) {
   const scene::Fogmap& now = *std::get<scene::FogmapPointer>(medium.field);
-  if (&now != fog_ && !same_map(now.map, fog_->map)) {
+  const bool same = &now == fog_ || same_map(now.map, fog_->map);
+  medium_ = &medium;
+  fog_ = &now;
+  if (!same || (table_ && needs_moments() != table_->moments())) {
     *this = LeveledFog(medium, options_);
     return;
   }
-  medium_ = &medium;
-  fog_ = &now;
   enough_ = enough_column(medium, options_);
+}
+
+// A table's lookups are for a factor of the height that is 1, or straight along a cell.
+bool LeveledFog::needs_moments() const {
+  return options_.fade > 0 || !std::holds_alternative<scene::SameAtAllHeights>(fog_->profile);
 }
 
 void LeveledFog::lay_bands() {
@@ -62,7 +68,7 @@ void LeveledFog::lay_bands() {
   } else if (options_.variant == Variant::paper) {
     for (int l = L - 1; l >= 0; --l) bands_.emplace_back(levels_.detail[l], l);
   }
-  if (options_.table > 0) table_.emplace(bands_.back().pieces(), options_.table, options_.lookup);
+  if (options_.table > 0) table_.emplace(bands_.back().pieces(), options_.table, options_.lookup, needs_moments());
 }
 
 // Of the paper's sum, with tables or wavelets: band 0 is complete, m counts up to its distance.

@@ -34,6 +34,7 @@ class LeveledFog {
   void become(const scene::Medium&);
 
  private:
+  bool needs_moments() const;
   void lay_bands();
   double summed_bands(const scene::HeightProfile&, const scene::MapLine&, Interval inside, double length,
                       Visits&) const;

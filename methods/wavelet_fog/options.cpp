@@ -102,7 +102,6 @@ void add_reasons_of_settings(const Options& o, std::vector<std::string>& reasons
     reasons.push_back("variant = pre reads wavelets: expected coarse = wavelet");
   if (o.table > 0 && o.variant != V::direct && !is_signed(o.variant))
     reasons.push_back("table is for variant = direct, pre or paper");
-  if (o.table > 0 && o.fade > 0) reasons.push_back("table with fade: it holds integrals over the ground alone");
 }
 
 // Against the layer of the sun.
@@ -138,10 +137,6 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
     }
     const scene::Fogmap& fog = *std::get<scene::FogmapPointer>(scene.media[i].field);
     const scene::SplineMap& map = fog.map;
-    if (o.table > 0 && !std::holds_alternative<scene::SameAtAllHeights>(fog.profile))
-      reasons.push_back(
-          fmt::format("table with a profile of {}, expected none: it holds integrals over the ground alone",
-                      scene::label(scene.media, i)));
     if (!uses_levels(o.variant) && o.keep == 1) continue;
     if (o.levels > most_levels(map.range()))
       reasons.push_back(fmt::format("levels = {}, expected at most {} for the {} x {} coefficients of {}", o.levels,

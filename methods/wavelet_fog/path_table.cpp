@@ -50,11 +50,11 @@ Vec3 PathTable::point(double place) {
   }
 }
 
-PathTable::PathTable(const UnitPieces& pieces, int R, Lookup lookup)
-    : count_(pieces.count()), places_(4 * R), lookup_(lookup) {
-  const std::size_t tables = std::size_t(count_) * count_;
+PathTable::PathTable(const UnitPieces& pieces, int R, Lookup lookup, bool moments)
+    : count_(pieces.count()), places_(4 * R), channels_(moments ? 2 : 1), lookup_(lookup) {
+  const std::size_t of_channel = std::size_t(count_) * count_, tables = of_channel * channels_;
   values_.resize(tables * places_ * places_);
-  // A wavelet is a polynomial in half cells: each way is cut there, and n + 1 points are exact.
+  // A wavelet is a polynomial in half cells: each way is cut there, and n + 1 points are exact, of moments too.
   const scene::GaussLegendre rule = scene::gauss_legendre(pieces.degree + 1);
   std::vector<double> along_u(count_), along_v(count_), sum(tables);
   for (int entry = 0; entry < places_; ++entry)
@@ -69,13 +69,17 @@ PathTable::PathTable(const UnitPieces& pieces, int R, Lookup lookup)
       std::fill(sum.begin(), sum.end(), 0.0);
       for (int part = 0; part < count; ++part)
         for (std::size_t k = 0; k < rule.node.size(); ++k) {
-          const double half = 0.5 * (cuts[part + 1] - cuts[part]);
-          const Vec3 x = from + (cuts[part] + half * (1 + rule.node[k])) * step;
+          const double half = 0.5 * (cuts[part + 1] - cuts[part]), share = cuts[part] + half * (1 + rule.node[k]);
+          const Vec3 x = from + share * step;
           pieces.at(x[0], along_u.data());
           pieces.at(x[1], along_v.data());
           const double weight = half * rule.weight[k] * step.norm();
           for (int a = 0; a < count_; ++a)
-            for (int b = 0; b < count_; ++b) sum[a * count_ + b] += weight * along_u[a] * along_v[b];
+            for (int b = 0; b < count_; ++b) {
+              const double piece = weight * along_u[a] * along_v[b];
+              sum[a * count_ + b] += piece;
+              if (moments) sum[of_channel + a * count_ + b] += share * piece;
+            }
         }
       float* to = values_.data() + (std::size_t(entry) * places_ + exit) * tables;
       std::transform(sum.begin(), sum.end(), to, [](double value) { return float(value); });
@@ -83,7 +87,7 @@ PathTable::PathTable(const UnitPieces& pieces, int R, Lookup lookup)
 }
 
 void PathTable::integrals(double entry, double exit, double* out) const {
-  const int tables = count_ * count_, R = places_ / 4;
+  const int tables = count_ * count_ * channels_, R = places_ / 4;
   const auto row = [&](long a, long b) {
     return values_.data() + (std::size_t(a % places_) * places_ + std::size_t(b % places_)) * tables;
   };

@@ -24,21 +24,23 @@ struct UnitPieces {
 class PathTable {
  public:
   enum class Lookup { nearest, bilinear };
-  // 4 R places on the perimeter, R >= 1; count^2 tables of (4 R)^2 floats.
-  PathTable(const UnitPieces&, int R, Lookup);
+  // 4 R places on the perimeter, R >= 1; count^2 tables of (4 R)^2 floats, twice as many with `moments`.
+  PathTable(const UnitPieces&, int R, Lookup, bool moments = false);
 
   int pieces() const { return count_; }  // along each axis
+  bool moments() const { return channels_ > 1; }
   std::size_t bytes() const { return values_.size() * sizeof(float); }
   // Perimeter of the cell: bottom, right, top and left side in turn, 0 to 4.
   static double place(double u, double v);
   static Vec3 point(double place);  // (u, v, 0)
-  // Integrals [cells] of pieces (a along u, b along v) over the way: out[a * count + b].
+  // Integrals [cells] of pieces (a along u, b along v) over the way: out[a * count + b]. With moments, after them those of the piece
+  // times the share of the way that lies behind: for factors of the height that are straight along it.
   void integrals(double entry, double exit, double* out) const;
 
  private:
-  int count_, places_;
+  int count_, places_, channels_;
   Lookup lookup_;
-  std::vector<float> values_;  // [entry][exit][a][b]
+  std::vector<float> values_;  // [entry][exit][channel][a][b]
 };
 
 }  // namespace airlight::wavelet_fog

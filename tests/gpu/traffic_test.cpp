@@ -48,6 +48,7 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
       {fogmaps, "wavelet_fog/valley", {}, true},
       {fogmaps, "wavelet_fog/valley", {{"variant", "polar"}}, true},
       {fogmaps, "wavelet_fog/patchy", {{"variant", "paper"}}},
+      {fogmaps, "wavelet_fog/valley", {{"sun", "true"}}, true},
   };
   for (const Case& c : cases) {
     CAPTURE(c.method.name(), c.scene, c.given);

@@ -151,8 +151,7 @@ TEST_CASE("wavelet fog: what the GPU refuses, it names", "[gpu][wavelet_fog]") {
   CHECK(refused({{"variant", "polar"}}));
   CHECK(refused({{"variant", "tele"}}));
   CHECK(refused({{"variant", "pre"}, {"levels", "0"}}));
-  scene->surfaces.emplace_back();
-  scene->lights = {scene::DirectionalLight{}};
+  scene->lights = {scene::PointLight{}};
   CHECK(refused({{"sun", "true"}}));
   scene->media[0].field = scene::Homogeneous{};
   CHECK(refused({}));

@@ -1,6 +1,8 @@
 // Light of suns that fogmaps scatter, on the GPU as on the CPU.
-#include "scene/error.h"
+#include "experiments/equality.h"
+#include "reference/path_tracer/renderer.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
+#include "tests/methods/wavelet_fog/sun_scenes.h"
 
 using namespace airlight;
 using namespace airlight::gpu::test;
@@ -72,4 +74,138 @@ TEST_CASE("wavelet fog: a frame under a sun stays on the device, also where the 
   for (const auto& [layer, values] : anew.film.layers) CHECK(moved.film.layer(layer) == values);
   const scene::Rendering cpu = render(wavelet_fog::WaveletFog(), second, given);
   CHECK(moved.counters.at("sun_points") == Approx(cpu.counters.at("sun_points")).epsilon(2e-3));
+}
+
+namespace {
+
+// How many pixels of a layer differ by more than rounding: rays that pass shadows where the two backends' shadow rays do not agree.
+int pixels_that_differ(const scene::Film& a, const scene::Film& b, const std::string& layer) {
+  const std::vector<float>&x = a.layer(layer), &y = b.layer(layer);
+  const double most = *std::max_element(x.begin(), x.end());
+  int count = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    double error = 0;
+    for (std::size_t c = i; c < i + 3; ++c)
+      error = std::max(error, std::abs(double(y[c]) - x[c]) / (std::abs(x[c]) + 0.01 * most + 1e-300));
+    count += error > 1e-5 + 10 * gpu::test::injected_error() ? 1 : 0;
+  }
+  return count;
+}
+
+// Every layer to `bound` at the 99th percentile; and but for `most` of the pixels, all of the airlight.
+void compare_under_sun(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound, int most) {
+  compare(scene, given, bound);
+  const scene::Rendering a = render(wavelet_fog::WaveletFog(), scene, given);
+  const scene::Rendering b = render(gpu::WaveletFogGpu(), scene, given);
+  const int differ = pixels_that_differ(a.film, b.film, "airlight");
+  if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+    fmt::print("  {} of {} pixels differ; {} and {} points, {} and {} shadow rays\n", differ, a.film.pixels(),
+               a.counters.at("sun_points"), b.counters.at("sun_points"), a.counters.at("shadow_rays"),
+               b.counters.at("shadow_rays"));
+  CAPTURE(scene->name, given);
+  CHECK(differ <= most);
+  CHECK(b.counters.at("sun_points") == Approx(a.counters.at("sun_points")).epsilon(5e-3));
+  CHECK(b.counters.at("shadow_rays") == Approx(a.counters.at("shadow_rays")).epsilon(2e-3));
+}
+
+}  // namespace
+
+TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  // The ten scenes that the CPU is judged by, and those without houses with houses too. Columns through thick fog are differences of
+  // sums that are rounded: up to 20 of optical depth in a ball, 8 from above.
+  int number = 0;
+  for (airlight::test::SunCase c : airlight::test::sun_cases) {
+    const double bound = number == 7 ? 2e-5 : number == 4 ? 1e-5 : 2.5e-6;
+    for (const bool houses : {true, false}) {
+      if (c.houses && !houses) continue;
+      c.houses = houses;
+      const auto scene = airlight::test::sun_scene(c, 48, 36);
+      scene->name = fmt::format("{}{}", c.name, houses ? ", houses" : "");
+      compare_under_sun(scene, {{"sun", "true"}}, bound, number == 7 ? 120 : 2);
+    }
+    ++number;
+  }
+}
+
+TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  for (const auto& view : views) {
+    const auto scene = sunny(1, profiles[0], view, {0.5, 0.4, 0.3});
+    scene->lights.push_back(scene::DirectionalLight{Vec3(-0.3, 0.7, -0.2).normalized(), Rgb(0.5, 1, 2)});
+    for (int i = 0; i < 8; ++i)
+      scene->surfaces.push_back({"ball", scene::Sphere{{4.0 * i - 12, 1.5 + 0.5 * i, 5.0 - 3 * (i % 4)}, 0.4 + 0.2 * i},
+                                 scene::Lambert{Rgb(0.3, 0.5, 0.7)}});
+    scene->surfaces.push_back(
+        {"ground", scene::Plane{{0, -0.5, 0}, Vec3::UnitY()}, scene::Lambert{Rgb(0.6, 0.5, 0.4)}});
+    scene->surfaces.push_back(airlight::test::scene_named("wavelet_fog/valley", 4, 4)->surfaces[1]);
+    finish(*scene);
+    compare_under_sun(scene, {{"sun", "true"}}, 3e-6, 2);
+    compare_under_sun(scene, {{"sun", "true"}, {"shadow_steps", "1000"}, {"sun_points", "2"}}, 3e-6, 2);
+    scene->surfaces.resize(8);  // no triangle, rays that end nowhere
+    finish(*scene);
+    compare_under_sun(scene, {{"sun", "true"}}, 3e-6, 2);
+  }
+}
+
+TEST_CASE("wavelet fog: suns in several media on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  const scene::PhaseFunction phases[] = {scene::HenyeyGreenstein{0.6}, scene::Rayleigh{}, scene::Isotropic{}};
+  for (const auto& view : views)
+    for (const bool houses : {false, true}) {
+      const auto scene = sunny(1, profiles[0], view, {0.5, 0.4, 0.3});
+      scene->name = fmt::format("several media{} from {}", houses ? " behind houses" : "", view.first[1]);
+      for (int i = 0; i < 3; ++i) {
+        scene::Medium other;
+        auto fog = patches(i == 2 ? 0 : i + 2, 20 + 7 * i, 25, 1.1 + 0.15 * i, 7 + i, profiles[(i + 1) % 3]);
+        fog->cos_turn = 0.8, fog->sin_turn = 0.6;
+        other.field = scene::FogmapPointer(fog);
+        if (i == 0) other.region = Box{{-15, -9, -15}, {15, 9, 15}};
+        if (i == 1) other.region = scene::Sphere{{2, 1, 3}, 9};
+        if (i == 2) other.region = scene::Slab{Vec3::UnitY(), -2, 6};
+        other.sigma_t = Rgb(0.05, i == 0 ? 0 : 0.3, 0.1);
+        other.albedo = Rgb(0.5, 0.9, 0.8);
+        other.phase = phases[i];
+        scene->media.push_back(other);
+      }
+      scene->lights.push_back(scene::DirectionalLight{Vec3(0, 1, 0), Rgb(0.5, 1, 2)});
+      if (houses) scene->surfaces = airlight::test::scene_named("wavelet_fog/valley", 4, 4)->surfaces;
+      finish(*scene);
+      compare_under_sun(scene, {{"sun", "true"}}, 4e-6, 2);
+    }
+}
+
+TEST_CASE("wavelet fog: suns on the GPU equal the path tracer's", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  const gpu::WaveletFogGpu method;
+  const double alpha = 1e-3 / double(std::size(airlight::test::sun_cases));
+  for (const airlight::test::SunCase& c : airlight::test::sun_cases) {
+    const auto scene = airlight::test::sun_scene(c, 24, 18);
+    CAPTURE(c.name);
+    const scene::Film film = render(method, scene, {{"sun", "true"}, {"sun_step", "0.25"}}).film;
+    const scene::Film traced =
+        render(path_tracer::PathTracer(), scene, {{"samples", c.samples}, {"max_order", "1"}}, 0).film;
+    const experiments::Equality e = experiments::compare_equal(film, traced, "mean", {}, alpha);
+    if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("{}: {}\n", c.name, experiments::text(e));
+    CHECK(e.equal);
+    CHECK(e.detectable_bias < 0.03);
+    scene::Film darker = film;  // twice the bias that it must be able to detect
+    for (float& v : darker.layers["mean"]) v *= 0.94f;
+    CHECK_FALSE(experiments::compare_equal(darker, traced, "mean", {}, alpha).equal);
+  }
+}
+
+TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  // 2048 x 1024 cells: more loops than a dispatch has on llvmpipe. 1600 rays a row and 200 rows: more than a strip, of small fog.
+  const auto large = sunny(1, profiles[1], views[0], {0.5, 0.4, 0.3});
+  large->media[0].field = scene::FogmapPointer(patches(1, 2048, 1024, 0.02, 3, profiles[1]));
+  large->width = 16, large->height = 12;
+  large->surfaces = airlight::test::scene_named("wavelet_fog/valley", 4, 4)->surfaces;
+  large->name = "2 million cells";
+  finish(*large);
+  compare_under_sun(large, {{"sun", "true"}, {"sun_step", "1"}}, 3e-6, 2);
+  auto wide = airlight::test::sun_scene(airlight::test::sun_cases[8], 1600, 250);
+  wide->name = "strips";
+  compare(wide, {{"sun", "true"}}, 3e-6);
 }

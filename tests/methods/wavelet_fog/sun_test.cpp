@@ -8,7 +8,7 @@
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
-#include "tests/pictures.h"
+#include "tests/methods/wavelet_fog/sun_scenes.h"
 
 using namespace airlight;
 using namespace airlight::test;
@@ -76,171 +76,10 @@ TEST_CASE("sun: a map's columns converge to the exact ones at every height", "[w
         }
 }
 
-namespace {
-
-// A lamp in the sky over one map; nothing else.
-struct Case {
-  const char* name;
-  const char* map;
-  scene::HeightProfile profile;
-  Point3 eye, at;
-  Vec3 to_sun;
-  Rgb sigma_t, albedo;
-  scene::PhaseFunction phase;
-  double most;          // relative L2 error against the quadrature, of maps with an entry every quarter of a cell
-  const char* samples;  // of the path tracer
-  bool houses = false;
-  scene::Region region = scene::Slab{Vec3::UnitY(), -100, 100};
-};
-
-const scene::Layers valley{{0, 3, 8}, {1, 0.8, 0}};
-const Point3 inside(2, 1.2, -3), edge(-12, 2, -22), outside(-60, 9, -45), above(10, 40, -20);
-const Case cases[] = {
-    {"low sun, inside",
-     "patchy",
-     valley,
-     inside,
-     {3, 1.5, 8},
-     {0.6, 0.12, 0.3},
-     {.1, .15, .2},
-     {.9, .8, .6},
-     scene::Isotropic{},
-     1e-5,
-     "640"},
-    {"low sun, outside, forward",
-     "smooth",
-     valley,
-     outside,
-     {0, 2, 0},
-     {0.7, 0.2, 0.6},
-     {.05, .04, .03},
-     {1, .9, .5},
-     scene::HenyeyGreenstein{0.6},
-     2e-6,
-     "640"},
-    {"high sun, outside",
-     "hard",
-     valley,
-     outside,
-     {0, 2, 0},
-     {0.2, 0.9, -0.3},
-     {.1, .1, .1},
-     {.7, .7, .7},
-     scene::Rayleigh{},
-     5e-5,
-     "1024"},
-    {"exponential, inside, backward",
-     "patchy",
-     scene::ExponentialFall{1, 2},
-     inside,
-     {20, 3, 6},
-     {0.5, 0.4, 0.1},
-     {.2, .15, .1},
-     {.8, .9, 1},
-     scene::HenyeyGreenstein{-0.3},
-     4e-5,
-     "1408"},
-    {"exponential, from above, low sun",
-     "smooth",
-     scene::ExponentialFall{-1, 4},
-     above,
-     {0, 0, 0},
-     {-0.9, 0.15, 0.4},
-     {.1, .05, .02},
-     {1, 1, 1},
-     scene::HenyeyGreenstein{0.4},
-     2e-5,
-     "320"},
-    {"no profile, inside, low sun",
-     "smooth",
-     scene::SameAtAllHeights{},
-     inside,
-     {30, 4, 20},
-     {0.5, 0.1, 0.8},
-     {.02, .03, .04},
-     {.9, .5, .2},
-     scene::Isotropic{},
-     2e-6,
-     "896"},
-    {"no profile, slab, sun at the zenith",
-     "patchy",
-     scene::SameAtAllHeights{},
-     edge,
-     {3, 1.5, 8},
-     {0, 1, 0},
-     {.1, .1, .2},
-     {.9, .9, .9},
-     scene::HenyeyGreenstein{0.2},
-     1e-7,
-     "384",
-     false,
-     scene::Slab{Vec3::UnitY(), -2, 6}},
-    {"thick, high sun, in a ball",
-     "hard",
-     valley,
-     edge,
-     {3, 1.5, 8},
-     {0.3, 0.8, 0.2},
-     {1, .5, .3},
-     {.9, .8, .7},
-     scene::HenyeyGreenstein{0.5},
-     6e-4,
-     "512",
-     false,
-     scene::Sphere{{2, 1, 3}, 14}},
-    {"houses, low sun, inside",
-     "patchy",
-     valley,
-     {-14, 3, -12},
-     {4, 0, 6},
-     {-0.6, 0.35, -0.4},
-     {.1, .1, .1},
-     {.9, .9, .9},
-     scene::HenyeyGreenstein{0.5},
-     5e-6,
-     "2048",
-     true},
-    {"houses, against the sun, outside",
-     "smooth",
-     scene::ExponentialFall{0, 3},
-     {-27, 12, -29},
-     {4, 0, 6},
-     {0.6, 0.4, 0.5},
-     {.04, .05, .06},
-     {.9, .8, .9},
-     scene::HenyeyGreenstein{0.7},
-     8e-4,
-     "1536",
-     true},
-};
-
-std::shared_ptr<scene::Scene> scene_of(const Case& c, int width, int height) {
-  const auto scene = scene_named(std::string("wavelet_fog/") + c.map, width, height);
-  const double fov = scene->camera.vertical_fov;
-  scene->camera = scene::look_at(c.eye, c.at, Vec3::UnitY());
-  scene->camera.vertical_fov = fov;
-  scene->ambient_in_scatter = Rgb::Zero();
-  scene->lights = {scene::DirectionalLight{c.to_sun.normalized(), Rgb(4, 3, 2)}};
-  scene::Medium& medium = scene->media[0];
-  auto fog = std::make_shared<scene::Fogmap>(*std::get<scene::FogmapPointer>(medium.field));
-  fog->profile = c.profile;
-  medium.field = scene::FogmapPointer(fog);
-  medium.region = c.region;
-  medium.sigma_t = c.sigma_t;
-  medium.albedo = c.albedo;
-  medium.phase = c.phase;
-  if (c.houses) scene->surfaces = scene_named("wavelet_fog/valley", width, height)->surfaces;
-  for (scene::Surface& surface : scene->surfaces) surface.material = scene::Lambert{Rgb::Zero()};  // airlight alone
-  finish(*scene);
-  return scene;
-}
-
-}  // namespace
-
 TEST_CASE("sun: pictures equal the quadrature's and the path tracer's", "[wavelet_fog][sun]") {
-  const double alpha = 1e-3 / double(std::size(cases));
-  for (const Case& c : cases) {
-    const auto scene = scene_of(c, 24, 18);
+  const double alpha = 1e-3 / double(std::size(sun_cases));
+  for (const SunCase& c : sun_cases) {
+    const auto scene = sun_scene(c, 24, 18);
     CAPTURE(c.name);
     const scene::Film film = picture(method, scene, {{"sun", "true"}, {"sun_step", "0.25"}}, 0);
     const scene::Film truth = picture(*deterministic::make_renderer(), scene, {{"relative_tolerance", "1e-6"}}, 0);
@@ -303,8 +142,8 @@ TEST_CASE("sun: in even fog under a flat top the light is a closed form", "[wave
 }
 
 TEST_CASE("sun: several suns and maps over each other, a ray without end", "[wavelet_fog][sun]") {
-  const auto scene = scene_of(cases[0], 16, 12);
-  scene->media.push_back(scene_of(cases[4], 16, 12)->media[0]);
+  const auto scene = sun_scene(sun_cases[0], 16, 12);
+  scene->media.push_back(sun_scene(sun_cases[4], 16, 12)->media[0]);
   scene->lights.push_back(scene::DirectionalLight{Vec3(-0.3, 0.5, 0.6).normalized(), {1, 2, 3}});
   finish(*scene);
   const auto truth_of = [&] {
@@ -344,7 +183,7 @@ TEST_CASE("sun: every layer is that of the quadrature, and their sum; threads ch
 }
 
 TEST_CASE("sun: what it cannot do is refused by name, what is not there left out", "[wavelet_fog][sun]") {
-  const auto scene = scene_of(cases[3], 8, 6);
+  const auto scene = sun_scene(sun_cases[3], 8, 6);
   const auto reasons = [&](const Given& given) { return method.supports(*scene, {method.settings(), given}); };
   const auto refused = [&](const Given& given, const std::string& word) {
     const auto all = reasons(given);
