@@ -162,10 +162,13 @@ TEST_CASE("a number out of tolerance is found", "[verify]") {
 }
 
 TEST_CASE("methods to come are listed and counted, and compared with nothing they fail", "[verify]") {
+  const TemporaryFile waiting(
+      R"({"paper": "compensated_ray_marching_2008", "vectors": [)"
+      R"({"id": "a", "kind": "sh_basis", "input": {}, "expected": {}, "rtol": 0, "atol": 0}]})");
   std::ostringstream out;
-  CHECK(verify({vectors + "references.json"}, "fluid", VerifyProfile::quick, out) == 1);
+  CHECK(verify({waiting.path}, "sh_basis", VerifyProfile::quick, out) == 1);
   CHECK_THAT(out.str(), Catch::Contains("0 vectors, 0 numbers compared: 0 ok, 0 out") &&
-                            Catch::Contains("10 vectors not known yet") &&
+                            Catch::Contains("1 vectors not known yet") &&
                             Catch::Contains("FAILED: no number was compared"));
 }
 

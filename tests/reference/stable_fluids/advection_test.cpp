@@ -1,6 +1,7 @@
 // Advection where the answer is known: whole cells, bounds, walls, obstacles.
 #include "reference/stable_fluids/advection.h"
 
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 

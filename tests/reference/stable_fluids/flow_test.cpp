@@ -1,4 +1,5 @@
 // Whole flows: symmetry, rest, restart, threads, thin boxes, stiff coefficients.
+#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "scene/error.h"

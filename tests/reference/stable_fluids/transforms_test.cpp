@@ -1,4 +1,5 @@
 // Transforms and projections against the difference operators that they invert, at every pair of sides.
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
