@@ -396,7 +396,7 @@ std::vector<std::string> experiment_ids(const fs::path& root) {
   std::vector<std::string> ids;
   for (const auto& group : fs::directory_iterator(root / "experiments")) {
     const std::string name = group.path().filename().string();
-    if (!group.is_directory() || name == "scenes" || name == "data") continue;
+    if (!group.is_directory() || name == "scenes" || name == "flows" || name == "data") continue;
     for (const auto& file : fs::directory_iterator(group.path()))
       if (file.path().extension() == ".toml") ids.push_back(name + "/" + file.path().stem().string());
   }
