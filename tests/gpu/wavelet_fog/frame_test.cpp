@@ -1,4 +1,9 @@
 // What a frame of fogmaps keeps, promises and refuses on the device.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
 #include "scene/error.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
@@ -35,6 +40,30 @@ TEST_CASE("wavelet fog: bound keeps its tolerance on the GPU", "[gpu][wavelet_fo
       }
     }
   CHECK(worst > 1e-2);  // coarse grids were read
+}
+
+// The depth itself, of a million rays a map, wherever enough is left of the light for a float to tell it.
+TEST_CASE("wavelet fog: bound keeps its tolerance on a million rays on the GPU", "[.][wavelet_fog_long]") {
+  if (!gpu::test::device()) return;
+  double worst = 0;
+  for (const char* name : {"smooth", "patchy", "hard"}) {
+    const auto scene = airlight::test::scene_named(std::string("wavelet_fog/") + name, 1000, 1000);
+    const scene::Film film = render(wavelet_fog::WaveletFog(), scene, {{"variant", "direct"}}).film;
+    const auto& direct = film.layer("transmittance");
+    for (const double tolerance : {0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
+      const Given given{{"variant", "bound"}, {"tolerance", std::to_string(tolerance)}, {"levels", "4"}};
+      const scene::Film bound = render(gpu::WaveletFogGpu(), scene, given).film;
+      const auto& got = bound.layer("transmittance");
+      double error = 0;
+      for (std::size_t i = 0; i < direct.size(); i += 3)
+        if (direct[i] > 0.01f) error = std::max(error, std::abs(std::log(double(got[i]) / direct[i])));
+      CAPTURE(name, tolerance);
+      CHECK(error <= tolerance + 2e-5);  // rounding of the two films where a hundredth is left
+      worst = std::max(worst, error / tolerance);
+    }
+  }
+  if (std::getenv("AIRLIGHT_TEST_FIGURES")) fmt::print("bound on the GPU: at most {:.3f} of its tolerance\n", worst);
+  CHECK(worst > 0.05);
 }
 
 TEST_CASE("wavelet fog: a ray that ends early on the GPU is off by the threshold at most", "[gpu][wavelet_fog]") {
