@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00780779:0.0388891]
+set xrange [0.0132115:0.0665847]
 set logscale y
 set format y "%g"
 set yrange [0.00715146:0.0768708]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00146189:0.0401035]
+set xrange [0.0030137:0.0550469]
 set logscale y
 set format y "%g"
 set yrange [2.99511e-05:1.54471]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00600833:0.0290871]
+set xrange [0.0129664:0.0619587]
 set logscale y
 set format y "%g"
 set yrange [4.13578e-11:1.31919]

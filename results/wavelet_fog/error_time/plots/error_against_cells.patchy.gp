@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [9560.44:2.59195e+06]
 set logscale y
 set format y "%g"
-set yrange [2.31772e-08:0.2119]
+set yrange [2.32632e-08:0.211856]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

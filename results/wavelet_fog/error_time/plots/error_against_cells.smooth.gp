@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [9560.44:2.59195e+06]
 set logscale y
 set format y "%g"
-set yrange [2.84291e-08:0.031208]
+set yrange [2.84168e-08:0.0312088]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.smooth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

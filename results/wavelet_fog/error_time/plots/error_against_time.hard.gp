@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00121822:0.0644602]
+set xrange [0.00238586:0.061845]
 set logscale y
 set format y "%g"
-set yrange [1.61e-08:0.104704]
+set yrange [1.60685e-08:0.104716]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.hard.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

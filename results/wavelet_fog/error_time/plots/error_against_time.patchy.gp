@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00103348:0.0771803]
+set xrange [0.00254277:0.0889579]
 set logscale y
 set format y "%g"
-set yrange [2.31772e-08:0.2119]
+set yrange [2.32632e-08:0.211856]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

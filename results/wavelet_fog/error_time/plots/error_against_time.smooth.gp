@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00106344:0.0499619]
+set xrange [0.00218169:0.0534235]
 set logscale y
 set format y "%g"
-set yrange [2.84291e-08:0.031208]
+set yrange [2.84168e-08:0.0312088]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.smooth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \

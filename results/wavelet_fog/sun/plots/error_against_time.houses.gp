@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0807563:0.420439]
+set xrange [0.018456:0.148894]
 set logscale y
 set format y "%g"
-set yrange [4.13615e-06:0.00289156]
+set yrange [4.13637e-06:0.00289155]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.houses.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "sun", \

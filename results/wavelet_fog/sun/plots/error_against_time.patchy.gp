@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0827102:0.727814]
+set xrange [0.0150014:0.192094]
 set logscale y
 set format y "%g"
-set yrange [2.03748e-06:0.00970139]
+set yrange [2.03709e-06:0.00970149]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "sun", \
