@@ -109,7 +109,7 @@ Helmholtz<Real>::Helmholtz(const Lattice& l, int axis_of_field, bool pressure)
   }
   for (int a = used_; a < 3; ++a) eigen_[a] = {0};
   if (count_of(size_) == 0) return;
-  const int nx = size_[0], ny = size_[1], nz = size_[2];
+  const int nx = size_[0], ny = size_[1];
   std::vector<Real> scratch(count_of(size_));
   const std::lock_guard lock(planner);
   const auto plan = [&](int a, int howmany, int stride, int distance) {
@@ -119,7 +119,6 @@ Helmholtz<Real>::Helmholtz(const Lattice& l, int axis_of_field, bool pressure)
   plan(0, ny, 1, nx);                       // the rows of a slab
   plan(1, nx, nx, 1);                       // its columns
   if (used_ == 3) plan(2, nx, nx * ny, 1);  // the columns through all slabs above a row
-  (void)nz;
 }
 
 template <class Real>

@@ -28,7 +28,6 @@ class Helmholtz {
 
  private:
   struct Plans;
-  void slabs_forward(Real*) const;
   Size size_, begin_;
   int used_;                                  // axes
   std::array<std::vector<double>, 3> eigen_;  // of minus the second difference [1/m^2]
