@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/component.h"
+#include "scene/error.h"
 #include "scene/flow_problem.h"
 #include "scene/media/medium.h"
 #include "scene/renderer.h"
@@ -36,11 +37,17 @@ struct Frame {
   std::vector<float> velocity;
 };
 
+// A step whose result is of no use: values are no longer finite, or energy grows beyond all measure.
+class Unstable : public Error {
+ public:
+  using Error::Error;
+};
+
 class Flow {
  public:
   virtual ~Flow() = default;
   virtual double time() const = 0;  // [s]
-  // By dt > 0 [s]. Throws Error (step and cell) where a value is no longer finite.
+  // By dt > 0 [s]. Throws Unstable (step and cell).
   virtual void step(double dt) = 0;
   // At points of the box; outside it at the nearest one.
   virtual Vec3 velocity(const Point3&) const = 0;  // [m/s]

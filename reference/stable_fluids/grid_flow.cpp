@@ -239,7 +239,7 @@ class GridFlow : public scene::Flow {
 
   void require_finite() const {
     const std::string what = what_is_not_finite(u_, l_);
-    if (!what.empty()) throw Error(fmt::format("step {}, t = {:.6g} s: {}", steps_ + 1, time_, what));
+    if (!what.empty()) throw scene::Unstable(fmt::format("step {}, t = {:.6g} s: {}", steps_ + 1, time_, what));
   }
 
   const Field<Real>* find(Quantity quantity) const {

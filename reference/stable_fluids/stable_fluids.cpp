@@ -17,6 +17,9 @@ std::vector<scene::SettingSpec> StableFluids::settings() const {
   return {
       scene::integer_setting("n", "64", 1, 2048, "cells along the longest axis of the box"),
       scene::real_setting("dt", "0", 0, 1e9, "longest step [s]; 0: a frame. Steps divide a frame evenly"),
+      scene::real_setting(
+          "courant", "0", 0, 1e9,
+          "longest step, in cells that 1 m/s crosses in it; 0: no bound. For steps in proportion to cells"),
       scene::choice_setting("scheme", "maccormack", {"semi_lagrangian", "maccormack", "bfecc"}, "of advection"),
       scene::choice_setting("interpolation", "linear", {"linear", "cubic"}, "between samples; cubic is monotone"),
       scene::choice_setting("limiter", "clamp", {"none", "clamp", "revert"},
@@ -39,9 +42,11 @@ std::vector<std::string> StableFluids::supports(const FlowProblem& problem, cons
 }
 
 int StableFluids::steps_per_frame(const FlowProblem& problem, const Settings& settings) const {
-  const double dt = settings.real("dt"), frame = 1 / problem.frame_rate;
-  if (dt == 0) return 1;
-  return std::max(1, int(std::ceil(frame / dt * (1 - 1e-9))));
+  const double frame = 1 / problem.frame_rate, h = problem.box.size().maxCoeff() / double(settings.integer("n"));
+  double steps = 1;
+  for (const double longest : {settings.real("dt"), settings.real("courant") * h})
+    if (longest > 0) steps = std::max(steps, std::ceil(frame / longest * (1 - 1e-9)));
+  return int(std::min(steps, 1e9));
 }
 
 std::unique_ptr<scene::Flow> StableFluids::start_supported(std::shared_ptr<const FlowProblem> problem,
