@@ -36,7 +36,7 @@ bool carries_density(const scene::FlowProblem& p) {
 }
 
 bool carries_temperature(const scene::FlowProblem& p) {
-  bool any = p.temperature != 0;
+  bool any = p.temperature != 0 || p.temperature_grid;
   for (const auto& b : p.blobs) any |= b.temperature != 0;
   for (const auto& s : p.sources) any |= s.temperature_rate != 0 || s.temperature;
   for (const auto& axis : p.sides)
@@ -127,7 +127,7 @@ class GridFlow : public scene::Flow {
     projection_.emplace(l_, obstacles_, plan_.pressure, plan_.tolerance, plan_.iterations);
     for (int a = 0; a < l_.dimensions; ++a) {
       u_[a] = Field<Real>(l_, a);
-      each_sample(u_[a], [&](const Point3& x) { return scene::velocity_at(problem_->velocity, problem_->box, x)[a]; });
+      each_sample(u_[a], [&](const Point3& x) { return scene::start_velocity(*problem_, a, x); });
       diffusion_.emplace_back(l_, obstacles_, a, plan_.tolerance, plan_.iterations);
     }
     advected_ = u_;

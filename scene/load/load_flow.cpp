@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/flow_problem.h"
 #include "scene/load/assets.h"
+#include "scene/load/flow_parts.h"
 #include "scene/load/overrides.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/parts.h"
@@ -18,15 +19,18 @@
 namespace airlight::scene {
 using namespace load;
 
-namespace {
-
-constexpr Range seconds = or_zero({1e-9, 1e9}), speed = either_sign(or_zero({1e-12, 1e6}));
-constexpr Range temperatures = either_sign(or_zero({1e-12, 1e6})), rate = either_sign(amount);
+namespace load {
 
 Vec3 speeds(const TableReader& reader, const std::string& key) {
   const auto v = reader.numbers(key, speed, 3);
   return {v[0], v[1], v[2]};
 }
+
+}  // namespace load
+
+namespace {
+
+constexpr Range seconds = or_zero({1e-9, 1e9}), rate = either_sign(amount);
 
 void read_box(TableReader reader, FlowProblem& problem) {
   reader.allow({"lo", "hi"});
@@ -91,64 +95,6 @@ void read_sides(const TableReader& root, FlowProblem& problem) {
     if ((problem.sides[axis][0].kind == Side::Kind::periodic) != (problem.sides[axis][1].kind == Side::Kind::periodic))
       reader.fail("", fmt::format("{} and {} are opposite sides, expected both periodic or none", side_names[2 * axis],
                                   side_names[2 * axis + 1]));
-}
-
-StartVelocity read_velocity(TableReader reader) {
-  const std::string type = reader.type({"rest", "taylor_green", "swirl", "rotation", "wind"});
-  if (type == "taylor_green") {
-    reader.allow({"type", "speed", "waves"});
-    return TaylorGreen{reader.number("speed", speed, 1), int(reader.integer("waves", 1, 1024, 1))};
-  }
-  if (type == "swirl") {
-    reader.allow({"type", "speed"});
-    return Swirl{reader.number("speed", speed, 1)};
-  }
-  if (type == "rotation") {
-    reader.allow({"type", "center", "rate"});
-    return RigidRotation{reader.vector("center"), speeds(reader, "rate")};
-  }
-  if (type == "wind") {
-    reader.allow({"type", "velocity"});
-    return Wind{speeds(reader, "velocity")};
-  }
-  reader.allow({"type"});
-  return AtRest{};
-}
-
-Wave read_wave(TableReader reader) {
-  reader.allow({"waves", "density", "offset", "phase"});
-  Wave wave;
-  const auto waves = reader.integers("waves", 3, -4096, 4096);
-  wave.waves = {double(waves[0]), double(waves[1]), double(waves[2])};
-  wave.density = reader.number("density", density_range);
-  wave.offset = reader.number("offset", either_sign(density_range), 0);
-  wave.phase = reader.number("phase", coordinate, 0);
-  return wave;
-}
-
-void read_start(TableReader reader, const std::string& folder, FlowProblem& problem) {
-  reader.allow({"velocity", "velocity_stays", "density", "temperature", "blob", "wave", "file", "grid"});
-  if (const auto velocity = reader.table("velocity")) problem.velocity = read_velocity(*velocity);
-  problem.velocity_stays = reader.flag("velocity_stays", false);
-  problem.density = reader.number("density", {0, density_range.greatest}, 0);
-  problem.temperature = reader.number("temperature", temperatures, 0);
-  for (TableReader blob : reader.tables("blob")) {
-    blob.allow({"center", "width", "density", "temperature"});
-    problem.blobs.push_back({blob.vector("center"), blob.number("width", length),
-                             blob.number("density", {0, density_range.greatest}, 0),
-                             blob.number("temperature", temperatures, 0)});
-  }
-  if (const auto wave = reader.table("wave")) problem.wave = read_wave(*wave);
-  if (!reader.has("file")) {
-    if (reader.has("grid")) reader.fail("grid", "grid has no effect: there is no file");
-    return;
-  }
-  const std::string path = find_asset(reader, "file", folder);
-  try {
-    problem.density_grid = std::make_shared<const VoxelGrid>(read_vdb(path, reader.text("grid", "density")));
-  } catch (const Error& e) {
-    reader.fail("file", e.what());
-  }
 }
 
 Interval read_time(const TableReader& reader) {
