@@ -94,10 +94,13 @@ class Folder {
 
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {
   const int frames = int(std::lround(s.problem->duration * s.problem->frame_rate)) + 1;
+  if (frames == 1)
+    throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
+                            s.problem->duration, s.problem->frame_rate));
   const int steps = s.solver.steps_per_frame(*s.problem, s.settings);
   const double dt = 1 / (s.problem->frame_rate * steps);
-  Folder folder(s);
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Folder folder(s);
   SimulationReport report;
   const int last = folder.resume(*flow);
   report.resumed = last + 1;

@@ -66,7 +66,8 @@ class Solver : public Component {
  public:
   // Empty: it can solve the problem. Else the reasons why not, one line each.
   virtual std::vector<std::string> supports(const FlowProblem&, const Settings&) const = 0;
-  // Throws NotSupported if supports() objects.
+  // Throws NotSupported if supports() objects, Error where the problem has no solution on the grid that the settings
+  // ask for; beginning with the problem's file.
   std::unique_ptr<Flow> start(std::shared_ptr<const FlowProblem>, const Settings&, const Execution&) const;
   // The steps that a frame takes, all of one length.
   virtual int steps_per_frame(const FlowProblem&, const Settings&) const = 0;

@@ -86,6 +86,7 @@ struct Push {  // an acceleration in time
 
 struct FlowProblem {
   std::string name;
+  std::string file;                          // that it was read from, for messages; empty where it was not
   int dimensions = 3;                        // 2: the flow lies in the plane z = 0, and so does the box
   Box box{Point3::Zero(), Point3::Ones()};   // [m]
   std::array<std::array<Side, 2>, 3> sides;  // [axis][low, high]

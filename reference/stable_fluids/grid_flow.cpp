@@ -9,6 +9,7 @@
 #include "reference/stable_fluids/diffusion.h"
 #include "reference/stable_fluids/forces.h"
 #include "reference/stable_fluids/frames.h"
+#include "reference/stable_fluids/requirements.h"
 #include "reference/stable_fluids/saved_state.h"
 #include "reference/stable_fluids/totals.h"
 #include "scene/error.h"
@@ -50,7 +51,7 @@ class GridFlow : public scene::Flow {
   GridFlow(std::shared_ptr<const scene::FlowProblem> problem, const Plan& plan)
       : problem_(std::move(problem)),
         plan_(plan),
-        l_(make_lattice(*problem_, plan.longest)),
+        l_(checked(make_lattice(*problem_, plan.longest))),
         obstacles_(make_obstacles(*problem_, l_)),
         arena_(scene::threads_for(plan.threads)) {
     arena_.execute([&] { begin(); });
@@ -118,6 +119,12 @@ class GridFlow : public scene::Flow {
   }
 
  private:
+  const Lattice& checked(const Lattice& l) const {
+    require_memory(l, sizeof(Real));
+    require_samples(*problem_, l);
+    return l;
+  }
+
   std::string shape() const {
     return fmt::format("stable fluids, {} x {} x {} cells, {} bytes a number, {} fields carried", l_.n[0], l_.n[1],
                        l_.n[2], sizeof(Real), carried_.size());

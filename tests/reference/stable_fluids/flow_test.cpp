@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "reference/stable_fluids/requirements.h"
 #include "scene/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
@@ -209,6 +210,37 @@ TEST_CASE("stable fluids: what cannot be is told with step and cell, or refused"
   CHECK_THROWS_WITH(start(problem, {}), Contains("the obstacles fill the box"));
   problem.obstacles = {{"some", scene::Sphere{Point3(0.5, 0.5, 0), 0.2}, {}}};
   CHECK_THROWS_WITH(start(problem, {{"pressure", "transforms"}}), Contains("boxes without obstacles only"));
+}
+
+TEST_CASE("stable fluids: what would be without effect on a grid is refused, and a grid beyond all memory",
+          "[stable_fluids]") {
+  scene::FlowProblem problem = plume(2);
+  problem.file = "plume.toml";
+  problem.sources[0].region = scene::Sphere{Point3(0.5, 0.2, 0), 0.02};
+  CHECK_THROWS_WITH(start(problem, {}),
+                    Catch::StartsWith("plume.toml: source 0: its region holds no sample of cells of 0.0625 m"));
+  CHECK_NOTHROW(start(problem, {{"n", "64"}}));
+  // The centre of a face, which has a velocity and neither density nor temperature.
+  problem.sources[0].region = scene::Sphere{Point3(0.5, 7.5 / 16, 0), 0.02};
+  CHECK_THROWS_WITH(start(problem, {}), Contains("source 0: its region"));
+  problem.sources[0].density.reset();
+  problem.sources[0].temperature.reset();
+  problem.sources[0].velocity = Vec3(1, 0, 0);
+  CHECK_NOTHROW(start(problem, {}));
+
+  problem = plume(2);
+  problem.pushes.push_back({scene::Sphere{Point3(0.51, 0.51, 0), 0.005}, {0, infinity}, Vec3(1, 0, 0), 0});
+  CHECK_THROWS_WITH(start(problem, {}), Contains("force 0: its region holds no sample"));
+  problem.pushes.clear();
+  problem.obstacles = {{"ball", scene::Sphere{Point3(0.45, 0.6, 0), 0.15}, {}},
+                       {"sheet", scene::make_box({Point3(0.51, 0, -1), Point3(0.52, 1, 1)}), {}}};
+  CHECK_THROWS_WITH(start(problem, {}), Contains("obstacle 1: the centre of no cell of 0.0625 m lies in it"));
+
+  Lattice huge = make_lattice(plume(3), 16);
+  CHECK_NOTHROW(require_memory(huge, 8));
+  huge.n = {1 << 20, 1 << 20, 1 << 20};
+  CHECK_THROWS_WITH(require_memory(huge, 4), Contains("1048576 x 1048576 x 1048576 cells take more than"));
+  CHECK_THROWS_WITH(start(plume(2), {{"dt", "1e-12"}}), Contains("dt = 1e-12 makes 4.17e+10 steps of a frame"));
 }
 
 TEST_CASE("stable fluids: smoke leaves by an open side, and none is ever below nothing", "[stable_fluids]") {
