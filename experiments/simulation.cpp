@@ -68,7 +68,9 @@ class Folder {
                         {"commit", commit()}});
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header + history_);
-    scene::write_file_atomically((s_.folder / "state").string(), fmt::format("{}\n{}\n{}", key_, frame, flow.state()));
+    std::string state = flow.state();  // as long as the flow itself
+    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
  private:

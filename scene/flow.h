@@ -59,8 +59,9 @@ class Flow {
 };
 
 // Grids `density`, `temperature` (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`
-// as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Throws Error.
-void write_frame(const std::string& path, const Frame&, const std::map<std::string, std::string>& notes);
+// as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Moved here, a frame
+// is freed on the way. Throws Error.
+void write_frame(const std::string& path, Frame, const std::map<std::string, std::string>& notes);
 
 class Solver : public Component {
  public:

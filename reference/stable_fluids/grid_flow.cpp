@@ -103,7 +103,10 @@ class GridFlow : public scene::Flow {
   }
 
   std::string state() const override {
-    StateWriter writer(shape());
+    std::size_t numbers = 0;
+    for (int a = 0; a < l_.dimensions; ++a) numbers += u_[a].values.size();
+    for (const Carried<Real>& c : carried_) numbers += c.now.values.size();
+    StateWriter writer(shape(), numbers * sizeof(Real));
     for (const double value : {time_, since_, last_step_, double(equal_steps_), double(steps_)}) writer.number(value);
     for (int a = 0; a < l_.dimensions; ++a) writer.values(u_[a].values);
     for (const Carried<Real>& c : carried_) writer.values(c.now.values);

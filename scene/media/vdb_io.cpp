@@ -117,20 +117,23 @@ openvdb::Vec3SGrid::Ptr staggered(const Frame& frame, const openvdb::math::Trans
 
 }  // namespace
 
-void write_frame(const std::string& path, const Frame& frame, const std::map<std::string, std::string>& notes) {
+void write_frame(const std::string& path, Frame frame, const std::map<std::string, std::string>& notes) {
   initialize_once();
   VoxelGrid cells;
   cells.size = frame.size;
   cells.voxel_size = frame.cell;
   cells.translation = frame.low + 0.5 * frame.cell * Vec3::Ones();
   openvdb::GridCPtrVec grids;
-  const auto add = [&](const std::vector<float>& values, const char* name) {
-    cells.values = values.empty() ? std::vector<float>(std::size_t(frame.size.prod()), 0.0f) : values;
+  const auto add = [&](std::vector<float>& values, const char* name) {
+    cells.values = std::move(values);
+    cells.values.resize(std::size_t(frame.size[0]) * frame.size[1] * frame.size[2], 0.0f);
     grids.push_back(fog_volume(cells, name));
   };
   add(frame.density, "density");
   if (!frame.temperature.empty()) add(frame.temperature, "temperature");
+  cells.values = {};
   grids.push_back(staggered(frame, grids.front()->transform()));
+  frame.velocity = {};
   openvdb::MetaMap metadata;
   for (const auto& [key, value] : notes) metadata.insertMeta(key, openvdb::StringMetadata(value));
   write_file_atomically(path, bytes_of(grids, metadata));

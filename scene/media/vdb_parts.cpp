@@ -93,7 +93,12 @@ class Writer : public openvdb::io::Archive {
  public:
   // The same grids give the same bytes: OpenVDB marks each file with a random number, which is made from the rest here.
   std::string bytes_of(const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& notes = {}) const {
-    std::ostringstream stream;
+    // Doubled as it grows the text would take three times its length.
+    std::string room;
+    std::size_t most = 1 << 16;
+    for (const auto& grid : grids) most += grid->memUsage();
+    room.reserve(most);
+    std::ostringstream stream(std::move(room));
     Archive::write(stream, grids, /*seekable=*/true, notes);
     std::string bytes = std::move(stream).str();
     constexpr std::size_t mark = 21, length = 36;  // after magic, three versions and a flag: 8-4-4-4-12 digits
