@@ -84,7 +84,9 @@ class Folder {
                         {"commit", commit()}});
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
-    scene::write_file_atomically((s_.folder / "state").string(), fmt::format("{}\n{}\n{}", key_, frame, flow.state()));
+    std::string state = flow.state();  // as long as the flow itself
+    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
  private:
@@ -119,8 +121,11 @@ int frames_there(const Simulation& s) {
 
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {
   const FrameSteps plan = frame_steps(*s.problem, s.solver, s.settings);
-  Folder folder(s);
+  if (plan.frames == 1)
+    throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
+                            s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Folder folder(s);
   SimulationReport report;
   const int last = folder.resume(*flow);
   report.resumed = last + 1;

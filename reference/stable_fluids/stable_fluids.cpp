@@ -1,5 +1,7 @@
 #include "reference/stable_fluids/stable_fluids.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "reference/stable_fluids/grid_flow.h"
@@ -8,6 +10,20 @@ namespace airlight::stable_fluids {
 
 using scene::FlowProblem;
 using scene::Settings;
+
+namespace {
+
+constexpr double most_steps = 1e8;  // of a frame
+
+double steps_in_frame(const FlowProblem& problem, const Settings& settings) {
+  const double frame = 1 / problem.frame_rate, h = problem.box.size().maxCoeff() / double(settings.integer("n"));
+  double steps = 1;
+  for (const double longest : {settings.real("dt"), settings.real("courant") * h})
+    if (longest > 0) steps = std::max(steps, std::ceil(frame / longest * (1 - 1e-9)));
+  return steps;
+}
+
+}  // namespace
 
 std::string StableFluids::about() const {
   return "Stam 1999 on a staggered grid: semi-Lagrangian, MacCormack or BFECC advection, implicit diffusion, projection";
@@ -38,15 +54,14 @@ std::vector<std::string> StableFluids::supports(const FlowProblem& problem, cons
   std::vector<std::string> reasons;
   if (settings.text("pressure") == "transforms" && !problem.obstacles.empty())
     reasons.push_back("pressure = transforms solves in boxes without obstacles only");
+  if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
+    reasons.push_back(fmt::format("dt = {:g}, courant = {:g} make {:.3g} steps of a frame, expected at most {:g}",
+                                  settings.real("dt"), settings.real("courant"), steps, most_steps));
   return reasons;
 }
 
 int StableFluids::steps_per_frame(const FlowProblem& problem, const Settings& settings) const {
-  const double frame = 1 / problem.frame_rate, h = problem.box.size().maxCoeff() / double(settings.integer("n"));
-  double steps = 1;
-  for (const double longest : {settings.real("dt"), settings.real("courant") * h})
-    if (longest > 0) steps = std::max(steps, std::ceil(frame / longest * (1 - 1e-9)));
-  return int(std::min(steps, 1e9));
+  return int(std::min(most_steps, steps_in_frame(problem, settings)));
 }
 
 std::unique_ptr<scene::Flow> StableFluids::start_supported(std::shared_ptr<const FlowProblem> problem,
