@@ -31,6 +31,9 @@ struct FigureMap {
   std::vector<std::vector<std::array<double, 2>>> lines;
 };
 
+// Numbers in columns of one length, such as a history or a profile: drawn by a [[plot]] of "column.NAME"s.
+using Columns = std::map<std::string, std::vector<double>>;
+
 struct Findings {
   std::vector<Measure> figures;  // those of figures() that are defined here, in any order
   std::string note;              // where words are needed
@@ -40,6 +43,7 @@ struct Findings {
   double coverage = 0;
   int runs = 0;
   std::optional<FigureMap> map;
+  Columns columns;
 };
 
 class Probe : public scene::Component {

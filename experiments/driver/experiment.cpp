@@ -252,12 +252,15 @@ class Reader {
         const std::string& axis = key == "x" ? plot.x : plot.y;
         const std::vector<std::string> axes = {"seconds", "prepare_seconds", "parameter", "setting"};
         const bool known =
-            std::find(axes.begin(), axes.end(), axis) != axes.end() || axis.rfind("counter.", 0) == 0 ||
+            std::find(axes.begin(), axes.end(), axis) != axes.end() || axis.starts_with("counter.") ||
+            axis.starts_with("column.") ||
             std::find(experiment_.metrics.begin(), experiment_.metrics.end(), axis) != experiment_.metrics.end();
         if (!known)
-          reader.expected(key, fmt::format("one of {}, counter.NAME, {}", fmt::join(axes, ", "),
+          reader.expected(key, fmt::format("one of {}, counter.NAME, column.NAME, {}", fmt::join(axes, ", "),
                                            fmt::join(experiment_.metrics, ", ")));
       }
+      if (plot.x.starts_with("column.") != plot.y.starts_with("column."))
+        reader.fail("y", fmt::format("{} against {}, expected both columns or none", plot.y, plot.x));
       experiment_.plots.push_back(plot);
     }
   }

@@ -50,7 +50,8 @@ struct TimingRule {
 
 struct PlotCase {
   std::string name, title, x, y, x_label, y_label;  // x: "seconds", "prepare_seconds", "parameter", "setting",
-                                                    // "counter.NAME"; y: those or a metric
+                                                    // "counter.NAME"; y: those or a metric; or both
+                                                    // columns of the row, "column.NAME"
   bool per_scene = true;
   bool map = false;                  // not curves: the maps of the rows, side by side
   std::vector<std::string> methods;  // empty: all

@@ -20,6 +20,7 @@ MadeRow make_row(const Probe& probe, const ProbeInput& input, const scene::Setti
   row.coverage = found.coverage;
   row.runs = found.runs;
   row.map = std::move(found.map);
+  row.columns = std::move(found.columns);
   return {std::move(row), 0, {}};
 }
 

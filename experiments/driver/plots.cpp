@@ -42,12 +42,32 @@ struct Drawing {
   double floor = 0;
 };
 
+bool is_column(const std::string& axis) { return axis.starts_with("column."); }
+
+// Of two columns of a row: all its points, in their order.
+std::optional<Curve> curve_of_columns(const Row& row, const PlotCase& plot, const std::string& scene) {
+  const auto x = row.columns.find(plot.x.substr(7)), y = row.columns.find(plot.y.substr(7));
+  if (x == row.columns.end() || y == row.columns.end()) return std::nullopt;
+  Curve curve{row.setting.empty() ? row.method : row.method + " " + row.setting, {}};
+  if (scene.empty() && !row.scene.empty()) curve.name += ", " + row.scene;
+  for (std::size_t i = 0; i < x->second.size(); ++i) {
+    const double px = x->second[i], py = y->second[i];
+    if (std::isfinite(px) && std::isfinite(py)) curve.points.push_back({{px, px, px}, {py, py, py}, false});
+  }
+  if (curve.points.empty()) return std::nullopt;
+  return curve;
+}
+
 Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string& scene) {
   Drawing drawing;
   for (const Row& row : outcome.rows) {
     if (!scene.empty() && row.scene != scene) continue;
     if (!plot.methods.empty() && std::find(plot.methods.begin(), plot.methods.end(), row.method) == plot.methods.end())
       continue;
+    if (is_column(plot.x)) {
+      if (auto curve = curve_of_columns(row, plot, scene)) drawing.curves.push_back(std::move(*curve));
+      continue;
+    }
     const auto x = quantity(row, plot.x), y = quantity(row, plot.y);
     if (!x || !y || !(x->value > 0)) continue;
     PlotPoint point{*x, *y, false};
@@ -71,7 +91,7 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     curve->points.push_back(point);
   }
   // Against time a curve runs through the settings in their order.
-  if (plot.x == "seconds" || plot.x == "prepare_seconds") return drawing;
+  if (plot.x == "seconds" || plot.x == "prepare_seconds" || is_column(plot.x)) return drawing;
   for (Curve& curve : drawing.curves)
     std::stable_sort(curve.points.begin(), curve.points.end(),
                      [](const PlotPoint& a, const PlotPoint& b) { return a.x.value < b.x.value; });
@@ -89,7 +109,7 @@ std::string data_csv(const Drawing& drawing) {
         empty = false;
         const double y = bound ? p.y.high : p.y.value;
         // On a logarithmic axis an interval that reaches 0 ends a decade below its value.
-        const double low = bound ? y : std::max(p.y.low, 0.1 * y);
+        const double low = bound || !(y > 0) ? y : std::max(p.y.low, 0.1 * y);
         out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", csv_field(curve.name), p.x.value,
                            p.x.low, p.x.high, y, low, p.y.high, drawing.floor);
       }
@@ -103,18 +123,24 @@ std::string axis_label(const std::string& given, const std::string& axis) {
   if (!given.empty()) return given;
   if (axis == "seconds") return "time of one render [s]";
   if (axis == "prepare_seconds") return "time of preparation [s]";
-  return axis.rfind("counter.", 0) == 0 ? axis.substr(8) : axis;
+  if (is_column(axis)) return axis.substr(7);
+  return axis.starts_with("counter.") ? axis.substr(8) : axis;
 }
 
-// The range of an axis: logarithmic where values span a factor of 4, with some room at both ends.
+// The range of an axis: logarithmic where values are positive and span a factor of 4, with some room at both ends.
 struct Span {
+  bool linear = false;
   double least = std::numeric_limits<double>::infinity();
-  double greatest = 0;
+  double greatest = -std::numeric_limits<double>::infinity();
   void add(double value) {
     least = std::min(least, value);
     greatest = std::max(greatest, value);
   }
   std::string axis(const std::string& name) const {
+    if (linear || !(least > 0)) {
+      const double room = greatest > least ? 0.03 * (greatest - least) : 1;
+      return fmt::format("set {}range [{:.6g}:{:.6g}]\n", name, least - room, greatest + room);
+    }
     if (greatest <= 4 * least) return fmt::format("set {}range [0:{:.6g}]\n", name, 1.15 * greatest);
     const double room = std::pow(greatest / least, 0.06);
     return fmt::format("set logscale {0}\nset format {0} \"%g\"\nset {0}range [{1:.6g}:{2:.6g}]\n", name, least / room,
@@ -134,6 +160,7 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
                                  "#56B4E9", "#000000", "#7F3C8D", "#80BA5A", "#A5AA99"};
   static const int shapes[] = {7, 5, 9, 13, 11, 6, 4, 8, 12, 15};
   Span x, y;
+  x.linear = is_column(plot.x);
   for (const Curve& curve : drawing.curves)
     for (const PlotPoint& p : curve.points) {
       x.add(p.x.value);
@@ -144,7 +171,8 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   const auto add = [&](const std::string& text) { lines += (lines.empty() ? "" : ", \\\n     ") + text; };
   for (std::size_t i = 0; i < drawing.curves.size(); ++i) {
     const std::string style = fmt::format("lc rgb \"{}\" pt {} ps 0.7 lw 1.6", colors[i % 10], shapes[i % 10]);
-    add(fmt::format("data index {} using 2:5 with linespoints {} title \"{}\"", 2 * i, style,
+    const bool dense = drawing.curves[i].points.size() > 40;
+    add(fmt::format("data index {} using 2:5 with {} {} title \"{}\"", 2 * i, dense ? "lines" : "linespoints", style,
                     escaped(drawing.curves[i].name)));
     add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
                     colors[i % 10]));

@@ -89,8 +89,8 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   j["rows"] = json::array();
   for (const Row& row : outcome.rows) {
     j["rows"].push_back(to_json(row));
-    j["rows"].back().erase("times");  // what they show is in the intervals
-    j["rows"].back().erase("map");    // drawn, with its numbers beside the plot
+    j["rows"].back().erase("times");                                             // what they show is in the intervals
+    for (const char* drawn : {"map", "columns"}) j["rows"].back().erase(drawn);  // with their numbers beside the plot
   }
   return j.dump(1) + "\n";
 }

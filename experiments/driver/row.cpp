@@ -68,6 +68,7 @@ json to_json(const Row& row) {
             {"exposure", row.exposure}};
   if (row.parameter) j["parameter"] = *row.parameter;
   if (row.map) j["map"] = to_json(*row.map);
+  if (!row.columns.empty()) j["columns"] = row.columns;
   return j;
 }
 
@@ -107,6 +108,9 @@ Row row_from_json(const json& j) {
   row.exposure = number(j.at("exposure"));
   if (j.contains("parameter")) row.parameter = j.at("parameter").get<double>();
   if (j.contains("map")) row.map = map_from_json(j.at("map"));
+  if (j.contains("columns"))
+    for (const auto& [name, values] : j.at("columns").items())
+      for (const json& value : values) row.columns[name].push_back(number(value));
   return row;
 }
 

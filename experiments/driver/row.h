@@ -34,6 +34,7 @@ struct Row {
   std::map<std::string, double> counters;
   std::string image;  // file below results/images, without extension; empty: it has no picture
   std::optional<FigureMap> map;
+  Columns columns;
   double exposure = 0;
 };
 
