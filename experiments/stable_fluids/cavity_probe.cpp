@@ -94,11 +94,14 @@ Findings CavityProbe::run(const ProbeInput& input, const scene::Settings& s, con
   Findings found;
   if (curve == "ghia") {
     if (regularized) throw Error("Ghia et al. have lid = unit only");
-    add(found, "u", of_tables(ghia, require(ghia, reynolds, "Ghia et al.").u, spectral, known.u));
+    const CavityProfiles& points = require(ghia, reynolds, "Ghia et al.");
+    add(found, "u", of_tables(ghia, points.u, spectral, known.u));
+    found.columns = {{"y", ghia.y}, {"u", points.u}};
     return found;
   }
   if (curve == "spectral") {
     if (by_ghia) add(found, "ghia_u", of_tables(ghia, by_ghia->u, spectral, known.u));
+    found.columns = {{"y", spectral.y}, {"u", known.u}, {"x", spectral.x}, {"v", known.v}};
     return found;
   }
   Cavity cavity = usual_cavity(reynolds, regularized, int(s.integer("n")));
@@ -110,6 +113,13 @@ Findings CavityProbe::run(const ProbeInput& input, const scene::Settings& s, con
   add(found, "u", difference(spectral.y, known.u, u));
   add(found, "v", difference(spectral.x, known.v, v));
   if (by_ghia) add(found, "ghia_u", difference(ghia.y, by_ghia->u, u));
+  for (int i = 0; i <= cavity.n; ++i) {
+    const double at = double(i) / cavity.n;
+    found.columns["y"].push_back(at);
+    found.columns["u"].push_back(u(at));
+    found.columns["x"].push_back(at);
+    found.columns["v"].push_back(v(at));
+  }
   found.figures.push_back(exactly("change", steady.change));
   found.figures.push_back(exactly("divergence", steady.flow->totals().divergence));
   found.figures.push_back(exactly("steps", steady.flow->counters().at("steps")));
