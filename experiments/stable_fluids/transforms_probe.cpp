@@ -118,7 +118,6 @@ Findings measure(const scene::Settings& s) {
       measured("share", share), measured("ns_per_cell", each_cell(seconds)),
       measured("library_ns_per_cell", each_cell(bare)),
       exactly("library_error", std::max(in_place.error(values, length), out_of_place.error(values, length)))};
-  set_time(found, seconds);
   return found;
 }
 

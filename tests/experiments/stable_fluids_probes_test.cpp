@@ -152,7 +152,7 @@ TEST_CASE("transforms_rate: the library's plans are those of a pressure", "[stab
       CAPTURE(sides, fine);
       CHECK(figure(found, "library_error") < (fine ? 1e-14 : 3e-6));
       CHECK(figure(found, "share") > 0);
-      CHECK(figure(found, "ns_per_cell") == Approx(found.seconds.value * 1e9 / 1728));
+      CHECK(figure(found, "share") < 3 * figure(found, "library_ns_per_cell") / figure(found, "ns_per_cell"));
     }
 }
 
