@@ -57,4 +57,17 @@ class Probe : public scene::Component {
 // A figure that is known exactly, or with an interval.
 inline Measure exactly(std::string name, double value) { return {std::move(name), value, value, value, 0, false}; }
 
+// The median of runs, with its interval by ranks.
+inline Measure measured(std::string name, const std::vector<double>& runs) {
+  const Estimate e = median_estimate(runs);
+  return {std::move(name), e.value, e.low, e.high, 0, false};
+}
+
+// The time of what a probe measures once is the median of these runs [s].
+inline void set_time(Findings& found, const std::vector<double>& runs) {
+  found.seconds = median_estimate(runs);
+  found.runs = int(runs.size());
+  found.coverage = median_ranks(found.runs).coverage;
+}
+
 }  // namespace airlight::experiments

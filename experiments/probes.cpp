@@ -3,6 +3,7 @@
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
+#include "experiments/stable_fluids/probes.h"
 #include "experiments/verify/oracle_probe.h"
 #include "experiments/wavelet_fog/column_probe.h"
 #include "experiments/wavelet_fog/errata_probe.h"
@@ -25,6 +26,11 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<WaveletSeams>());
     list.push_back(std::make_unique<WaveletErrata>());
     list.push_back(std::make_unique<WaveletMapSize>());
+    list.push_back(std::make_unique<CavityProbe>());
+    list.push_back(std::make_unique<FlowStability>());
+    list.push_back(std::make_unique<PressureSolvers>());
+    list.push_back(std::make_unique<TransformsRate>());
+    list.push_back(std::make_unique<AdvectionRate>());
     return list;
   }();
   return probes;

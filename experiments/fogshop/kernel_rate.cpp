@@ -80,11 +80,6 @@ fogshop::Model prepare(const scene::Scene& scene, const fogshop::Options& o, con
   return model;
 }
 
-Measure measured(std::string name, const std::vector<double>& runs) {
-  const Estimate e = median_estimate(runs);
-  return {std::move(name), e.value, e.low, e.high, 0, false};
-}
-
 }  // namespace
 
 std::string KernelRate::about() const {

@@ -46,9 +46,7 @@ Findings findings(const Timed& timed) {
   Findings found;
   found.figures = {exactly("median_error", timed.errors.median), exactly("p99_error", timed.errors.p99),
                    exactly("greatest_error", timed.errors.greatest)};
-  found.seconds = median_estimate(timed.seconds);
-  found.runs = int(timed.seconds.size());
-  found.coverage = median_ranks(found.runs).coverage;
+  set_time(found, timed.seconds);
   return found;
 }
 

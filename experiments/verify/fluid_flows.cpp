@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include "experiments/stable_fluids/cavity.h"
 #include "experiments/verify/fluid_tables.h"
 #include "reference/stable_fluids/stable_fluids.h"
 
@@ -75,56 +76,31 @@ Check read_rest(const Value& v) {
           }};
 }
 
-// Velocities along the middles of a box whose lid moves, at one Reynolds number.
-struct Cavity {
-  double reynolds;
-  std::vector<double> u, v;  // u along x = 0.5, v along y = 0.5; v may be empty
-};
-
 // Steady flow: 48^2 cells in profile quick, 128^2 in profile paper.
-void compare_cavity(const Cavity& cavity, bool regularized, const std::vector<double>& y, const std::vector<double>& x,
-                    int n, double tolerance, Outcome& out) {
-  FlowProblem problem = flat_problem(1, scene::Side::Kind::no_slip);
-  problem.viscosity = 1 / cavity.reynolds;
-  problem.sides[1][1].velocity = Vec3(1, 0, 0);
-  problem.sides[1][1].regularized = regularized;
-  const auto flow = start(problem, {{"n", std::to_string(n)}});
-  // Until it is steady. Advection followed by a projection is first order in time, which shows where little else damps.
-  const double seconds = cavity.reynolds <= 100 ? 25 : 50, cfl = cavity.reynolds <= 400 ? 1 : 0.25;
-  for (int i = 0; i < seconds * n / cfl; ++i) flow->step(cfl / n);
+void compare_cavity(const CavityTable& table, const CavityProfiles& known, bool regularized, int n, double tolerance,
+                    Outcome& out) {
+  const auto flow = steady_flow(usual_cavity(known.reynolds, regularized, n), {}).flow;
   const auto compare = [&](const char* what, const std::vector<double>& places, const std::vector<double>& expected,
                            auto at, int axis) {
     for (std::size_t i = 0; i < expected.size(); ++i)
-      out.comparisons.push_back(absolute(fmt::format("Re {}, {}^2, {}{}", cavity.reynolds, n, what, places[i]),
+      out.comparisons.push_back(absolute(fmt::format("Re {}, {}^2, {}{}", known.reynolds, n, what, places[i]),
                                          expected[i], flow->velocity(at(places[i]))[axis], tolerance));
   };
-  compare(
-      "u at y = ", y, cavity.u, [](double c) { return Point3(0.5, c, 0); }, 0);
-  compare(
-      "v at x = ", x, cavity.v, [](double c) { return Point3(c, 0.5, 0); }, 1);
+  compare("u at y = ", table.y, known.u, on_vertical, 0);
+  compare("v at x = ", table.x, known.v, on_horizontal, 1);
 }
 
 Check read_cavity(const Value& v, bool regularized, double tolerance) {
-  const auto y = v["input"]["y"].numbers();
-  const auto x = v["input"].has("x") ? v["input"]["x"].numbers() : std::vector<double>{};
-  std::vector<Cavity> cavities;
-  for (const std::string& reynolds : v["expected"].fields()) {
-    const Value expected = v["expected"][reynolds];
-    const bool both = !expected.is_array();
-    cavities.push_back({std::stod(reynolds), (both ? expected["u"] : expected).numbers(),
-                        both ? expected["v"].numbers() : std::vector<double>{}});
-    if (cavities.back().u.size() != y.size() || cavities.back().v.size() != x.size())
-      expected.complain("as many numbers as places");
-  }
+  const CavityTable table = read_cavity_table(v);
   return {"", [=](VerifyProfile profile) {
             Outcome out;
-            for (const Cavity& cavity : cavities) {
-              if (profile == VerifyProfile::quick && cavity.reynolds > 100) {
-                out.left_out += int(cavity.u.size() + cavity.v.size());
+            for (const CavityProfiles& known : table.profiles) {
+              if (profile == VerifyProfile::quick && known.reynolds > 100) {
+                out.left_out += int(known.u.size() + known.v.size());
                 out.left_out_because = "Reynolds numbers above 100 are for the paper profile";
                 continue;
               }
-              compare_cavity(cavity, regularized, y, x, profile == VerifyProfile::quick ? 48 : 128, tolerance, out);
+              compare_cavity(table, known, regularized, profile == VerifyProfile::quick ? 48 : 128, tolerance, out);
             }
             return out;
           }};

@@ -114,9 +114,7 @@ Findings WaveletMapSize::run(const ProbeInput&, const scene::Settings& s, const 
                    exactly("prepare_ms", 1e3 * prepare)};
   found.counters = picture.counters;
   found.counters["direct_cells"] = direct.counters.at("cells");
-  found.seconds = median_estimate(seconds);
-  found.runs = int(seconds.size());
-  found.coverage = median_ranks(found.runs).coverage;
+  set_time(found, seconds);
   return found;
 }
 
