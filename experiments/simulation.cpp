@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
+#include <optional>
 
 #include "experiments/build_info.h"
+#include "experiments/frames.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
@@ -15,20 +18,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string history_header =
-    "frame,time,energy,enstrophy,mass,density_least,density_greatest,greatest_speed,divergence,cfl,center_x,center_y,"
-    "center_z\n";
+std::string history_header() {
+  std::string line = "frame";
+  for (const auto& [name, value] : history_of(0, {})) line += "," + name;
+  return line + "\n";
+}
 
-std::string history_row(int frame, double time, const scene::Totals& t) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame, time, t.energy, t.enstrophy, t.mass,
-                     t.density_least, t.density_greatest, t.greatest_speed, t.divergence, t.cfl, t.center_of_mass[0],
-                     t.center_of_mass[1], t.center_of_mass[2]);
+std::string history_row(int frame, double time, const scene::Totals& totals) {
+  std::string line = std::to_string(frame);
+  for (const auto& [name, value] : history_of(time, totals)) line += fmt::format(",{}", value);
+  return line + "\n";
+}
+
+// The first two lines of `state`: of what it is, and after which frame.
+std::string key_of(const Simulation& s) {
+  return content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()});
+}
+std::optional<std::pair<std::string, int>> what_is_in(const fs::path& folder) {
+  std::ifstream in(folder / "state", std::ios::binary);
+  std::string key;
+  int last = -1;
+  if (std::getline(in, key) && in >> last) return std::pair(key, last);
+  return std::nullopt;
 }
 
 class Folder {
  public:
-  explicit Folder(const Simulation& s)
-      : s_(s), key_(content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()})) {
+  explicit Folder(const Simulation& s) : s_(s), key_(key_of(s)) {
     std::error_code code;
     fs::create_directories(s.folder, code);
     if (code) throw Error(fmt::format("{}: {}", s.folder.string(), code.message()));
@@ -67,8 +83,10 @@ class Folder {
                         {"solver", s_.solver.name() + " " + s_.settings.canonical()},
                         {"commit", commit()}});
     history_ += history_row(frame, flow.time(), flow.totals());
-    scene::write_file_atomically((s_.folder / "history.csv").string(), history_header + history_);
-    scene::write_file_atomically((s_.folder / "state").string(), fmt::format("{}\n{}\n{}", key_, frame, flow.state()));
+    scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
+    std::string state = flow.state();  // as long as the flow itself
+    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
  private:
@@ -92,27 +110,35 @@ class Folder {
 
 }  // namespace
 
+int frames_there(const Simulation& s) {
+  const auto found = what_is_in(s.folder);
+  if (!found || found->first != key_of(s)) return 0;
+  const Folder folder(s);
+  for (int frame = 0; frame <= found->second; ++frame)
+    if (!fs::exists(folder.frame_name(frame))) return 0;
+  return found->second + 1;
+}
+
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {
-  const int frames = int(std::lround(s.problem->duration * s.problem->frame_rate)) + 1;
-  const int steps = s.solver.steps_per_frame(*s.problem, s.settings);
-  const double dt = 1 / (s.problem->frame_rate * steps);
-  Folder folder(s);
+  const FrameSteps plan = frame_steps(*s.problem, s.solver, s.settings);
+  if (plan.frames == 1)
+    throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
+                            s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Folder folder(s);
   SimulationReport report;
   const int last = folder.resume(*flow);
   report.resumed = last + 1;
-  for (int frame = last + 1; frame < frames; ++frame) {
+  for (int frame = last + 1; frame < plan.frames; ++frame) {
     if (frame > 0)
-      for (int step = 0; step < steps; ++step) {
-        flow->step(dt);
-        const double done =
-            (frame - 1 - report.resumed + double(step + 1) / steps) / (frames - 1 - report.resumed + 1e-9);
+      to_next_frame(*flow, plan, [&](double share) {
+        const double done = (frame - 1 - report.resumed + share) / (plan.frames - 1 - report.resumed + 1e-9);
         if (execution.progress && !execution.progress(std::clamp(done, 0.0, 1.0)))
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
-      }
-    folder.keep(frame, *flow, dt);
+      });
+    folder.keep(frame, *flow, plan.dt);
   }
-  report.frames = frames;
+  report.frames = plan.frames;
   report.times = flow->times();
   report.counters = flow->counters();
   report.totals = flow->totals();

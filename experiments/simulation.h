@@ -29,6 +29,10 @@ struct SimulationReport {
   scene::Totals totals;  // at the end
 };
 
+// How many frames are in the folder, the start included, after which it can go on; 0 where it is empty, where a frame is
+// gone, or where what is there is of another problem, solver, settings or program.
+int frames_there(const Simulation&);
+
 // frames = duration * frame_rate, rounded, and the start. Throws Error: a folder that holds another simulation, a frame
 // that is gone, whatever a step throws; Interrupted after the frame during which it was asked to stop.
 SimulationReport simulate(const Simulation&, const scene::Execution&);

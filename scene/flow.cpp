@@ -1,12 +1,19 @@
 #include "scene/flow.h"
 
+#include "scene/error.h"
+
 namespace airlight::scene {
 
 std::unique_ptr<Flow> Solver::start(std::shared_ptr<const FlowProblem> problem, const Settings& settings,
                                     const Execution& execution) const {
   const std::vector<std::string> reasons = supports(*problem, settings);
   if (!reasons.empty()) throw NotSupported(name() + ": " + reasons.front(), reasons.front());
-  return start_supported(std::move(problem), settings, execution);
+  if (problem->file.empty()) return start_supported(std::move(problem), settings, execution);
+  try {
+    return start_supported(problem, settings, execution);
+  } catch (const Error& e) {
+    throw Error(problem->file + ": " + e.what(), e.exit_code());
+  }
 }
 
 }  // namespace airlight::scene

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/component.h"
+#include "scene/error.h"
 #include "scene/flow_problem.h"
 #include "scene/media/medium.h"
 #include "scene/renderer.h"
@@ -36,11 +37,17 @@ struct Frame {
   std::vector<float> velocity;
 };
 
+// A step whose result is of no use: values are no longer finite, or energy grows beyond all measure.
+class Unstable : public Error {
+ public:
+  using Error::Error;
+};
+
 class Flow {
  public:
   virtual ~Flow() = default;
   virtual double time() const = 0;  // [s]
-  // By dt > 0 [s]. Throws Error (step and cell) where a value is no longer finite.
+  // By dt > 0 [s]. Throws Unstable (step and cell).
   virtual void step(double dt) = 0;
   // At points of the box; outside it at the nearest one.
   virtual Vec3 velocity(const Point3&) const = 0;  // [m/s]
@@ -59,14 +66,16 @@ class Flow {
 };
 
 // Grids `density`, `temperature` (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`
-// as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Throws Error.
-void write_frame(const std::string& path, const Frame&, const std::map<std::string, std::string>& notes);
+// as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Moved here, a frame
+// is freed on the way. Throws Error.
+void write_frame(const std::string& path, Frame, const std::map<std::string, std::string>& notes);
 
 class Solver : public Component {
  public:
   // Empty: it can solve the problem. Else the reasons why not, one line each.
   virtual std::vector<std::string> supports(const FlowProblem&, const Settings&) const = 0;
-  // Throws NotSupported if supports() objects.
+  // Throws NotSupported if supports() objects, Error where the problem has no solution on the grid that the settings
+  // ask for; beginning with the problem's file.
   std::unique_ptr<Flow> start(std::shared_ptr<const FlowProblem>, const Settings&, const Execution&) const;
   // The steps that a frame takes, all of one length.
   virtual int steps_per_frame(const FlowProblem&, const Settings&) const = 0;

@@ -46,6 +46,11 @@ double blob_at(const Blob& blob, const Point3& x) {
 
 }  // namespace
 
+double start_velocity(const FlowProblem& problem, int axis, const Point3& x) {
+  const double sum = velocity_at(problem.velocity, problem.box, x)[axis];
+  return problem.velocity_grid ? sum + start_value((*problem.velocity_grid)[axis], x) : sum;
+}
+
 double start_density(const FlowProblem& problem, const Point3& x) {
   double sum = problem.density;
   for (const Blob& blob : problem.blobs) sum += blob.density * blob_at(blob, x);
@@ -55,13 +60,14 @@ double start_density(const FlowProblem& problem, const Point3& x) {
       phase += 2 * pi * problem.wave->waves[a] * (x[a] - problem.box.lo[a]) / problem.box.size()[a];
     sum += problem.wave->density * std::cos(phase) + problem.wave->offset;
   }
-  if (problem.density_grid) sum += density(*problem.density_grid, x);
+  if (problem.density_grid) sum += start_value(*problem.density_grid, x);
   return sum;
 }
 
 double start_temperature(const FlowProblem& problem, const Point3& x) {
   double sum = problem.temperature;
   for (const Blob& blob : problem.blobs) sum += blob.temperature * blob_at(blob, x);
+  if (problem.temperature_grid) sum += start_value(*problem.temperature_grid, x);
   return sum;
 }
 

@@ -16,7 +16,7 @@
 #include "scene/geometry/surface.h"
 #include "scene/math/types.h"
 #include "scene/media/region.h"
-#include "scene/media/voxel_grid.h"
+#include "scene/media/start_grids.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {
@@ -86,6 +86,7 @@ struct Push {  // an acceleration in time
 
 struct FlowProblem {
   std::string name;
+  std::string file;                          // that it was read from, for messages; empty where it was not
   int dimensions = 3;                        // 2: the flow lies in the plane z = 0, and so does the box
   Box box{Point3::Zero(), Point3::Ones()};   // [m]
   std::array<std::array<Side, 2>, 3> sides;  // [axis][low, high]
@@ -101,7 +102,8 @@ struct FlowProblem {
   double density = 0, temperature = 0;  // at first, everywhere
   std::vector<Blob> blobs;
   std::optional<Wave> wave;
-  std::shared_ptr<const VoxelGrid> density_grid;  // added to what is above
+  std::shared_ptr<const VoxelGrid> density_grid, temperature_grid;  // added to what is above
+  std::shared_ptr<const VelocityGrid> velocity_grid;
   std::vector<Source> sources;
   std::vector<Surface> obstacles;  // closed: spheres and meshes, standing still
   std::vector<Push> pushes;
@@ -120,6 +122,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
 std::string content_hash(const FlowProblem&);
 
 // At the beginning, without what obstacles take away.
+double start_velocity(const FlowProblem&, int axis, const Point3&);
 double start_density(const FlowProblem&, const Point3&);
 double start_temperature(const FlowProblem&, const Point3&);
 

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <set>
 
+#include "experiments/driver/flows.h"
 #include "experiments/driver/journal.h"
 #include "experiments/driver/numbers.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
+#include "experiments/driver/sequences.h"
 #include "experiments/interrupt.h"
 #include "scene/error.h"
 
@@ -92,6 +94,8 @@ void check_experiment(const Experiment& e, const RunOptions& options) {
       for (const SceneCase& c : e.scenes) input_key(c);
       return;
     }
+    if (e.kind == "flow") return check_flows(e);
+    make_sequences(options.root, e);  // scenes cannot be looked at without
     const Journal finished(journal_file(options.root, e), options.resume);
     std::set<const MethodCase*> tried;
     for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);

@@ -1,9 +1,11 @@
 #include "experiments/driver/comparisons.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "experiments/driver/drawn_again.h"
 #include "experiments/front.h"
@@ -111,6 +113,30 @@ TextTable equal_error_and_time(const Outcome& outcome) {
       else
         line.insert(line.end(), {"no common time", "", "", ""});
       lines.push_back(line);
+    }
+  return lines;
+}
+
+TextTable orders(const Outcome& outcome) {
+  TextTable lines{{"scene", "method", "metric", "settings", "orders"}};
+  for (const std::string& scene : scene_names(outcome))
+    for (const std::string& metric : outcome.experiment.metrics) {
+      if (metric.find(".rel_l2") == std::string::npos && metric.find(".greatest") == std::string::npos) continue;
+      std::map<std::string, std::map<double, double>> errors;  // by method and setting
+      for (const Row& row : outcome.rows) {
+        const auto setting = quantity(row, "setting"), error = quantity(row, metric);
+        if (row.scene == scene && setting && error && setting->value > 0 && error->value > 0)
+          errors[row.method][setting->value] = error->value;
+      }
+      for (const auto& [method, curve] : errors) {
+        if (curve.size() < 2) continue;
+        std::vector<std::string> settings, found;
+        for (auto last = curve.begin(), next = std::next(last); next != curve.end(); last = next++)
+          found.push_back(fmt::format("{:.2f}", std::log(last->second / next->second) / std::log(next->first / last->first)));
+        for (const auto& [setting, error] : curve) settings.push_back(fmt::format("{:g}", setting));
+        lines.push_back({scene, method, metric, fmt::format("{}", fmt::join(settings, ", ")),
+                         fmt::format("{}", fmt::join(found, ", "))});
+      }
     }
   return lines;
 }

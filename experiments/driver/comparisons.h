@@ -17,6 +17,10 @@ std::vector<bool> on_front(const Outcome&);
 // with the interval that the runs and errors leave them (drawn_again.h).
 TextTable equal_error_and_time(const Outcome&);
 
+// Of flows: for each scene, method and error of at least two rows at rising numeric settings, the order p with which the
+// error falls as setting^-p from each to the next. Header only where there is none.
+TextTable orders(const Outcome&);
+
 // A line where processors were not free for more than a tenth of the threads' time in some row's timed runs; else
 // empty.
 inline constexpr double much_waiting = 0.1;

@@ -7,10 +7,13 @@
 
 #include "experiments/driver/bounds.h"
 #include "experiments/driver/next_frames.h"
+#include "experiments/driver/sequences.h"
 #include "experiments/driver/toml_values.h"
+#include "experiments/flow_metrics.h"
 #include "experiments/metrics.h"
 #include "experiments/probes.h"
 #include "experiments/renderers.h"
+#include "experiments/solvers.h"
 #include "scene/error.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
@@ -34,23 +37,28 @@ class Reader {
 
   Experiment read() {
     TableReader top(toml_, "");
-    numbers_ = toml_["kind"].value_or(std::string()) == "numbers";
+    const std::string kind = toml_["kind"].value_or(std::string("images"));
+    images_ = kind == "images", numbers_ = kind == "numbers";
     std::vector<std::string> keys{"kind",   "title", "paper", "about",    "metrics",  "in_tests", "scene",
                                   "method", "plot",  "gate",  "speed_up", "expected", "profile",  "timing"};
-    if (!numbers_) keys.insert(keys.end(), {"layer", "stages", "reference"});
+    if (!numbers_) keys.insert(keys.end(), {"stages", "reference"});
+    if (images_) keys.push_back("layer");
+    if (!images_ && !numbers_) keys.push_back("orders");
     top.allow(keys);
-    experiment_.kind = top.choice("kind", {"images", "numbers"}, "images");
+    experiment_.kind = top.choice("kind", {"images", "numbers", "flow"}, "images");
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
     experiment_.about = top.text("about", "");
     experiment_.in_tests = top.flag("in_tests", false);
-    if (!numbers_) {
-      experiment_.layer = top.text("layer", "mean");
-      experiment_.stages = top.flag("stages", false);
-    }
+    if (images_) experiment_.layer = top.text("layer", "mean");
+    if (!images_ && !numbers_) experiment_.orders = top.flag("orders", false);
+    if (!numbers_) experiment_.stages = top.flag("stages", false);
     experiment_.metrics = strings(toml_, "metrics", top);
-    if (!numbers_)
-      for (const std::string& metric : experiment_.metrics) check_metric_name(metric, position("metrics"));
+    for (const std::string& metric : experiment_.metrics)
+      if (images_)
+        check_metric_name(metric, position("metrics"));
+      else if (!numbers_)
+        parse_flow_metric(metric, position("metrics"));
     Pairs overrides, reference_settings;
     profile(top, overrides, reference_settings);
     if (!numbers_) reference(top, reference_settings);
@@ -120,10 +128,17 @@ class Reader {
   }
 
   // What makes the rows: its key in the file, and the thing itself.
-  const char* component_key() const { return numbers_ ? "probe" : "renderer"; }
+  const char* component_key() const { return numbers_ ? "probe" : images_ ? "renderer" : "solver"; }
   const scene::Component& find_component(const std::string& name, const std::string& where) const {
     if (numbers_) return find_probe(name, where);
-    return find_renderer(name, where);
+    if (images_) return find_renderer(name, where);
+    return find_solver(name, where);
+  }
+
+  // What a row may have for time.
+  std::vector<std::string> times() const {
+    if (images_ || numbers_) return {"seconds", "prepare_seconds"};
+    return {"seconds", "step_seconds", "cell_seconds", "simulated_seconds"};
   }
 
   void check_component(const TableReader& reader, const std::string& name, const Pairs& given) const {
@@ -152,11 +167,13 @@ class Reader {
   void reference(const TableReader& top, const Pairs& finer) {
     auto reader = top.table("reference");
     if (!reader) {
-      if (!experiment_.metrics.empty()) top.fail("metrics", "there are metrics and no [reference]");
+      for (const std::string& metric : experiment_.metrics)
+        if (images_ || needs_reference(parse_flow_metric(metric, position("metrics"))))
+          top.fail("metrics", fmt::format("there is {} and no [reference]", metric));
       return;
     }
-    reader->allow({"renderer", "settings"});
-    experiment_.reference.renderer = reader->text("renderer");
+    reader->allow({component_key(), "settings"});
+    experiment_.reference.renderer = reader->text(component_key());
     experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
     for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
     check_component(*reader, experiment_.reference.renderer, experiment_.reference.settings);
@@ -172,6 +189,9 @@ class Reader {
       for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
       if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
       const bool wanted = in_profile(*table, reader);
+      if (wanted)
+        name_sequences(root_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
+                       experiment_.sequences);
       std::vector<SceneCase> cases{scene};
       if (auto sweep = reader.table("sweep")) {
         sweep->allow({"key", "values"});
@@ -195,13 +215,13 @@ class Reader {
   void methods(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "method")) {
       std::vector<std::string> keys{"name", component_key(), "settings", "sweep", "profiles", "scenes"};
-      if (!numbers_) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving"});
+      if (images_) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving"});
       reader.allow(keys);
       MethodCase method;
       method.renderer = reader.text(component_key());
       method.name = reader.text("name", method.renderer);
       method.settings = settings(*table, "settings", reader);
-      if (!numbers_) {
+      if (images_) {
         method.layer = reader.text("layer", experiment_.layer);
         method.picture_only = reader.flag("picture_only", false);
         method.count_noise = reader.flag("count_noise", false);
@@ -250,7 +270,8 @@ class Reader {
       for (const std::string& name : plot.methods) known(reader, "methods", name, "method");
       for (const std::string key : {"x", "y"}) {
         const std::string& axis = key == "x" ? plot.x : plot.y;
-        const std::vector<std::string> axes = {"seconds", "prepare_seconds", "parameter", "setting"};
+        std::vector<std::string> axes = times();
+        axes.insert(axes.end(), {"parameter", "setting"});
         const bool known =
             std::find(axes.begin(), axes.end(), axis) != axes.end() || axis.starts_with("counter.") ||
             axis.starts_with("column.") ||
@@ -272,8 +293,7 @@ class Reader {
     if (list == "metric") {
       if (value.rfind("counter.", 0) == 0) return;
       names = experiment_.metrics;
-      names.push_back("seconds");
-      names.push_back("prepare_seconds");
+      for (const std::string& time : times()) names.push_back(time);
       names.push_back("counter.NAME");
     } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
       for (const toml::node& node : *array) {
@@ -295,11 +315,12 @@ class Reader {
       reader.fail("", fmt::format("{} in profile {}", what, experiment_.profile));
     };
     const std::vector<std::string> tests = {"objections", "largest_z", "detectable_bias"};
+    const std::vector<std::string> of_time = times();
     const bool of_time_or_work =
-        gate.metric == "seconds" || gate.metric == "prepare_seconds" || gate.metric.rfind("counter.", 0) == 0;
+        gate.metric.starts_with("counter.") || std::find(of_time.begin(), of_time.end(), gate.metric) != of_time.end();
     const bool test = std::find(tests.begin(), tests.end(), gate.metric) != tests.end();
-    const auto noisy = [](const std::string& name) {
-      return !name.empty() && find_renderer(name, "gate").monte_carlo();
+    const auto noisy = [this](const std::string& name) {
+      return images_ && !name.empty() && find_renderer(name, "gate").monte_carlo();
     };
     const bool noisy_reference = noisy(experiment_.reference.renderer);
     bool found = false;
@@ -307,7 +328,7 @@ class Reader {
       for (const MethodCase& m : experiment_.methods) {
         if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
         found = true;
-        if (of_time_or_work || numbers_) continue;
+        if (of_time_or_work || !images_) continue;
         if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
         if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
         if (test && !noisy_reference && !noisy(m.renderer))
@@ -367,7 +388,7 @@ class Reader {
   }
 
   fs::path root_;
-  bool numbers_ = false;  // kind
+  bool images_ = true, numbers_ = false;  // kind; neither: flow
   std::string file_;
   toml::table toml_;
   Experiment experiment_;

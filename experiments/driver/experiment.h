@@ -12,7 +12,7 @@ namespace airlight::experiments {
 
 using Pairs = std::map<std::string, std::string>;
 
-struct SceneCase {  // kind "numbers": the input of a probe; all empty where there is none
+struct SceneCase {  // kind "numbers": the input of a probe, all empty where there is none; "flow": the problem
   std::string name;
   std::string swept_from;  // the name without the sweep's value; empty without a sweep
   std::filesystem::path file;
@@ -23,7 +23,7 @@ struct SceneCase {  // kind "numbers": the input of a probe; all empty where the
 
 struct MethodCase {
   std::string name;
-  std::string renderer;  // or the probe
+  std::string renderer;  // or the probe, or the solver
   Pairs settings;
   std::string setting;              // the swept setting's value, as text; empty without a sweep
   std::string layer;                // compared with the reference's layer
@@ -82,9 +82,10 @@ struct ExpectedCase {
 struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
-  std::string kind;     // "images" or "numbers"
+  std::string kind;     // "images", "numbers" or "flow"
   std::string profile;  // "quick" or "paper"
   std::vector<SceneCase> scenes;
+  std::vector<std::string> sequences;  // that scenes show (sequences.h)
   std::vector<MethodCase> methods;
   ReferenceCase reference;
   std::string layer = "mean";
@@ -92,6 +93,7 @@ struct Experiment {
   TimingRule timing;
   bool in_tests = false;  // its gates are judged by scripts/test
   bool stages = false;    // a table of the time of every stage
+  bool orders = false;    // a table of how fast errors fall with the swept setting
   std::vector<PlotCase> plots;
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;

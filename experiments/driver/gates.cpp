@@ -21,7 +21,7 @@ std::string name_of(const Experiment& experiment, const GateCase& gate, const Ro
 }
 
 std::string kind_of(const Row& row, const std::string& metric) {
-  if (metric == "seconds" || metric == "prepare_seconds") return "time";
+  if (metric.ends_with("seconds") && !metric.starts_with("counter.")) return "time";
   if (metric.rfind("counter.", 0) == 0) return "counter";
   for (const char* test : {"objections", "largest_z", "detectable_bias"})
     if (metric == test) return "Monte Carlo";  // of equality but for noise

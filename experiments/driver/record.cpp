@@ -79,6 +79,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   if (e.stages) j["tables"].push_back({{"file", "stages.csv"}, {"title", "Stages"}});
   if (!e.expected.empty()) j["tables"].push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
   if (!e.speed_ups.empty()) j["tables"].push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
+  if (e.orders && orders(outcome).size() > 1) j["tables"].push_back({{"file", "orders.csv"}, {"title", "Orders"}});
   j["plots"] = json::array();
   for (const PlotFile& plot : plots) j["plots"].push_back({{"file", plot.file}, {"title", plot.title}});
   j["pictures"] = pictures(outcome);

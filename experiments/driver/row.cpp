@@ -114,10 +114,27 @@ Row row_from_json(const json& j) {
   return row;
 }
 
+namespace {
+
+// Into how many of what the name says a flow's whole run is divided; 0 for other names and rows.
+double parts_of_run(const Row& row, const std::string& name) {
+  const auto counter = [&](const char* what) {
+    const auto found = row.counters.find(what);
+    return found == row.counters.end() || row.runs == 0 ? 0 : found->second;
+  };
+  if (name == "step_seconds") return counter("steps");
+  if (name == "cell_seconds") return counter("steps") * counter("cells");
+  return name == "simulated_seconds" ? counter("simulated seconds") : 0;
+}
+
+}  // namespace
+
 std::optional<Estimate> quantity(const Row& row, const std::string& name) {
   const auto plain = [](double x) { return Estimate{x, x, x}; };
   if (name == "seconds") return row.runs ? std::optional(row.seconds) : std::nullopt;
   if (name == "prepare_seconds") return row.runs ? std::optional(plain(row.prepare_seconds)) : std::nullopt;
+  if (const double parts = parts_of_run(row, name); parts > 0)
+    return Estimate{row.seconds.value / parts, row.seconds.low / parts, row.seconds.high / parts};
   if (name == "parameter") return row.parameter ? std::optional(plain(*row.parameter)) : std::nullopt;
   if (name == "setting") {
     double value = 0;

@@ -1,6 +1,7 @@
 #include "experiments/driver/run.h"
 
 #include "experiments/driver/check.h"
+#include "experiments/driver/flows.h"
 #include "experiments/driver/images.h"
 #include "experiments/driver/numbers.h"
 
@@ -13,8 +14,9 @@ std::filesystem::path journal_file(const std::filesystem::path& root, const Expe
 Outcome run_experiment(Experiment experiment, const RunOptions& options) {
   if (options.threads > 0) experiment.timing.threads = options.threads;
   if (!options.checked) check_experiment(experiment, options);
-  return experiment.kind == "numbers" ? run_numbers(std::move(experiment), options)
-                                      : run_images(std::move(experiment), options);
+  if (experiment.kind == "numbers") return run_numbers(std::move(experiment), options);
+  if (experiment.kind == "flow") return run_flows(std::move(experiment), options);
+  return run_images(std::move(experiment), options);
 }
 
 }  // namespace airlight::experiments

@@ -70,7 +70,9 @@ std::vector<Cells> summary(const Outcome& outcome) {
   if (setting) head.push_back("setting");
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
   const bool images = outcome.experiment.kind == "images";
-  if (timed) head.push_back(images ? "time of one render" : "time of one");
+  const bool flows = outcome.experiment.kind == "flow";
+  if (timed) head.push_back(images ? "time of one render" : flows ? "time of the whole" : "time of one");
+  if (timed && flows) head.insert(head.end(), {"of a step", "of a simulated second"});
   const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
   if (downloads) head.push_back("download");
   if (timed && images) head.push_back("prepared once in");
@@ -93,6 +95,11 @@ std::vector<Cells> summary(const Outcome& outcome) {
       line.push_back(found == row.measures.end() ? "" : text(*found));
     }
     if (timed) line.push_back(time_text(row));
+    if (timed && flows)
+      for (const char* part : {"step_seconds", "simulated_seconds"}) {
+        const auto time = quantity(row, part);
+        line.push_back(time ? duration(time->value) : "");
+      }
     if (downloads) line.push_back(download(row) ? duration(*download(row)) : "");
     if (timed && images) line.push_back(row.runs ? duration(row.prepare_seconds) : "");
     if (compared) line.push_back(best[i] ? "yes" : "");
@@ -143,8 +150,9 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
       for (const Measure& m : row.measures)
         if (m.name == e.metric) return text(m);
       if (e.metric == "seconds" && row.runs > 0)
-        return fmt::format("{} at {}x{}, {:.3g} per second", time_text(row), row.width, row.height,
-                           1 / row.seconds.value);
+        return outcome.experiment.kind == "images" ? fmt::format("{} at {}x{}, {:.3g} per second", time_text(row),
+                                                                 row.width, row.height, 1 / row.seconds.value)
+                                                   : time_text(row);
     }
   return "not in this profile";
 }
@@ -153,6 +161,11 @@ std::vector<Cells> expected(const Outcome& outcome) {
   std::vector<Cells> lines{{"what", "printed", "ours"}};
   for (const ExpectedCase& x : outcome.experiment.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
   return lines;
+}
+
+// Where the setting is how fine the grid is.
+TextTable orders_of(const Outcome& outcome) {
+  return outcome.experiment.orders ? orders(outcome) : TextTable{};
 }
 
 }  // namespace
@@ -217,6 +230,7 @@ std::map<std::string, std::string> table_files(const Outcome& outcome, const std
                                            {"table.md", table_markdown(outcome, plots)}};
   if (e.stages) files["stages.csv"] = csv(stage_table(outcome));
   if (!e.expected.empty()) files["expected.csv"] = csv(expected(outcome));
+  if (const auto lines = orders_of(outcome); lines.size() > 1) files["orders.csv"] = csv(lines);
   if (!e.speed_ups.empty()) files["speed_up.csv"] = csv(equal_error_and_time(outcome));
   return files;
 }
@@ -236,6 +250,8 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
     out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";
   }
   if (!e.speed_ups.empty()) out += "## Equal error, equal time\n\n" + markdown(equal_error_and_time(outcome)) + "\n";
+  if (const auto lines = orders_of(outcome); lines.size() > 1)
+    out += "## Orders\n\nOf the fall of the error from each setting to the next.\n\n" + markdown(lines) + "\n";
   for (const PlotFile& plot : plots) out += fmt::format("![{}]({})\n", plot.title, plot.file);
   if (!plots.empty()) out += "\n";
   if (!outcome.gates.empty()) {
@@ -257,6 +273,10 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
     out +=
         "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
         "precomputation apart.\n";
+  else if (e.kind == "flow")
+    out +=
+        "- Errors at 61 samples along the longest side of the box; times: median [ranks] of the whole run's wall clock, what "
+        "looks at it left out.\n";
   else
     out += "- Figures with [95 % interval by ranks] where they are medians of several runs.\n";
   if (any(outcome, [](const Row& r) { return download(r).has_value(); }))

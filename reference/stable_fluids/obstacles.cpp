@@ -1,6 +1,9 @@
 #include "reference/stable_fluids/obstacles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "scene/error.h"
@@ -11,23 +14,28 @@ namespace {
 
 using Solids = Field<std::uint8_t>;
 
-// Cells whose centre is crossed into more often than out of, along x: each shape is closed.
-void mark(const scene::Surface& surface, const Lattice& l, Solids& solid) {
+// Cells whose centre is crossed into more often than out of, along x, for each shape is closed. How many.
+std::size_t mark(const scene::Surface& surface, const Lattice& l, Solids& solid) {
   const scene::Geometry shape({surface});
   const Box bounds = shape.bounds();
+  std::atomic<std::size_t> marked = 0;
   for_rows(solid.n, [&](int j, int k) {
     const Point3 first = solid.position(l, 0, j, k);
     if (bounds.hi[1] < first[1] || bounds.lo[1] > first[1] || bounds.hi[2] < first[2] || bounds.lo[2] > first[2])
       return;
     const double start = std::min(first[0], bounds.lo[0]) - l.h;
     const auto hits = shape.all_hits({Point3(start, first[1], first[2]), Vec3::UnitX()});
-    std::size_t passed = 0;
+    std::size_t passed = 0, in_row = 0;
     for (int i = 0; i < solid.n[0]; ++i) {
       const double x = solid.position(l, i, j, k)[0];
       while (passed < hits.size() && hits[passed].position[0] <= x) ++passed;
-      if (passed % 2 == 1) solid.at(i, j, k) = 1;
+      if (passed % 2 == 0) continue;
+      solid.at(i, j, k) = 1;
+      ++in_row;
     }
+    marked += in_row;
   });
+  return marked;
 }
 
 // Beyond a side: what is there is what is mirrored, or wraps.
@@ -74,7 +82,10 @@ Obstacles make_obstacles(const scene::FlowProblem& problem, const Lattice& l) {
   Obstacles obstacles;
   if (problem.obstacles.empty()) return obstacles;
   obstacles.solid = Solids(l, at_centers);
-  for (const scene::Surface& surface : problem.obstacles) mark(surface, l, obstacles.solid);
+  for (std::size_t i = 0; i < problem.obstacles.size(); ++i)
+    if (mark(problem.obstacles[i], l, obstacles.solid) == 0)
+      throw Error(fmt::format(
+          "obstacle {}: the centre of no cell of {:.4g} m lies in it, expected a thicker one or more cells", i, l.h));
   for (int k = 0; k < l.n[2]; ++k)
     for (int j = 0; j < l.n[1]; ++j)
       obstacles.count += std::size_t(std::count(obstacles.solid.row(j, k), obstacles.solid.row(j, k) + l.n[0], 1));

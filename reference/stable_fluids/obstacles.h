@@ -20,7 +20,7 @@ struct Obstacles {
   }
 };
 
-// Cells whose centre lies in an obstacle. Throws Error where none is left.
+// Cells whose centre lies in an obstacle. Throws Error where none is left, or an obstacle has none.
 Obstacles make_obstacles(const scene::FlowProblem&, const Lattice&);
 
 // Whether one of the two cells at a sample of a velocity is solid.

@@ -138,18 +138,38 @@ void Projection<Real>::subtract_gradient(const std::vector<Real>& p, Velocity<Re
 
 template <class Real>
 double greatest_divergence(const Velocity<Real>& u, const Lattice& l, const Obstacles& obstacles) {
-  double most = 0;
-  for (int k = 0; k < l.n[2]; ++k)
-    for (int j = 0; j < l.n[1]; ++j)
-      for (int i = 0; i < l.n[0]; ++i)
-        if (!obstacles.any() || !obstacles.solid.at(i, j, k))
-          most = std::max(most, std::abs(double(divergence_at(u, l, i, j, k))));
-  return most * l.h;
+  std::vector<Real> rows(std::size_t(l.n[1]) * l.n[2]);
+  for_rows(l.n, [&](int j, int k) {
+    Real most = 0;
+    for (int i = 0; i < l.n[0]; ++i)
+      if (!obstacles.any() || !obstacles.solid.at(i, j, k))
+        most = std::max(most, std::abs(divergence_at(u, l, i, j, k)));
+    rows[j + std::size_t(l.n[1]) * k] = most;
+  });
+  return double(*std::max_element(rows.begin(), rows.end())) * l.h;
+}
+
+template <class Real>
+double greatest_speed(const Velocity<Real>& u) {
+  Real greatest = 0;
+  for (const Field<Real>& f : u) {
+    if (f.values.empty()) continue;
+    std::vector<Real> rows(std::size_t(f.n[1]) * f.n[2]);
+    for_rows(f.n, [&](int j, int k) {
+      Real most = 0;
+      for (int i = 0; i < f.n[0]; ++i) most = std::max(most, std::abs(f.at(i, j, k)));
+      rows[j + std::size_t(f.n[1]) * k] = most;
+    });
+    greatest = std::max(greatest, *std::max_element(rows.begin(), rows.end()));
+  }
+  return double(greatest);
 }
 
 template class Projection<float>;
 template class Projection<double>;
 template double greatest_divergence(const Velocity<float>&, const Lattice&, const Obstacles&);
 template double greatest_divergence(const Velocity<double>&, const Lattice&, const Obstacles&);
+template double greatest_speed(const Velocity<float>&);
+template double greatest_speed(const Velocity<double>&);
 
 }  // namespace airlight::stable_fluids

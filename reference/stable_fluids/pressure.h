@@ -45,5 +45,7 @@ class Projection {
 // Greatest |div u| times h over fluid cells.
 template <class Real>
 double greatest_divergence(const Velocity<Real>&, const Lattice&, const Obstacles&);
+template <class Real>
+double greatest_speed(const Velocity<Real>&);  // of a component
 
 }  // namespace airlight::stable_fluids

@@ -10,14 +10,22 @@ namespace airlight::stable_fluids {
 
 class StateWriter {
  public:
-  explicit StateWriter(const std::string& shape) : bytes_(shape + "\n") {}
+  // What follows is as long as said, so that it is not copied as it grows.
+  StateWriter(const std::string& shape, std::size_t bytes) {
+    bytes_.reserve(shape.size() + bytes + 1024);  // and what a file begins and ends with
+    bytes_ += shape;
+    bytes_ += '\n';
+  }
   void number(double value) { append(&value, sizeof value); }
   template <class Real>
   void values(const std::vector<Real>& v) {
     append(v.data(), v.size() * sizeof(Real));
   }
   // With a checksum at the end.
-  std::string done() { return bytes_ + content_key(bytes_); }
+  std::string done() {
+    bytes_ += content_key(bytes_);
+    return std::move(bytes_);
+  }
 
  private:
   void append(const void* from, std::size_t size) { bytes_.append(static_cast<const char*>(from), size); }

@@ -1,5 +1,7 @@
 #include "reference/stable_fluids/stable_fluids.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "reference/stable_fluids/grid_flow.h"
@@ -9,6 +11,20 @@ namespace airlight::stable_fluids {
 using scene::FlowProblem;
 using scene::Settings;
 
+namespace {
+
+constexpr double most_steps = 1e8;  // of a frame
+
+double steps_in_frame(const FlowProblem& problem, const Settings& settings) {
+  const double frame = 1 / problem.frame_rate, h = problem.box.size().maxCoeff() / double(settings.integer("n"));
+  double steps = 1;
+  for (const double longest : {settings.real("dt"), settings.real("courant") * h})
+    if (longest > 0) steps = std::max(steps, std::ceil(frame / longest * (1 - 1e-9)));
+  return steps;
+}
+
+}  // namespace
+
 std::string StableFluids::about() const {
   return "Stam 1999 on a staggered grid: semi-Lagrangian, MacCormack or BFECC advection, implicit diffusion, projection";
 }
@@ -17,6 +33,9 @@ std::vector<scene::SettingSpec> StableFluids::settings() const {
   return {
       scene::integer_setting("n", "64", 1, 2048, "cells along the longest axis of the box"),
       scene::real_setting("dt", "0", 0, 1e9, "longest step [s]; 0: a frame. Steps divide a frame evenly"),
+      scene::real_setting(
+          "courant", "0", 0, 1e9,
+          "longest step, in cells that 1 m/s crosses in it; 0: no bound. For steps in proportion to cells"),
       scene::choice_setting("scheme", "maccormack", {"semi_lagrangian", "maccormack", "bfecc"}, "of advection"),
       scene::choice_setting("interpolation", "linear", {"linear", "cubic"}, "between samples; cubic is monotone"),
       scene::choice_setting("limiter", "clamp", {"none", "clamp", "revert"},
@@ -35,13 +54,14 @@ std::vector<std::string> StableFluids::supports(const FlowProblem& problem, cons
   std::vector<std::string> reasons;
   if (settings.text("pressure") == "transforms" && !problem.obstacles.empty())
     reasons.push_back("pressure = transforms solves in boxes without obstacles only");
+  if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
+    reasons.push_back(fmt::format("dt = {:g}, courant = {:g} make {:.3g} steps of a frame, expected at most {:g}",
+                                  settings.real("dt"), settings.real("courant"), steps, most_steps));
   return reasons;
 }
 
 int StableFluids::steps_per_frame(const FlowProblem& problem, const Settings& settings) const {
-  const double dt = settings.real("dt"), frame = 1 / problem.frame_rate;
-  if (dt == 0) return 1;
-  return std::max(1, int(std::ceil(frame / dt * (1 - 1e-9))));
+  return int(std::min(most_steps, steps_in_frame(problem, settings)));
 }
 
 std::unique_ptr<scene::Flow> StableFluids::start_supported(std::shared_ptr<const FlowProblem> problem,

@@ -46,8 +46,16 @@ std::string content_hash(const FlowProblem& p) {
     hash.add(p.wave->waves);
     for (const double value : {p.wave->density, p.wave->offset, p.wave->phase}) hash.add(value);
   }
-  hash.tag(p.density_grid ? "grid" : "no grid");
+  hash.tag(p.density_grid ? "density grid" : "no grid");
   if (p.density_grid) add(hash, *p.density_grid);
+  if (p.temperature_grid) {
+    hash.tag("temperature grid");
+    add(hash, *p.temperature_grid);
+  }
+  if (p.velocity_grid) {
+    hash.tag("velocity grid");
+    for (const VoxelGrid& component : *p.velocity_grid) add(hash, component);
+  }
   hash.tag("sources");
   for (const Source& s : p.sources) {
     add(hash, s.region);

@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/flow_problem.h"
 #include "scene/load/assets.h"
+#include "scene/load/flow_parts.h"
 #include "scene/load/overrides.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/parts.h"
@@ -18,15 +19,19 @@
 namespace airlight::scene {
 using namespace load;
 
-namespace {
-
-constexpr Range seconds = or_zero({1e-9, 1e9}), speed = either_sign(or_zero({1e-12, 1e6}));
-constexpr Range temperatures = either_sign(or_zero({1e-12, 1e6})), rate = either_sign(amount);
+namespace load {
 
 Vec3 speeds(const TableReader& reader, const std::string& key) {
   const auto v = reader.numbers(key, speed, 3);
   return {v[0], v[1], v[2]};
 }
+
+}  // namespace load
+
+namespace {
+
+constexpr Range seconds = or_zero({1e-9, 1e9}), rate = either_sign(amount);
+constexpr double most_frames = 1e7;
 
 void read_box(TableReader reader, FlowProblem& problem) {
   reader.allow({"lo", "hi"});
@@ -73,6 +78,27 @@ Side read_side(TableReader reader, int axis, int which) {
   return side;
 }
 
+// What cannot leave must not come in. Among obstacles the solver looks, who knows what they leave open.
+void require_balance(const TableReader& sides, const FlowProblem& problem) {
+  double net = 0, gross = 0;
+  for (int axis = 0; axis < problem.dimensions; ++axis) {
+    double area = 1;
+    for (int a = 0; a < problem.dimensions; ++a)
+      if (a != axis) area *= problem.box.size()[a];
+    for (int which = 0; which < 2; ++which) {
+      const Side& side = problem.sides[axis][which];
+      if (side.kind == Side::Kind::open) return;
+      const double flux = (which == 0 ? 1 : -1) * side.velocity[axis] * area;
+      net += flux;
+      gross += std::abs(flux);
+    }
+  }
+  if (std::abs(net) > 1e-9 * gross)
+    sides.fail("",
+               fmt::format("{:.6g} {} flow {} the box, and no side is open, expected as much in as out", std::abs(net),
+                           problem.dimensions == 2 ? "m^2/s" : "m^3/s", net > 0 ? "into" : "out of"));
+}
+
 void read_sides(const TableReader& root, FlowProblem& problem) {
   const auto table = root.table("sides");
   if (!table) return;
@@ -91,64 +117,7 @@ void read_sides(const TableReader& root, FlowProblem& problem) {
     if ((problem.sides[axis][0].kind == Side::Kind::periodic) != (problem.sides[axis][1].kind == Side::Kind::periodic))
       reader.fail("", fmt::format("{} and {} are opposite sides, expected both periodic or none", side_names[2 * axis],
                                   side_names[2 * axis + 1]));
-}
-
-StartVelocity read_velocity(TableReader reader) {
-  const std::string type = reader.type({"rest", "taylor_green", "swirl", "rotation", "wind"});
-  if (type == "taylor_green") {
-    reader.allow({"type", "speed", "waves"});
-    return TaylorGreen{reader.number("speed", speed, 1), int(reader.integer("waves", 1, 1024, 1))};
-  }
-  if (type == "swirl") {
-    reader.allow({"type", "speed"});
-    return Swirl{reader.number("speed", speed, 1)};
-  }
-  if (type == "rotation") {
-    reader.allow({"type", "center", "rate"});
-    return RigidRotation{reader.vector("center"), speeds(reader, "rate")};
-  }
-  if (type == "wind") {
-    reader.allow({"type", "velocity"});
-    return Wind{speeds(reader, "velocity")};
-  }
-  reader.allow({"type"});
-  return AtRest{};
-}
-
-Wave read_wave(TableReader reader) {
-  reader.allow({"waves", "density", "offset", "phase"});
-  Wave wave;
-  const auto waves = reader.integers("waves", 3, -4096, 4096);
-  wave.waves = {double(waves[0]), double(waves[1]), double(waves[2])};
-  wave.density = reader.number("density", density_range);
-  wave.offset = reader.number("offset", either_sign(density_range), 0);
-  wave.phase = reader.number("phase", coordinate, 0);
-  return wave;
-}
-
-void read_start(TableReader reader, const std::string& folder, FlowProblem& problem) {
-  reader.allow({"velocity", "velocity_stays", "density", "temperature", "blob", "wave", "file", "grid"});
-  if (const auto velocity = reader.table("velocity")) problem.velocity = read_velocity(*velocity);
-  problem.velocity_stays = reader.flag("velocity_stays", false);
-  problem.density = reader.number("density", {0, density_range.greatest}, 0);
-  problem.temperature = reader.number("temperature", temperatures, 0);
-  for (TableReader blob : reader.tables("blob")) {
-    blob.allow({"center", "width", "density", "temperature"});
-    problem.blobs.push_back({blob.vector("center"), blob.number("width", length),
-                             blob.number("density", {0, density_range.greatest}, 0),
-                             blob.number("temperature", temperatures, 0)});
-  }
-  if (const auto wave = reader.table("wave")) problem.wave = read_wave(*wave);
-  if (!reader.has("file")) {
-    if (reader.has("grid")) reader.fail("grid", "grid has no effect: there is no file");
-    return;
-  }
-  const std::string path = find_asset(reader, "file", folder);
-  try {
-    problem.density_grid = std::make_shared<const VoxelGrid>(read_vdb(path, reader.text("grid", "density")));
-  } catch (const Error& e) {
-    reader.fail("file", e.what());
-  }
+  if (!root.has("obstacle")) require_balance(reader, problem);
 }
 
 Interval read_time(const TableReader& reader) {
@@ -182,10 +151,10 @@ Source read_source(TableReader reader, const FlowProblem& problem) {
   return source;
 }
 
-Push read_push(TableReader reader) {
+Push read_push(TableReader reader, const FlowProblem& problem) {
   reader.allow({"region", "from", "to", "acceleration", "frequency"});
   Push push;
-  if (const auto region = reader.table("region")) push.region = read_region(*region);
+  if (reader.has("region")) push.region = read_place(reader, problem);
   push.time = read_time(reader);
   push.acceleration = speeds(reader, "acceleration");
   push.frequency = reader.number("frequency", or_zero({1e-9, 1e9}), 0);
@@ -206,12 +175,29 @@ bool closed(const TriangleMesh& mesh) {
   return open.empty();
 }
 
-Surface read_obstacle(TableReader reader, const std::string& folder) {
+// Where the box of the flow has nothing of it, or nothing beside it.
+void require_part(const TableReader& reader, const Surface& surface, const Box& flow) {
+  Box bounds;
+  match(
+      surface.shape, [&](const Sphere& s) { bounds = bounding_box(Region(s)); },
+      [&](const TriangleMesh& mesh) {
+        for (const Point3& vertex : mesh.vertices) bounds = unite(bounds, {vertex, vertex});
+      },
+      [](const Plane&) {});
+  if (intersect(bounds, flow).empty()) reader.fail("", "this surface lies outside the box of the flow");
+  if (const Sphere* s = std::get_if<Sphere>(&surface.shape)) {
+    const Vec3 farthest = (flow.lo - s->center).cwiseAbs().cwiseMax((flow.hi - s->center).cwiseAbs());
+    if (farthest.norm() <= s->radius) reader.fail("", "this sphere fills the box, expected a part of it for the fluid");
+  }
+}
+
+Surface read_obstacle(TableReader reader, const std::string& folder, const FlowProblem& problem) {
   const Surface surface = read_surface(reader, folder);
   const bool solid = match(
       surface.shape, [](const TriangleMesh& mesh) { return closed(mesh); }, [](const Sphere&) { return true; },
       [](const Plane&) { return false; });
   if (!solid) reader.fail("", "this surface encloses nothing, expected a sphere, a box or a closed mesh");
+  require_part(reader, surface, problem.box);
   return surface;
 }
 
@@ -224,6 +210,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   TableReader reader(root, "");
   reader.allow({"name", "flow", "sides", "fluid", "start", "source", "obstacle", "force"});
   FlowProblem problem;
+  problem.file = name;
   problem.name = reader.text("name", std::filesystem::path(name).stem().string());
   TableReader flow = reader.required_table("flow");
   flow.allow({"dimensions", "box", "duration", "frame_rate"});
@@ -231,6 +218,9 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   read_box(flow.required_table("box"), problem);
   problem.duration = flow.number("duration", {1e-9, 1e9});
   problem.frame_rate = flow.number("frame_rate", {1e-9, 1e9}, problem.frame_rate);
+  if (problem.duration * problem.frame_rate > most_frames)
+    flow.expected("duration",
+                  fmt::format("at most {:.0e} frames, {:g} of them a second", most_frames, problem.frame_rate));
   read_sides(reader, problem);
   if (auto fluid = reader.table("fluid")) {
     fluid->allow({"viscosity", "diffusivity", "decay", "gravity", "weight", "expansion", "confinement"});
@@ -245,8 +235,8 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   if (const auto start = reader.table("start")) read_start(*start, folder, problem);
   for (const TableReader& source : reader.tables("source")) problem.sources.push_back(read_source(source, problem));
   for (const TableReader& obstacle : reader.tables("obstacle"))
-    problem.obstacles.push_back(read_obstacle(obstacle, folder));
-  for (const TableReader& push : reader.tables("force")) problem.pushes.push_back(read_push(push));
+    problem.obstacles.push_back(read_obstacle(obstacle, folder, problem));
+  for (const TableReader& push : reader.tables("force")) problem.pushes.push_back(read_push(push, problem));
   problem.hash = content_hash(problem);
   return problem;
 }

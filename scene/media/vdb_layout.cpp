@@ -11,7 +11,7 @@
 namespace airlight::scene {
 namespace {
 
-constexpr std::string_view float_tree = "Tree_float_5_4_3";
+constexpr std::string_view float_tree = "Tree_float_5_4_3", vector_tree = "Tree_vec3s_5_4_3";
 constexpr std::string_view half_suffix = "_HalfFloat";
 
 [[noreturn]] void damaged(std::size_t at, const std::string& what) {
@@ -69,13 +69,15 @@ std::size_t transform_bytes(const std::string& type, std::size_t at) {
 // the leaves in the same order.
 class TreeWalk {
  public:
-  TreeWalk(Walk& walk, std::uint32_t compression, bool half) : walk_(walk), compression_(compression), half_(half) {}
+  // `numbers` of a sample: 1 or 3.
+  TreeWalk(Walk& walk, std::uint32_t compression, int numbers, bool half)
+      : walk_(walk), compression_(compression), sample_(numbers * sizeof(float)), half_(half) {}
 
   void run() {
     if (walk_.number<std::int32_t>() != 1) damaged(walk_.at(), "expected one buffer per tree");
-    walk_.take(sizeof(float));  // background
+    walk_.take(sample_);  // background
     const std::uint32_t tiles = walk_.number<std::uint32_t>(), children = walk_.number<std::uint32_t>();
-    for (std::uint32_t i = 0; i < tiles; ++i) walk_.take(sizeof(Origin) + sizeof(float) + 1);
+    for (std::uint32_t i = 0; i < tiles; ++i) walk_.take(sizeof(Origin) + sample_ + 1);
     Origin last{};
     for (std::uint32_t i = 0; i < children; ++i) {
       const Origin origin = walk_.number<Origin>();
@@ -121,12 +123,12 @@ class TreeWalk {
     // How inactive slots are told: by up to two values, by a mask that selects between two, or all are stored (6).
     const int kind = walk_.number<std::int8_t>();
     if (kind < 0 || kind > 6) damaged(walk_.at(), "unknown coding of inactive voxels");
-    if (kind == 2 || kind == 4 || kind == 5) walk_.take(sizeof(float));
-    if (kind == 5) walk_.take(sizeof(float));
+    if (kind == 2 || kind == 4 || kind == 5) walk_.take(sample_);
+    if (kind == 5) walk_.take(sample_);
     if (kind == 3 || kind == 4 || kind == 5) walk_.take(slots / 8);
     const bool active_only = compression_ & 2 && kind != 6;
     const std::size_t count = active_only ? count_on(active, slots) : slots;
-    if (count > 0 || !half_) chunk(count * (half_ ? 2 : 4));
+    if (count > 0 || !half_) chunk(count * (half_ ? sample_ / 2 : sample_));
   }
 
   void chunk(std::uint64_t bytes) {
@@ -153,25 +155,31 @@ class TreeWalk {
 
   Walk& walk_;
   std::uint32_t compression_;
+  std::size_t sample_;  // bytes of one in full
   bool half_;
   std::vector<const char*> leaf_masks_;
 };
 
-std::size_t end_of_float_grid(std::string_view file, const VdbEntry& entry) {
+}  // namespace
+
+bool is_of_type(const VdbEntry& entry, std::string_view type) {
+  return entry.type == type || entry.type == std::string(type) + std::string(half_suffix);
+}
+
+namespace {
+
+std::size_t end_of_grid(std::string_view file, const VdbEntry& entry) {
   Walk walk(file, entry.begin);
   const std::uint32_t compression = walk.number<std::uint32_t>();
   walk.metadata();
   const std::string transform = walk.text();
   walk.take(transform_bytes(transform, walk.at()));
-  TreeWalk(walk, compression, entry.type.size() > float_tree.size()).run();
+  const bool vectors = is_of_type(entry, vector_tree);
+  TreeWalk(walk, compression, vectors ? 3 : 1, entry.type.ends_with(half_suffix)).run();
   return walk.at();
 }
 
 }  // namespace
-
-bool is_float_grid(const VdbEntry& entry) {
-  return entry.type == float_tree || entry.type == std::string(float_tree) + std::string(half_suffix);
-}
 
 std::vector<VdbEntry> vdb_grids(std::string_view file) {
   Walk walk(file, 0);
@@ -206,11 +214,11 @@ std::vector<VdbEntry> vdb_grids(std::string_view file) {
       entry.begin = begin;
       entry.end = end;
     } else {
-      if (!is_float_grid(entry) || entry.is_instance)
+      if (!(is_of_type(entry, float_tree) || is_of_type(entry, vector_tree)) || entry.is_instance)
         throw std::runtime_error(fmt::format(
             "without offsets, and its grid '{}' of type {} hides where the next begins", entry.name, entry.type));
       entry.begin = walk.at();
-      entry.end = end_of_float_grid(file, entry);
+      entry.end = end_of_grid(file, entry);
     }
     walk.take(entry.end - walk.at());
     entries.push_back(entry);
@@ -218,8 +226,8 @@ std::vector<VdbEntry> vdb_grids(std::string_view file) {
   return entries;
 }
 
-void check_float_grid(std::string_view file, const VdbEntry& entry) {
-  const std::size_t end = end_of_float_grid(file, entry);
+void check_grid(std::string_view file, const VdbEntry& entry) {
+  const std::size_t end = end_of_grid(file, entry);
   if (end != entry.end) damaged(end, fmt::format("grid '{}' ends here, expected at {}", entry.name, entry.end));
 }
 

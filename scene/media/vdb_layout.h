@@ -22,11 +22,11 @@ struct VdbEntry {
 // The grids of a file, in its order; their byte ranges lie within it.
 std::vector<VdbEntry> vdb_grids(std::string_view file);
 
-// "Tree_float_5_4_3", stored as float or half.
-bool is_float_grid(const VdbEntry&);
+// "Tree_float_5_4_3" or "Tree_vec3s_5_4_3", stored as float or half.
+bool is_of_type(const VdbEntry&, std::string_view type);
 
-// Walks through a float grid: it must end exactly where its entry says, and its two copies of every mask of active
-// voxels must agree.
-void check_float_grid(std::string_view file, const VdbEntry&);
+// Walks through a grid of one of these types: it must end exactly where its entry says, and its two copies of every
+// mask of active voxels must agree.
+void check_grid(std::string_view file, const VdbEntry&);
 
 }  // namespace airlight::scene

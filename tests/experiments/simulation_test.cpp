@@ -101,6 +101,36 @@ TEST_CASE("a simulation that is interrupted after any step goes on with the same
   CHECK(files(broken.path()) == files(whole.path()));
 }
 
+// In a problem of its own the flow begins anew with what a frame holds: the same but for the rounding of a projection.
+TEST_CASE("a simulation begins with a frame of another one and goes on like it", "[simulation]") {
+  const TemporaryFolder first, second;
+  const scene::Solver& solver = find_solver("stable_fluids", "test");
+  const scene::Settings settings(solver.settings(), {{"n", "24"}});
+  const auto run = [&](const std::string& text, const TemporaryFolder& folder) {
+    const auto problem =
+        std::make_shared<const scene::FlowProblem>(scene::parse_flow(text, "smoke.toml", first.path().string()));
+    simulate({problem, solver, settings, folder.path()}, {});
+  };
+  run(smoke, first);
+  std::string rest = smoke;
+  rest.replace(rest.find("0.5"), 3, "0.2");
+  run(rest +
+          "[start]\nfile = \"smoke.0006.vdb\"\ngrid = \"density\"\ntemperature_grid = \"temperature\"\n"
+          "velocity_grid = \"velocity\"\n",
+      second);
+  double most = 0, greatest = 0;
+  const auto a = scene::read_velocity_vdb(first.file("smoke.0010.vdb"), "velocity");
+  const auto b = scene::read_velocity_vdb(second.file("smoke.0004.vdb"), "velocity");
+  for (int axis = 0; axis < 3; ++axis) {
+    REQUIRE(a[axis].values.size() == b[axis].values.size());
+    for (std::size_t i = 0; i < a[axis].values.size(); ++i) {
+      most = std::max(most, std::abs(double(a[axis].values[i]) - b[axis].values[i]));
+      greatest = std::max(greatest, std::abs(double(a[axis].values[i])));
+    }
+  }
+  CHECK(most < 6e-7 * greatest);
+}
+
 // The program itself, ended by a signal that it cannot catch.
 TEST_CASE("a simulation that is killed fifty times goes on with the same bits", "[simulation]") {
   const TemporaryFolder folder;

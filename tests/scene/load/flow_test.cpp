@@ -142,6 +142,25 @@ TEST_CASE("flow problems: refused with place, what was found and what was expect
            "[[obstacle]]\ntype = \"tube\"\npath = [[0, 0, 0], [1, 0, 0]]\nradius = 0.1\nsize = [4, 8]\ncaps = false",
        "this surface encloses nothing"},
       {flow_of_box + "[[force]]\nacceleration = [1, inf, 0]", "expected"},
+      {flow_of_box + "[[force]]\nregion = { type = \"box\", lo = [2, 0, 0], hi = [3, 1, 1] }\nacceleration = [1, 0, 0]",
+       "f.toml:5:10: force 0: region lies outside the box of the flow"},
+      {flow_of_box + "[[obstacle]]\ntype = \"sphere\"\ncenter = [9, 0, 0]\nradius = 1",
+       "f.toml:4:1: obstacle 0: this surface lies outside the box of the flow"},
+      {flow_of_box + "[[obstacle]]\ntype = \"box\"\nlo = [0, 2.1, 0]\nhi = [1, 3, 1]",
+       "f.toml:4:1: obstacle 0: this surface lies outside the box of the flow"},
+      {flow_of_box + "[[obstacle]]\ntype = \"sphere\"\ncenter = [0.5, 1, 0.5]\nradius = 1.3",
+       "f.toml:4:1: obstacle 0: this sphere fills the box"},
+      {flow_of_box + "[sides]\nleft = { type = \"inflow\", velocity = [3, 1, 0] }",
+       "f.toml:4:1: sides: 6 m^3/s flow into the box, and no side is open, expected as much in as out"},
+      {flow_of_box + "[sides]\nleft = { type = \"inflow\", velocity = [3, 0, 0] }\ntop = { type = \"inflow\", velocity "
+                     "= [0, 7, 0] }",
+       "1 m^3/s flow out of the box"},
+      {"[flow]\nduration = 1e9\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }",
+       "f.toml:2:12: flow: duration = 1000000000, expected at most 1e+07 frames, 24 of them a second"},
+      {"[flow]\nduration = 1\nbox = { lo = [0, nan, 0], hi = [1, 1, 1] }",
+       "f.toml:3:18: flow: box: lo[1] = nan, expected"},
+      {"[flow]\nduration = 1\nframe_rate = 0\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }",
+       "f.toml:3:14: flow: frame_rate = 0, expected"},
       {flow_of_box + "[start]\nvelocity = { type = \"wind\" }", "missing key 'velocity'"},
       {flow_of_box + "[start]\nfile = \"none.vdb\"", "none.vdb"},
       {flow_of_box + "[start]\ngrid = \"density\"", "grid has no effect: there is no file"}};
@@ -151,4 +170,8 @@ TEST_CASE("flow problems: refused with place, what was found and what was expect
     CHECK(refusal(text).find('\n') == std::string::npos);
   }
   CHECK_THROWS_WITH(load_flow("/nowhere/f.toml"), Contains("/nowhere/f.toml"));
+  // What can leave may come in.
+  for (const char* way_out : {"right = { type = \"open\" }", "right = { type = \"inflow\", velocity = [3, 0, 0] }",
+                              "top = { type = \"inflow\", velocity = [0, 6, 0] }"})
+    CHECK(refusal(flow_of_box + "[sides]\nleft = { type = \"inflow\", velocity = [3, 0, 0] }\n" + way_out).empty());
 }

@@ -1,0 +1,87 @@
+#include "experiments/driver/sequences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/driver/toml_values.h"
+#include "experiments/frames.h"
+#include "experiments/progress.h"
+#include "experiments/simulation.h"
+#include "experiments/solvers.h"
+#include "scene/load/parse_toml.h"
+#include "scene/nearest.h"
+#include "scene/read_file.h"
+
+namespace airlight::experiments {
+namespace fs = std::filesystem;
+using scene::load::TableReader;
+namespace {
+
+const std::string mark = "sequence:";
+
+fs::path list_of(const fs::path& root) { return root / "experiments" / "sequences.toml"; }
+
+toml::table read_list(const fs::path& root) {
+  const std::string file = list_of(root).string();
+  return scene::load::parse_toml(scene::read_whole_file(file, scene::load::most_toml_bytes), file);
+}
+
+fs::path folder_of(const fs::path& root, const std::string& name, const std::string& profile) {
+  return root / "results" / "cache" / "sequences" / (name + "." + profile);
+}
+
+TableReader reader_of(const toml::table& list, const std::string& name) {
+  const toml::table* table = list[name].as_table();
+  if (!table)
+    throw Error(fmt::format("{}: expected a table [{}]", scene::load::location(list[name].node()->source()), name));
+  TableReader reader(*table, name);
+  reader.allow({"problem", "solver", "quick", "paper"});
+  return reader;
+}
+
+fs::path problem_of(const fs::path& root, const TableReader& reader) {
+  return root / "experiments" / reader.text("problem");
+}
+
+}  // namespace
+
+void name_sequences(const fs::path& root, const std::string& profile, const std::string& where, Pairs& overrides,
+                    std::vector<std::string>& names) {
+  for (auto& [key, value] : overrides) {
+    if (value.size() < 2 || value.compare(1, mark.size(), mark) != 0) continue;  // in quotes of TOML
+    const std::string name = value.substr(1 + mark.size(), value.size() - mark.size() - 2);
+    const toml::table list = read_list(root);
+    std::vector<std::string> known;
+    for (const auto& [k, table] : list) known.emplace_back(k.str());
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
+                              scene::nearest_hint(name, known)));
+    const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
+    value = fmt::format("\"{}\"", (folder_of(root, name, profile) / (problem.name + ".####.vdb")).string());
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+}
+
+void make_sequences(const fs::path& root, const Experiment& e) {
+  if (e.sequences.empty()) return;
+  const toml::table list = read_list(root);
+  for (const std::string& name : e.sequences) {
+    const TableReader reader = reader_of(list, name);
+    TableReader of_profile = reader.required_table(e.profile);
+    of_profile.allow({"settings", "overrides"});
+    const toml::table& raw = *list[name][e.profile].as_table();
+    const scene::Solver& solver = find_solver(reader.text("solver"), reader.where());
+    const scene::Settings chosen(solver.settings(), settings(raw, "settings", of_profile), name);
+    const auto problem = std::make_shared<const scene::FlowProblem>(
+        scene::load_flow(problem_of(root, reader).string(), overrides(raw, "overrides", of_profile)));
+    const Simulation simulation{problem, solver, chosen, folder_of(root, name, e.profile)};
+    const int there = frames_there(simulation);
+    if (there == frame_steps(*problem, solver, chosen).frames) continue;
+    if (there == 0) fs::remove_all(simulation.folder);
+    Progress progress(fmt::format("sequence {} ({})", name, e.profile));
+    simulate(simulation, progress.execution(e.timing.threads));
+  }
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,15 @@
+// Parts of a flow's file.
+#pragma once
+#include "scene/flow_problem.h"
+#include "scene/load/ranges.h"
+#include "scene/load/table_reader.h"
+
+namespace airlight::scene::load {
+
+inline constexpr Range speed = either_sign(or_zero({1e-12, 1e6}));         // [m/s]; also accelerations, turns
+inline constexpr Range temperatures = either_sign(or_zero({1e-12, 1e6}));  // [K]
+
+Vec3 speeds(const TableReader&, const std::string& key);
+void read_start(TableReader, const std::string& folder, FlowProblem&);
+
+}  // namespace airlight::scene::load

@@ -1,0 +1,111 @@
+// Sequences of smoke: simulated when an experiment asks for them, kept while nothing they depend on changes.
+#include "experiments/driver/sequences.h"
+
+#include <catch2/catch.hpp>
+
+#include "experiments/driver/run.h"
+#include "scene/error.h"
+#include "tests/experiments/small_project.h"
+
+using namespace airlight::experiments;
+using airlight::Error;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string smoke = R"([film]
+width = 8
+height = 8
+[camera]
+position = [0.5, 0.5, 4]
+look_at = [0.5, 0.5, 0]
+[[light]]
+type = "point"
+position = [1.5, 2, 1]
+intensity = 5
+[[medium]]
+type = "grid"
+file = "nothing.vdb"
+sigma_t = 2
+)";
+
+const std::string flow = R"(name = "puff"
+[flow]
+duration = 0.5
+frame_rate = 4
+box = { lo = [0, 0, 0], hi = [1, 1, 1] }
+[fluid]
+gravity = [0, -9.81, 0]
+expansion = 0.003
+[[start.blob]]
+center = [0.5, 0.3, 0.5]
+width = 0.2
+density = 1
+temperature = 30
+)";
+
+const std::string frames = R"(title = "Frames"
+layer = "airlight"
+metrics = ["rel_l2"]
+[[scene]]
+name = "puff"
+file = "scenes/one.toml"
+overrides = { "medium.0.file" = "sequence:puff" }
+sweep = { key = "medium.0.frame", values = [1, 2] }
+[reference]
+renderer = "deterministic"
+[[method]]
+renderer = "ray_marcher"
+[profile.quick]
+budget = 0
+)";
+
+struct Frames : airlight::test::SmallProject {
+  Frames() : SmallProject(smoke, frames) {
+    write("experiments/flows/puff.toml", flow);
+    list("n = 8");
+  }
+  void list(const std::string& settings) const {
+    write("experiments/sequences.toml",
+          "[puff]\nproblem = \"flows/puff.toml\"\nsolver = \"stable_fluids\"\nquick = { settings = { " + settings +
+              " } }\n");
+  }
+  Experiment read() const { return read_experiment(path(), "g/e", "quick"); }
+  fs::path frame(int i) const {
+    return path() / ("results/cache/sequences/puff.quick/puff.000" + std::to_string(i) + ".vdb");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flow]") {
+  const Frames project;
+  const Outcome outcome = run_experiment(project.read(), {project.path(), false, 1, false});
+  REQUIRE(outcome.rows.size() == 2);
+  CHECK(outcome.rows[0].scene_hash != outcome.rows[1].scene_hash);  // the smoke has moved
+  CHECK(outcome.experiment.scenes[0].is_frame);
+  const auto made = fs::last_write_time(project.frame(2));
+  // Nothing is simulated again,
+  make_sequences(project.path(), project.read());
+  CHECK(fs::last_write_time(project.frame(2)) == made);
+  // but where a frame is gone or the settings are others.
+  fs::remove(project.frame(1));
+  make_sequences(project.path(), project.read());
+  CHECK(fs::exists(project.frame(1)));
+  const std::string before = airlight::read_bytes(project.frame(1).string());
+  project.list("n = 12");
+  make_sequences(project.path(), project.read());
+  CHECK(airlight::read_bytes(project.frame(1).string()) != before);
+}
+
+TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow]") {
+  Frames project;
+  project.write("experiments/sequences.toml", "[puf]\nproblem = \"flows/puff.toml\"\n");
+  CHECK_THROWS_WITH(project.read(),
+                    Contains("e.toml:4:1") && Contains("there is no sequence 'puff'") && Contains("puf"));
+  project.list("n = 8, m = 3");
+  CHECK_THROWS_WITH(make_sequences(project.path(), project.read()), Contains("puff") && Contains("'m'"));
+  project.write("experiments/sequences.toml", "puff = 3\n");
+  CHECK_THROWS_WITH(project.read(), Contains("expected a table [puff]"));
+}
