@@ -35,14 +35,6 @@ Velocity<Real> velocity_before(const Lattice& l, bool noise) {
 }
 
 template <class Real>
-double greatest_speed(const Velocity<Real>& u) {
-  double most = 0;
-  for (const Field<Real>& component : u)
-    for (const Real v : component.values) most = std::max(most, std::abs(double(v)));
-  return most;
-}
-
-template <class Real>
 Findings measure(const scene::Settings& s) {
   scene::FlowProblem problem = unit_cube(scene::Side::Kind::free_slip);
   const Lattice l = make_lattice(problem, int(s.integer("n")));
