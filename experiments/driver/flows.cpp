@@ -14,6 +14,7 @@
 #include "experiments/flow_metrics.h"
 #include "experiments/frames.h"
 #include "experiments/interrupt.h"
+#include "experiments/machine.h"
 #include "experiments/progress.h"
 #include "experiments/solvers.h"
 #include "scene/atomic_file.h"
@@ -202,6 +203,7 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const Judged> judged, cons
   Witness witness(e, *judged);
   const int last = int(std::lround(judged->problem->duration * judged->problem->frame_rate));
   std::unique_ptr<scene::Flow> flow;
+  const double before = resident_gib();
   double first = 0;
   try {
     first = run_to(last, solve, judged->problem, execution, flow,
@@ -214,6 +216,7 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const Judged> judged, cons
   if (flow) row.counters = flow->counters();
   if (!row.note.empty()) return {row, 0, {}};
   row.counters["simulated seconds"] = judged->problem->duration;
+  row.counters["MiB"] = std::max(0.0, 1024 * (resident_gib() - before));
   return {row, first, flow->times(), {}, [judged, solve, last](const scene::Execution& quiet) {
             std::unique_ptr<scene::Flow> again;
             run_to(last, solve, judged->problem, quiet, again, [](int, const scene::Flow&) {});
