@@ -59,6 +59,7 @@ int explain(const ExplainOptions&);
 struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
+  std::string sequence, profile = "quick";  // in place of a problem and a folder
   int threads = 0;
 };
 // Writes the frames of a flow problem into the folder `out` (experiments/simulation.h), or goes on with them.

@@ -218,12 +218,20 @@ int dispatch(int argc, char** argv) {
   c->add_option("--out,-o", simulate_options.out, "folder; what an earlier run left there is gone on with");
   add_pairs(c, "--set", simulate_options.settings, "a setting of the method");
   add_pairs(c, "--override", simulate_options.overrides, "a value of the problem file");
+  c->add_option(
+      "--sequence", simulate_options.sequence,
+      "instead of PROBLEM and --out: one of experiments/sequences.toml, where it is not there; prints its files");
+  c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");
   c->add_option("--threads", simulate_options.threads, "0: all")->check(CLI::Range(0, 4096));
   data_option(c);
   c->final_callback([&] {
     action = [&] {
-      require(simulate_options.problem, "PROBLEM");
-      require(simulate_options.out, "--out");
+      if (simulate_options.sequence.empty()) {
+        require(simulate_options.problem, "PROBLEM");
+        require(simulate_options.out, "--out");
+      } else if (!simulate_options.problem.empty() || !simulate_options.out.empty()) {
+        throw Error("--sequence has its own problem and folder: expected neither PROBLEM nor --out");
+      }
       return simulate(simulate_options);
     };
   });

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include "experiments/cli/commands.h"
+#include "experiments/driver/sequences.h"
+#include "experiments/folders.h"
 #include "experiments/progress.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
@@ -8,7 +10,22 @@
 
 namespace airlight::experiments::cli {
 
+namespace {
+
+int simulate_sequence(const SimulateOptions& options) {
+  if (options.profile != "quick" && options.profile != "paper")
+    throw Error(fmt::format("--profile '{}': expected quick or paper", options.profile));
+  const auto root = project_root("");
+  const std::string files = sequence_files(root, options.sequence, options.profile, "--sequence");
+  make_sequence(root, options.sequence, options.profile, options.threads);
+  fmt::print("{}\n", files);
+  return 0;
+}
+
+}  // namespace
+
 int simulate(const SimulateOptions& options) {
+  if (!options.sequence.empty()) return simulate_sequence(options);
   const scene::Solver& solver = find_solver(options.method, "--method");
   const scene::Settings settings(solver.settings(), options.settings, options.method);
   const auto problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(options.problem, options.overrides));

@@ -95,7 +95,8 @@ void check_experiment(const Experiment& e, const RunOptions& options) {
       return;
     }
     if (e.kind == "flow") return check_flows(e);
-    make_sequences(options.root, e);  // scenes cannot be looked at without
+    for (const std::string& name : e.sequences)  // scenes cannot be looked at without
+      make_sequence(options.root, name, e.profile, e.timing.threads);
     const Journal finished(journal_file(options.root, e), options.resume);
     std::set<const MethodCase*> tried;
     for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);

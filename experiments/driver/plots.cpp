@@ -174,8 +174,9 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
     const bool dense = drawing.curves[i].points.size() > 40;
     add(fmt::format("data index {} using 2:5 with {} {} title \"{}\"", 2 * i, dense ? "lines" : "linespoints", style,
                     escaped(drawing.curves[i].name)));
-    add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
-                    colors[i % 10]));
+    if (!is_column(plot.x))
+      add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
+                      colors[i % 10]));
     const auto& points = drawing.curves[i].points;
     if (std::any_of(points.begin(), points.end(), [](const PlotPoint& p) { return p.bound; }))
       add(fmt::format("data index {} using 2:5 with points lc rgb \"{}\" pt 10 ps 0.9 notitle", 2 * i + 1,

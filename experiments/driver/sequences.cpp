@@ -46,42 +46,44 @@ fs::path problem_of(const fs::path& root, const TableReader& reader) {
 
 }  // namespace
 
+std::string sequence_files(const fs::path& root, const std::string& name, const std::string& profile,
+                           const std::string& where) {
+  const toml::table list = read_list(root);
+  std::vector<std::string> known;
+  for (const auto& [key, table] : list) known.emplace_back(key.str());
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
+                            scene::nearest_hint(name, known)));
+  const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
+  return (folder_of(root, name, profile) / (problem.name + ".####.vdb")).string();
+}
+
 void name_sequences(const fs::path& root, const std::string& profile, const std::string& where, Pairs& overrides,
                     std::vector<std::string>& names) {
   for (auto& [key, value] : overrides) {
     if (value.size() < 2 || value.compare(1, mark.size(), mark) != 0) continue;  // in quotes of TOML
     const std::string name = value.substr(1 + mark.size(), value.size() - mark.size() - 2);
-    const toml::table list = read_list(root);
-    std::vector<std::string> known;
-    for (const auto& [k, table] : list) known.emplace_back(k.str());
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
-                              scene::nearest_hint(name, known)));
-    const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
-    value = fmt::format("\"{}\"", (folder_of(root, name, profile) / (problem.name + ".####.vdb")).string());
+    value = fmt::format("\"{}\"", sequence_files(root, name, profile, where));
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
 }
 
-void make_sequences(const fs::path& root, const Experiment& e) {
-  if (e.sequences.empty()) return;
+void make_sequence(const fs::path& root, const std::string& name, const std::string& profile, int threads) {
   const toml::table list = read_list(root);
-  for (const std::string& name : e.sequences) {
-    const TableReader reader = reader_of(list, name);
-    TableReader of_profile = reader.required_table(e.profile);
-    of_profile.allow({"settings", "overrides"});
-    const toml::table& raw = *list[name][e.profile].as_table();
-    const scene::Solver& solver = find_solver(reader.text("solver"), reader.where());
-    const scene::Settings chosen(solver.settings(), settings(raw, "settings", of_profile), name);
-    const auto problem = std::make_shared<const scene::FlowProblem>(
-        scene::load_flow(problem_of(root, reader).string(), overrides(raw, "overrides", of_profile)));
-    const Simulation simulation{problem, solver, chosen, folder_of(root, name, e.profile)};
-    const int there = frames_there(simulation);
-    if (there == frame_steps(*problem, solver, chosen).frames) continue;
-    if (there == 0) fs::remove_all(simulation.folder);
-    Progress progress(fmt::format("sequence {} ({})", name, e.profile));
-    simulate(simulation, progress.execution(e.timing.threads));
-  }
+  const TableReader reader = reader_of(list, name);
+  TableReader of_profile = reader.required_table(profile);
+  of_profile.allow({"settings", "overrides"});
+  const toml::table& raw = *list[name][profile].as_table();
+  const scene::Solver& solver = find_solver(reader.text("solver"), reader.where());
+  const scene::Settings chosen(solver.settings(), settings(raw, "settings", of_profile), name);
+  const auto problem = std::make_shared<const scene::FlowProblem>(
+      scene::load_flow(problem_of(root, reader).string(), overrides(raw, "overrides", of_profile)));
+  const Simulation simulation{problem, solver, chosen, folder_of(root, name, profile)};
+  const int there = frames_there(simulation);
+  if (there == frame_steps(*problem, solver, chosen).frames) return;
+  if (there == 0) fs::remove_all(simulation.folder);
+  Progress progress(fmt::format("sequence {} ({})", name, profile));
+  simulate(simulation, progress.execution(threads));
 }
 
 }  // namespace airlight::experiments

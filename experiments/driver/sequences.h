@@ -7,13 +7,17 @@
 
 namespace airlight::experiments {
 
-// Overrides whose value is "sequence:NAME" become the pattern of that sequence's files ("frame" tells which), and `names`
-// gets NAME once. Throws Error, beginning with `where`: no such sequence in experiments/sequences.toml.
+// The pattern of its files, as a grid's `file` with a `frame`, whether they are there or not. Throws Error, beginning with
+// `where`: no such sequence in experiments/sequences.toml.
+std::string sequence_files(const std::filesystem::path& root, const std::string& name, const std::string& profile,
+                           const std::string& where);
+
+// Overrides whose value is "sequence:NAME" become that pattern, and `names` gets NAME once. Throws Error as above.
 void name_sequences(const std::filesystem::path& root, const std::string& profile, const std::string& where,
                     Pairs& overrides, std::vector<std::string>& names);
 
-// Those that are not there yet, or of another problem, solver or program, with progress; one that was stopped goes on.
-// Throws Error (file, line, column), Interrupted.
-void make_sequences(const std::filesystem::path& root, const Experiment&);
+// Simulates it, unless it is there and of the same problem, settings and program; one that was stopped goes on. Throws
+// Error (file, line, column), Interrupted.
+void make_sequence(const std::filesystem::path& root, const std::string& name, const std::string& profile, int threads);
 
 }  // namespace airlight::experiments

@@ -87,15 +87,15 @@ TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flo
   CHECK(outcome.experiment.scenes[0].is_frame);
   const auto made = fs::last_write_time(project.frame(2));
   // Nothing is simulated again,
-  make_sequences(project.path(), project.read());
+  make_sequence(project.path(), "puff", "quick", 1);
   CHECK(fs::last_write_time(project.frame(2)) == made);
   // but where a frame is gone or the settings are others.
   fs::remove(project.frame(1));
-  make_sequences(project.path(), project.read());
+  make_sequence(project.path(), "puff", "quick", 1);
   CHECK(fs::exists(project.frame(1)));
   const std::string before = airlight::read_bytes(project.frame(1).string());
   project.list("n = 12");
-  make_sequences(project.path(), project.read());
+  make_sequence(project.path(), "puff", "quick", 1);
   CHECK(airlight::read_bytes(project.frame(1).string()) != before);
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow
   CHECK_THROWS_WITH(project.read(),
                     Contains("e.toml:4:1") && Contains("there is no sequence 'puff'") && Contains("puf"));
   project.list("n = 8, m = 3");
-  CHECK_THROWS_WITH(make_sequences(project.path(), project.read()), Contains("puff") && Contains("'m'"));
+  CHECK_THROWS_WITH(make_sequence(project.path(), "puff", "quick", 1), Contains("puff") && Contains("'m'"));
   project.write("experiments/sequences.toml", "puff = 3\n");
   CHECK_THROWS_WITH(project.read(), Contains("expected a table [puff]"));
 }
