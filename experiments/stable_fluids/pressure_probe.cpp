@@ -5,6 +5,7 @@
 #include "experiments/stable_fluids/stages.h"
 #include "reference/stable_fluids/pressure.h"
 #include "scene/error.h"
+#include "scene/geometry/shapes.h"
 
 namespace airlight::experiments {
 namespace {
@@ -34,11 +35,17 @@ Velocity<Real> velocity_before(const Lattice& l, bool noise) {
   return u;
 }
 
+std::vector<scene::Surface> obstacles_of(const std::string& name) {
+  if (name == "ball") return {{name, scene::Sphere{Point3(0.5, 0.6, 0.45), 0.2}, {}}};
+  if (name == "plate") return {{name, scene::make_box({Point3(-1, 0.45, -1), Point3(0.8, 0.55, 2)}), {}}};
+  return {};
+}
+
 template <class Real>
 Findings measure(const scene::Settings& s) {
   scene::FlowProblem problem = unit_cube(scene::Side::Kind::free_slip);
   const Lattice l = make_lattice(problem, int(s.integer("n")));
-  if (s.flag("ball")) problem.obstacles = {{"ball", scene::Sphere{Point3(0.5, 0.6, 0.45), 0.2}, {}}};
+  problem.obstacles = obstacles_of(s.text("obstacle"));
   const Obstacles obstacles = make_obstacles(problem, l), none;
   const auto which = s.choice<PressureSolver>("solver");
   Projection<Real> project(l, obstacles, which, s.real("tolerance"), 100'000);
@@ -78,15 +85,17 @@ std::string PressureSolvers::about() const {
 }
 
 std::vector<scene::SettingSpec> PressureSolvers::settings() const {
-  return {scene::choice_setting("solver", "transforms", {"transforms", "incomplete_cholesky", "transforms_as_guess"},
-                                "as pressure of stable_fluids"),
-          scene::integer_setting("n", "32", 1, 1024, "cells a side of a cube"),
-          scene::flag_setting("ball", false, "a ball of radius 0.2 of a side in it; not with transforms"),
-          scene::choice_setting("start", "noise", {"noise", "buoyancy"}, "of every face, or above a warm ball"),
-          scene::choice_setting("precision", "float", {"float", "double"}, "of all fields"),
-          scene::real_setting("tolerance", "1e-6", 1e-15, 0.1, "of conjugate gradients: greatest residual, relative"),
-          scene::integer_setting("runs", "15", 1, 10000, "timed, each beside one by transforms in the empty box"),
-          scene::real_setting("budget", "1", 0, 1e6, "seconds after which no further run begins")};
+  return {
+      scene::choice_setting("solver", "transforms", {"transforms", "incomplete_cholesky", "transforms_as_guess"},
+                            "as pressure of stable_fluids"),
+      scene::integer_setting("n", "32", 1, 1024, "cells a side of a cube"),
+      scene::choice_setting("obstacle", "none", {"none", "ball", "plate"},
+                            "a ball of radius 0.2 of a side, or a plate across but for a fifth; not with transforms"),
+      scene::choice_setting("start", "noise", {"noise", "buoyancy"}, "of every face, or above a warm ball"),
+      scene::choice_setting("precision", "float", {"float", "double"}, "of all fields"),
+      scene::real_setting("tolerance", "1e-6", 1e-15, 0.1, "of conjugate gradients: greatest residual, relative"),
+      scene::integer_setting("runs", "15", 1, 10000, "timed, each beside one by transforms in the empty box"),
+      scene::real_setting("budget", "1", 0, 1e6, "seconds after which no further run begins")};
 }
 
 std::vector<std::string> PressureSolvers::figures() const {
@@ -94,7 +103,7 @@ std::vector<std::string> PressureSolvers::figures() const {
 }
 
 Findings PressureSolvers::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
-  if (s.flag("ball") && s.text("solver") == "transforms")
+  if (s.text("obstacle") != "none" && s.text("solver") == "transforms")
     throw Error("solver = transforms solves in boxes without obstacles only");
   Findings found;
   with_threads(execution, [&] { found = s.text("precision") == "double" ? measure<double>(s) : measure<float>(s); });

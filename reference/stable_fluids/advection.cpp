@@ -109,11 +109,8 @@ class Transport {
 
   // Of the samples around a place those that are fluid: what is beyond an obstacle of one cell does not come through.
   V in_fluid(V value, const Field<Real>& source, const typename Sampler<Real, D>::Foot& foot, const Block& b) const {
-    using Index = hn::TFromD<hn::RebindToSigned<Lanes<Real>>>;
     Real values[64], x[64], y[64], z[64];
-    Index at[64];
     hn::StoreU(value, Lanes<Real>(), values);
-    hn::StoreU(foot.at, hn::RebindToSigned<Lanes<Real>>(), at);
     hn::StoreU(foot.x, Lanes<Real>(), x);
     hn::StoreU(foot.y, Lanes<Real>(), y);
     hn::StoreU(foot.z, Lanes<Real>(), z);
@@ -121,7 +118,7 @@ class Transport {
       if (obstacles_.solid.values[b.place + lane])
         values[lane] = 0;
       else
-        read_in_fluid(source, source.first + at[lane], {x[lane], y[lane], z[lane]}, values[lane]);
+        read_in_fluid(source, source.first + foot.at[lane], {x[lane], y[lane], z[lane]}, values[lane]);
     }
     return hn::LoadU(Lanes<Real>(), values);
   }

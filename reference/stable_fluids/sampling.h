@@ -54,11 +54,11 @@ template <class Real, int D>
 class Sampler {
  public:
   using V = Vector<Real>;
-  using Indices = hn::Vec<hn::RebindToSigned<Lanes<Real>>>;
+  using Index = hn::TFromD<hn::RebindToSigned<Lanes<Real>>>;
 
   // The samples before places, as distances from the first one, and the shares beyond them.
   struct Foot {
-    Indices at;
+    Index at[hn::MaxLanes(Lanes<Real>())];
     V x, y, z;
   };
 
@@ -68,13 +68,17 @@ class Sampler {
 
   Foot foot(const Places<Real>& p) const {
     const auto x = split(p[0], 0), y = split(p[1], 1);
-    if constexpr (D == 2) return {index(x.first, y.first, all(Real(0))), x.second, y.second, all(Real(0))};
-    const auto z = split(p[2], 2);
-    return {index(x.first, y.first, z.first), x.second, y.second, z.second};
+    const auto z = D == 2 ? std::pair(all(Real(0)), all(Real(0))) : split(p[2], 2);
+    Foot f{{}, x.second, y.second, z.second};
+    hn::StoreU(index(x.first, y.first, z.first), hn::RebindToSigned<Lanes<Real>>(), f.at);
+    return f;
   }
 
   V linear(const Foot& f) const {
-    const auto row = [&](std::ptrdiff_t to) { return between(get(f, to), get(f, to + 1), f.x); };
+    const auto row = [&](std::ptrdiff_t to) {
+      const auto [first, second] = get(f, to);
+      return between(first, second, f.x);
+    };
     const auto slab = [&](std::ptrdiff_t to) { return between(row(to), row(to + stride_[1]), f.y); };
     if constexpr (D == 2) return slab(0);
     return between(slab(0), slab(stride_[2]), f.z);
@@ -83,7 +87,9 @@ class Sampler {
 
   V cubic(const Foot& f) const {
     const auto row = [&](std::ptrdiff_t to) {
-      return monotone_cubic<Real>(get(f, to - 1), get(f, to), get(f, to + 1), get(f, to + 2), f.x);
+      const auto [a, b] = get(f, to - 1);
+      const auto [c, d] = get(f, to + 1);
+      return monotone_cubic<Real>(a, b, c, d, f.x);
     };
     const auto slab = [&](std::ptrdiff_t to) {
       const std::ptrdiff_t s = stride_[1];
@@ -97,15 +103,11 @@ class Sampler {
   // With the range of the samples around.
   Read<Real> linear_in_range(const Foot& f) const {
     Read<Real> all_of;
-    all_of.least = all_of.greatest = get(f, 0);
-    const auto seen = [&](std::ptrdiff_t to) {
-      const V value = get(f, to);
-      all_of.least = hn::Min(all_of.least, value);
-      all_of.greatest = hn::Max(all_of.greatest, value);
-      return value;
-    };
+    all_of.least = all_of.greatest = get(f, 0).first;
     const auto row = [&](std::ptrdiff_t to) {
-      const V first = seen(to), second = seen(to + 1);
+      const auto [first, second] = get(f, to);
+      all_of.least = hn::Min(hn::Min(all_of.least, first), second);
+      all_of.greatest = hn::Max(hn::Max(all_of.greatest, first), second);
       return between(first, second, f.x);
     };
     const auto slab = [&](std::ptrdiff_t to) {
@@ -123,7 +125,7 @@ class Sampler {
     return {floor, hn::Sub(from, floor)};
   }
   // Whole numbers of samples: exact in double, and as integers where a float would not be.
-  Indices index(V x, V y, V z) const {
+  auto index(V x, V y, V z) const {
     const hn::RebindToSigned<Lanes<Real>> integers;
     if constexpr (sizeof(Real) == 8) {
       const V rows = hn::Mul(y, all(Real(stride_[1]))), slabs = hn::Mul(z, all(Real(stride_[2])));
@@ -134,7 +136,21 @@ class Sampler {
       return hn::Add(of(x), hn::Add(hn::Mul(of(y), step(1)), hn::Mul(of(z), step(2))));
     }
   }
-  V get(const Foot& f, std::ptrdiff_t to) const { return hn::GatherIndex(Lanes<Real>(), origin_ + to, f.at); }
+  // Two neighbours along x, as one load a lane: half as many as gathers, which some processors are slow at besides.
+  std::pair<V, V> get(const Foot& f, std::ptrdiff_t to) const {
+    constexpr std::size_t half = hn::MaxLanes(Lanes<Real>()) / 2;
+    const auto low = neighbours<half>(origin_ + to, f.at), high = neighbours<half>(origin_ + to, f.at + half);
+    return {hn::ConcatEven(Lanes<Real>(), high, low), hn::ConcatOdd(Lanes<Real>(), high, low)};
+  }
+  template <std::size_t Count>
+  static auto neighbours(const Real* origin, const Index* at) {
+    const hn::FixedTag<Real, 2 * Count> side_by_side;
+    if constexpr (Count == 1)
+      return hn::LoadU(side_by_side, origin + *at);
+    else
+      return hn::Combine(side_by_side, neighbours<Count / 2>(origin, at + Count / 2),
+                         neighbours<Count / 2>(origin, at));
+  }
 
   const Real* origin_;
   std::array<std::ptrdiff_t, 3> stride_;

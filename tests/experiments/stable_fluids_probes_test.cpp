@@ -112,7 +112,7 @@ TEST_CASE("pressure_solvers: iterations and what is left", "[stable_fluids][prob
   const auto solved = [](const char* solver, const char* n, bool ball, const char* start, bool fine) {
     return run("pressure_solvers", {{"solver", solver},
                                     {"n", n},
-                                    {"ball", ball ? "true" : "false"},
+                                    {"obstacle", ball ? "ball" : "none"},
                                     {"start", start},
                                     {"precision", fine ? "double" : "float"},
                                     {"tolerance", fine ? "1e-10" : "1e-6"},
@@ -141,6 +141,9 @@ TEST_CASE("pressure_solvers: iterations and what is left", "[stable_fluids][prob
   };
   CHECK(iterations("incomplete_cholesky", "24") > 1.3 * iterations("incomplete_cholesky", "10"));
   CHECK(iterations("transforms_as_guess", "24") < 1.3 * iterations("transforms_as_guess", "10"));
+  const Findings plate =
+      run("pressure_solvers", {{"solver", "incomplete_cholesky"}, {"n", "20"}, {"obstacle", "plate"}});
+  CHECK(plate.counters.at("solid cells") == 16 * 2 * 20);
   CHECK_THROWS_WITH(solved("transforms", "8", true, "noise", true), Contains("without obstacles"));
 }
 
