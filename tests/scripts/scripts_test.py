@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""scripts/figures, tighten and gallery on a small tree of their own: what they write, and what they object to."""
+"""scripts/figures, tighten and gallery on a small tree of their own: what they write, and what they object to; compare_mantaflow without
+its peer."""
 import importlib.machinery
 import importlib.util
 import json
@@ -359,6 +360,39 @@ class Gallery(Tree):
         os.remove(f"{self.root}/experiments/scenes/a.toml")
         self.objects(1, "one: there is no experiments/scenes/a.toml", "--check")
         self.objects(2, "scenes/a.toml: No such file or directory")
+
+
+
+class Mantaflow(unittest.TestCase):
+    script = f"{SOURCE}/scripts/compare_mantaflow"
+
+    def test_without_blender(self):
+        with tempfile.TemporaryDirectory() as folder:
+            without = f"{folder}/blender"
+            with open(without, "w") as stream:
+                stream.write("#!/bin/sh\necho fluid False\n")
+            os.chmod(without, 0o755)
+            for blender, words in ((f"{folder}/none", "there is no Blender"), (without, "without fluids")):
+                done = subprocess.run([sys.executable, self.script, "--blender", blender], capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (3, "", 1))
+                self.assertIn(words, done.stderr)
+                self.assertIn("apt-get install -y --no-install-recommends blender", done.stderr)
+
+    def test_ratios_are_of_the_same_round(self):
+        loader = importlib.machinery.SourceFileLoader("compare_mantaflow", self.script)
+        module = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare_mantaflow", loader))
+        sys.dont_write_bytecode = True
+        loader.exec_module(module)
+        module.our_version = lambda program: "airlight"
+
+        def runs(*seconds):
+            return [{"seconds": s, "stages": {"projection": s / 4}, "divergence": 1e-6, "speed": 1, "height": 0.5, "mass": 0.01} for s in seconds]
+
+        options = type("Options", (), {"cells": [10], "steps": 2, "rounds": 3, "threads": 2, "program": ""})
+        text = module.report({10: {"ours": runs(1e-3, 4e-3, 2e-3), "theirs": runs(4e-3, 8e-3, 1e-2)}}, "ours", options, "3")
+        self.assertIn("| 10 | ours | 1000 | 1.00 (1.00 to 1.00) | 250 |", text)
+        self.assertIn("| 10 | theirs | 4000 | 4.00 (2.00 to 5.00) | 1000 |", text)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -139,9 +139,10 @@ TEST_CASE("stable fluids: a projection keeps walls, and what is free of divergen
   std::mt19937 random(5);
   each_pair([&](const Lattice& l) {
     auto u = random_velocity<double>(l, random);
-    Projection<double> project(l, {}, PressureSolver::transforms, 0, 0);
+    const Obstacles none;
+    Projection<double> project(l, none, PressureSolver::transforms, 0, 0);
     project(u);
-    settle(u, l, {});
+    settle(u, l, none);
     auto again = u;
     project(again);
     for (int a = 0; a < l.dimensions; ++a)

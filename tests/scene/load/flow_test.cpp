@@ -1,4 +1,6 @@
 // Flow problems: what their files say, and what is refused, with its place.
+#include <sstream>
+
 #include "scene/flow_problem.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
@@ -12,21 +14,7 @@ namespace {
 
 const std::string flow_of_box = "[flow]\nduration = 2\nbox = { lo = [0, 0, 0], hi = [1, 2, 1] }\n";
 
-FlowProblem flow(const std::string& text) { return parse_flow(text, "f.toml", "."); }
-
-std::string refusal(const std::string& text) {
-  try {
-    flow(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
-}  // namespace
-
-TEST_CASE("flow problems: all keys", "[flow][load]") {
-  const FlowProblem p = flow(R"(
+const std::string all_keys = R"(
 name = "all"
 [flow]
 duration = 3
@@ -70,7 +58,23 @@ radius = 0.4
 region = { type = "box", lo = [-1, 1, -1], hi = [1, 2, 1] }
 acceleration = [1, 0, 0]
 frequency = 0.5
-)");
+)";
+
+FlowProblem flow(const std::string& text) { return parse_flow(text, "f.toml", "."); }
+
+std::string refusal(const std::string& text) {
+  try {
+    flow(text);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("flow problems: all keys", "[flow][load]") {
+  const FlowProblem p = flow(all_keys);
   CHECK(p.name == "all");
   CHECK(p.duration == 3);
   CHECK(p.frame_rate == 30);
@@ -174,4 +178,36 @@ TEST_CASE("flow problems: refused with place, what was found and what was expect
   for (const char* way_out : {"right = { type = \"open\" }", "right = { type = \"inflow\", velocity = [3, 0, 0] }",
                               "top = { type = \"inflow\", velocity = [0, 6, 0] }"})
     CHECK(refusal(flow_of_box + "[sides]\nleft = { type = \"inflow\", velocity = [3, 0, 0] }\n" + way_out).empty());
+}
+
+TEST_CASE("flow problems: every value replaced by one of another type is refused at its line, or taken",
+          "[flow][load]") {
+  std::vector<std::string> lines;
+  std::istringstream stream(all_keys);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  int refused = 0, taken = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t at = lines[i].find(" = ");
+    if (at == std::string::npos) continue;
+    for (const char* value : {"\"thick\"", "nan", "-inf", "-1e300", "true", "[]", "[nan, 0, 0]", "[\"a\", 1, 2]",
+                              "[[1], 2, 3]", "{}", "{ type = 3 }", "1979-05-27"}) {
+      std::string text;
+      for (std::size_t j = 0; j < lines.size(); ++j)
+        text += (i == j ? lines[i].substr(0, at + 3) + value : lines[j]) + "\n";
+      const std::string message = refusal(text);
+      INFO(lines[i] << " with " << value << ": " << message);
+      // Text is a name, a flag of nothing here: all else has a type of its own.
+      if (message.empty()) {
+        ++taken;
+        CHECK(lines[i].substr(0, at) == "name");
+        continue;
+      }
+      ++refused;
+      CHECK_THAT(message, StartsWith("f.toml:" + std::to_string(i + 1) + ":") &&
+                              (Contains("expected") || Contains("missing key")));
+      CHECK(message.find('\n') == std::string::npos);
+    }
+  }
+  CHECK(taken == 1);
+  CHECK(refused > 400);
 }
