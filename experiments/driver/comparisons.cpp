@@ -132,7 +132,8 @@ TextTable orders(const Outcome& outcome) {
         if (curve.size() < 2) continue;
         std::vector<std::string> settings, found;
         for (auto last = curve.begin(), next = std::next(last); next != curve.end(); last = next++)
-          found.push_back(fmt::format("{:.2f}", std::log(last->second / next->second) / std::log(next->first / last->first)));
+          found.push_back(
+              fmt::format("{:.2f}", std::log(last->second / next->second) / std::log(next->first / last->first)));
         for (const auto& [setting, error] : curve) settings.push_back(fmt::format("{:g}", setting));
         lines.push_back({scene, method, metric, fmt::format("{}", fmt::join(settings, ", ")),
                          fmt::format("{}", fmt::join(found, ", "))});

@@ -7,6 +7,7 @@
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/reference_cache.h"
+#include "experiments/driver/sequences.h"
 #include "experiments/driver/timing.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
@@ -129,6 +130,12 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
 
 Outcome run_images(Experiment experiment, const RunOptions& options) {
   RowKeeper keeper(std::move(experiment), options);
+  for (const std::string& name : keeper.experiment().sequences) {
+    Row history;
+    history.method = name;
+    history.columns = sequence_history(options.root, name, keeper.experiment().profile);
+    keeper.add_history(std::move(history));
+  }
   return keeper.run([&](const SceneCase& c) {
     const auto judged = std::make_shared<Judged>();
     judged->planned = plan_scene(keeper.experiment(), c);

@@ -39,6 +39,7 @@ class RowKeeper {
   // Below results/: where the tables lie, and below results/images the pictures.
   const std::string& name() const { return name_; }
   std::filesystem::path images() const { return results_ / "images"; }
+  void add_history(Row history) { outcome_.histories.push_back(std::move(history)); }
   void add(const ReferenceInfo& reference) { outcome_.references.push_back(reference); }
 
   // As run_experiment.

@@ -41,6 +41,7 @@ const char* word(const GateResult&);  // ok, skipped or FAILED
 struct Outcome {
   Experiment experiment;
   std::vector<Row> rows;
+  std::vector<Row> histories;  // of sequences that scenes show: columns alone, for plots
   std::vector<ReferenceInfo> references;
   std::vector<GateResult> gates;
   bool complete = false;  // false: interrupted

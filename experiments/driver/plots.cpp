@@ -58,16 +58,25 @@ std::optional<Curve> curve_of_columns(const Row& row, const PlotCase& plot, cons
   return curve;
 }
 
+Drawing collect_columns(const Outcome& outcome, const PlotCase& plot, const std::string& scene) {
+  Drawing drawing;
+  for (const std::vector<Row>* rows : {&outcome.rows, &outcome.histories})
+    for (const Row& row : *rows) {
+      const bool wanted =
+          plot.methods.empty() || std::find(plot.methods.begin(), plot.methods.end(), row.method) != plot.methods.end();
+      if (!wanted || (!scene.empty() && row.scene != scene)) continue;
+      if (auto curve = curve_of_columns(row, plot, scene)) drawing.curves.push_back(std::move(*curve));
+    }
+  return drawing;
+}
+
 Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string& scene) {
+  if (is_column(plot.x)) return collect_columns(outcome, plot, scene);
   Drawing drawing;
   for (const Row& row : outcome.rows) {
     if (!scene.empty() && row.scene != scene) continue;
     if (!plot.methods.empty() && std::find(plot.methods.begin(), plot.methods.end(), row.method) == plot.methods.end())
       continue;
-    if (is_column(plot.x)) {
-      if (auto curve = curve_of_columns(row, plot, scene)) drawing.curves.push_back(std::move(*curve));
-      continue;
-    }
     const auto x = quantity(row, plot.x), y = quantity(row, plot.y);
     if (!x || !y || !(x->value > 0)) continue;
     PlotPoint point{*x, *y, false};
@@ -91,7 +100,7 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     curve->points.push_back(point);
   }
   // Against time a curve runs through the settings in their order.
-  if (plot.x == "seconds" || plot.x == "prepare_seconds" || is_column(plot.x)) return drawing;
+  if (plot.x == "seconds" || plot.x == "prepare_seconds") return drawing;
   for (Curve& curve : drawing.curves)
     std::stable_sort(curve.points.begin(), curve.points.end(),
                      [](const PlotPoint& a, const PlotPoint& b) { return a.x.value < b.x.value; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "experiments/driver/toml_values.h"
 #include "experiments/frames.h"
@@ -84,6 +85,28 @@ void make_sequence(const fs::path& root, const std::string& name, const std::str
   if (there == 0) fs::remove_all(simulation.folder);
   Progress progress(fmt::format("sequence {} ({})", name, profile));
   simulate(simulation, progress.execution(threads));
+}
+
+Columns sequence_history(const fs::path& root, const std::string& name, const std::string& profile) {
+  const std::string file = (folder_of(root, name, profile) / "history.csv").string();
+  std::istringstream lines(scene::read_whole_file(file));
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    return cells;
+  };
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = cells_of(line);
+  Columns columns;
+  for (int number = 2; std::getline(lines, line); ++number) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != names.size())
+      throw Error(fmt::format("{}:{}: {} fields, expected {}", file, number, cells.size(), names.size()));
+    for (std::size_t i = 0; i < cells.size(); ++i) columns[names[i]].push_back(std::stod(cells[i]));
+  }
+  return columns;
 }
 
 }  // namespace airlight::experiments

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "experiments/driver/experiment.h"
+#include "experiments/probe.h"
 
 namespace airlight::experiments {
 
@@ -19,5 +20,8 @@ void name_sequences(const std::filesystem::path& root, const std::string& profil
 // Simulates it, unless it is there and of the same problem, settings and program; one that was stopped goes on. Throws
 // Error (file, line, column), Interrupted.
 void make_sequence(const std::filesystem::path& root, const std::string& name, const std::string& profile, int threads);
+
+// The columns of its history.csv (frames.h). Throws Error.
+Columns sequence_history(const std::filesystem::path& root, const std::string& name, const std::string& profile);
 
 }  // namespace airlight::experiments

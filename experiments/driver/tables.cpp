@@ -164,9 +164,7 @@ std::vector<Cells> expected(const Outcome& outcome) {
 }
 
 // Where the setting is how fine the grid is.
-TextTable orders_of(const Outcome& outcome) {
-  return outcome.experiment.orders ? orders(outcome) : TextTable{};
-}
+TextTable orders_of(const Outcome& outcome) { return outcome.experiment.orders ? orders(outcome) : TextTable{}; }
 
 }  // namespace
 

@@ -57,6 +57,11 @@ sweep = { key = "medium.0.frame", values = [1, 2] }
 renderer = "deterministic"
 [[method]]
 renderer = "ray_marcher"
+[[plot]]
+name = "mass"
+x = "column.time"
+y = "column.mass"
+per_scene = false
 [profile.quick]
 budget = 0
 )";
@@ -85,6 +90,8 @@ TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flo
   REQUIRE(outcome.rows.size() == 2);
   CHECK(outcome.rows[0].scene_hash != outcome.rows[1].scene_hash);  // the smoke has moved
   CHECK(outcome.experiment.scenes[0].is_frame);
+  CHECK(outcome.histories.front().columns.at("time") == std::vector<double>{0, 0.25, 0.5});
+  CHECK_THAT(airlight::read_bytes((project.path() / "results/g/e/plots/mass.csv").string()), Contains("puff,0.25,"));
   const auto made = fs::last_write_time(project.frame(2));
   // Nothing is simulated again,
   make_sequence(project.path(), "puff", "quick", 1);
