@@ -156,7 +156,7 @@ void advect_in(const Advection& how, const Lattice& l, const Obstacles& obstacle
                Quantity quantity, const Field<Real>& from, Field<Real>& to, Workspace<Real>& work) {
   const Transport<Real, D> transport(how, l, obstacles, u, dt, from);
   if (how.scheme == Scheme::semi_lagrangian) return transport.carry(from, to);
-  work.shape_as(from);
+  work.shape_as(from, how.scheme);
   transport.carry(from, to, &work.range);
   const Walls walls = quantity == Quantity::velocity ? Walls::as_they_are : Walls::carried;
   fill_ghosts(to, quantity, l, walls);
@@ -174,8 +174,8 @@ void advect_in(const Advection& how, const Lattice& l, const Obstacles& obstacle
 }  // namespace
 
 template <class Real>
-void Workspace<Real>::shape_as(const Field<Real>& from) {
-  for (Field<Real>* field : {&first, &second})
+void Workspace<Real>::shape_as(const Field<Real>& from, Scheme scheme) {
+  for (Field<Real>* field : {&first, scheme == Scheme::bfecc ? &second : &first})
     if (field->axis != from.axis || field->values.size() != from.values.size()) *field = from;
   range.least.resize(from.values.size());
   range.greatest.resize(from.values.size());

@@ -26,12 +26,12 @@ struct Range {
   std::vector<Real> least, greatest;
 };
 
-// What corrections need beside two fields; of any shape at first.
+// What corrections need beside two fields, `second` BFECC alone; of any shape at first.
 template <class Real>
 struct Workspace {
   Field<Real> first, second;
   Range<Real> range;
-  void shape_as(const Field<Real>&);
+  void shape_as(const Field<Real>&, Scheme);
 };
 
 // What is at each sample after a time dt: `from` and the velocity with their ghosts filled; `to` is of from's shape, and
