@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.200891:0.972149]
+set xrange [0.0546799:0.265004]
 set logscale y
 set format y "%g"
 set yrange [0.0301868:0.224438]

@@ -15,36 +15,18 @@ set yrange [0.000479063:0.262877]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "energy.swirl.svg"
 plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "semi-Lagrangian, cubic", \
-     data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "MacCormack", \
-     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "MacCormack, clamped", \
-     data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "MacCormack, reverted", \
-     data index 8 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#E69F00" pt 0 lw 0.8 notitle, \
      data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title "BFECC", \
-     data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
-     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped", \
-     data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     data index 14 using 2:5 with lines lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "MacCormack, projected twice", \
-     data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle
+     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "energy.swirl.png"
 plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "semi-Lagrangian, cubic", \
-     data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "MacCormack", \
-     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "MacCormack, clamped", \
-     data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "MacCormack, reverted", \
-     data index 8 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#E69F00" pt 0 lw 0.8 notitle, \
      data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title "BFECC", \
-     data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
-     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped", \
-     data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     data index 14 using 2:5 with lines lc rgb "#7F3C8D" pt 8 ps 0.7 lw 1.6 title "MacCormack, projected twice", \
-     data index 14 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#7F3C8D" pt 0 lw 0.8 notitle
+     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped"

@@ -8,10 +8,12 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:73.6]
+set logscale x
+set format x "%g"
+set xrange [28.2465:290.018]
 set logscale y
 set format y "%g"
-set yrange [0.00236596:27.4611]
+set yrange [1.32963:1390.51]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "memory_by_cells.blob.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
