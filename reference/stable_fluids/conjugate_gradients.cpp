@@ -9,6 +9,8 @@
 namespace airlight::stable_fluids {
 namespace {
 
+constexpr int patience = 300;  // iterations without a lower residual: what is left is rounding
+
 std::size_t cell_of(const Lattice& l, int i, int j, int k) {
   return i + std::size_t(l.n[0]) * (j + std::size_t(l.n[1]) * k);
 }
@@ -229,6 +231,8 @@ ProjectionReport ConjugateGradients<Real>::solve(const std::vector<Real>& right_
   const int slabs = l_.n[2] > 1 ? l_.n[2] : l_.n[1];
   double rz = dot(r_, z_, slabs);
   const std::size_t each = r_.size() / slabs;
+  double least = infinity;
+  int of_least = 0;
   for (report.iterations = 1; report.iterations <= most_iterations_; ++report.iterations) {
     apply(s_, z_);
     const double way = rz / dot(s_, z_, slabs);
@@ -240,6 +244,12 @@ ProjectionReport ConjugateGradients<Real>::solve(const std::vector<Real>& right_
     });
     report.residual = greatest(r_) / most;
     if (greatest(r_) <= goal) return report;
+    if (report.residual < least) least = report.residual, of_least = report.iterations;
+    if (report.iterations - of_least > patience)
+      throw Error(
+          fmt::format("the pressure's residual falls no further than {:.3g} of its right side, reached after {} "
+                      "iterations; expected at most {:.3g}: rounding, where precision is float",
+                      least, of_least, tolerance_));
     precondition(r_, z_);
     const double next = dot(r_, z_, slabs), beta = next / rz;
     rz = next;
