@@ -12,10 +12,10 @@ struct Options {
   // What integrates the airlight of a lit part of a ray: the mapped rule, or the paper's polynomial.
   enum class Evaluator { rule, polynomial };
   Evaluator evaluator = Evaluator::rule;
-  int nodes = 64;        // of the rule
-  int stretch = 6;       // m of its map
-  int degree = 4;        // of the polynomial
-  bool annex = false;    // the printed coefficients
+  int nodes = 64;      // of the rule
+  int stretch = 6;     // m of its map
+  int degree = 4;      // of the polynomial
+  bool annex = false;  // the printed coefficients
   // How lit parts come about: by counting surfaces; each plane adding or subtracting (wrong where shadows overlap); the
   // paper's planes, back to front by the middles of their edges, with a stencil (wrong where that is not their order).
   enum class Shadows { none, counted, signed_sum, stencil };
