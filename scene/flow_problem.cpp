@@ -51,15 +51,17 @@ double start_velocity(const FlowProblem& problem, int axis, const Point3& x) {
   return problem.velocity_grid ? sum + start_value((*problem.velocity_grid)[axis], x) : sum;
 }
 
+double wave_at(const Wave& wave, const Box& box, const Point3& x) {
+  double phase = wave.phase;
+  for (int a = 0; a < 3; ++a)
+    if (box.size()[a] > 0) phase += 2 * pi * wave.waves[a] * (x[a] - box.lo[a]) / box.size()[a];
+  return wave.density * std::cos(phase);
+}
+
 double start_density(const FlowProblem& problem, const Point3& x) {
   double sum = problem.density;
   for (const Blob& blob : problem.blobs) sum += blob.density * blob_at(blob, x);
-  if (problem.wave) {
-    double phase = problem.wave->phase;
-    for (int a = 0; a < problem.dimensions; ++a)
-      phase += 2 * pi * problem.wave->waves[a] * (x[a] - problem.box.lo[a]) / problem.box.size()[a];
-    sum += problem.wave->density * std::cos(phase) + problem.wave->offset;
-  }
+  if (problem.wave) sum += wave_at(*problem.wave, problem.box, x) + problem.wave->offset;
   if (problem.density_grid) sum += start_value(*problem.density_grid, x);
   return sum;
 }

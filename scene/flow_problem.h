@@ -69,6 +69,9 @@ struct Wave {
   double density = 0, offset = 0, phase = 0;
 };
 
+// Without the offset.
+double wave_at(const Wave&, const Box&, const Point3&);
+
 struct Source {
   Region region;
   Interval time{0, infinity};                     // [s]

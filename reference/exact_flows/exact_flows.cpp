@@ -88,7 +88,7 @@ class ExactFlow : public scene::Flow {
   double density(const Point3& x) const override {
     const Point3 from = origin_of(x);
     double sum = scene::start_density(*p_, from);
-    if (p_->wave) sum += (spread_of_wave() - 1) * (wave_at(from));
+    if (p_->wave) sum += (spread_of_wave() - 1) * scene::wave_at(*p_->wave, p_->box, from);
     return fading() * sum;
   }
   double temperature(const Point3& x) const override { return fading() * scene::start_temperature(*p_, origin_of(x)); }
@@ -178,14 +178,6 @@ class ExactFlow : public scene::Flow {
     return from;
   }
 
-  double wave_at(const Point3& x) const {
-    FlowProblem alone;
-    alone.box = p_->box;
-    alone.dimensions = p_->dimensions;
-    alone.wave = p_->wave;
-    alone.wave->offset = 0;
-    return scene::start_density(alone, x);
-  }
   double spread_of_wave() const {
     double k2 = 0;
     for (int a = 0; a < p_->dimensions; ++a) k2 += std::pow(2 * pi * p_->wave->waves[a] / p_->box.size()[a], 2);

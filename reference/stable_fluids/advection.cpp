@@ -175,8 +175,11 @@ void advect_in(const Advection& how, const Lattice& l, const Obstacles& obstacle
 
 template <class Real>
 void Workspace<Real>::shape_as(const Field<Real>& from, Scheme scheme) {
-  for (Field<Real>* field : {&first, scheme == Scheme::bfecc ? &second : &first})
-    if (field->axis != from.axis || field->values.size() != from.values.size()) *field = from;
+  const auto fit = [&](Field<Real>& field) {
+    if (field.axis != from.axis || field.values.size() != from.values.size()) field = from;
+  };
+  fit(first);
+  if (scheme == Scheme::bfecc) fit(second);
   range.least.resize(from.values.size());
   range.greatest.resize(from.values.size());
 }

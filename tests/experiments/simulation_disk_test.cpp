@@ -4,37 +4,14 @@
 #include <catch2/catch.hpp>
 
 #include "scene/media/start_grids.h"
-#include "tests/experiments/run_program.h"
+#include "tests/experiments/rising_smoke.h"
 
 using namespace airlight;
-using airlight::test::run_command;
+using namespace airlight::test;
 using Catch::Contains;
 using Catch::StartsWith;
 
 namespace {
-
-const std::string smoke = R"(
-[flow]
-duration = 0.5
-frame_rate = 20
-box = { lo = [0, 0, 0], hi = [1, 2, 1] }
-[fluid]
-gravity = [0, -9.81, 0]
-expansion = 0.0033
-[[source]]
-region = { type = "sphere", center = [0.5, 0.3, 0.5], radius = 0.25 }
-density = 1
-temperature = 100
-)";
-
-const std::string simulate = "'" + airlight::test::program + "' simulate smoke.toml --set n=24 --out ";
-
-std::map<std::string, std::string> files(const TemporaryFolder& folder, const std::string& name) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path() / name))
-    all[entry.path().filename().string()] = read_bytes(entry.path().string());
-  return all;
-}
 
 // A line, no half of a file, and no frame that differs from that of the run that had the space.
 void check_stopped(const airlight::test::Result& result, const TemporaryFolder& folder, const std::string& why) {
@@ -42,8 +19,8 @@ void check_stopped(const airlight::test::Result& result, const TemporaryFolder& 
   CHECK(result.code == 2);
   CHECK(result.error_lines() == 1);
   CHECK_THAT(result.err, StartsWith("airlight: broken/") && Contains("cannot write: " + why));
-  const auto whole = files(folder, "whole");
-  for (const auto& [name, bytes] : files(folder, "broken")) {
+  const auto whole = files_of(folder.path() / "whole");
+  for (const auto& [name, bytes] : files_of(folder.path() / "broken")) {
     INFO(name);
     REQUIRE(whole.contains(name));
     if (name.ends_with(".vdb")) CHECK(bytes == whole.at(name));
@@ -59,8 +36,8 @@ bool can_mount(const TemporaryFolder& folder) {
 
 TEST_CASE("a simulation whose files grow too long stops with a line, and goes on with the same bits", "[simulation]") {
   const TemporaryFolder folder;
-  folder.write("smoke.toml", smoke);
-  REQUIRE(run_command(simulate + "whole", folder).code == 0);
+  folder.write("smoke.toml", rising_smoke);
+  REQUIRE(run_command(simulate_smoke + "whole", folder).code == 0);
   // In KiB: no frame, frames of little smoke, all frames and no state.
   const auto size = [&](const char* name) {
     return int(std::filesystem::file_size(folder.path() / "whole" / name) / 1024);
@@ -71,12 +48,12 @@ TEST_CASE("a simulation whose files grow too long stops with a line, and goes on
   for (const int most : {first / 2, (last + state) / 2}) {
     // A shell counts in blocks of 512 bytes.
     const auto result =
-        run_command(fmt::format("trap '' XFSZ && ulimit -f {} && {}broken", 2 * most, simulate), folder);
+        run_command(fmt::format("trap '' XFSZ && ulimit -f {} && {}broken", 2 * most, simulate_smoke), folder);
     check_stopped(result, folder, "File too large");
-    CHECK(files(folder, "broken").contains("smoke.0000.vdb") == (most > first));
+    CHECK(files_of(folder.path() / "broken").contains("smoke.0000.vdb") == (most > first));
   }
-  REQUIRE(run_command(simulate + "broken", folder).code == 0);
-  CHECK(files(folder, "broken") == files(folder, "whole"));
+  REQUIRE(run_command(simulate_smoke + "broken", folder).code == 0);
+  CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
 }
 
 TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on with the same bits", "[simulation]") {
@@ -85,10 +62,10 @@ TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on w
     WARN("test skipped: no file system can be mounted here");
     return;
   }
-  folder.write("smoke.toml", smoke);
-  REQUIRE(run_command(simulate + "whole", folder).code == 0);
+  folder.write("smoke.toml", rising_smoke);
+  REQUIRE(run_command(simulate_smoke + "whole", folder).code == 0);
   std::uintmax_t all = 0;
-  for (const auto& [name, bytes] : files(folder, "whole")) all += bytes.size();
+  for (const auto& [name, bytes] : files_of(folder.path() / "whole")) all += bytes.size();
   // What was on the full disk goes on where there is space.
   for (const int percent : {3, 40, 60, 80}) {
     INFO(percent << " % of the space");
@@ -101,22 +78,22 @@ TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on w
     std::filesystem::remove_all(folder.path() / "broken");
     std::filesystem::rename(folder.path() / "copy", folder.path() / "broken");
     check_stopped(result, folder, "No space left on device");
-    const auto resumed = run_command(simulate + "broken", folder);
+    const auto resumed = run_command(simulate_smoke + "broken", folder);
     CHECK(resumed.code == 0);
     if (percent >= 40) CHECK_THAT(resumed.out, !Contains(" 0 of them from an earlier run"));
-    CHECK(files(folder, "broken") == files(folder, "whole"));
+    CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
     std::filesystem::remove_all(folder.path() / "broken");
   }
 }
 
 TEST_CASE("a simulation into a folder that takes no files stops with a line", "[simulation]") {
   const TemporaryFolder folder;
-  folder.write("smoke.toml", smoke);
-  REQUIRE(run_command(simulate + "whole", folder).code == 0);
+  folder.write("smoke.toml", rising_smoke);
+  REQUIRE(run_command(simulate_smoke + "whole", folder).code == 0);
   std::filesystem::create_directory(folder.path() / "broken");
   if (geteuid() != 0) {
     std::filesystem::permissions(folder.path() / "broken", std::filesystem::perms(0555));
-    check_stopped(run_command(simulate + "broken", folder), folder, "Permission denied");
+    check_stopped(run_command(simulate_smoke + "broken", folder), folder, "Permission denied");
   } else if (can_mount(folder)) {  // root may write anywhere but there
     const std::string command = "\"" + airlight::test::program + "\" simulate smoke.toml --set n=24 --out ";
     check_stopped(run_command("unshare -m sh -c 'mount -t tmpfs -o ro none broken && " + command + "broken'", folder),

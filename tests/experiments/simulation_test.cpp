@@ -8,45 +8,23 @@
 
 #include "experiments/solvers.h"
 #include "scene/error.h"
-#include "scene/read_file.h"
-#include "tests/experiments/run_program.h"
+#include "tests/experiments/rising_smoke.h"
 
 using namespace airlight;
 using namespace airlight::experiments;
+using airlight::test::files_of;
+using airlight::test::rising_smoke;
 using Catch::Contains;
 
 namespace {
 
-const std::string smoke = R"(
-[flow]
-duration = 0.5
-frame_rate = 20
-box = { lo = [0, 0, 0], hi = [1, 2, 1] }
-[sides]
-top = { type = "open" }
-[fluid]
-gravity = [0, -9.81, 0]
-expansion = 0.0033
-[[source]]
-region = { type = "sphere", center = [0.5, 0.3, 0.5], radius = 0.25 }
-density = 1
-temperature = 100
-)";
-
 Simulation simulation(const TemporaryFolder& folder, std::map<std::string, std::string> settings = {}) {
   const scene::Solver& solver = find_solver("stable_fluids", "test");
   settings.try_emplace("n", "24");
-  return {std::make_shared<const scene::FlowProblem>(scene::parse_flow(smoke, "smoke.toml", "")),
+  return {std::make_shared<const scene::FlowProblem>(scene::parse_flow(rising_smoke, "smoke.toml", "")),
           solver,
           {solver.settings(), settings},
           folder.path()};
-}
-
-std::map<std::string, std::string> files(const std::filesystem::path& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    all[entry.path().filename().string()] = scene::read_whole_file(entry.path().string(), 1 << 28);
-  return all;
 }
 
 }  // namespace
@@ -57,7 +35,7 @@ TEST_CASE("a simulation leaves frames that a scene can show, and its history", "
   CHECK(report.frames == 11);
   CHECK(report.resumed == 0);
   CHECK(report.counters.at("steps") == 30);
-  const auto all = files(folder.path());
+  const auto all = files_of(folder.path());
   CHECK(all.size() == 13);
   const std::string& history = all.at("history.csv");
   CHECK(std::count(history.begin(), history.end(), '\n') == 12);
@@ -82,7 +60,7 @@ TEST_CASE("a simulation leaves frames that a scene can show, and its history", "
   const SimulationReport second = simulate(again, {});
   CHECK(second.resumed == 11);
   CHECK(second.times.empty());
-  CHECK(files(folder.path()) == all);
+  CHECK(files_of(folder.path()) == all);
 }
 
 TEST_CASE("a simulation that is interrupted after any step goes on with the same bits", "[simulation]") {
@@ -98,7 +76,7 @@ TEST_CASE("a simulation that is interrupted after any step goes on with the same
     } catch (const scene::Interrupted&) {
     }
   }
-  CHECK(files(broken.path()) == files(whole.path()));
+  CHECK(files_of(broken.path()) == files_of(whole.path()));
 }
 
 // In a problem of its own the flow begins anew with what a frame holds: the same but for the rounding of a projection.
@@ -111,8 +89,8 @@ TEST_CASE("a simulation begins with a frame of another one and goes on like it",
         std::make_shared<const scene::FlowProblem>(scene::parse_flow(text, "smoke.toml", first.path().string()));
     simulate({problem, solver, settings, folder.path()}, {});
   };
-  run(smoke, first);
-  std::string rest = smoke;
+  run(rising_smoke, first);
+  std::string rest = rising_smoke;
   rest.replace(rest.find("0.5"), 3, "0.2");
   run(rest +
           "[start]\nfile = \"smoke.0006.vdb\"\ngrid = \"density\"\ntemperature_grid = \"temperature\"\n"
@@ -134,8 +112,8 @@ TEST_CASE("a simulation begins with a frame of another one and goes on like it",
 // The program itself, ended by a signal that it cannot catch.
 TEST_CASE("a simulation that is killed fifty times goes on with the same bits", "[simulation]") {
   const TemporaryFolder folder;
-  folder.write("smoke.toml", smoke);
-  const std::string arguments = "'" + airlight::test::program + "' simulate smoke.toml --set n=24 --out ";
+  folder.write("smoke.toml", rising_smoke);
+  const std::string& arguments = airlight::test::simulate_smoke;
   REQUIRE(airlight::test::run_command(arguments + "whole", folder).code == 0);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> seconds(0, 0.25);
@@ -150,16 +128,16 @@ TEST_CASE("a simulation that is killed fifty times goes on with the same bits", 
   }
   CHECK(killed == 50);
   REQUIRE(airlight::test::run_command(arguments + "broken", folder).code == 0);
-  CHECK(files(folder.path() / "broken") == files(folder.path() / "whole"));
+  CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
 }
 
 TEST_CASE("a folder of another simulation is refused", "[simulation]") {
   const TemporaryFolder folder;
   simulate(simulation(folder), {});
-  const auto all = files(folder.path());
+  const auto all = files_of(folder.path());
   CHECK_THROWS_WITH(simulate(simulation(folder, {{"scheme", "bfecc"}}), {}),
                     Contains("of another problem, solver, settings or program"));
-  CHECK(files(folder.path()) == all);
+  CHECK(files_of(folder.path()) == all);
   std::filesystem::remove(folder.path() / "smoke.0004.vdb");
   CHECK_THROWS_WITH(simulate(simulation(folder), {}), Contains("smoke.0004.vdb: is gone"));
   Simulation elsewhere = simulation(folder);

@@ -14,9 +14,10 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 
+import flow_cases
 import hostile_cases
+import kill_cases
 
 PROGRAM, SOURCE = (os.path.abspath(p) for p in sys.argv[1:3])
 WORD = sys.argv[3] if len(sys.argv) > 3 else ''
@@ -284,43 +285,6 @@ def queue_experiments():
     case('experiment, missing', ['experiment', 'run', 'g/none', '--root', 'p4'])
 
 
-FLOW = 'name = "flow"\n[flow]\nduration = 0.1\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }\n'
-
-
-def queue_flows():
-    """Problems that cannot flow, and settings of the wrong type."""
-    def simulate(name, text, says, sets=('n=8',), **more):
-        case(f'flow: {name}', ['simulate', write(f'flow {name}.toml', text), '--out', f'flow {name}', *(w for s in sets for w in ('--set', s))],
-             says=says, **more)
-
-    for name, text, says in [
-            ('empty', '', 'found an empty file'), ('no flow', '[fluid]\n', "missing key 'flow'"),
-            ('box of no size', FLOW.replace('[1, 1, 1]', '[1, 0, 1]'), '.toml:4:30: flow: box: hi = [1, 0, 1], expected a corner'),
-            ('box with nan', FLOW.replace('[0, 0, 0]', '[0, 0, nan]'), 'lo[2] = nan, expected'),
-            ('box of no whole cells', FLOW.replace('[1, 1, 1]', '[1, 0.9, 1]'), 'are 7.2 along y, expected a whole number'),
-            ('no time', FLOW.replace('0.1', '0'), '.toml:3:12: flow: duration = 0, expected'),
-            ('no frame', FLOW.replace('0.1', '0.02'), 'less than half a frame'),
-            ('frames for ever', FLOW.replace('0.1', '1e9'), 'at most 1e+07 frames'),
-            ('negative viscosity', FLOW + '[fluid]\nviscosity = -1\n', '.toml:6:13: fluid: viscosity = -1, expected'),
-            ('source outside', FLOW + '[[source]]\nregion = { type = "sphere", center = [5, 5, 5], radius = 1 }\ndensity = 1\n',
-             'lies outside the box'),
-            ('source between samples', FLOW + '[[source]]\nregion = { type = "sphere", center = [0.5, 0.5, 0.5], radius = 0.01 }\ndensity = 1\n',
-             'holds no sample'),
-            ('filled', FLOW + '[[obstacle]]\ntype = "box"\nlo = [-1, -1, -1]\nhi = [2, 2, 2]\n', 'the obstacles fill the box'),
-            ('inflow', FLOW + '[sides]\nleft = { type = "inflow", velocity = [2, 0, 0] }\n', '2 m^3/s flow into the box'),
-            ('inflow behind a wall', FLOW + '[sides]\nleft = { type = "inflow", velocity = [2, 0, 0] }\nright = { type = "open" }\n'
-             '[[obstacle]]\ntype = "box"\nlo = [0.4, -1, -1]\nhi = [0.7, 2, 2]\n', '2 m^3/s flow into a part of 192 cells'),
-            ('too strong', FLOW + '[start]\ndensity = 1e20\n[fluid]\ngravity = [0, -1e6, 0]\nweight = 1e30\n', 'step 1, t = 0 s: the velocity along y at cell')]:
-        simulate(name, text, says)
-    for setting, says in [('n=0', 'n = 0 is out of range'), ('n=2147483648', 'out of range'), ('n=9.5', 'expected an integer'), ('n=', 'expected'),
-                          ('dt=-1', 'dt = -1 is out of range'), ('dt=nan', 'expected a number'), ('dt=1e-300', 'steps of a frame'),
-                          ('scheme=3', 'expected one of'), ('tolerance=0', 'out of range'), ('precision=half', 'expected one of'),
-                          ('project_twice=2', 'expected true or false'), ('speed=1', "unknown setting 'speed'")]:
-        simulate(f'with {setting}', FLOW, says, [setting])
-    simulate('onto a full disk', FLOW, 'flow onto a full disk/', preexec_fn=limit_files)
-    case('flow: output is a file', ['simulate', 'flow onto a full disk.toml', '--out', 'flow onto a full disk.toml'])
-
-
 def queue_outputs():
     os.makedirs(WORK / 'folder.exr', exist_ok=True)
     os.makedirs(WORK / 'folder.png', exist_ok=True)
@@ -371,85 +335,12 @@ def limit_files():
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
 
-def killed_after(arguments, seconds):
-    process = subprocess.Popen([PROGRAM, *arguments], cwd=WORK, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        process.wait(seconds)
-        return False  # it was faster
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-        return True
-
-
-def same_pictures(name, one, other):
-    for layer in ('mean', 'se', 'order.1', 'order.rest', 'max_sample', 'batch.07'):
-        bits = []
-        for file in (one, other):
-            if run(['convert', str(file), 'looked.pfm', '--layer', layer]).returncode:
-                return fail(name, f'{file} has no sound layer {layer}')
-            bits.append((WORK / 'looked.pfm').read_bytes())
-        if bits[0] != bits[1]:
-            return fail(name, f'layer {layer} differs')
-    ok(name, 'same bits')
-
-
-def kill_and_resume():
-    """kill -9 in a path-traced render that keeps its samples, and in an experiment: nothing half-written, and what goes on
-    has the bits of what was never broken off."""
-    if WORD not in 'kill and resume':
-        return
-    render = ['render', 'good.toml', '-m', 'path_tracer', '--override', 'film.width=48', '--override', 'film.height=36',
-              '--samples', '4096', '-o']
-    begin = time.monotonic()
-    if run([*render, 'whole.exr', '--cache', 'kept whole']).returncode:
-        return fail('kill, render', 'the unbroken render fails')
-    seconds, kills = time.monotonic() - begin, 0
-    for share in (0.1, 0.4, 0.7, 0.9):
-        kills += killed_after([*render, 'broken.exr', '--cache', 'kept'], share * seconds)
-    if run([*render, 'broken.exr', '--cache', 'kept']).returncode:
-        return fail('kill, render', 'going on fails')
-    same_pictures(f'kill, render ({seconds:.1f} s, killed {kills} times)', 'broken.exr', 'whole.exr')
-
-    experiment = EXPERIMENT.replace('samples = 64', 'samples = 4096') + 'overrides = { "film.width" = 48, ' \
-        '"film.height" = 36 }\n'
-    whole, broken = project('unbroken', experiment), project('broken', experiment)
-    begin = time.monotonic()
-    if run(whole).returncode:
-        return fail('kill, experiment', 'the unbroken run fails')
-    seconds, kills = time.monotonic() - begin, 0
-    for share in (0.1, 0.4, 0.7, 0.85):
-        kills += killed_after([*broken, '--resume'], share * seconds)
-        for file in (WORK / 'broken' / 'results').rglob('*.exr'):
-            if run(['convert', str(file), 'looked.png']).returncode:
-                fail('kill, experiment', f'{file} is half-written')
-    done = run([*broken, '--resume'])
-    if done.returncode or done.stderr:
-        return fail('kill, experiment', f'resuming fails: {done.stderr!r}')
-    tables = [(WORK / p / 'results' / 'g' / 'e' / 'table.csv').read_text().splitlines() for p in ('unbroken', 'broken')]
-    heads = tables[0][0].split(',')
-    for one, other in zip(*tables):
-        for head, a, b in zip(heads, one.split(','), other.split(',')):
-            if a != b and not head.startswith(('seconds', 'prepare', 'runs', 'stage')):
-                fail('kill, experiment', f'{head}: {a} and {b}')
-    images = [sorted((WORK / p / 'results' / 'images').rglob('reference.exr')) for p in ('unbroken', 'broken')]
-    if len(images[0]) != 1 or len(images[1]) != 1:
-        return fail('kill, experiment', 'there is no reference image')
-    bits = []
-    for i, (file,) in enumerate(images):
-        run(['convert', str(file), f'bits{i}.pfm'])
-        bits.append((WORK / f'bits{i}.pfm').read_bytes())
-    if bits[0] != bits[1]:
-        return fail('kill, experiment', 'the references differ')
-    ok('kill, experiment', f'{seconds:.1f} s, killed {kills} times: same bits')
-
-
 def main():
     try:
         queue_files()
         queue_scripts()
         queue_experiments()
-        queue_flows()
+        flow_cases.queue(case, write, limit_files)
         queue_outputs()
         hostile_cases.queue(WORK, SOURCE, case, write, project, scene_with, SCENE, EXPERIMENT)
         # Standard output to a full device needs its own call.
@@ -461,7 +352,10 @@ def main():
                 fail(item[0], f'exit code {done.returncode}: {done.stderr!r}')
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             list(pool.map(check, cases))
-        kill_and_resume()
+        if WORD in 'kill and resume':
+            killed = kill_cases.KillAndResume(PROGRAM, WORK, run, project, fail, ok)
+            killed.render()
+            killed.experiment(EXPERIMENT)
         left = [str(f.relative_to(WORK)) for f in WORK.rglob('*.tmp') if 'broken' not in f.parts[:-1] and
                 not f.name.startswith('broken')]
         if left:

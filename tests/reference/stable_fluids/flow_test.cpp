@@ -358,3 +358,14 @@ TEST_CASE("stable fluids: a lid drives its box, an inflow leaves by an open side
     CHECK(std::abs(flow->density(Point3(x, 0.4, 0)) - (x < 1.9 ? 0.8 : flow->density(Point3(1.9, 0.6, 0)))) < 1e-10);
   }
 }
+
+TEST_CASE("stable fluids: a residual that rounding holds up is a line, long before the last iteration",
+          "[stable_fluids]") {
+  const auto flow = start(plume(3), {{"n", "16"},
+                                     {"pressure", "incomplete_cholesky"},
+                                     {"precision", "float"},
+                                     {"tolerance", "1e-12"},
+                                     {"iterations", "1000000"}});
+  CHECK_THROWS_WITH(flow->step(0.02), Contains("the pressure's residual falls no further than") &&
+                                          Contains("expected at most 1e-12: rounding, where precision is float"));
+}
