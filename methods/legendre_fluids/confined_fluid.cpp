@@ -10,9 +10,10 @@
 namespace airlight::legendre_fluids {
 namespace {
 
-constexpr double step_rule =
-    2.5;  // dt n |u| at most, of Runge-Kutta: its limit is 2.83 at a spectral radius of at most .8 n |u|
-constexpr double inflow_rule = 2.0;  // dt n^2 |u| at most where air comes in: the operator is not normal
+// Of Runge-Kutta, dt n |u| at most: its limit is 2.83, at a spectral radius of at most .8 n |u|.
+constexpr double step_rule = 2.5;
+// dt n^2 |u| at most where air comes in: the operator is not normal.
+constexpr double inflow_rule = 2;
 
 Array values_on(const Array& x, const Array& y, const Array& z, const std::function<double(const Vec3&)>& f) {
   Array values(x.size() * y.size() * z.size());
@@ -32,8 +33,16 @@ ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Mate
   if (!wind_) return;
   const Array& x = space_.nodes();
   const Array last = dimensions == 3 ? x : Array(Array::Zero(1));
-  for (int a = 0; a < dimensions; ++a)
-    wind_at_points_[a] = values_on(x, x, last, [&](const Vec3& p) { return wind_->velocity(a, p); });
+  for (int a = 0; a < dimensions; ++a) {
+    const auto speed = [&](const Vec3& p) { return wind_->velocity(a, p); };
+    wind_at_points_[a] = values_on(x, x, last, speed);
+    // The confined part is 0 on the sides.
+    for (int side = 0; side < 2; ++side) {
+      std::array<Array, 3> at{x, x, last};
+      at[a] = Array::Constant(1, side ? 1 : -1);
+      wind_on_sides_[a][side] = values_on(at[0], at[1], at[2], speed);
+    }
+  }
 }
 
 void ConfinedFluid::begin(const VelocityFunction& u) {
@@ -75,19 +84,11 @@ double ConfinedFluid::at(int component, const Vec3& x) const {
   return wind_ ? value + wind_->velocity(component, x) : value;
 }
 
-Array ConfinedFluid::face_speed(int axis, int side) const {
-  std::array<Array, 3> at;
-  for (int a = 0; a < 3; ++a) at[a] = a < space_.dimensions() ? space_.nodes() : Array(Array::Zero(1));
-  at[axis] = Array::Constant(1, side ? 1 : -1);
-  // The confined part is 0 there.
-  return values_on(at[0], at[1], at[2], [&](const Vec3& x) { return wind_->velocity(axis, x); });
-}
-
-Array ConfinedFluid::carried_rate(const Components& w, const Array& r,
-                                  const std::array<std::array<double, 2>, 3>& inflow) const {
+Array ConfinedFluid::carried_rate(const Components& w, const Array& r, const BySide& incoming) const {
   Array rate = space_.scalar_advected(w, r);
   for (int a = 0; wind_ && a < space_.dimensions(); ++a)
-    for (int side = 0; side < 2; ++side) rate += space_.scalar_inflow(a, side, face_speed(a, side), r, inflow[a][side]);
+    for (int side = 0; side < 2; ++side)
+      rate += space_.scalar_inflow(a, side, wind_on_sides_[a][side], r, incoming[a][side]);
   return rate;
 }
 
@@ -109,7 +110,7 @@ void ConfinedFluid::advect_by_runge_kutta(double dt) {
   const int count = std::max(1, int(steps));
   const Eigen::Index nu = velocity.size(), nd = density.size(), nt = temperature.size();
   Array y(nu + nd + nt);
-  y << velocity, density, temperature;
+  y.head(nu) = velocity, y.segment(nu, nd) = density, y.tail(nt) = temperature;
   const auto rate = [&](const Array& now) {
     Array change = Array::Zero(now.size());
     const Components w = carrying(now.head(nu));
@@ -117,9 +118,8 @@ void ConfinedFluid::advect_by_runge_kutta(double dt) {
       const Components own = wind_ ? space_.at_points(now.head(nu)) : w;
       change.head(nu) = space_.project(space_.advected(own, now.head(nu)));
     }
-    const auto inflow = wind_ ? *wind_ : Wind{};
-    if (nd) change.segment(nu, nd) = carried_rate(w, now.segment(nu, nd), inflow.density);
-    if (nt) change.tail(nt) = carried_rate(w, now.tail(nt), inflow.temperature);
+    if (nd) change.segment(nu, nd) = carried_rate(w, now.segment(nu, nd), wind_ ? wind_->density : BySide{});
+    if (nt) change.tail(nt) = carried_rate(w, now.tail(nt), wind_ ? wind_->temperature : BySide{});
     return change;
   };
   for (int i = 0; i < count; ++i) y = runge_kutta_4(y, dt / count, rate);
@@ -199,14 +199,13 @@ void ConfinedFluid::filter(double dt) {
     if (r->size()) *r = damped(*r, -1, options_.filter_carried);
 }
 
-void ConfinedFluid::step(double dt) {
+void ConfinedFluid::advance(double dt) {
   diffuse(0.5 * dt);
   if (options_.time_step == TimeStep::runge_kutta)
     advect_by_runge_kutta(dt);
   else
     advect_by_krylov(dt);
   diffuse(0.5 * dt);
-  filter(dt);
 }
 
 void ConfinedFluid::push(const Components& change) {

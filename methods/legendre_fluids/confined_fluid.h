@@ -1,5 +1,5 @@
-// The variant `galerkin`: velocities of a ConfinedSpace, the projection inside the right side, exact diffusion. Energy neither grows nor, but
-// for the order of the time step, falls.
+// The variant `galerkin`: velocities of a ConfinedSpace, the projection inside the right side, exact diffusion. Advection keeps energy, but for
+// the order of the time step.
 #pragma once
 #include <array>
 #include <optional>
@@ -18,11 +18,13 @@ struct ConfinedOptions {
   double filter_velocity = 0, filter_carried = 0, filter_order = 8;
 };
 
+using BySide = std::array<std::array<double, 2>, 3>;  // [axis][low, high]
+
 // Wind through the box: a velocity that is not confined, and what its air brings along.
 struct Wind {
-  VelocityFunction velocity;                                      // polynomial of degree below n
-  bool added = false;                                             // to a confined velocity; else it is all there is
-  std::array<std::array<double, 2>, 3> density{}, temperature{};  // that come in [axis][side]
+  VelocityFunction velocity;        // polynomial of degree below n
+  bool added = false;               // to a confined velocity; else it is all there is
+  BySide density{}, temperature{};  // that come in
 };
 
 class ConfinedFluid : public Fluid {
@@ -31,8 +33,9 @@ class ConfinedFluid : public Fluid {
                 std::optional<Wind> = {});
 
   void begin(const VelocityFunction&) override;
-  void step(double dt) override;
+  void advance(double dt) override;
   void push(const Components& change) override;
+  void finish(double dt) override { filter(dt); }
   Components at_points() const override;
   Array sampled(int component, const Components& positions) const override;
   Array sampled_slope(int component, int axis, const Components& positions) const override;
@@ -43,18 +46,18 @@ class ConfinedFluid : public Fluid {
 
  private:
   Components carrying(const Array& u) const;  // at the points: the velocity u and the wind
-  Array carried_rate(const Components& w, const Array& r, const std::array<std::array<double, 2>, 3>& inflow) const;
+  Array carried_rate(const Components& w, const Array& r, const BySide& incoming) const;
   void diffuse(double dt);
   void advect_by_runge_kutta(double dt);
   void advect_by_krylov(double dt);
   Array krylov(const Array& y, double dt, const SkewOperator&);
   void filter(double dt);
-  Array face_speed(int axis, int side) const;
   bool confined() const { return !wind_ || wind_->added; }
 
   ConfinedOptions options_;
   std::optional<Wind> wind_;
   Components wind_at_points_;
+  std::array<std::array<Array, 2>, 3> wind_on_sides_;  // along the axis of the side
   Array last_rate_;  // of advection in the last step of a Krylov method; empty before the first
   double substeps_ = 0, vectors_ = 0, greatest_estimate_ = 0, filtered_ = 0;
 };

@@ -184,6 +184,11 @@ Components ConfinedSpace::slopes(const Array& c, int component) const {
   return slope;
 }
 
+double ConfinedSpace::integral(const Array& values) const {
+  const MatrixXd weights = points_.weight.transpose();
+  return half_.head(d_).prod() * transformed(values, points_shape(), {&weights, &weights, &weights})[0];
+}
+
 Array ConfinedSpace::scalar_from_points(const Array& values) const {
   return transformed(values, points_shape(), {&from_points_[0], &from_points_[0], &from_points_[0]});
 }

@@ -56,6 +56,7 @@ class ConfinedSpace {
   const Array& weights() const { return points_.weight; }
   const Eigen::MatrixXd& phi() const { return phi_; }  // coefficients of phi in L: (n+1) x (n-1)
   TensorShape points_shape() const;
+  double integral(const Array& values) const;                 // over the box [m^d]
   Array scalar_from_points(const Array& values) const;        // L2 projection
   Array from_points(const Components& values) const;          // the same of a velocity, before project()
   Array advected(const Components& w, const Array& u) const;  // -w.grad u, projected in L2 but not onto div = 0
@@ -76,6 +77,7 @@ class ConfinedSpace {
   // Slope of it along an axis, over half sizes.
   Array sampled_slope(const Array& u, int component, int axis, const Components& positions) const;
   Array scalar_sampled(const Array& r, const Components& positions) const;
+  Array scalar_sampled_slope(const Array& r, int axis, const Components& positions) const;
 
  private:
   Components slopes(const Array& c, int component) const;  // at the points; component -1: of a scalar

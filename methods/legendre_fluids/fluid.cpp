@@ -7,19 +7,9 @@ namespace airlight::legendre_fluids {
 
 double Fluid::energy() const {
   const Components u = at_points();
-  const Array& weight = space_.weights();
-  const TensorShape s = space_.points_shape();
-  const int d = space_.dimensions();
-  double sum = 0;
-  int at = 0;
-  for (int i = 0; i < s[0]; ++i)
-    for (int j = 0; j < s[1]; ++j)
-      for (int k = 0; k < s[2]; ++k, ++at) {
-        double squares = 0;
-        for (int a = 0; a < d; ++a) squares += std::pow(space_.half()[a] * u[a][at], 2);
-        sum += weight[i] * weight[j] * (d == 3 ? weight[k] : 1) * squares;
-      }
-  return 0.5 * space_.half().head(d).prod() * sum;
+  Array squares = Array::Zero(u[0].size());
+  for (int a = 0; a < space_.dimensions(); ++a) squares += space_.half()[a] * space_.half()[a] * u[a].cwiseAbs2();
+  return 0.5 * space_.integral(squares);
 }
 
 double Fluid::greatest_speed() const {

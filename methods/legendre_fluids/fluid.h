@@ -1,5 +1,6 @@
 // What a variant of Legendre fluids moves: a velocity in coefficients of its own, and what it carries in n^d coefficients of L.
 #pragma once
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string>
@@ -27,10 +28,12 @@ class Fluid {
   Array density, temperature;  // coefficients; empty where there is none
 
   virtual void begin(const VelocityFunction&) = 0;
-  // All but sources, forces and decay. Throws scene::Unstable.
-  virtual void step(double dt) = 0;
-  // Adds coefficients of L for each axis [half sizes per second], then projects.
-  virtual void push(const Components& change) = 0;
+  // A step is advance, then push where there are forces, then finish. The first and the last throw scene::Unstable.
+  virtual void advance(double dt) = 0;
+  virtual void push(const Components& change) = 0;  // coefficients of L for each axis [half sizes per second], added
+  virtual void finish(double dt) = 0;
+  // What is left of a quantity that decays, of the product of rate and time.
+  virtual double faded(double amount) const { return std::exp(-amount); }
 
   // Half sizes per second at the Gauss points of the space; on a lattice of other points; its slope along an axis.
   virtual Components at_points() const = 0;

@@ -67,5 +67,8 @@ Array ConfinedSpace::sampled_slope(const Array& u, int a, int axis, const Compon
 Array ConfinedSpace::scalar_sampled(const Array& r, const Components& positions) const {
   return sampled(r, -1, -1, positions);
 }
+Array ConfinedSpace::scalar_sampled_slope(const Array& r, int axis, const Components& positions) const {
+  return sampled(r, -1, axis, positions);
+}
 
 }  // namespace airlight::legendre_fluids

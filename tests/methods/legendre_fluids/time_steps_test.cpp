@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/methods/legendre_fluids/vectors.h"
+#include "tests/methods/legendre_fluids/swirl.h"
 
 using namespace airlight;
 using namespace airlight::legendre_fluids;
@@ -92,15 +92,5 @@ TEST_CASE("legendre fluids: Taylor-Green in a free-slip box", "[legendre_fluids]
         }
     }
     CHECK(std::sqrt(squares / all) < bound);
-  }
-}
-
-TEST_CASE("legendre fluids: Strang steps of the oracle vectors", "[legendre_fluids]") {
-  for (const json& v : test::vectors_of("legendre_fluids", "step")) {
-    const ConfinedSpace space = space_of(v);
-    const double dt = test::number(v["dt"]), half = 0.5 * test::number(v["nu"]) * dt;
-    Array u = space.project(space.diffused(velocity(v), half));
-    u = runge_kutta_4(u, dt, [&](const Array& w) { return acceleration(space, w); });
-    CHECK(error(space.project(space.diffused(u, half)), velocity(v, "", "_1")) < 1e-12);
   }
 }

@@ -1,38 +1,10 @@
-// Velocities and scalars of the oracle vectors: nested arrays as the vectors of coefficients that a ConfinedSpace has.
+// A velocity for tests of Legendre fluids, and how far arrays are apart.
 #pragma once
 #include <random>
-#include <string>
-#include <vector>
 
 #include "methods/legendre_fluids/confined_space.h"
-#include "tests/oracle_vectors.h"
 
 namespace airlight::legendre_fluids::testing {
-
-using test::json;
-
-inline void flatten(const json& from, std::vector<double>& to) {
-  if (from.is_array())
-    for (const json& entry : from) flatten(entry, to);
-  else
-    to.push_back(test::number(from));
-}
-
-inline Array scalar(const json& from) {
-  std::vector<double> values;
-  flatten(from, values);
-  return Eigen::Map<const Array>(values.data(), Eigen::Index(values.size()));
-}
-
-inline int dimensions_of(const json& v) { return v.value("d", 2); }
-inline ConfinedSpace space_of(const json& v) { return ConfinedSpace(dimensions_of(v), v.at("n").get<int>()); }
-
-// Fields prefix + "a", "b" and, in 3D, "c", with a suffix.
-inline Array velocity(const json& v, const std::string& before = "", const std::string& after = "") {
-  std::vector<double> values;
-  for (int a = 0; a < dimensions_of(v); ++a) flatten(v.at(before + "abc"[a] + after), values);
-  return Eigen::Map<const Array>(values.data(), Eigen::Index(values.size()));
-}
 
 // The greatest difference over the greatest entry expected.
 inline double error(const Array& got, const Array& expected) {
