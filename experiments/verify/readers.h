@@ -69,6 +69,18 @@ Check read_identity(const Value&);
 Check read_fluid(const Value&);
 Check read_fluid_flow(const Value&);  // of a whole flow
 
+// legendre_fluid_kinds.cpp: the fluid in a box of coefficients
+Check read_legendre_project(const Value&);
+Check read_legendre_coefficients(const Value&);
+Check read_legendre_evaluate(const Value&);
+Check read_legendre_advect(const Value&);
+Check read_legendre_diffuse(const Value&);
+Check read_legendre_rk4(const Value&);
+Check read_legendre_step(const Value&);
+Check read_legendre_density(const Value&);
+Check read_legendre_energy_identity(const Value&);
+Check read_legendre_taylor_green(const Value&);
+
 // statistics_kinds.cpp
 Check read_statistics(const Value&);
 

@@ -119,6 +119,21 @@ Kinds wavelet_fog() {
   };
 }
 
+Kinds fluid_of_coefficients() {
+  return {
+      {"project", read_legendre_project},
+      {"coefficients", read_legendre_coefficients},
+      {"evaluate", read_legendre_evaluate},
+      {"advect", read_legendre_advect},
+      {"diffuse", read_legendre_diffuse},
+      {"rk4", read_legendre_rk4},
+      {"step", read_legendre_step},
+      {"density-advect", read_legendre_density},
+      {"energy-identity", read_legendre_energy_identity},
+      {"taylor-green", read_legendre_taylor_green},
+  };
+}
+
 Kinds legendre_fluids() {
   const std::vector<std::string> flow3 = {"a", "b", "c", "d", "n"};
   const std::vector<std::string> light = {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"};
@@ -149,6 +164,7 @@ Kinds legendre_fluids() {
   };
   Kinds kinds;
   for (const auto& [kind, list] : fields) kinds[kind] = waiting("Legendre fluids", list);
+  for (const auto& [kind, reader] : fluid_of_coefficients()) kinds[kind] = reader;
   return kinds;
 }
 

@@ -1,0 +1,14 @@
+// A fluid of coefficients as a scene::Flow: metres, sources, forces, states.
+#pragma once
+#include <memory>
+
+#include "methods/legendre_fluids/fluid.h"
+#include "scene/flow.h"
+
+namespace airlight::legendre_fluids {
+
+// Starts the fluid with what the problem has at first. `cells` are those of frames and media along the longest axis. Throws Error where a
+// region of a source or force is too small to be seen.
+std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells);
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,187 @@
+#include "methods/legendre_fluids/legendre_fluids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/legendre_fluids/confined_fluid.h"
+#include "methods/legendre_fluids/legendre_flow.h"
+#include "methods/legendre_fluids/paper_fluid.h"
+#include "methods/legendre_fluids/reference_box.h"
+
+namespace airlight::legendre_fluids {
+
+using scene::FlowProblem;
+using scene::Settings;
+using scene::Side;
+
+namespace {
+
+enum class Variant { galerkin, paper, paper_repaired };
+
+constexpr double most_steps = 1e8;   // of a frame
+constexpr double most_dense = 1000;  // coefficients of a field where systems are dense
+
+double steps_in_frame(const FlowProblem& problem, const Settings& settings) {
+  const double frame = 1 / problem.frame_rate, longest = settings.real("dt");
+  return longest > 0 ? std::max(1.0, std::ceil(frame / longest * (1 - 1e-9))) : 1;
+}
+
+bool has_open_sides(const FlowProblem& p) {
+  for (int a = 0; a < p.dimensions; ++a)
+    for (const Side& side : p.sides[a])
+      if (side.kind == Side::Kind::open) return true;
+  return false;
+}
+
+// Of a wind that goes through the box; of all else 0.
+Vec3 wind_of(const FlowProblem& p) {
+  const auto* wind = std::get_if<scene::Wind>(&p.velocity);
+  return wind && has_open_sides(p) ? wind->velocity : Vec3(Vec3::Zero());
+}
+
+// A velocity that stays and may go through sides, at most linear: what swirls and vortices have is confined.
+bool is_given(const FlowProblem& p) {
+  return p.velocity_stays &&
+         (std::holds_alternative<scene::Wind>(p.velocity) || std::holds_alternative<scene::RigidRotation>(p.velocity));
+}
+bool air_comes_in(const FlowProblem& p) { return is_given(p) || has_open_sides(p); }
+
+void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
+  for (int a = 0; a < p.dimensions; ++a)
+    for (const Side& side : p.sides[a]) {
+      if (side.kind == Side::Kind::periodic || side.kind == Side::Kind::no_slip) {
+        reasons.push_back(fmt::format("sides of axis {} are {}, expected free_slip, or open for wind", "xyz"[a],
+                                      scene::side_name(side.kind)));
+        break;
+      }
+    }
+  if (p.velocity_stays && p.velocity_grid) reasons.push_back("a grid of velocities that stays");
+  if (!has_open_sides(p) || is_given(p)) return;
+  if (!std::holds_alternative<scene::Wind>(p.velocity))
+    reasons.push_back("open sides where the velocity is neither a wind nor a rotation that stays");
+  for (int a = 0; a < p.dimensions; ++a)
+    for (const Side& side : p.sides[a])
+      if ((side.kind == Side::Kind::open) != (wind_of(p)[a] != 0)) {
+        reasons.push_back(
+            fmt::format("sides of axis {} are {}, expected open where the wind goes through, else free_slip", "xyz"[a],
+                        scene::side_name(side.kind)));
+        break;
+      }
+}
+
+// What goes through the sides, and what it brings; nothing where nothing does.
+std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& problem, const ReferenceBox& box) {
+  if (!air_comes_in(*problem)) return {};
+  Wind wind;
+  wind.added = !is_given(*problem);
+  const Vec3 through = wind_of(*problem);
+  if (wind.added)
+    wind.velocity = [=](int a, const Vec3&) { return through[a] / box.half[a]; };
+  else
+    wind.velocity = [=](int a, const Vec3& x) {
+      return scene::start_velocity(*problem, a, box.outside(x)) / box.half[a];
+    };
+  for (int a = 0; a < problem->dimensions; ++a)
+    for (int side = 0; side < 2; ++side) {
+      wind.density[a][side] = problem->sides[a][side].density;
+      wind.temperature[a][side] = problem->sides[a][side].temperature;
+    }
+  return wind;
+}
+
+ConfinedOptions options_from(const Settings& settings) {
+  ConfinedOptions options;
+  options.time_step = settings.choice<TimeStep>("time_step");
+  options.krylov = int(settings.integer("krylov"));
+  options.tolerance = settings.real("tolerance");
+  options.filter_velocity = settings.real("filter_velocity");
+  options.filter_carried = settings.real("filter_carried");
+  options.filter_order = settings.real("filter_order");
+  return options;
+}
+
+// What the paper's variants do not have.
+void object_to_paper(const FlowProblem& problem, const Settings& settings, std::vector<std::string>& reasons) {
+  const std::string& variant = settings.text("variant");
+  if (has_open_sides(problem)) reasons.push_back(variant + " with open sides: its operators know no inflow");
+  if (settings.text("time_step") != "runge_kutta")
+    reasons.push_back(variant + " with time_step = " + settings.text("time_step") + ": a setting of galerkin");
+  for (const char* filter : {"filter_velocity", "filter_carried"})
+    if (settings.real(filter) > 0) reasons.push_back(variant + " with " + filter + ": a setting of galerkin");
+  const double coefficients = std::pow(double(settings.integer("n")), problem.dimensions);
+  if (settings.choice<Variant>("variant") == Variant::paper && coefficients > most_dense)
+    reasons.push_back(
+        fmt::format("paper with {:.0f} coefficients of a field: it solves dense systems of at most {:.0f}",
+                    coefficients, most_dense));
+}
+
+}  // namespace
+
+std::string LegendreFluids::about() const {
+  return "Gupta and Narasimhan 2007: velocity and density in n Legendre coefficients along each axis of a box";
+}
+
+std::vector<scene::SettingSpec> LegendreFluids::settings() const {
+  return {
+      scene::choice_setting("variant", "galerkin", {"galerkin", "paper", "paper_repaired"},
+                            "galerkin: no flow through walls, energy kept; paper: equations 13 to 21, without walls; "
+                            "paper_repaired: the same, confined after each advection"),
+      scene::integer_setting("n", "8", 1, 64, "coefficients along each axis"),
+      scene::real_setting("dt", "0", 0, 1e9, "longest step [s]; 0: a frame. Steps divide a frame evenly"),
+      scene::choice_setting("time_step", "runge_kutta", {"runge_kutta", "exponential", "cayley"},
+                            "of galerkin's advection; Runge-Kutta divides steps that are too long for it"),
+      scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants"),
+      scene::integer_setting("krylov", "30", 1, 200, "vectors of a Krylov space at most (exponential, cayley)"),
+      scene::real_setting("tolerance", "1e-10", 0, 1, "of a Krylov space's error, relative"),
+      scene::real_setting("filter_velocity", "0", 0, 1e9,
+                          "rate of exp(-rate (k/(n-1))^order t) for coefficient k of an axis [1/s]"),
+      scene::real_setting("filter_carried", "0", 0, 1e9, "the same of density and temperature [1/s]"),
+      scene::real_setting("filter_order", "8", 1, 64, "of both"),
+      scene::integer_setting("cells", "64", 1, 1024, "along the longest axis, of frames and media that are grids"),
+  };
+}
+
+std::vector<std::string> LegendreFluids::supports(const FlowProblem& problem, const Settings& settings) const {
+  std::vector<std::string> reasons;
+  object_to_sides(problem, reasons);
+  if (!problem.obstacles.empty()) reasons.push_back("obstacles: polynomials of the whole box know none");
+  if (problem.confinement != 0) reasons.push_back("confinement of vorticity");
+  for (const scene::Source& s : problem.sources)
+    if (s.density || s.temperature || s.velocity) {
+      reasons.push_back("sources that hold a value, expected rates");
+      break;
+    }
+  if (settings.choice<Variant>("variant") != Variant::galerkin) object_to_paper(problem, settings, reasons);
+  const bool krylov = settings.text("time_step") != "runge_kutta";
+  if (krylov && air_comes_in(problem))
+    reasons.push_back(settings.text("time_step") + " steps where air comes in: expected time_step = runge_kutta");
+  if (is_given(problem) && settings.integer("n") < 2) reasons.push_back("n = 1 where air comes in, expected 2 or more");
+  if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
+    reasons.push_back(fmt::format("dt = {:g} makes {:.3g} steps of a frame, expected at most {:g}", settings.real("dt"),
+                                  steps, most_steps));
+  return reasons;
+}
+
+int LegendreFluids::steps_per_frame(const FlowProblem& problem, const Settings& settings) const {
+  return int(std::min(most_steps, steps_in_frame(problem, settings)));
+}
+
+std::unique_ptr<scene::Flow> LegendreFluids::start_supported(std::shared_ptr<const FlowProblem> problem,
+                                                             const Settings& settings, const scene::Execution&) const {
+  const ReferenceBox box(*problem);
+  const int n = int(settings.integer("n")), cells = int(settings.integer("cells"));
+  const Material material{problem->viscosity, problem->diffusivity, !problem->velocity_stays};
+  std::unique_ptr<Fluid> fluid;
+  if (settings.choice<Variant>("variant") == Variant::galerkin)
+    fluid = std::make_unique<ConfinedFluid>(box.dimensions, n, box.half, material, options_from(settings),
+                                            wind_through(problem, box));
+  else
+    fluid =
+        std::make_unique<PaperFluid>(box.dimensions, n, box.half, material, settings.choice<Truncation>("truncation"),
+                                     settings.choice<Variant>("variant") == Variant::paper_repaired);
+  return start_flow(std::move(problem), std::move(fluid), cells);
+}
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,21 @@
+// Legendre fluids: Gupta and Narasimhan, "Legendre Fluids: A Unified Framework for Analytic Reduced Space Modeling and Rendering of
+// Participating Media" (SCA 2007), section 5. A box of n coefficients along each axis, in two or three dimensions.
+#pragma once
+#include "scene/flow.h"
+
+namespace airlight::legendre_fluids {
+
+class LegendreFluids : public scene::Solver {
+ public:
+  std::string name() const override { return "legendre_fluids"; }
+  std::string about() const override;
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> supports(const scene::FlowProblem&, const scene::Settings&) const override;
+  int steps_per_frame(const scene::FlowProblem&, const scene::Settings&) const override;
+
+ private:
+  std::unique_ptr<scene::Flow> start_supported(std::shared_ptr<const scene::FlowProblem>, const scene::Settings&,
+                                               const scene::Execution&) const override;
+};
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,56 @@
+// The oracle vectors of the fluid of Legendre coefficients.
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "experiments/verify/verify.h"
+#include "scene/error.h"
+#include "tests/temporary_folder.h"
+
+using namespace airlight;
+using experiments::verify;
+using experiments::VerifyProfile;
+
+TEST_CASE("legendre fluids: oracle vectors of fields, projections, right sides and steps",
+          "[legendre_fluids][verify]") {
+  for (const auto& [kind, count] : {std::pair{"project", 3},
+                                    {"coefficients", 1},
+                                    {"evaluate", 1},
+                                    {"advect", 3},
+                                    {"diffuse", 2},
+                                    {"rk4", 2},
+                                    {"step", 1},
+                                    {"density-advect", 1},
+                                    {"energy-identity", 1},
+                                    {"taylor-green", 1}}) {
+    std::ostringstream out;
+    std::vector<experiments::VerifyKind> kinds;
+    CAPTURE(kind);
+    const int code =
+        verify({AIRLIGHT_SOURCE_DIR "/tests/vectors/legendre_fluids.json"}, kind, VerifyProfile::quick, out, &kinds);
+    CAPTURE(out.str());
+    CHECK(code == 0);
+    REQUIRE(kinds.size() == 1);
+    CHECK(kinds[0].vectors == count);
+  }
+}
+
+TEST_CASE("legendre fluids: vectors of other shapes are refused by name", "[legendre_fluids][verify]") {
+  TemporaryFolder folder;
+  const std::string good = R"({"kind": "project", "id": "x", "n": 2, "a": [[1, 2]], "b": [[1], [2]], "a_proj": [[0, 0]],
+      "b_proj": [[0], [0]], "div_before": [[0, 1], [1, 4]], "energy_before": 1, "energy_after": 0})";
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    folder.write("vectors.json", R"({"topic": "legendre_fluids", "vectors": [)" + text + "]}");
+    std::ostringstream out;
+    try {
+      verify({folder.file("vectors.json")}, "", VerifyProfile::quick, out);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("none");
+  };
+  CHECK_THAT(complaint("[[1, 2]]", "[[1, 2, 3]]"), Catch::Contains("axis x"));
+  CHECK_THAT(complaint("\"n\": 2", "\"n\": 99"), Catch::Contains("32"));
+  CHECK_THAT(complaint("[[0, 1], [1, 4]]", "[1, 1]"), Catch::Contains("2 coefficients"));
+}

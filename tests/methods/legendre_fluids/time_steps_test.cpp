@@ -1,0 +1,96 @@
+// Energy over many steps, isometries, and Taylor-Green.
+#include "methods/legendre_fluids/time_steps.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/methods/legendre_fluids/swirl.h"
+
+using namespace airlight;
+using namespace airlight::legendre_fluids;
+using namespace airlight::legendre_fluids::testing;
+
+namespace {
+
+Array acceleration(const ConfinedSpace& space, const Array& u) {
+  return space.project(space.advected(space.at_points(u), u));
+}
+
+SkewOperator frozen(const ConfinedSpace& space, const Array& u) {
+  const Components w = space.at_points(u);
+  return {[&space, w](const Array& v) { return space.project(space.advected(w, v)); },
+          [&space](const Array& v) { return space.weighted(v); }};
+}
+
+}  // namespace
+
+TEST_CASE("legendre fluids: Runge-Kutta keeps the energy within the step rule", "[legendre_fluids]") {
+  for (const auto& [d, n] : std::vector<std::pair<int, int>>{{2, 6}, {2, 8}, {2, 12}, {2, 16}, {3, 6}}) {
+    const ConfinedSpace space(d, n);
+    Array u = swirl(space);
+    const double before = space.inner(u, u);
+    for (int step = 0; step < 1000; ++step)
+      u = runge_kutta_4(u, 0.01, [&](const Array& v) { return acceleration(space, v); });
+    const double drift = space.inner(u, u) / before - 1;
+    CHECK(std::abs(drift) < 1e-8);
+    CHECK(space.divergence(u).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("legendre fluids: Krylov steps are isometries for any step", "[legendre_fluids]") {
+  for (const int d : {2, 3})
+    for (const SkewFunction function : {SkewFunction::exponential, SkewFunction::cayley})
+      for (const double dt : {0.01, 1.0, 10.0}) {
+        const ConfinedSpace space(d, d == 2 ? 8 : 6);
+        Array u = swirl(space);
+        const double before = space.inner(u, u);
+        for (int step = 0; step < 100; ++step) u = krylov_step(frozen(space, u), u, dt, function, 30, 1e-10).y;
+        CHECK(std::abs(space.inner(u, u) / before - 1) < 1e-10);
+      }
+}
+
+TEST_CASE("legendre fluids: Krylov spaces give the functions they name", "[legendre_fluids]") {
+  const ConfinedSpace space(2, 6);
+  const Array w = swirl(space, 3), u = swirl(space);
+  const SkewOperator a = frozen(space, w);
+  // Many small steps of Runge-Kutta are the exponential.
+  Array exact = u;
+  for (int step = 0; step < 1000; ++step) exact = runge_kutta_4(exact, 1e-3, a.apply);
+  const KrylovStep step = krylov_step(a, u, 1, SkewFunction::exponential, 40, 1e-13);
+  CHECK(error(step.y, exact) < 1e-11);
+  const Array cayley = krylov_step(a, u, 1, SkewFunction::cayley, 60, 1e-14).y;
+  CHECK(error(cayley - 0.5 * a.apply(cayley), u + 0.5 * a.apply(u)) < 1e-11);
+  // The estimate bounds what a small space leaves.
+  const KrylovStep small = krylov_step(a, u, 0.1, SkewFunction::exponential, 5, 0);
+  const Array left = small.y - krylov_step(a, u, 0.1, SkewFunction::exponential, 40, 1e-14).y;
+  CHECK(std::sqrt(space.inner(left, left) / space.inner(u, u)) < 2 * small.estimate);
+  CHECK(small.estimate < 1e-3);
+}
+
+TEST_CASE("legendre fluids: Taylor-Green in a free-slip box", "[legendre_fluids]") {
+  const double viscosity = 0.01, dt = 0.01;
+  const auto flow = [](int a, const Vec3& x) {
+    return a == 0 ? std::sin(pi * x[0]) * std::cos(pi * x[1]) : -std::cos(pi * x[0]) * std::sin(pi * x[1]);
+  };
+  for (const auto& [n, bound] : std::vector<std::pair<int, double>>{{8, 4e-3}, {12, 3e-6}, {16, 5e-10}}) {
+    const ConfinedSpace space(2, n);
+    Array u = space.project(space.from_function(flow));
+    for (int step = 0; step < 100; ++step) {
+      u = space.project(space.diffused(u, 0.5 * viscosity * dt));
+      u = runge_kutta_4(u, dt, [&](const Array& v) { return acceleration(space, v); });
+      u = space.project(space.diffused(u, 0.5 * viscosity * dt));
+    }
+    const Array line = Array::LinSpaced(41, -1, 1);
+    double squares = 0, all = 0;
+    for (int a = 0; a < 2; ++a) {
+      const Array got = space.sampled(u, a, {line, line, line});
+      for (int i = 0; i < 41; ++i)
+        for (int j = 0; j < 41; ++j) {
+          const double exact = std::exp(-2 * pi * pi * viscosity) * flow(a, Vec3(line[i], line[j], 0));
+          squares += std::pow(got[i * 41 + j] - exact, 2);
+          all += exact * exact;
+        }
+    }
+    CHECK(std::sqrt(squares / all) < bound);
+  }
+}
