@@ -77,7 +77,8 @@ void look_at(Reasons& r, const DensityField& field) {
       [&](const FogmapPointer& fog) {
         r.size("cell", fog->cell);
         for (const auto& [x, z] : ground_corners(*fog)) r.place({x, 0, z});
-      });
+      },
+      [&](const LegendrePointer& series) { r.box(series->box()); });
 }
 
 void look_at(Reasons& r, const PhaseFunction& phase) {

@@ -46,8 +46,13 @@ struct ConvertOptions {
   double exposure = 0;
   std::string grid = "density";  // of an OpenVDB file
   int pixels = 64, samples = 2, degree = 1;
+  std::string medium = "0";              // of a scene: its name, or its number
+  std::vector<int> coefficients = {12};  // of a Legendre box: along all axes, or x, y, z
+  int cells = 24;                        // that its projection integrates over, along an axis
+  bool no_lanczos = false, no_limiter = false;
 };
-// One layer of each file as PNG (8-bit sRGB) or PFM (linear floats); an OpenVDB file as a fogmap of its columns.
+// One layer of each file as PNG (8-bit sRGB) or PFM (linear floats); an OpenVDB file as a fogmap of its columns; such a file or a
+// medium of a scene as a Legendre box.
 int convert(const ConvertOptions&);
 
 struct ExplainOptions {

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <charconv>
 #include <filesystem>
 
 #include "experiments/cli/commands.h"
 #include "scene/atomic_file.h"
 #include "scene/convert/fogmap_columns.h"
+#include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
 #include "scene/film.h"
 #include "scene/grey_image.h"
+#include "scene/scene.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -34,6 +37,49 @@ void convert_columns(const std::string& in, const std::string& out, const Conver
   fmt::print("region = {{ type = \"slab\", lo = {}, hi = {} }}\n", fog.heights.lo, fog.heights.hi);
 }
 
+bool is_scene(const std::string& in) { return std::filesystem::path(in).extension() == ".toml"; }
+bool is_table(const std::string& out) { return std::filesystem::path(out).extension() == ".csv"; }
+
+// By name, or by number.
+const scene::Medium& chosen_medium(const scene::Scene& scene, const std::string& choice) {
+  for (const scene::Medium& medium : scene.media)
+    if (!medium.name.empty() && medium.name == choice) return medium;
+  std::size_t number = 0;
+  const auto [stop, code] = std::from_chars(choice.data(), choice.data() + choice.size(), number);
+  if (code != std::errc() || stop != choice.data() + choice.size() || number >= scene.media.size())
+    throw Error(fmt::format("--medium {}: expected the name of one of {} media, or its number from 0", choice,
+                            scene.media.size()));
+  return scene.media[number];
+}
+
+std::string list(const Vec3& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
+
+// A medium as a Legendre box; prints a medium of its density, and what that loses.
+void convert_projection(const std::string& in, const std::string& out, const ConvertOptions& options) {
+  scene::Medium medium;
+  if (is_grid(in))
+    medium.field = std::make_shared<const scene::VoxelGrid>(scene::read_vdb(in, options.grid));
+  else
+    medium = chosen_medium(scene::load_scene(in), options.medium);
+  const std::vector<int>& n = options.coefficients;
+  if (n.size() != 1 && n.size() != 3)
+    throw Error(fmt::format("--coefficients: found {} numbers, expected 1 or 3", n.size()));
+  scene::ProjectionOptions projection;
+  projection.shape = {n.front(), n[n.size() / 2], n.back()};
+  projection.lanczos = !options.no_lanczos;
+  projection.limiter = !options.no_limiter;
+  projection.cells = options.cells;
+  const scene::LegendreProjection result = scene::project_to_legendre(medium, projection);
+  scene::write_legendre_csv(out, *result.field);
+  fmt::print("# relative L2 error {:.2g} ({:.2g} clamped), mass {:.6f} of the medium's, from {:.3g} to {:.3g}\n",
+             result.error, result.clamped_error, result.mass_ratio, result.values.lo, result.values.hi);
+  fmt::print("# negative in {:.2g} of the box, limiter {:.4f}\n", result.negative_share, result.theta);
+  const Box& box = result.field->box();
+  fmt::print("[[medium]]\ntype = \"legendre\"\nfile = \"{}\"\nsize = [{}, {}, {}]\nlo = {}\nhi = {}\n",
+             std::filesystem::path(out).filename().string(), projection.shape[0], projection.shape[1],
+             projection.shape[2], list(box.lo), list(box.hi));
+}
+
 void convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
   const scene::Film film = scene::read_exr(in);
   if (kind_of(out) == ".png") {
@@ -54,13 +100,18 @@ void convert(const std::string& in, const std::string& out, const ConvertOptions
 int convert(const ConvertOptions& options) {
   const std::vector<std::string>& files = options.files;
   for (std::size_t i = 0; i < files.size(); i += 2) {
+    if (is_table(files[i + 1]) && (is_grid(files[i]) || is_scene(files[i]))) continue;
+    if (is_scene(files[i])) throw Error(fmt::format("{}: expected a name in .csv for a Legendre box", files[i + 1]));
     if (!is_grid(files[i]))
       kind_of(files[i + 1]);
     else if (std::filesystem::path(files[i + 1]).extension() != ".exr")
-      throw Error(fmt::format("{}: expected a name in .exr for the map of a grid", files[i + 1]));
+      throw Error(
+          fmt::format("{}: expected a name in .exr for the map of a grid, or .csv for a Legendre box", files[i + 1]));
   }
   for (std::size_t i = 0; i < files.size(); i += 2)
-    if (is_grid(files[i]))
+    if (is_table(files[i + 1]))
+      convert_projection(files[i], files[i + 1], options);
+    else if (is_grid(files[i]))
       convert_columns(files[i], files[i + 1], options);
     else
       convert(files[i], files[i + 1], options);

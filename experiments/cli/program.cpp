@@ -191,17 +191,27 @@ int dispatch(int argc, char** argv) {
   });
 
   ConvertOptions convert_options;
-  c = command(app, "convert", "a layer of OpenEXR files as PNG or PFM, a voxel grid as a fogmap");
+  c = command(app, "convert", "a layer of OpenEXR files as PNG or PFM, a medium as a fogmap or a Legendre box");
   c->add_option(
       "FILES", convert_options.files,
       "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); or OpenVDB file, and .exr: the map of its "
-      "columns, whose [[medium]] and errors are printed; more pairs may follow");
+      "columns, whose [[medium]] and errors are printed; or OpenVDB file or scene, and .csv: a medium as a Legendre box, likewise; "
+      "more pairs may follow");
   c->add_option("--layer", convert_options.layer, "default mean");
   c->add_option("--exposure", convert_options.exposure, "of a PNG, in powers of two");
   c->add_option("--grid", convert_options.grid, "of an OpenVDB file (density)");
   c->add_option("--pixels", convert_options.pixels, "of a map, along its longer side (64)")->check(CLI::Range(1, 8192));
   c->add_option("--samples", convert_options.samples, "squared: upright rays a pixel (2)")->check(CLI::Range(1, 64));
   c->add_option("--degree", convert_options.degree, "of a map's splines (1)")->check(CLI::Range(0, 3));
+  c->add_option("--medium", convert_options.medium, "of a scene: name or number (0)");
+  c->add_option("--coefficients", convert_options.coefficients, "of a Legendre box: N, or NX,NY,NZ (12)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1, 32));
+  c->add_option("--cells", convert_options.cells, "along an axis, that its projection integrates over (24)")
+      ->check(CLI::Range(1, 48));
+  c->add_flag("--no-lanczos", convert_options.no_lanczos, "do not damp the waves that a jump leaves");
+  c->add_flag("--no-limiter", convert_options.no_limiter, "do not draw it towards its mean until it is positive");
   c->final_callback([&] {
     action = [&] {
       require(convert_options.files.empty() ? "" : convert_options.files.front(), "IN");

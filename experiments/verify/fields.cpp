@@ -4,6 +4,8 @@
 
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
+#include "scene/math/legendre_range.h"
+#include "scene/media/legendre_line.h"
 
 namespace airlight::experiments::verification {
 namespace {
@@ -29,6 +31,24 @@ std::shared_ptr<const scene::Fogmap> modular_fogmap(int n, int seed, int degree,
   if (kappa > 0) fog->profile = scene::ExponentialFall{0, 1 / kappa};
   return fog;
 }
+
+// Coefficients (((7i + 13j + 31k + seed) mod 11) - 5) / (10 (1 + i + j + k)), the first one as given.
+struct ModularSeries {
+  scene::TensorShape shape;
+  Eigen::VectorXd coefficients;
+};
+ModularSeries modular_series(const Value& in) {
+  const int n = in["n"].integer_in(1, scene::LegendreBox::most), seed = in["seed"].integer_in(0, 1000000);
+  ModularSeries series{{n, n, n}, Eigen::VectorXd(n * n * n)};
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        series.coefficients[(i * n + j) * n + k] =
+            ((7 * i + 13 * j + 31 * k + seed) % 11 - 5) / (10.0 * (1 + i + j + k));
+  series.coefficients[0] = in["F000"].number();
+  return series;
+}
+const Box series_box{Point3::Constant(-1), Point3::Constant(1)};
 
 struct Segment {
   Ray ray;
@@ -66,13 +86,33 @@ Check read_depth(const Value& v) {
           }};
 }
 
+// The integral of the polynomial is that of its clamped self less that of its clamped opposite.
+Check series_depth(const Value& v, const Ray& ray, double length) {
+  const Value expected = v["expected"];
+  const ModularSeries series = modular_series(v["input"]);
+  const double raw = expected["tau_raw"].number(), clamped = expected["tau_clamped"].number();
+  const int changes = expected["sign_changes"].integer();
+  const double accuracy = v["accuracy"]["abs"].number();
+  return {"", [=](VerifyProfile) {
+            const scene::LegendreBox field(series_box, series.shape, series.coefficients);
+            const scene::LegendreBox opposite(series_box, series.shape, -series.coefficients);
+            const double above = scene::density_integral(field, ray, {0, length});
+            const Interval t = scene::extent(field, ray, {0, length});
+            int found = 0;
+            if (!t.empty()) {
+              const scene::LegendreLine line(field, ray, t);
+              for (const Interval& part : line.positive()) found += (part.lo > t.lo) + (part.hi < t.hi);
+            }
+            return Outcome{{absolute("tau clamped", clamped, above, accuracy),
+                            absolute("tau", raw, above - scene::density_integral(opposite, ray, {0, length}), accuracy),
+                            absolute("sign changes", changes, found, 0)}};
+          }};
+}
+
 Check read_optical_depth(const Value& v) {
   const Value in = v["input"], expected = v["expected"];
   const Segment s = segment_between(in["p"].vector(), in["q"].vector());
-  if (in.has("F000")) {
-    expected["tau_raw"].number();
-    return not_yet("Legendre box");
-  }
+  if (in.has("F000")) return series_depth(v, s.ray, s.length);
   const int n = in["n"].integer_in(1, 256), seed = in["seed"].integer_in(0, 1000000);
   scene::Medium medium = fog(scene::Unbounded{}, 0.1, 1, scene::Isotropic{});
   if (in.has("degree")) {
@@ -105,12 +145,34 @@ Check cell_bounds(const Value& v) {
       }};
 }
 
+// The hull of the Bernstein coefficients, and that samples and the bounds of the medium lie within.
+Check series_bounds(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  const ModularSeries series = modular_series(in);
+  const Box part{in["lo"].vector(), in["hi"].vector()};
+  const double least = expected["bernstein_min"].number(), greatest = expected["bernstein_max"].number();
+  const double sampled[2] = {expected["sampled_min_25^3"].number(), expected["sampled_max_25^3"].number()};
+  const double accuracy = v["accuracy"]["abs"].number();
+  return {
+      "", [=](VerifyProfile) {
+        std::array<Eigen::MatrixXd, 3> restriction;
+        for (int a = 0; a < 3; ++a)
+          restriction[std::size_t(a)] =
+              scene::legendre_restriction(series.shape[std::size_t(a)], part.lo[a], part.hi[a]);
+        const Interval hull = scene::legendre_range(
+            scene::along_axes(restriction[0], restriction[1], restriction[2], series.coefficients, series.shape),
+            series.shape);
+        const Interval bounds =
+            scene::density_bounds(scene::LegendreBox(series_box, series.shape, series.coefficients), part);
+        return Outcome{{absolute("least", least, hull.lo, accuracy), absolute("greatest", greatest, hull.hi, accuracy),
+                        truth("contains samples",
+                              bounds.lo <= std::max(0.0, sampled[0]) + 1e-9 && bounds.hi >= sampled[1] - 1e-9)}};
+      }};
+}
+
 Check read_field_bounds(const Value& v) {
   const Value in = v["input"], expected = v["expected"];
-  if (in.has("F000")) {
-    expected["bernstein_min"].number();
-    return not_yet("Legendre box");
-  }
+  if (in.has("F000")) return series_bounds(v);
   if (in.has("cell")) return cell_bounds(v);
   const auto medium = gaussian_fog(gaussians_from_rows(in["gaussians"]), in["b0"].number(), 1, scene::Isotropic{});
   const Box box{in["lo"].vector(), in["hi"].vector()};

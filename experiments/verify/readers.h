@@ -45,6 +45,22 @@ Check read_multiresolution(const Value&);
 Check read_composite(const Value&);
 Check read_reject(const Value&);
 
+// legendre_kinds.cpp: the basis
+Check read_legendre_derivative(const Value&);
+Check read_legendre_integral(const Value&);
+Check read_legendre_derivative_samples(const Value&);
+Check read_legendre_integral_samples(const Value&);
+Check read_legendre_triple(const Value&);
+Check read_legendre_triple_count(const Value&);
+Check read_legendre_truncation(const Value&);
+Check read_legendre_phi_mass(const Value&);
+Check read_legendre_product(const Value&);
+
+// legendre_light.cpp: single scattering in a Legendre box
+Check read_legendre_scatter(const Value&);
+Check read_legendre_airlight(const Value&);
+Check read_legendre_image(const Value&);
+
 // sampling_kinds.cpp
 Check read_sampling(const Value&);
 Check read_random_numbers(const Value&);

@@ -138,23 +138,11 @@ Kinds legendre_fluids() {
   const std::vector<std::string> flow3 = {"a", "b", "c", "d", "n"};
   const std::vector<std::string> light = {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"};
   const std::map<std::string, std::vector<std::string>> fields = {
-      {"derivative", {"D[k][i]", "n"}},
-      {"integral", {"B[k][i]", "n"}},
-      {"derivative-samples", {"entries"}},
-      {"integral-samples", {"entries"}},
-      {"triple", {"entries"}},
-      {"triple-count", {"entries"}},
-      {"product", {"F", "G", "H_trunc_cheb", "d"}},
-      {"truncation", {"T", "m", "n"}},
-      {"phi-mass", {"M", "eigenvalues", "n"}},
       {"project", {"a", "a_proj", "b", "b_proj", "n"}},
       {"advect", {"a", "b", "rhs_a", "rhs_b", "n"}},
       {"diffuse", {"a", "b", "implicit_a", "implicit_b", "n", "nu_dt"}},
       {"taylor-green", {"energy", "nu", "points", "t"}},
-      {"scatter", light},
-      {"airlight", light},
       {"upwind-galerkin", light},
-      {"image", light},
       {"evaluate", flow3},
       {"coefficients", flow3},
       {"rk4", flow3},
@@ -168,11 +156,34 @@ Kinds legendre_fluids() {
   return kinds;
 }
 
+// What needs no fluid.
+Kinds legendre_basis() {
+  return {
+      {"derivative", read_legendre_derivative},
+      {"integral", read_legendre_integral},
+      {"derivative-samples", read_legendre_derivative_samples},
+      {"integral-samples", read_legendre_integral_samples},
+      {"triple", read_legendre_triple},
+      {"triple-count", read_legendre_triple_count},
+      {"product", read_legendre_product},
+      {"truncation", read_legendre_truncation},
+      {"phi-mass", read_legendre_phi_mass},
+      {"scatter", read_legendre_scatter},
+      {"airlight", read_legendre_airlight},
+      {"image", read_legendre_image},
+  };
+}
+
+Kinds united(Kinds some, const Kinds& others) {
+  some.insert(others.begin(), others.end());
+  return some;
+}
+
 const std::map<std::string, Kinds>& families() {
   static const std::map<std::string, Kinds> all = {
       {"references", references()},       {"fogshop", fogshop()},
       {"shadow_planes", shadow_planes()}, {"compensated_ray_marching", compensated_ray_marching()},
-      {"wavelet_fog", wavelet_fog()},     {"legendre_fluids", legendre_fluids()},
+      {"wavelet_fog", wavelet_fog()},     {"legendre_fluids", united(legendre_basis(), legendre_fluids())},
   };
   return all;
 }

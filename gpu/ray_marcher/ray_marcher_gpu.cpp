@@ -158,7 +158,8 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
         [&](const scene::GaussianSum& sum) {
           for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
         },
-        [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {});
+        [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {},
+        [](const scene::LegendrePointer&) {});
   }
   if (options.exact_shadow && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",

@@ -85,7 +85,10 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
           d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
           values += samples(grid), bricks += grid.free_distance.size(), ++grids;
         },
-        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); });
+        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); },
+        [](const scene::LegendrePointer&) {
+          throw Error("ray_marcher_gpu: a Legendre box, in spite of its objections");
+        });
     data.push_back(d);
   }
   if (data.empty()) data.emplace_back();  // the block has one at least

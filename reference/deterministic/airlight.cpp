@@ -74,7 +74,8 @@ struct AirlightIntegrator::Impl {
           scene.media[m].field, [](const scene::Homogeneous&) { return std::optional<GaussianTable>(); },
           [](const scene::GaussianSum& sum) { return make_gaussian_table(sum); },
           [](const scene::GridPointer&) { return std::optional<GaussianTable>(); },
-          [](const scene::FogmapPointer&) { return std::optional<GaussianTable>(); });
+          [](const scene::FogmapPointer&) { return std::optional<GaussianTable>(); },
+          [](const scene::LegendrePointer&) { return std::optional<GaussianTable>(); });
     if (scene.geometry) shadows = std::make_unique<ShadowFinder>(*scene.geometry, 256);
   }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "scene/media/legendre_line.h"
+
 namespace airlight::deterministic {
 namespace {
 
@@ -221,6 +223,26 @@ class FogmapAlongRay final : public DensityAlongRay {
   std::vector<double> cuts_, before_;  // where a piece begins, and the integral up to there
 };
 
+// A Legendre box: a polynomial, with a kink where it is clamped.
+class LegendreAlongRay final : public DensityAlongRay {
+ public:
+  LegendreAlongRay(Interval extent, const scene::LegendreBox& field, const Ray& ray)
+      : DensityAlongRay(extent), line_(field, ray, extent) {}
+  double density(double t) const override { return line_.density(t); }
+  double integral(double t) const override { return t > extent_.lo ? line_.integral(std::min(t, extent_.hi)) : 0; }
+  void add_features(std::vector<Feature>& features) const override {
+    features.push_back({extent_.lo, 0});
+    features.push_back({extent_.hi, 0});
+    for (const Interval& part : line_.positive()) {
+      features.push_back({part.lo, 0});
+      features.push_back({part.hi, 0});
+    }
+  }
+
+ private:
+  scene::LegendreLine line_;
+};
+
 // Gaussians of which some are negative: no sum of single integrals, since the density is clamped at 0. Slower.
 class ClampedGaussiansAlongRay final : public DensityAlongRay {
  public:
@@ -265,7 +287,10 @@ std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const G
         return std::make_unique<GaussiansAlongRay>(inside, *table, ray, cull, medium.sigma_t.maxCoeff());
       },
       [&](const GridPointer& grid) -> Result { return std::make_unique<GridAlongRay>(inside, *grid, ray); },
-      [&](const scene::FogmapPointer& fog) -> Result { return std::make_unique<FogmapAlongRay>(inside, *fog, ray); });
+      [&](const scene::FogmapPointer& fog) -> Result { return std::make_unique<FogmapAlongRay>(inside, *fog, ray); },
+      [&](const scene::LegendrePointer& box) -> Result {
+        return std::make_unique<LegendreAlongRay>(inside, *box, ray);
+      });
 }
 
 }  // namespace airlight::deterministic

@@ -158,6 +158,9 @@ void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vecto
         const Box box = scene::bounding_box(medium);
         if (!box.empty() && std::isfinite(box.lo[1]) && std::isfinite(box.hi[1]))
           add_box(plane, upright_corners(scene::ground_corners(*fog), box.lo[1], box.hi[1]), t);
+      },
+      [&](const scene::LegendrePointer& series) {
+        if (series->greatest() > 0) add_box(plane, corners(series->box().lo, series->box().hi), t);
       });
 }
 

@@ -49,6 +49,11 @@ Cost cost(const scene::Medium& medium) {
       [](const scene::FogmapPointer& fog) {
         const double cells = double(fog->map.range().size[0]) + fog->map.range().size[1];
         return Cost{cells / 2, cells};
+      },
+      [](const scene::LegendrePointer& series) {
+        const auto& n = series->shape();
+        const double points = n[0] + n[1] + n[2] - 2;  // of the polynomial on a ray; each sums up all coefficients
+        return Cost{1 + points / 4, points * double(series->coefficients().size()) / 8};
       });
 }
 

@@ -133,6 +133,16 @@ void prepare_fogmap(TrackedMedium& tracked, const scene::Fogmap& fog, const Opti
   tracked.majorants = make_supergrid(box, cells, options.majorant_scale, bound);
 }
 
+// Sixteen cells along each side; a coefficient or two along one need no more than one.
+void prepare_legendre(TrackedMedium& tracked, const scene::LegendreBox& series, const Options& options) {
+  const Box box = scene::bounding_box(*tracked.medium);
+  if (box.empty() || !(box.size().array() > 0).all()) return;
+  Eigen::Vector3i cells;
+  for (int a = 0; a < 3; ++a) cells[a] = cells_along(series.shape()[std::size_t(a)] > 1 ? 16 : 1, 1, options);
+  tracked.majorants = make_supergrid(box, cells, options.majorant_scale,
+                                     [&](const Box& cell) { return scene::density_bounds(series, cell).hi; });
+}
+
 // Cells around the Gaussians, sixteen along each side.
 void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, const Options& options) {
   const scene::Medium& medium = *tracked.medium;
@@ -172,7 +182,8 @@ TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
       },
       [&](const scene::GaussianSum& sum) { prepare_gaussians(tracked, sum, options); },
       [&](const scene::GridPointer& grid) { prepare_grid(tracked, *grid, options); },
-      [&](const scene::FogmapPointer& fog) { prepare_fogmap(tracked, *fog, options); });
+      [&](const scene::FogmapPointer& fog) { prepare_fogmap(tracked, *fog, options); },
+      [&](const scene::LegendrePointer& series) { prepare_legendre(tracked, *series, options); });
   return tracked;
 }
 

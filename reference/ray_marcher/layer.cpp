@@ -71,7 +71,8 @@ void set_varied(Layer& layer) {
         layer.varies = true;
         layer.grid = make_grid_field(*grid);
       },
-      [&](const scene::FogmapPointer&) { layer.varies = true; });
+      [&](const scene::FogmapPointer&) { layer.varies = true; },
+      [&](const scene::LegendrePointer&) { layer.varies = true; });
   if (!layer.varies) return;
   layer.varied = box;
   const Box inside = intersect(box, bounding_box(*layer.medium));

@@ -29,7 +29,11 @@ double length_unit(const scene::Scene& scene) {
                               medium.field, [](const scene::Homogeneous&) { return infinity; },
                               [](const scene::GaussianSum&) { return infinity; },
                               [](const scene::GridPointer& grid) { return grid->voxel_size; },
-                              [](const scene::FogmapPointer& fog) { return fog->cell; }));
+                              [](const scene::FogmapPointer& fog) { return fog->cell; },
+                              [](const scene::LegendrePointer& series) {
+                                const auto& n = series->shape();
+                                return series->box().size().cwiseQuotient(Vec3(n[0], n[1], n[2])).minCoeff();
+                              }));
   return unit == infinity ? 1 : unit;
 }
 

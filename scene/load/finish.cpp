@@ -91,6 +91,13 @@ void add(ContentHash& hash, const std::shared_ptr<const Fogmap>& fog) {
   std::visit([&](const auto& profile) { add(hash, profile); }, fog->profile);
 }
 
+void add(ContentHash& hash, const std::shared_ptr<const LegendreBox>& field) {
+  hash.add(field->box().lo);
+  hash.add(field->box().hi);
+  for (const int n : field->shape()) hash.add(n);
+  hash.add(std::vector<double>(field->coefficients().begin(), field->coefficients().end()));
+}
+
 void add(ContentHash& hash, const Medium& medium) {
   hash.add(int(medium.field.index()));
   std::visit([&](const auto& field) { add(hash, field); }, medium.field);

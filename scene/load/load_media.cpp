@@ -41,7 +41,8 @@ DensityField read_field(const DensityField& kind, TableReader& reader, const std
       },
       [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
       [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); },
-      [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); });
+      [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); },
+      [&](const LegendrePointer&) -> DensityField { return read_legendre(reader, folder); });
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ Variant read_kind(TableReader& reader, std::string (*name)(const Variant&)) {
 GaussianSum read_gaussian_sum(TableReader&, const std::string& folder);
 GridPointer read_grid(TableReader&, const std::string& folder);
 FogmapPointer read_fogmap(TableReader&, const std::string& folder);
+LegendrePointer read_legendre(TableReader&, const std::string& folder);
 
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();

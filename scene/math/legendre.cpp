@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
@@ -62,7 +64,7 @@ Eigen::MatrixXd chebyshev_truncation(int n) {
   // Chebyshev coefficients by the sum over roots, which is exact below degree 2 n - 1.
   Eigen::MatrixXd to_chebyshev = 2.0 / full * chebyshev_values(n, root).transpose() * legendre_values(full, root);
   to_chebyshev.row(0) *= 0.5;
-  const LegendrePoints points(n, n);
+  const LegendrePoints& points = legendre_points(n);
   Eigen::MatrixXd truncation = points.analysis * chebyshev_values(n, points.node) * to_chebyshev;
   truncation.leftCols(n).setIdentity();  // what it is but for rounding
   return truncation;
@@ -95,6 +97,15 @@ LegendrePoints::LegendrePoints(int n, int m) {
   values = legendre_values(n, node);
   slopes = legendre_slopes(n, node);
   analysis = values.transpose() * weight.asDiagonal();
+}
+
+const LegendrePoints& legendre_points(int n) {
+  constexpr std::size_t most = 256;
+  static std::array<std::once_flag, most> once;
+  static std::array<std::unique_ptr<const LegendrePoints>, most> all;
+  const auto i = std::size_t(n);
+  std::call_once(once.at(i), [&] { all[i] = std::make_unique<const LegendrePoints>(n, n); });
+  return *all[i];
 }
 
 Eigen::VectorXd along_axis(int axis, const Eigen::MatrixXd& matrix, const Eigen::VectorXd& array,

@@ -2,8 +2,8 @@
 //
 //   L_k(x) = sqrt((2k+1)/2) P_k(x),   f(x, y, z) = sum F[i][j][k] L_i(x) L_j(y) L_k(z)
 //
-// Arrays of coefficients, or of values on a lattice, are flat with index order [x][y][z], z fastest: entry (i, j, k) of a shape (a, b, c) is
-// at (i b + j) c + k. A field in two dimensions has c = 1, in one b = c = 1; along an axis that is absent the matrix is 1 x 1, one.
+// Arrays of coefficients, or of values on a lattice, are flat with index order [x][y][z], z fastest: entry (i, j, k) of a shape (a, b, c)
+// is at (i b + j) c + k. A field in two dimensions has c = 1, in one b = c = 1; along an axis that is absent the matrix is 1 x 1, one.
 // Gupta and Narasimhan 2007, section 4.
 #pragma once
 #include <Eigen/Core>
@@ -38,6 +38,9 @@ struct LegendrePoints {
   Eigen::MatrixXd values, slopes;  // m x n: times coefficients
   Eigen::MatrixXd analysis;        // n x m: times values, the L2 projection by quadrature
 };
+
+// Those of n = m, made when first asked for and kept. Thread safe.
+const LegendrePoints& legendre_points(int n);
 
 // Number of entries along x, y, z.
 using TensorShape = std::array<int, 3>;

@@ -45,7 +45,8 @@ double density(const DensityField& field, const Point3& x) {
       field, [](const Homogeneous& uniform) { return uniform.density; },
       [&](const GaussianSum& sum) { return density(sum, x); },
       [&](const GridPointer& grid) { return density(*grid, x); },
-      [&](const FogmapPointer& fog) { return density(*fog, x); });
+      [&](const FogmapPointer& fog) { return density(*fog, x); },
+      [&](const LegendrePointer& box) { return density(*box, x); });
 }
 
 Interval density_bounds(const DensityField& field, const Box& box) {
@@ -56,7 +57,8 @@ Interval density_bounds(const DensityField& field, const Box& box) {
       },
       [&](const GaussianSum& sum) { return density_bounds(sum, box); },
       [&](const GridPointer& grid) { return density_bounds(*grid, box); },
-      [&](const FogmapPointer& fog) { return density_bounds(*fog, box); });
+      [&](const FogmapPointer& fog) { return density_bounds(*fog, box); },
+      [&](const LegendrePointer& series) { return density_bounds(*series, box); });
 }
 
 double density_integral(const DensityField& field, const Ray& ray, Interval t) {
@@ -64,14 +66,16 @@ double density_integral(const DensityField& field, const Ray& ray, Interval t) {
       field, [&](const Homogeneous& uniform) { return uniform.density > 0 ? uniform.density * t.length() : 0; },
       [&](const GaussianSum& sum) { return density_integral(sum, ray, t); },
       [&](const GridPointer& grid) { return density_integral(*grid, ray, t); },
-      [&](const FogmapPointer& fog) { return density_integral(*fog, ray, t); });
+      [&](const FogmapPointer& fog) { return density_integral(*fog, ray, t); },
+      [&](const LegendrePointer& box) { return density_integral(*box, ray, t); });
 }
 
 Interval extent(const DensityField& field, const Ray& ray, Interval t) {
   return match(
       field, [&](const Homogeneous&) { return t; }, [&](const GaussianSum& sum) { return extent(sum, ray, t); },
       [&](const GridPointer& grid) { return extent(*grid, ray, t); },
-      [&](const FogmapPointer& fog) { return extent(*fog, ray, t); });
+      [&](const FogmapPointer& fog) { return extent(*fog, ray, t); },
+      [&](const LegendrePointer& box) { return extent(*box, ray, t); });
 }
 
 Box support(const DensityField& field) {
@@ -83,13 +87,14 @@ double constant_part(const DensityField& field) {
   return match(
       field, [](const Homogeneous& uniform) { return uniform.density; },
       [](const GaussianSum& sum) { return sum.constant; }, [](const GridPointer&) { return 0.0; },
-      [](const FogmapPointer&) { return 0.0; });
+      [](const FogmapPointer&) { return 0.0; }, [](const LegendrePointer&) { return 0.0; });
 }
 
 Box varied_support(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return Box{}; }, [](const GaussianSum& sum) { return support(sum); },
-      [](const GridPointer& grid) { return support(*grid); }, [](const FogmapPointer& fog) { return support(*fog); });
+      [](const GridPointer& grid) { return support(*grid); }, [](const FogmapPointer& fog) { return support(*fog); },
+      [](const LegendrePointer& box) { return support(*box); });
 }
 
 std::optional<double> homogeneous_density(const DensityField& field) {
@@ -98,7 +103,8 @@ std::optional<double> homogeneous_density(const DensityField& field) {
       field, [](const Homogeneous& uniform) -> Density { return uniform.density; },
       [](const GaussianSum&) -> Density { return std::nullopt; },
       [](const GridPointer&) -> Density { return std::nullopt; },
-      [](const FogmapPointer&) -> Density { return std::nullopt; });
+      [](const FogmapPointer&) -> Density { return std::nullopt; },
+      [](const LegendrePointer&) -> Density { return std::nullopt; });
 }
 
 double greatest_density(const DensityField& field) {
@@ -112,13 +118,15 @@ double greatest_density(const DensityField& field) {
       [](const GridPointer& grid) -> double {
         return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
       },
-      [](const FogmapPointer& fog) { return density_bounds(*fog, bounding_box(Unbounded{})).hi; });
+      [](const FogmapPointer& fog) { return density_bounds(*fog, bounding_box(Unbounded{})).hi; },
+      [](const LegendrePointer& box) { return box->greatest(); });
 }
 
 std::string field_name(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return "homogeneous"; }, [](const GaussianSum&) { return "gaussians"; },
-      [](const GridPointer&) { return "grid"; }, [](const FogmapPointer&) { return "fogmap"; });
+      [](const GridPointer&) { return "grid"; }, [](const FogmapPointer&) { return "fogmap"; },
+      [](const LegendrePointer&) { return "legendre"; });
 }
 
 bool extinguishes(const Medium& medium) {
@@ -127,7 +135,8 @@ bool extinguishes(const Medium& medium) {
       medium.field, [](const Homogeneous& uniform) { return uniform.density > 0; },
       [](const GaussianSum& sum) { return sum.constant > 0 || !sum.gaussians.empty(); },
       [](const GridPointer& grid) { return !support(*grid).empty(); },
-      [](const FogmapPointer& fog) { return !support(*fog).empty(); });
+      [](const FogmapPointer& fog) { return !support(*fog).empty(); },
+      [](const LegendrePointer& box) { return box->greatest() > 0; });
 }
 
 std::string label(const std::vector<Medium>& media, std::size_t i) {

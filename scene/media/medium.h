@@ -13,6 +13,7 @@
 #include "scene/kinds.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/gaussian_sum.h"
+#include "scene/media/legendre_box.h"
 #include "scene/media/region.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/phase.h"
@@ -23,12 +24,13 @@ struct Homogeneous {
   double density = 1;  // [-], >= 0
 };
 
-using GridPointer = std::shared_ptr<const VoxelGrid>;  // never null in a scene
-using FogmapPointer = std::shared_ptr<const Fogmap>;   // likewise
+using GridPointer = std::shared_ptr<const VoxelGrid>;        // never null in a scene
+using FogmapPointer = std::shared_ptr<const Fogmap>;         // likewise
+using LegendrePointer = std::shared_ptr<const LegendreBox>;  // likewise
 
 // The closed set of density fields. Whoever asks which one it is names all of them (match), so that a new one does not
 // compile where it is not thought of; a renderer that does not know one refuses it by name (unknown_field).
-using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer, FogmapPointer>;
+using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer, FogmapPointer, LegendrePointer>;
 
 double density(const DensityField&, const Point3& x);
 Interval density_bounds(const DensityField&, const Box&);
@@ -45,7 +47,8 @@ Box varied_support(const DensityField&);
 std::optional<double> homogeneous_density(const DensityField&);
 // Of any of its parts [-]: where Gaussians overlap the sum may be greater.
 double greatest_density(const DensityField&);
-std::string field_name(const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", as scene files call them
+std::string field_name(
+    const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", as scene files call them
 
 struct Medium {
   std::string name;

@@ -55,3 +55,35 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(wavelet_fog == 2);
   CHECK(others == 4);
 }
+
+TEST_CASE("a Legendre box is rendered by the references on the CPU, and refused by name by all others",
+          "[media][legendre]") {
+  scene::Scene scene;
+  scene.width = scene.height = 4;
+  scene.media.resize(1);
+  scene.media[0].name = "cloud";
+  scene.media[0].field = std::make_shared<const scene::LegendreBox>(
+      Box{Point3::Constant(-1), Point3::Constant(1)}, scene::TensorShape{1, 1, 1}, Eigen::VectorXd::Constant(1, 2));
+  scene.lights = {scene::PointLight{{0, 3, 0}, Rgb::Ones(), 0}};
+  scene::finish(scene);
+  const std::map<std::string, std::string> expected = {{"path_tracer", ""},
+                                                       {"deterministic", ""},
+                                                       {"ray_marcher", ""},
+                                                       {"ray_marcher_gpu", "homogeneous or gaussians or grid"},
+                                                       {"fogshop", "homogeneous or gaussians"},
+                                                       {"fogshop_gpu", "homogeneous or gaussians"},
+                                                       {"shadow_planes", "homogeneous"},
+                                                       {"shadow_planes_gpu", "homogeneous"},
+                                                       {"wavelet_fog", "fogmap"},
+                                                       {"wavelet_fog_gpu", "fogmap"}};
+  for (const auto& renderer : experiments::all_renderers()) {
+    const std::string name = renderer->name();
+    CAPTURE(name);
+    REQUIRE(expected.count(name) == 1);
+    const auto reasons = refusals(*renderer, scene);
+    if (expected.at(name).empty())
+      CHECK(reasons.empty());
+    else
+      CHECK(has(reasons, "medium 'cloud' is legendre, expected " + expected.at(name)));
+  }
+}

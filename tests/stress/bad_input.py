@@ -120,9 +120,14 @@ EXPERIMENT = ('title = "t"\n[[scene]]\nfile = "scenes/one.toml"\n[reference]\nre
               'settings = { samples = 64 }\n[[method]]\nrenderer = "ray_marcher"\n[profile.quick]\nruns = 1\n')
 
 
+COEFFICIENTS = 'i,j,k,coefficient\n0,0,0,2\n1,0,1,0.5\n2,1,1,-0.25\n'
+
+
 def scene_with(kind, file):
     if kind == 'csv':
         medium = f'[[medium]]\ntype = "gaussians"\nfile = "{file}"\n'
+    elif kind == 'coefficients':
+        medium = f'[[medium]]\ntype = "legendre"\nlo = [-1, -1, -1]\nhi = [1, 1, 1]\nsize = [3, 2, 2]\nfile = "{file}"\n'
     elif kind == 'vdb':
         medium = f'[[medium]]\ntype = "grid"\nfile = "{file}"\n'
     elif kind == 'environment':
@@ -164,14 +169,18 @@ def queue_files():
     case('scene, a folder', ['render', '.', *out])
     case('explain, corrupt scene', ['explain', write('half.toml', SCENE[:100])])
     vdb = open(os.path.join(DATA, 'plume_0024.vdb'), 'rb').read()
-    kinds = {'csv': ('csv', CSV), 'vdb': ('vdb', vdb), 'environment': ('exr', exr(8, 4)), 'obj': ('obj', OBJ),
-             'off': ('off', OFF), 'ply': ('ply', PLY)}
+    kinds = {'csv': ('csv', CSV), 'coefficients': ('csv', COEFFICIENTS), 'vdb': ('vdb', vdb),
+             'environment': ('exr', exr(8, 4)), 'obj': ('obj', OBJ), 'off': ('off', OFF), 'ply': ('ply', PLY)}
     for kind, (ending, good) in kinds.items():
         os.makedirs(WORK / kind, exist_ok=True)
         files = dict((what, (content, others)) for what, content, others in damaged(good))
         if kind == 'csv':
             files['nan'] = (CSV.rstrip('\n') + '\nnan,0,0,1,1\n', ())
             files['too many columns'] = (CSV.rstrip('\n') + '\n0,0,0,1,1,7,8\n', ())
+        elif kind == 'coefficients':
+            files['nan'] = (COEFFICIENTS + '1,1,1,nan\n', ())
+            files['index out of range'] = (COEFFICIENTS + '1,1,2,1\n', ())
+            files['twice'] = (COEFFICIENTS + '0,0,0,1\n', ())
         elif kind == 'environment':
             files['nan'] = (exr(8, 4, float('nan')), ())
             files['infinite'] = (exr(8, 4, float('inf')), ())

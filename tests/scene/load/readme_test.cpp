@@ -92,7 +92,7 @@ TEST_CASE("every kind has an example in the documentation", "[load]") {
        {"perspective", "orthographic", "point",  "spot", "directional", "environment",  "homogeneous",      "gaussians",
         "grid",        "mesh",         "sphere", "box",  "plane",       "height_field", "displaced_sphere", "torus",
         "tube",        "prism",        "teapot", "city", "lambert",     "phong",        "tabulated",        "rayleigh",
-        "hg",          "hazy",         "murky",  "slab"}) {
+        "hg",          "hazy",         "murky",  "slab", "fogmap",      "legendre"}) {
     INFO(kind);
     CHECK(all.find("type = \"" + std::string(kind) + "\"") != std::string::npos);
   }
@@ -109,6 +109,7 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[medium]]\ntype = 'homogeneous'",
       "[[medium]]\ntype = 'gaussians'",
       "[[medium]]\ntype = 'gaussians'\n[[medium.gaussians]]",
+      "[[medium]]\ntype = 'legendre'",
       "[[medium]]\ntype = 'grid'",
       "[[medium]]\ntype = 'homogeneous'\n[medium.phase]\ntype = 'hg'",
       "[[medium]]\ntype = 'homogeneous'\n[medium.region]\ntype = 'box'",

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/math/legendre_range.h"
+#include "scene/math/legendre_series.h"
 #include "tests/oracle_vectors.h"
 
 namespace airlight::scene {
@@ -119,6 +121,43 @@ TEST_CASE("matrices are applied along their own axis", "[legendre]") {
             for (int k = 0; k < 4; ++k) sum += x(a, i) * y(b, j) * z(c, k) * f[(i * 3 + j) * 4 + k];
         CHECK(all[(a * 5 + b) * 2 + c] == Approx(sum).margin(1e-14));
       }
+}
+
+TEST_CASE("series in one variable do what the matrices do", "[legendre]") {
+  for (const int n : {1, 2, 9, 64}) {
+    const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(n, 0.5, 9).array().cos();
+    CHECK((series_slope(f) - legendre_derivative(n) * f).cwiseAbs().maxCoeff() <= 1e-13 * n * n * n);
+    CHECK((series_primitive(f) - legendre_integral(n) * f).cwiseAbs().maxCoeff() < 1e-15);
+    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(7, -1, 1);
+    const Eigen::VectorXd values = legendre_values(n, x) * f;
+    for (int i = 0; i < 7; ++i) {
+      CHECK(series_value(f, x[i]) == Approx(values[i]).margin(1e-13 * n));
+      const bool upper = x[i] > 0;
+      CHECK(series_value(series_half(f, upper), 2 * x[i] + (upper ? -1 : 1)) == Approx(values[i]).margin(1e-12 * n));
+    }
+  }
+}
+
+// At 2000 places of each part, degrees to both sides of where the hull ends.
+TEST_CASE("ranges of Legendre series hold, and shrink onto the values", "[legendre]") {
+  for (const int n : {1, 3, 8, 9, 30}) {
+    const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(n, 1, 25).array().sin();
+    for (const double lo : {-1.0, -0.3, 0.97}) {
+      for (const double width : {0.02, 0.3}) {
+        const double hi = std::min(1.0, lo + width);
+        const Interval range = legendre_range(legendre_restriction(n, lo, hi) * f, {n, 1, 1}, 1);
+        Interval seen;
+        for (int i = 0; i <= 2000; ++i) {
+          const double value = series_value(f, lo + (hi - lo) * i / 2000);
+          seen = {std::min(seen.lo, value), std::max(seen.hi, value)};
+        }
+        CAPTURE(n, lo, hi);
+        CHECK(range.lo <= seen.lo + 1e-12);
+        CHECK(range.hi >= seen.hi - 1e-12);
+        if (width < 0.1) CHECK(range.length() <= 1.5 * (seen.hi - seen.lo) + 1e-9);
+      }
+    }
+  }
 }
 
 }  // namespace airlight::scene

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/scene/media/legendre_fields.h"
 #include "tests/scene/media/random_points.h"
 
 using namespace airlight;
@@ -26,7 +27,8 @@ std::shared_ptr<const VoxelGrid> small_grid() {
 std::vector<Medium> some_media() {
   const std::vector<DensityField> fields = {
       Homogeneous{0.4}, GaussianSum{{{{0.2, 0.1, 0.3}, 0.6, 2}, {{-0.5, 0, 0}, 0.3, -1}}, 0.05, infinity},
-      GaussianSum{{{{0.2, 0.1, 0.3}, 0.6, 2}}}, small_grid()};
+      GaussianSum{{{{0.2, 0.1, 0.3}, 0.6, 2}}}, small_grid(),
+      test::modular_box(5, 1, 0.4, {{-0.9, -0.7, -0.8}, {0.6, 0.8, 1}})};
   const std::vector<Region> regions = {Unbounded{}, Box{{-0.7, -0.6, -0.5}, {0.4, 0.5, 0.9}},
                                        Sphere{{0.1, 0, 0.2}, 0.8}, Slab{Vec3(1, 1, 0).normalized(), -0.3, 0.5}};
   std::vector<Medium> media;
@@ -191,7 +193,7 @@ TEST_CASE("a field that a renderer does not know is refused by name", "[media]")
   // Every kind has a name of its own: scene files tell them apart by it.
   std::vector<std::string> names;
   for (const DensityField& kind : Kinds<DensityField>::all()) names.push_back(field_name(kind));
-  CHECK(names == std::vector<std::string>{"homogeneous", "gaussians", "grid", "fogmap"});
+  CHECK(names == std::vector<std::string>{"homogeneous", "gaussians", "grid", "fogmap", "legendre"});
   std::vector<Medium> media(2);
   media[0].field = small_grid();
   media[1].field = GaussianSum{};

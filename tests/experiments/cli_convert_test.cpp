@@ -1,0 +1,53 @@
+// `airlight convert` of media: what it prints is a medium that loads.
+#include <catch2/catch.hpp>
+
+#include "scene/scene.h"
+#include "tests/experiments/run_program.h"
+
+using namespace airlight;
+using namespace airlight::test;
+
+namespace {
+
+const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+
+const scene::LegendreBox& box_of(const scene::Scene& scene) {
+  return *std::get<scene::LegendrePointer>(scene.media.at(0).field);
+}
+
+}  // namespace
+
+TEST_CASE("a voxel grid and a medium of a scene become Legendre boxes", "[cli][legendre]") {
+  const TemporaryFolder folder;
+  const Result grid =
+      run("convert " + root + "/experiments/data/plume_0024.vdb plume.csv --coefficients 5,7,4 --cells 8", folder);
+  CAPTURE(grid.out, grid.err);
+  REQUIRE(grid.code == 0);
+  const scene::Scene plume = scene::parse_scene(camera + grid.out, "s.toml", folder.path().string());
+  CHECK(box_of(plume).shape() == scene::TensorShape{5, 7, 4});
+  CHECK_FALSE(box_of(plume).negative());
+
+  const std::string gaussians = scenes + "elephant_gaussians.toml";
+  const Result refused = run("convert " + gaussians + " fog.csv", folder);
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Catch::Contains("no end"));
+
+  folder.write("ball.toml", camera +
+                                "[[medium]]\ntype = 'homogeneous'\n[[medium]]\nname = 'ball'\ntype = 'homogeneous'\n"
+                                "region = { type = 'sphere', center = [0, 0, 0], radius = 1 }\n");
+  for (const char* const choice : {"ball", "1"}) {
+    const Result ball = run(
+        "convert ball.toml ball.csv --cells 8 --coefficients 8 --no-limiter --medium " + std::string(choice), folder);
+    REQUIRE(ball.code == 0);
+    const scene::Scene read = scene::parse_scene(camera + ball.out, "s.toml", folder.path().string());
+    CHECK(box_of(read).shape() == scene::TensorShape{8, 8, 8});
+    CHECK(box_of(read).negative());
+    // The mean is 4 pi / 3 over 8; eight cells of four points a side meet the ball to a per cent.
+    CHECK(box_of(read).coefficients()[0] == Approx(std::sqrt(8.0) * pi / 6).epsilon(0.01));
+  }
+  CHECK(run("convert ball.toml ball.csv --medium nobody", folder).code == 2);
+  CHECK(run("convert ball.toml ball.csv --medium 2", folder).code == 2);
+  CHECK(run("convert ball.toml ball.csv --medium 1 --coefficients 3,3", folder).code == 2);
+  CHECK(run("convert ball.toml ball.csv --medium 1 --coefficients 33", folder).code == 2);
+  CHECK_THAT(run("convert ball.toml ball.exr --medium 1", folder).err, Catch::Contains("expected a name in .csv"));
+}
