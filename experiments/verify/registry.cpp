@@ -119,45 +119,7 @@ Kinds wavelet_fog() {
   };
 }
 
-Kinds fluid_of_coefficients() {
-  return {
-      {"project", read_legendre_project},
-      {"coefficients", read_legendre_coefficients},
-      {"evaluate", read_legendre_evaluate},
-      {"advect", read_legendre_advect},
-      {"diffuse", read_legendre_diffuse},
-      {"rk4", read_legendre_rk4},
-      {"step", read_legendre_step},
-      {"density-advect", read_legendre_density},
-      {"energy-identity", read_legendre_energy_identity},
-      {"taylor-green", read_legendre_taylor_green},
-  };
-}
-
 Kinds legendre_fluids() {
-  const std::vector<std::string> flow3 = {"a", "b", "c", "d", "n"};
-  const std::vector<std::string> light = {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"};
-  const std::map<std::string, std::vector<std::string>> fields = {
-      {"project", {"a", "a_proj", "b", "b_proj", "n"}},
-      {"advect", {"a", "b", "rhs_a", "rhs_b", "n"}},
-      {"diffuse", {"a", "b", "implicit_a", "implicit_b", "n", "nu_dt"}},
-      {"taylor-green", {"energy", "nu", "points", "t"}},
-      {"upwind-galerkin", light},
-      {"evaluate", flow3},
-      {"coefficients", flow3},
-      {"rk4", flow3},
-      {"step", flow3},
-      {"density-advect", flow3},
-      {"energy-identity", flow3},
-  };
-  Kinds kinds;
-  for (const auto& [kind, list] : fields) kinds[kind] = waiting("Legendre fluids", list);
-  for (const auto& [kind, reader] : fluid_of_coefficients()) kinds[kind] = reader;
-  return kinds;
-}
-
-// What needs no fluid.
-Kinds legendre_basis() {
   return {
       {"derivative", read_legendre_derivative},
       {"integral", read_legendre_integral},
@@ -171,19 +133,26 @@ Kinds legendre_basis() {
       {"scatter", read_legendre_scatter},
       {"airlight", read_legendre_airlight},
       {"image", read_legendre_image},
+      {"project", read_legendre_project},
+      {"coefficients", read_legendre_coefficients},
+      {"evaluate", read_legendre_evaluate},
+      {"advect", read_legendre_advect},
+      {"diffuse", read_legendre_diffuse},
+      {"rk4", read_legendre_rk4},
+      {"step", read_legendre_step},
+      {"density-advect", read_legendre_density},
+      {"energy-identity", read_legendre_energy_identity},
+      {"taylor-green", read_legendre_taylor_green},
+      {"upwind-galerkin",
+       waiting("the upwind form of Legendre light", {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"})},
   };
-}
-
-Kinds united(Kinds some, const Kinds& others) {
-  some.insert(others.begin(), others.end());
-  return some;
 }
 
 const std::map<std::string, Kinds>& families() {
   static const std::map<std::string, Kinds> all = {
       {"references", references()},       {"fogshop", fogshop()},
       {"shadow_planes", shadow_planes()}, {"compensated_ray_marching", compensated_ray_marching()},
-      {"wavelet_fog", wavelet_fog()},     {"legendre_fluids", united(legendre_basis(), legendre_fluids())},
+      {"wavelet_fog", wavelet_fog()},     {"legendre_fluids", legendre_fluids()},
   };
   return all;
 }
