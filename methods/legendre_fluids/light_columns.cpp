@@ -10,13 +10,12 @@
 namespace airlight::legendre_fluids {
 namespace {
 
-constexpr double most_rounding = 1e-11;  // of a face's polynomial, of the longest column
-constexpr int checked_blocks = 16;       // of points of the box, to find that
-constexpr int most_along = 48;           // coefficients: of more, rounding leaves nothing
+constexpr int checked_blocks = 16;  // of points of the box, where a polynomial is judged
+constexpr int most_along = 48;      // coefficients: of more, rounding leaves nothing
 
 }  // namespace
 
-LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light)
+LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light, double rounding)
     : box_(&box), to_light_(to_light), rate_(2 * to_light.cwiseQuotient(box.box().size())) {
   int degree = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,11 +29,11 @@ LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light)
   }
   if (box.negative() || degree + 2 > most_along) return;
   for (int axis = 0; axis < 3; ++axis)
-    if (rate_[axis] != 0) face_[std::size_t(axis)] = polynomial(axis, degree + 2);
+    if (rate_[axis] != 0) face_[std::size_t(axis)] = polynomial(axis, degree + 2, rounding);
 }
 
 // By its values at Gauss points; nothing where it does not give, at points of which this is the nearest face, what they integrate.
-LightColumns::Face LightColumns::polynomial(int axis, int along) const {
+LightColumns::Face LightColumns::polynomial(int axis, int along, double rounding) const {
   const scene::TensorShape& n = box_->shape();
   const auto a = std::size_t(axis);
   Face face{n, {}};
@@ -61,15 +60,15 @@ LightColumns::Face LightColumns::polynomial(int axis, int along) const {
   std::array<const Eigen::MatrixXd*, 3> analysis;
   for (std::size_t b = 0; b < 3; ++b) analysis[b] = &scene::legendre_points(face.shape[b]).analysis;
   face.coefficients = scene::along_axes(*analysis[0], *analysis[1], *analysis[2], values, face.shape);
-  if (!(rounding_of(face, axis) <= most_rounding)) face.coefficients.resize(0);
+  if (!(rounding_of(face, axis) <= rounding)) face.coefficients.resize(0);
   return face;
 }
 
-// Relative to the longest way, at points of which this is the nearest face.
+// The greatest error [m] at points of which this is the nearest face.
 double LightColumns::rounding_of(const Face& face, int axis) const {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  double worst = 0, longest = 0;
+  double worst = 0;
   for (int block = 0; block < checked_blocks; ++block) {
     LocalLanes local;
     Lanes length;
@@ -85,9 +84,8 @@ double LightColumns::rounding_of(const Face& face, int axis) const {
     const Lanes exact = integrated(local, length);
     const Lanes got = series_values(face.shape, face.coefficients.data(), local[0], local[1], local[2]);
     worst = std::max(worst, (got - exact).abs().maxCoeff());
-    longest = std::max(longest, exact.abs().maxCoeff());
   }
-  return longest > 0 ? worst / longest : 0;
+  return worst;
 }
 
 Lanes LightColumns::integrated(const LocalLanes& local, const Lanes& length) const {

@@ -16,8 +16,8 @@ namespace airlight::legendre_fluids {
 
 class LightColumns {
  public:
-  // The box outlives this. `to_light` is a unit vector of the world.
-  LightColumns(const scene::LegendreBox&, const Vec3& to_light);
+  // The box outlives this. `to_light` is a unit vector of the world. A face keeps its polynomial where that is right to `rounding` [m].
+  LightColumns(const scene::LegendreBox&, const Vec3& to_light, double rounding);
 
   // Integral of the density from places of a ray to the light [m], `count` of them; the ray may be outside of the box. Between the first and
   // the last place the light comes in and goes out by the same faces (cuts).
@@ -43,7 +43,7 @@ class LightColumns {
   int nearest_face(const Vec3& local) const;
   int first_face(const Vec3& local) const;
   double to_face(int axis, const Vec3& local, int side) const { return (side - local[axis]) / rate_[axis]; }
-  Face polynomial(int axis, int along) const;
+  Face polynomial(int axis, int along, double rounding) const;
   double rounding_of(const Face&, int axis) const;
   Lanes integrated(const LocalLanes&, const Lanes& length) const;
 

@@ -9,8 +9,8 @@ std::vector<scene::SettingSpec> light_settings() {
   return {
       choice_setting("variant", "ray", {"ray"},
                      "ray: exact optical depths, Gauss points on panels of every camera ray"),
-      integer_setting("points", "4", 2, 16, "of ray: Gauss points of a panel"),
-      real_setting("tolerance", "1e-6", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative"),
+      integer_setting("points", "8", 2, 16, "of ray: Gauss points of a panel"),
+      real_setting("tolerance", "1e-5", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative"),
       integer_setting("shadow_steps", "64", 1, 65536,
                       "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
                       "finds shadows wider than that"),

@@ -64,7 +64,6 @@ struct PanelRule::Integral {
       double range = 0, most = 0;
       for (int k = 1; k < n; ++k) range += std::abs(depth[k]) * rule.greatest_[std::size_t(k)];
       if (mean - range > black) continue;
-      if (range > exact) return false;
       // What of order k and beyond is missed: of exp(-range z) coefficients of that order are at most 2 (range/2)^k / k!.
       std::array<double, 2 * most_points + 1> missed;
       missed[0] = 1;

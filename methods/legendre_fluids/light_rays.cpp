@@ -13,6 +13,7 @@ constexpr double edge_share = 1. / 4096;  // of the way between two shadow rays:
 constexpr int most_halvings = 12;         // of a stretch where light has kinks
 constexpr int last_orders = 3;            // of a column's coefficients: what these are is what is missed beyond
 constexpr double least_share = 4e-16;     // of where it is: a piece that rounding made
+constexpr double rounding_share = 0.01;   // of the tolerance, that polynomials of columns may cost
 constexpr double bent_share = 0.1;        // of the tolerance, that that may be
 
 // Can a surface stand between the box and a light there: not if all of it lies behind the box, as seen from the light.
@@ -137,7 +138,7 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
 LightRays::LightRays(const scene::Scene& scene, const RayOptions& options)
     : geometry_(scene.geometry.get()),
       options_(options),
-      media_(scene),
+      media_(scene, rounding_share * options.tolerance),
       rule_(media_.coefficients, options.points, options.tolerance) {
   for (const scene::DirectionalLight& light : media_.lights) {
     bool any = false;
@@ -165,8 +166,7 @@ std::vector<double> LightRays::cuts(const Ray& ray, double end, std::size_t ligh
       if (t > inside.lo && t < inside.hi) cuts.push_back(t);
     if (!m.field->negative()) continue;
     const scene::LegendreLine line(*m.field, ray, inside);
-    for (const Interval& positive : line.positive())
-      cuts.insert(cuts.end(), {positive.lo, positive.hi});
+    for (const Interval& positive : line.positive()) cuts.insert(cuts.end(), {positive.lo, positive.hi});
   }
   planes.clear();
   for (const LitMedium& m : media_.media)  // one medium's shadow in another

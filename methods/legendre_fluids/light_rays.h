@@ -13,8 +13,8 @@
 namespace airlight::legendre_fluids {
 
 struct RayOptions {
-  int points = 4;           // of a panel
-  double tolerance = 1e-6;  // relative, of a light's share of the radiance
+  int points = 8;           // of a panel
+  double tolerance = 1e-5;  // relative, of a light's share of the radiance
   int shadow_steps = 64;    // shadow rays over the media on a ray, where surfaces may stand before a light
 };
 

@@ -83,7 +83,7 @@ double negative_share(const scene::LegendreBox& field) {
   return share;
 }
 
-LitMedia::LitMedia(const scene::Scene& scene) {
+LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
   for (const scene::Light& light : scene.lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
       lights.push_back(*sun);
@@ -98,7 +98,8 @@ LitMedia::LitMedia(const scene::Scene& scene) {
     media.push_back({&medium, std::move(field), {}});
   }
   for (LitMedium& medium : media)
-    for (const scene::DirectionalLight& light : lights) medium.columns.emplace_back(*medium.field, light.to_light);
+    for (const scene::DirectionalLight& light : lights)
+      medium.columns.emplace_back(*medium.field, light.to_light, rounding / medium.medium->sigma_t.maxCoeff());
 }
 
 Rgb LitMedia::light_depth(const Point3& x, std::size_t light) const {

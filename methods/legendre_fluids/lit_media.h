@@ -12,7 +12,8 @@ struct LitMedium {
 };
 
 struct LitMedia {
-  explicit LitMedia(const scene::Scene&);       // which outlives this, and has nothing that `field_against` objects to
+  // The scene outlives this, and has nothing that `field_against` objects to. Depths towards lights are right to `rounding` [-].
+  LitMedia(const scene::Scene&, double rounding);
   std::vector<scene::DirectionalLight> lights;  // those that shine
   std::vector<LitMedium> media;                 // those that extinguish
   int coefficients = 2;                         // of any density's integral along a ray, at most
