@@ -11,7 +11,9 @@
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
+#include "scene/flow_particles.h"
 #include "scene/read_file.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {
@@ -53,9 +55,15 @@ class Folder {
   std::string frame_name(int frame) const {
     return (s_.folder / fmt::format("{}.{:04d}.vdb", s_.problem->name, frame)).string();
   }
+  std::string particles_name(int frame) const {
+    return (s_.folder / fmt::format("{}.particles.{:04d}.csv", s_.problem->name, frame)).string();
+  }
+  bool has(int frame) const {
+    return fs::exists(frame_name(frame)) && (s_.problem->particles.empty() || fs::exists(particles_name(frame)));
+  }
 
-  // The last frame that is complete, -1 where there is none, and into `flow` what followed it.
-  int resume(scene::Flow& flow) {
+  // The last frame that is complete, -1 where there is none, and into `flow` and its particles what followed it.
+  int resume(scene::Flow& flow, scene::FlowParticles& particles) {
     const std::string path = (s_.folder / "state").string();
     if (!fs::exists(path)) return -1;
     const std::string bytes = scene::read_whole_file(path, std::size_t(1) << 36);
@@ -66,15 +74,19 @@ class Folder {
                       s_.folder.string()));
     const int last = std::stoi(bytes.substr(line + 1, next - line - 1));
     for (int frame = 0; frame <= last; ++frame)
-      if (!fs::exists(frame_name(frame)))
+      if (!has(frame))
         throw Error(fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames",
                                 frame_name(frame)));
     history_ = rows_up_to(last);
-    flow.restore(bytes.substr(next + 1));
+    const std::size_t of_particles = particles.state().size();
+    if (bytes.size() - (next + 1) < of_particles) throw Error(path + ": shorter than expected");
+    particles.restore(bytes.substr(next + 1, of_particles));
+    flow.restore(bytes.substr(next + 1 + of_particles));
     return last;
   }
 
-  void keep(int frame, const scene::Flow& flow, double dt) {
+  void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
+    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
     scene::write_frame(frame_name(frame), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},
@@ -85,7 +97,7 @@ class Folder {
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
     std::string state = flow.state();  // as long as the flow itself
-    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    state.insert(0, fmt::format("{}\n{}\n{}", key_, frame, particles.state()));
     scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
@@ -108,6 +120,31 @@ class Folder {
   std::string key_, history_;
 };
 
+// Particles, and the flow as it was a step before, between which and now they move.
+class Carried {
+ public:
+  Carried(const Simulation& s, const scene::Execution& execution) : particles(*s.problem), execution_(execution) {
+    if (!particles.empty()) before_ = s.solver.start(s.problem, s.settings, execution);
+  }
+  void from(const scene::Flow& now) {
+    if (before_) before_->restore(now.state());
+  }
+  void move(const scene::Flow& now, double dt) {
+    if (!before_) return;
+    scene::Stopwatch watch;
+    particles.step(*before_, now, dt, execution_);
+    seconds += watch.lap();
+    from(now);
+  }
+
+  scene::FlowParticles particles;
+  double seconds = 0;
+
+ private:
+  const scene::Execution& execution_;
+  std::unique_ptr<scene::Flow> before_;
+};
+
 }  // namespace
 
 int frames_there(const Simulation& s) {
@@ -115,7 +152,7 @@ int frames_there(const Simulation& s) {
   if (!found || found->first != key_of(s)) return 0;
   const Folder folder(s);
   for (int frame = 0; frame <= found->second; ++frame)
-    if (!fs::exists(folder.frame_name(frame))) return 0;
+    if (!folder.has(frame)) return 0;
   return found->second + 1;
 }
 
@@ -125,21 +162,25 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
     throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
                             s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Carried carried(s, execution);
   Folder folder(s);
   SimulationReport report;
-  const int last = folder.resume(*flow);
+  const int last = folder.resume(*flow, carried.particles);
   report.resumed = last + 1;
   for (int frame = last + 1; frame < plan.frames; ++frame) {
+    carried.from(*flow);
     if (frame > 0)
       to_next_frame(*flow, plan, [&](double share) {
+        carried.move(*flow, plan.dt);
         const double done = (frame - 1 - report.resumed + share) / (plan.frames - 1 - report.resumed + 1e-9);
         if (execution.progress && !execution.progress(std::clamp(done, 0.0, 1.0)))
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
       });
-    folder.keep(frame, *flow, plan.dt);
+    folder.keep(frame, *flow, carried.particles, plan.dt);
   }
   report.frames = plan.frames;
   report.times = flow->times();
+  if (!carried.particles.empty()) report.times.push_back({"particles", carried.seconds});
   report.counters = flow->counters();
   report.totals = flow->totals();
   return report;

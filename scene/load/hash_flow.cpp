@@ -72,6 +72,14 @@ std::string content_hash(const FlowProblem& p) {
     hash.add(push.acceleration);
     for (const double value : {push.time.lo, push.time.hi, push.frequency}) hash.add(value);
   }
+  for (const ParticleSet& set : p.particles) {
+    hash.tag("particles");
+    hash.add(set.count);
+    add(hash, set.region);
+    hash.add(std::int64_t(set.seed));
+    hash.add(set.fall);
+    hash.add(int(set.leaving));
+  }
   return hash.digits();
 }
 
