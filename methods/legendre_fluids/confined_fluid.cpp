@@ -26,6 +26,15 @@ Array values_on(const Array& x, const Array& y, const Array& z, const std::funct
 
 }  // namespace
 
+int runge_kutta_steps(double dt, int n, double speed, bool air_comes_in) {
+  const double rule = std::max(n / step_rule, air_comes_in ? n * n / inflow_rule : 0);
+  const double steps = std::ceil(dt * speed * rule * (1 - 1e-9));
+  if (!(steps <= 1e6))
+    throw scene::Unstable(
+        fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
+  return std::max(1, int(steps));
+}
+
 ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Material& material,
                              const ConfinedOptions& options, std::optional<Wind> wind)
     : Fluid(dimensions, n, half, material), options_(options), wind_(std::move(wind)) {
@@ -102,12 +111,7 @@ void ConfinedFluid::diffuse(double dt) {
 
 // The velocity and what it carries together: stages of one see stages of the other.
 void ConfinedFluid::advect_by_runge_kutta(double dt) {
-  const double n = space_.n(), speed = greatest_speed();
-  const double steps = std::ceil(dt * speed * std::max(n / step_rule, wind_ ? n * n / inflow_rule : 0) * (1 - 1e-9));
-  if (!(steps <= 1e6))
-    throw scene::Unstable(
-        fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
-  const int count = std::max(1, int(steps));
+  const int count = runge_kutta_steps(dt, space_.n(), greatest_speed(), wind_.has_value());
   const Eigen::Index nu = velocity.size(), nd = density.size(), nt = temperature.size();
   Array y(nu + nd + nt);
   y.head(nu) = velocity, y.segment(nu, nd) = density, y.tail(nt) = temperature;

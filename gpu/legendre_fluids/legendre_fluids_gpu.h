@@ -1,0 +1,23 @@
+// Legendre fluids in compute shaders: the variant `galerkin` of methods/legendre_fluids, the same settings, in single precision. The
+// coefficients stay on the device from step to step; what is asked of a flow brings them down once.
+#pragma once
+#include "gpu/context.h"
+#include "scene/flow.h"
+
+namespace airlight::gpu {
+
+class LegendreFluidsGpu final : public scene::Solver {
+ public:
+  std::string name() const override { return "legendre_fluids_gpu"; }
+  std::string about() const override;
+  std::string device() const override { return Context::name_of_device(); }
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> supports(const scene::FlowProblem&, const scene::Settings&) const override;
+  int steps_per_frame(const scene::FlowProblem&, const scene::Settings&) const override;
+
+ private:
+  std::unique_ptr<scene::Flow> start_supported(std::shared_ptr<const scene::FlowProblem>, const scene::Settings&,
+                                               const scene::Execution&) const override;
+};
+
+}  // namespace airlight::gpu
