@@ -45,10 +45,10 @@ FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Materia
   number("PUSHES", regions.pushes.size());
   const int n = space_.n();
   slab_group_ = (space_.points_shape()[0] + 7) / 8 * 8;  // a lane for every row and column
-  expand_ = &program(context_, "expand", slab_group_, definitions);
-  collect_ = &program(context_, "collect", slab_group_, definitions);
-  points_ = &program(context_, "points", lines_of_group, definitions);
-  columns_ = &program(context_, "columns", lines_of_group, definitions);
+  expand_ = &program(context_, "expand", slab_group_, 1, definitions);
+  collect_ = &program(context_, "collect", slab_group_, 1, definitions);
+  points_ = &program(context_, "points", lines_of_group, 1, definitions);
+  columns_ = &program(context_, "columns", lines_of_group, 1, definitions);
   tables_ = std::make_unique<Buffer>(context_, "matrices of the fluid", tables.values());
   regions_ = std::make_unique<Buffer>(context_, "regions of the fluid", amounts);
   const auto floats = [&](const char* name, std::size_t count) {

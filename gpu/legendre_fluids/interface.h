@@ -18,8 +18,20 @@ enum Binding {
   status = 6,
   gathered = 7,
   regions = 0,
-  // a uniform block
+  // light_*.comp
+  distances = 0,
+  reached = 1,
+  columns = 2,
+  airlight = 3,
+  lit = 4,
+  transmittance = 5,
+  ambient = 6,
+  surface = 7,
+  mean = 0,
+  // uniform blocks
   matrices = 0,
+  densities = 0,
+  rule = 1,
 };
 }  // namespace at
 
@@ -29,7 +41,7 @@ enum class ComesFrom { points, modes, forces };
 
 using Definitions = std::map<std::string, std::string>;
 
-// A program of this folder: `file` without folder and .comp, a work group of x invocations.
-Program& program(Context&, const std::string& file, int x, Definitions definitions);
+// A program of this folder: `file` without folder and .comp, a work group of x times y invocations.
+Program& program(Context&, const std::string& file, int x, int y, Definitions definitions);
 
 }  // namespace airlight::gpu::legendre

@@ -1,0 +1,22 @@
+// Light in Legendre boxes in compute shaders: the variant `ray` of methods/legendre_fluids, the same settings and layers, in single
+// precision.
+#pragma once
+#include "gpu/context.h"
+#include "scene/renderer.h"
+
+namespace airlight::gpu {
+
+class LegendreLightGpu final : public scene::Renderer {
+ public:
+  std::string name() const override { return "legendre_fluids_gpu"; }
+  std::string about() const override;
+  std::string device() const override { return Context::name_of_device(); }
+  std::vector<scene::SettingSpec> settings() const override;
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
+};
+
+}  // namespace airlight::gpu
