@@ -5,14 +5,27 @@
 namespace airlight::gpu::legendre {
 namespace {
 
-const std::vector<Binding> bindings = {
-    {"START", at::start},         {"STATE", at::state},     {"RATES", at::rates},
-    {"PRESSURE", at::pressure},   {"SPREAD", at::spread},   {"STATUS", at::status},
-    {"GATHERED", at::gathered},   {"REGIONS", at::regions}, {"MATRICES", at::matrices},
-    {"DISTANCES", at::distances}, {"REACHED", at::reached}, {"COLUMNS", at::columns},
-    {"AIRLIGHT", at::airlight},   {"LIT", at::lit},         {"TRANSMITTANCE", at::transmittance},
-    {"AMBIENT", at::ambient},     {"SURFACE", at::surface}, {"MEAN", at::mean},
-    {"DENSITIES", at::densities}, {"RULE", at::rule}};
+const std::vector<Binding> bindings = {{"START", at::start},
+                                       {"STATE", at::state},
+                                       {"RATES", at::rates},
+                                       {"PRESSURE", at::pressure},
+                                       {"SPREAD", at::spread},
+                                       {"STATUS", at::status},
+                                       {"GATHERED", at::gathered},
+                                       {"REGIONS", at::regions},
+                                       {"MATRICES", at::matrices},
+                                       {"DISTANCES", at::distances},
+                                       {"REACHED", at::reached},
+                                       {"COLUMNS", at::columns},
+                                       {"AIRLIGHT", at::airlight},
+                                       {"LIT", at::lit},
+                                       {"TRANSMITTANCE", at::transmittance},
+                                       {"AMBIENT", at::ambient},
+                                       {"SURFACE", at::surface},
+                                       {"MEAN", at::mean},
+                                       {"TARGETS", at::targets},
+                                       {"DENSITIES", at::densities},
+                                       {"RULE", at::rule}};
 
 }  // namespace
 

@@ -39,6 +39,11 @@ class LegendreFlowGpu final : public LegendreFlow {
     here_ = true;
   }
 
+  std::optional<legendre::DensityOnDevice> density_on_device() const {
+    if (p_->dimensions != 3 || !fluid_->density.size()) return {};
+    return legendre::DensityOnDevice{device_.state(), device_.density_at(), fluid_->space().n(), p_->box};
+  }
+
  private:
   void move(double dt) override {
     timed("steps on the device", [&] { device_.step(dt, forces(dt)); });
@@ -70,6 +75,11 @@ class LegendreFlowGpu final : public LegendreFlow {
 };
 
 }  // namespace
+
+std::optional<legendre::DensityOnDevice> legendre::density_on_device(const scene::Flow& flow) {
+  const auto* here = dynamic_cast<const LegendreFlowGpu*>(&flow);
+  return here ? here->density_on_device() : std::nullopt;
+}
 
 std::string LegendreFluidsGpu::about() const {
   return "legendre_fluids in compute shaders: the variant galerkin in single precision (Gupta and Narasimhan 2007)";

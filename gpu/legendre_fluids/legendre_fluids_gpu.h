@@ -1,10 +1,26 @@
 // Legendre fluids in compute shaders: the variant `galerkin` of methods/legendre_fluids, the same settings, in single precision. The
 // coefficients stay on the device from step to step; what is asked of a flow brings them down once.
 #pragma once
-#include "gpu/context.h"
+#include <optional>
+
+#include "gpu/buffer.h"
 #include "scene/flow.h"
 
 namespace airlight::gpu {
+
+namespace legendre {
+
+// Where a flow's density lies on the device: a field of coefficients [x][y][z], as many along each axis. Until the next step.
+struct DensityOnDevice {
+  const Buffer& state;
+  std::size_t field;
+  int coefficients;
+  Box box;
+};
+// Nothing for a flow of another solver, in two dimensions, or without a density.
+std::optional<DensityOnDevice> density_on_device(const scene::Flow&);
+
+}  // namespace legendre
 
 class LegendreFluidsGpu final : public scene::Solver {
  public:

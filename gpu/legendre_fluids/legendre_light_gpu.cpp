@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gpu/frame.h"
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/light_media_on_device.h"
 #include "gpu/view_uniforms.h"
 #include "gpu/wavelet_fog/surface_light.h"
@@ -43,6 +44,10 @@ class PreparedLightGpu final : public scene::Prepared {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  bool take(const DensityOnDevice& d) {
+    const Use use(context_);
+    return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
+  }
 
  private:
   bool any_medium() const { return !lit_.media.empty(); }
@@ -206,6 +211,12 @@ scene::Rendering PreparedLightGpu::render(const View& view, const Execution& exe
 }
 
 }  // namespace
+
+bool draw_flow(scene::Prepared& picture, const scene::Flow& flow) {
+  auto* prepared = dynamic_cast<PreparedLightGpu*>(&picture);
+  const std::optional<DensityOnDevice> density = density_on_device(flow);
+  return prepared && density && prepared->take(*density);
+}
 
 std::string LegendreLightGpu::about() const {
   return "legendre_fluids in compute shaders: single scattering in Legendre boxes, exact optical depths (Gupta and Narasimhan 2007)";

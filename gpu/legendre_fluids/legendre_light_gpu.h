@@ -2,7 +2,7 @@
 // precision.
 #pragma once
 #include "gpu/context.h"
-#include "scene/renderer.h"
+#include "scene/flow.h"
 
 namespace airlight::gpu {
 
@@ -18,5 +18,10 @@ class LegendreLightGpu final : public scene::Renderer {
   std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
                                                      const scene::Execution&) const override;
 };
+
+// The density of the first of the scene's media that extinguish becomes that of a flow of LegendreFluidsGpu in three dimensions: from step
+// to picture nothing leaves the device. A density below 0 anywhere is drawn towards its mean until it is not. False, and nothing is done,
+// where the picture was not prepared by LegendreLightGpu, or its medium is no Legendre box of the flow's box and coefficients.
+bool draw_flow(scene::Prepared&, const scene::Flow&);
 
 }  // namespace airlight::gpu

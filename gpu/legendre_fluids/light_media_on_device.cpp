@@ -102,7 +102,8 @@ std::vector<std::string> reasons_against(const LitMedia& media) {
 
 LightMediaOnDevice::LightMediaOnDevice(Context& context, const LitMedia& media,
                                        const legendre_fluids::RayOptions& options)
-    : media_(media),
+    : context_(context),
+      media_(media),
       densities_(context, "coefficients of densities", coefficients_of(media)),
       rule_(context, "points along rays", Rule(media, options, definitions_).values) {
   const TensorShape shape = shape_of(media);
@@ -127,6 +128,29 @@ void LightMediaOnDevice::bind(Program& p, const Vec3& to_light) const {
     p.set(at_index("sigma_t", m), medium.sigma_t);
     p.set(at_index("scattering", m), Rgb(medium.albedo * medium.sigma_t));
   }
+}
+
+bool LightMediaOnDevice::take(std::size_t medium, const Buffer& state, std::size_t field, int n, const Box& box) {
+  if (medium >= media_.media.size()) return false;
+  const scene::LegendreBox& held = *media_.media[medium].field;
+  if (held.shape() != TensorShape{n, n, n} || held.box().lo != box.lo || held.box().hi != box.hi) return false;
+  if (!taking_) {
+    taking_ = &program(context_, "light_density", 64, 1, definitions_);
+    least_ = std::make_unique<Buffer>(context_, "least density", 4);
+  }
+  Program& p = *taking_;
+  bind(p, Vec3::Zero());
+  state.bind(at::state);
+  densities_.bind(at::targets);
+  least_->bind(at::status);
+  p.set("medium", int(medium));
+  p.set("field", int(field));
+  p.set("n", n);
+  for (int part = 0; part < 3; ++part) {
+    p.set("part", part);
+    p.dispatch(part == 1 ? 8 * n * n * n : n * n * n);
+  }
+  return true;
 }
 
 }  // namespace airlight::gpu::legendre

@@ -1,5 +1,6 @@
 // Media as polynomials under directional lights, as light_media.glsl reads them: the device's side of LitMedia.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,14 +24,19 @@ class LightMediaOnDevice {
   // Of a program that includes light_media.glsl.
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&, const Vec3& to_light) const;
+  // The density of a medium of n^3 coefficients becomes a field of a fluid's state, made positive where it is not; nothing leaves the device.
+  // False, and nothing is done, where the medium has another shape or box.
+  bool take(std::size_t medium, const Buffer& state, std::size_t field, int n, const Box&);
   // Dispatches after which every ray has left all boxes.
   int stretches() const;
-  const Buffer& densities() const { return densities_; }
 
  private:
+  Context& context_;
   const legendre_fluids::LitMedia& media_;
   Definitions definitions_;
   Buffer densities_, rule_;
+  std::unique_ptr<Buffer> least_;  // of take(), and its program
+  Program* taking_ = nullptr;
 };
 
 }  // namespace airlight::gpu::legendre
