@@ -1,6 +1,7 @@
 #include "methods/legendre_fluids/light.h"
 
 #include "methods/legendre_fluids/light_options.h"
+#include "methods/legendre_fluids/paper_picture.h"
 #include "methods/legendre_fluids/ray_picture.h"
 
 namespace airlight::legendre_fluids {
@@ -18,7 +19,10 @@ std::vector<std::string> LegendreLight::supports(const scene::Scene& scene, cons
 std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_ptr<const scene::Scene> scene,
                                                                   const scene::Settings& settings,
                                                                   const scene::Execution&) const {
-  return prepare_rays(std::move(scene), read_light_options(settings).ray, settings.canonical());
+  const LightOptions options = read_light_options(settings);
+  if (options.variant == LightOptions::Variant::paper)
+    return prepare_paper(std::move(scene), options.paper, settings.canonical());
+  return prepare_rays(std::move(scene), options.ray, settings.canonical());
 }
 
 }  // namespace airlight::legendre_fluids

@@ -1,6 +1,7 @@
 // Settings of the renderer, and what its variants cannot do.
 #pragma once
 #include "methods/legendre_fluids/light_rays.h"
+#include "methods/legendre_fluids/paper_light.h"
 #include "scene/settings.h"
 
 namespace airlight::legendre_fluids {
@@ -8,6 +9,7 @@ namespace airlight::legendre_fluids {
 struct LightOptions {
   enum class Variant { ray, paper } variant = Variant::ray;
   RayOptions ray;
+  PaperOptions paper;
 };
 
 std::vector<scene::SettingSpec> light_settings();

@@ -61,19 +61,27 @@ struct PanelRule::Integral {
       const double* depth = series + (depths == 1 ? 0 : c * n);
       const double* source = series + (depths + (sources == 1 ? 0 : c)) * n;
       const double mean = depth[0] * rule.greatest_[0];
+      // Orders of exp(-e) have coefficients of at most those of the power series exp(sum a_k x^k), with half of e's as a_k, twice.
+      std::array<double, 2 * most_points + 1> by_order, order;
       double range = 0, most = 0;
-      for (int k = 1; k < n; ++k) range += std::abs(depth[k]) * rule.greatest_[std::size_t(k)];
+      for (int k = 1; k < n; ++k) {
+        const double greatest = std::abs(depth[k]) * rule.greatest_[std::size_t(k)];
+        range += greatest;
+        if (k <= exact) by_order[std::size_t(k)] = 0.5 * k * greatest;
+      }
       if (mean - range > black) continue;
-      // What of order k and beyond is missed: of exp(-range z) coefficients of that order are at most 2 (range/2)^k / k!.
-      std::array<double, 2 * most_points + 1> missed;
-      missed[0] = 1;
-      for (int k = 1; k <= exact; ++k) missed[std::size_t(k)] = missed[std::size_t(k - 1)] * 0.5 * range / k;
-      const auto of = [&](int k) { return k >= exact ? 1 : std::min(1.0, 2 * missed[std::size_t(exact - k)]); };
-      for (int k = 0; k < n; ++k) most += std::abs(source[k]) * rule.greatest_[std::size_t(k)];
-      double error = 0;
+      order[0] = 1;
+      for (int m = 1; m <= exact; ++m) {
+        double sum_over = 0;
+        for (int k = 1; k <= m && k < n; ++k) sum_over += by_order[std::size_t(k)] * order[std::size_t(m - k)];
+        order[std::size_t(m)] = sum_over / m;
+      }
+      double error = 0, beyond = 0;  // beyond: what a source of order k makes of order 2 points and more
       for (int k = 0; k < n; ++k) {
-        const double bent = k < 2 ? 0 : most * std::abs(depth[k]);  // exp(-e) where e is not linear
-        error += (std::abs(source[k]) + bent) * rule.greatest_[std::size_t(k)] * of(k);
+        const double greatest = std::abs(source[k]) * rule.greatest_[std::size_t(k)];
+        most += greatest;
+        if (k <= exact) beyond += 2 * order[std::size_t(exact - k)];
+        error += greatest * std::min(1.0, beyond);
       }
       const double here = scale * most * std::exp(-mean);
       if (!(2 * scale * error * std::exp(-std::max(0.0, mean - range)) <= rule.tolerance_ * (sum[c] + here)))

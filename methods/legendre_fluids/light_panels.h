@@ -1,7 +1,7 @@
 // The integral of s(z) exp(-e(z)) over [-1, 1] for Legendre series s and e, by Gauss points on panels.
 //
 // A panel is halved, its series exactly with it, until what its points miss is within the tolerance: by the coefficients beyond those that
-// they integrate exactly, those of exp(-e) bounded by the modified Bessel functions of e's range. Where e grows from a bright end to a dark
+// they integrate exactly, those of exp(-e) bounded by a power series in e's own. Where e grows from a bright end to a dark
 // one that makes panels that double in length, however great e is, and one panel where it is small. The brighter half comes first, and
 // tells how much matters.
 #pragma once

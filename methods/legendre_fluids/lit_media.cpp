@@ -64,17 +64,15 @@ scene::LegendrePointer field_within_region(const scene::Medium& medium) {
       inside, field->shape(), scene::along_axes(part[0], part[1], part[2], field->coefficients(), field->shape()));
 }
 
-double negative_share(const scene::LegendreBox& field) {
-  if (!field.negative()) return 0;
+double negative_share(const scene::TensorShape& shape, const Eigen::VectorXd& coefficients) {
   std::array<Eigen::MatrixXd, 3> values;
   std::array<Eigen::VectorXd, 3> weight;
   for (std::size_t a = 0; a < 3; ++a) {
-    const int n = field.shape()[a];
-    const scene::LegendrePoints points(n, 4 * n);
+    const scene::LegendrePoints points(shape[a], 4 * shape[a]);
     values[a] = points.values;
     weight[a] = 0.5 * points.weight;
   }
-  const Eigen::VectorXd all = scene::along_axes(values[0], values[1], values[2], field.coefficients(), field.shape());
+  const Eigen::VectorXd all = scene::along_axes(values[0], values[1], values[2], coefficients, shape);
   double share = 0;
   Eigen::Index at = 0;
   for (const double x : weight[0])

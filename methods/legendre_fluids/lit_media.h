@@ -28,7 +28,7 @@ struct LitMedia {
 std::string field_against(const std::vector<scene::Medium>&, std::size_t i);
 // A medium that is one, as such: its box is what of the field's lies in the medium's region; null if nothing does.
 scene::LegendrePointer field_within_region(const scene::Medium&);
-// Share of its box where the polynomial is below 0, at Gauss points.
-double negative_share(const scene::LegendreBox&);
+// Share of [-1, 1]^3 where a series is below 0, at Gauss points.
+double negative_share(const scene::TensorShape&, const Eigen::VectorXd& coefficients);
 
 }  // namespace airlight::legendre_fluids

@@ -50,4 +50,19 @@ Lanes series_values(const scene::TensorShape& shape, const double* coefficients,
   return sum;
 }
 
+double series_value(const scene::TensorShape& shape, const double* coefficients, const Vec3& at) {
+  std::array<double, most> x, y, z;
+  scene::legendre_values_at(shape[0], at[0], x.data());
+  scene::legendre_values_at(shape[1], at[1], y.data());
+  scene::legendre_values_at(shape[2], at[2], z.data());
+  double sum = 0;
+  for (int i = 0; i < shape[0]; ++i)
+    for (int j = 0; j < shape[1]; ++j) {
+      double row = 0;
+      for (int k = 0; k < shape[2]; ++k) row += *coefficients++ * z[std::size_t(k)];
+      sum += row * x[std::size_t(i)] * y[std::size_t(j)];
+    }
+  return sum;
+}
+
 }  // namespace airlight::legendre_fluids

@@ -21,7 +21,9 @@ class PreparedRays final : public scene::Prepared {
   PreparedRays(std::shared_ptr<const Scene> scene, const RayOptions& options, std::string settings)
       : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), rays_(*scene_, options) {
     times_ = {{"columns", watch_.lap()}};
-    for (const LitMedium& m : rays_.media().media) negative_ = std::max(negative_, negative_share(*m.field));
+    for (const LitMedium& m : rays_.media().media)
+      if (m.field->negative())
+        negative_ = std::max(negative_, negative_share(m.field->shape(), m.field->coefficients()));
   }
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
