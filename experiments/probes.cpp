@@ -3,6 +3,7 @@
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
 #include "experiments/legendre_fluids/fluid_probes.h"
+#include "experiments/legendre_fluids/rendering_probe.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
 #include "experiments/stable_fluids/probes.h"
 #include "experiments/verify/oracle_probe.h"
@@ -27,6 +28,7 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<WaveletSeams>());
     list.push_back(std::make_unique<WaveletErrata>());
     list.push_back(std::make_unique<WaveletMapSize>());
+    list.push_back(std::make_unique<LegendreRendering>());
     list.push_back(std::make_unique<CavityProbe>());
     list.push_back(std::make_unique<FlowStability>());
     list.push_back(std::make_unique<PressureSolvers>());

@@ -26,6 +26,15 @@ Array values_on(const Array& x, const Array& y, const Array& z, const std::funct
 
 }  // namespace
 
+int runge_kutta_steps(double dt, int n, double speed, bool air_comes_in) {
+  const double rule = std::max(n / step_rule, air_comes_in ? n * n / inflow_rule : 0);
+  const double steps = std::ceil(dt * speed * rule * (1 - 1e-9));
+  if (!(steps <= 1e6))
+    throw scene::Unstable(
+        fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
+  return std::max(1, int(steps));
+}
+
 ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Material& material,
                              const ConfinedOptions& options, std::optional<Wind> wind)
     : Fluid(dimensions, n, half, material), options_(options), wind_(std::move(wind)) {
@@ -149,14 +158,10 @@ Array ConfinedFluid::state_rate(const Array& y) {
 
 // Speeds may rise on the way: what is left is divided anew after each part.
 void ConfinedFluid::advect_by_runge_kutta(double dt) {
-  const double n = space_.n(), gusts = wind_ ? wind_->gust.norm() : 0;
-  const double rule = std::max(n / step_rule, wind_ ? n * n / inflow_rule : 0);
+  const double gusts = wind_ ? wind_->gust.norm() : 0;
   for (double left = dt; left > 0;) {
-    const double speed = greatest_speed() + gusts, steps = std::ceil(left * speed * rule * (1 - 1e-9));
-    if (!(steps <= 1e6))
-      throw scene::Unstable(
-          fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
-    const double part = left / std::max(1.0, steps);
+    const int steps = runge_kutta_steps(left, space_.n(), greatest_speed() + gusts, wind_.has_value());
+    const double part = left / steps;
     runge_kutta_part(part);
     left = steps > 1 ? left - part : 0;
     ++substeps_;
