@@ -146,14 +146,14 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
     }
     const std::lock_guard lock(mutex);
     total.segments += visits.segments;
-    total.panels += visits.panels;
+    total.work.panels += visits.work.panels;
     total.shadow_rays += visits.shadow_rays;
   });
   result.times.push_back({"rays", watch.lap()});
   result.counters = {{"rays", double(film.pixels())},
                      {"segments", double(total.segments)},
-                     {"panels", double(total.panels)},
-                     {"points", double(total.panels) * options_.points},
+                     {"panels", double(total.work.panels)},
+                     {"points", double(total.work.panels) * options_.points},
                      {"shadow_rays", double(total.shadow_rays)},
                      {"negative_share", negative_}};
   return result;
