@@ -2,6 +2,7 @@
 
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
+#include "experiments/legendre_fluids/fluid_probes.h"
 #include "experiments/legendre_fluids/rendering_probe.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
 #include "experiments/stable_fluids/probes.h"
@@ -33,6 +34,10 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<PressureSolvers>());
     list.push_back(std::make_unique<TransformsRate>());
     list.push_back(std::make_unique<AdvectionRate>());
+    list.push_back(std::make_unique<LegendreCost>());
+    list.push_back(std::make_unique<LegendreSpeed>());
+    list.push_back(std::make_unique<LegendreStability>());
+    list.push_back(std::make_unique<LegendreSmoke>());
     return list;
   }();
   return probes;

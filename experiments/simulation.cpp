@@ -10,8 +10,11 @@
 #include "experiments/frames.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
+#include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
+#include "scene/flow_particles.h"
 #include "scene/read_file.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {
@@ -30,15 +33,18 @@ std::string history_row(int frame, double time, const scene::Totals& totals) {
   return line + "\n";
 }
 
-// The first two lines of `state`: of what it is, and after which frame.
+// The first two lines of `state`: of what it is; after which frame, and how many files of coefficients each has.
 std::string key_of(const Simulation& s) {
   return content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()});
 }
-std::optional<std::pair<std::string, int>> what_is_in(const fs::path& folder) {
-  std::ifstream in(folder / "state", std::ios::binary);
+struct Kept {
   std::string key;
-  int last = -1;
-  if (std::getline(in, key) && in >> last) return std::pair(key, last);
+  int last = -1, coefficients = 0;
+};
+std::optional<Kept> what_is_in(const fs::path& folder) {
+  std::ifstream in(folder / "state", std::ios::binary);
+  Kept kept;
+  if (std::getline(in, kept.key) && in >> kept.last >> kept.coefficients) return kept;
   return std::nullopt;
 }
 
@@ -53,9 +59,27 @@ class Folder {
   std::string frame_name(int frame) const {
     return (s_.folder / fmt::format("{}.{:04d}.vdb", s_.problem->name, frame)).string();
   }
+  std::string coefficients_name(int density, int frame) const {
+    const std::string of = density == 0 ? "" : "." + scene::density_name(*s_.problem, density);
+    return (s_.folder / fmt::format("{}{}.{:04d}.csv", s_.problem->name, of, frame)).string();
+  }
+  std::string particles_name(int frame) const {
+    return (s_.folder / fmt::format("{}.particles.{:04d}.csv", s_.problem->name, frame)).string();
+  }
+  // The first file that is gone, of the frames up to the last; nothing where all are there.
+  std::string missing(const Kept& kept) const {
+    for (int frame = 0; frame <= kept.last; ++frame) {
+      std::vector<std::string> files{frame_name(frame)};
+      for (int density = 0; density < kept.coefficients; ++density) files.push_back(coefficients_name(density, frame));
+      if (!s_.problem->particles.empty()) files.push_back(particles_name(frame));
+      for (const std::string& file : files)
+        if (!fs::exists(file)) return file;
+    }
+    return "";
+  }
 
-  // The last frame that is complete, -1 where there is none, and into `flow` what followed it.
-  int resume(scene::Flow& flow) {
+  // The last frame that is complete, -1 where there is none, and into `flow` and its particles what followed it.
+  int resume(scene::Flow& flow, scene::FlowParticles& particles) {
     const std::string path = (s_.folder / "state").string();
     if (!fs::exists(path)) return -1;
     const std::string bytes = scene::read_whole_file(path, std::size_t(1) << 36);
@@ -64,17 +88,29 @@ class Folder {
       throw Error(
           fmt::format("{}: of another problem, solver, settings or program, expected an empty folder or another one",
                       s_.folder.string()));
-    const int last = std::stoi(bytes.substr(line + 1, next - line - 1));
-    for (int frame = 0; frame <= last; ++frame)
-      if (!fs::exists(frame_name(frame)))
-        throw Error(fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames",
-                                frame_name(frame)));
+    const Kept kept = what_is_in(s_.folder).value();
+    const int last = kept.last;
+    if (const std::string gone = missing(kept); !gone.empty())
+      throw Error(
+          fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames", gone));
     history_ = rows_up_to(last);
-    flow.restore(bytes.substr(next + 1));
+    const std::size_t of_particles = particles.state().size();
+    if (bytes.size() - (next + 1) < of_particles) throw Error(path + ": shorter than expected");
+    particles.restore(bytes.substr(next + 1, of_particles));
+    flow.restore(bytes.substr(next + 1 + of_particles));
     return last;
   }
 
-  void keep(int frame, const scene::Flow& flow, double dt) {
+  void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
+    int coefficients = 0;
+    for (int density = 0; density <= int(s_.problem->densities.size()); ++density) {
+      const scene::DensityField medium = flow.medium(density);
+      const auto* box = std::get_if<scene::LegendrePointer>(&medium);
+      if (!box) break;
+      scene::write_legendre_csv(coefficients_name(density, frame), **box);
+      ++coefficients;
+    }
+    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
     scene::write_frame(frame_name(frame), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},
@@ -85,7 +121,7 @@ class Folder {
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
     std::string state = flow.state();  // as long as the flow itself
-    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    state.insert(0, fmt::format("{}\n{} {}\n{}", key_, frame, coefficients, particles.state()));
     scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
@@ -108,15 +144,37 @@ class Folder {
   std::string key_, history_;
 };
 
+// Particles, and the flow as it was a step before, between which and now they move.
+class Carried {
+ public:
+  Carried(const Simulation& s, const scene::Execution& execution) : particles(*s.problem), execution_(execution) {
+    if (!particles.empty()) before_ = s.solver.start(s.problem, s.settings, execution);
+  }
+  void from(const scene::Flow& now) {
+    if (before_) before_->restore(now.state());
+  }
+  void move(const scene::Flow& now, double dt) {
+    if (!before_) return;
+    scene::Stopwatch watch;
+    particles.step(*before_, now, dt, execution_);
+    seconds += watch.lap();
+    from(now);
+  }
+
+  scene::FlowParticles particles;
+  double seconds = 0;
+
+ private:
+  const scene::Execution& execution_;
+  std::unique_ptr<scene::Flow> before_;
+};
+
 }  // namespace
 
 int frames_there(const Simulation& s) {
   const auto found = what_is_in(s.folder);
-  if (!found || found->first != key_of(s)) return 0;
-  const Folder folder(s);
-  for (int frame = 0; frame <= found->second; ++frame)
-    if (!fs::exists(folder.frame_name(frame))) return 0;
-  return found->second + 1;
+  if (!found || found->key != key_of(s) || !Folder(s).missing(*found).empty()) return 0;
+  return found->last + 1;
 }
 
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {
@@ -125,21 +183,25 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
     throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
                             s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Carried carried(s, execution);
   Folder folder(s);
   SimulationReport report;
-  const int last = folder.resume(*flow);
+  const int last = folder.resume(*flow, carried.particles);
   report.resumed = last + 1;
   for (int frame = last + 1; frame < plan.frames; ++frame) {
+    carried.from(*flow);
     if (frame > 0)
       to_next_frame(*flow, plan, [&](double share) {
+        carried.move(*flow, plan.dt);
         const double done = (frame - 1 - report.resumed + share) / (plan.frames - 1 - report.resumed + 1e-9);
         if (execution.progress && !execution.progress(std::clamp(done, 0.0, 1.0)))
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
       });
-    folder.keep(frame, *flow, plan.dt);
+    folder.keep(frame, *flow, carried.particles, plan.dt);
   }
   report.frames = plan.frames;
   report.times = flow->times();
+  if (!carried.particles.empty()) report.times.push_back({"particles", carried.seconds});
   report.counters = flow->counters();
   report.totals = flow->totals();
   return report;

@@ -220,7 +220,12 @@ scene::Rendering PreparedWaveletFogGpu::draw(const View& view, const Execution& 
   }
   if (surfaces_->shines()) {
     frame_.timer.begin("surfaces");
-    surfaces_->render(*scene_, view, fogs_, primitives, lit);
+    surfaces_->render(*scene_, view, primitives, lit, [&](const scene::Light& light) {
+      for (const auto& fog : fogs_) {
+        set_lamp(fog->light_rays(), light);
+        fog->dim(view, lit);
+      }
+    });
   }
   frame_.timer.begin("composition");
   compose(view, depths, lit);
@@ -245,6 +250,7 @@ std::vector<scene::SettingSpec> WaveletFogGpu::settings() const {
 
 std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = wavelet_fog::WaveletFog().supports(scene, settings);
+  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = wavelet_fog::read_options(settings);
   if (options.variant == Options::Variant::pre)
