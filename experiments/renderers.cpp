@@ -6,6 +6,7 @@
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
 #include "gpu/wavelet_fog/wavelet_fog_gpu.h"
 #include "methods/fogshop/fogshop.h"
+#include "methods/legendre_fluids/light.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
@@ -27,6 +28,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
     list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
     list.push_back(std::make_unique<gpu::WaveletFogGpu>());
+    list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
     return list;
   }();
   return renderers;

@@ -1,4 +1,5 @@
-// Gupta and Narasimhan 2007: light in a Legendre box, by the deterministic reference, which shares nothing with the paper's systems.
+// Gupta and Narasimhan 2007: light in a Legendre box, by the deterministic reference and by the method's rays, which share nothing; and the
+// paper's systems.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,9 @@
 #include "experiments/verify/legendre_vectors.h"
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
+#include "methods/legendre_fluids/light_rays.h"
+#include "methods/legendre_fluids/paper_light.h"
+#include "methods/legendre_fluids/point_values.h"
 #include "reference/deterministic/airlight.h"
 
 namespace airlight::experiments::verification {
@@ -58,14 +62,32 @@ Setting setting_from(const Value& v) {
   return s;
 }
 
-Comparison scattered(std::string what, const Setting& s, const Point3& x, double end, double expected) {
-  const deterministic::Airlight got = deterministic::airlight(s.world, {x, -s.to_eye}, end, {0.1 * accuracy});
-  Comparison c = relative(std::move(what), expected, got.radiance[0], accuracy);
+// By the reference, then by the method.
+std::array<Comparison, 2> scattered(const std::string& what, const Setting& s, const Point3& x, double end,
+                                    double expected) {
+  const Ray ray{x, -s.to_eye};
+  const deterministic::Airlight got = deterministic::airlight(s.world, ray, end, {0.1 * accuracy});
+  Comparison c = relative(what, expected, got.radiance[0], accuracy);
   if (!got.converged) {
     c.tolerance_text = "quadrature not converged";
     c.tolerance = -1;
   }
-  return c;
+  legendre_fluids::RayVisits visits;
+  const legendre_fluids::LightRays rays(s.world, {12, 0.1 * accuracy});
+  return {c, relative(what + ", rays", expected, rays.airlight(ray, end, visits)[0], accuracy)};
+}
+
+void add(std::vector<Comparison>& all, const std::array<Comparison, 2>& both) {
+  all.insert(all.end(), both.begin(), both.end());
+}
+
+// The places of the film of `image`: u and v are along the axes that the face does not have, in their order.
+Point3 on_face(int axis, double side, double u, double v) {
+  Point3 x;
+  x[axis] = side;
+  x[axis == 0 ? 1 : 0] = u;
+  x[axis == 2 ? 1 : 2] = v;
+  return x;
 }
 
 }  // namespace
@@ -88,7 +110,7 @@ Check read_legendre_scatter(const Value& v) {
               out.comparisons.push_back(relative(fmt::format("{} tau_d", i), rows[i].depth, depth, 1e-12, 1e-13));
               out.comparisons.push_back(
                   relative(fmt::format("{} E_d", i), rows[i].arriving, s.incoming * std::exp(-depth), 1e-12));
-              out.comparisons.push_back(scattered(fmt::format("{} E_s", i), s, rows[i].x, infinity, rows[i].leaving));
+              add(out.comparisons, scattered(fmt::format("{} E_s", i), s, rows[i].x, infinity, rows[i].leaving));
             }
             return out;
           }};
@@ -115,9 +137,9 @@ Check read_legendre_airlight(const Value& v) {
               const double behind = r.background * std::exp(-depth);
               out.comparisons.push_back(relative(fmt::format("{} tau_view", i), r.depth, depth, 1e-12));
               out.comparisons.push_back(relative(fmt::format("{} attenuated", i), r.attenuated, behind, 1e-12));
-              const Comparison air = scattered(fmt::format("{} airlight", i), s, r.x, r.end, r.airlight);
-              out.comparisons.push_back(air);
-              out.comparisons.push_back(relative(fmt::format("{} total", i), r.total, behind + air.got, accuracy));
+              const auto air = scattered(fmt::format("{} airlight", i), s, r.x, r.end, r.airlight);
+              add(out.comparisons, air);
+              out.comparisons.push_back(relative(fmt::format("{} total", i), r.total, behind + air[0].got, accuracy));
             }
             return out;
           }};
@@ -133,15 +155,54 @@ Check read_legendre_image(const Value& v) {
   return {"", [=](VerifyProfile) {
             Outcome out;
             Eigen::Index at = 0;
+            for (const double u : across)
+              for (const double v : along)
+                add(out.comparisons, scattered(fmt::format("u = {}, v = {}", u, v), s, on_face(axis, side, u, v),
+                                               infinity, expected.values[at++]));
+            return out;
+          }};
+}
+
+Check read_legendre_upwind(const Value& v) {
+  constexpr double tolerance = 1e-12;
+  const scene::LegendrePointer box = box_from(v);
+  legendre_fluids::PaperOptions options;
+  options.n = v["n"].integer_in(1, 12);
+  options.solver.closure = legendre_fluids::Closure::upwind;
+  const Vec3 light = direction_from(v["omega_d"]), view = direction_from(v["omega_s"]);
+  const double sigma = v["sigma"].number_in(0, 1e9), beta = v["beta"].number_in(0, 1e9),
+               g = v["g"].number_in(-0.999, 0.999);
+  const double incoming = v["E_in"].number_in(0, 1e9);
+  const double omega = phase_value(scene::HenyeyGreenstein{g}, std::clamp(light.dot(view), -1.0, 1.0));
+  const Tensor direct = tensor_from(v["E_d_coeffs"]), scattered = tensor_from(v["E_s_coeffs"]);
+  // In two dimensions L_0 along z is left out of the coefficients.
+  const double flat = v["R"][0][0].is_array() ? 1 : std::sqrt(0.5);
+  std::optional<Tensor> image;
+  std::vector<double> across, along;
+  int axis = 0, side = 0;
+  if (v.has("E_s_image")) {
+    image = tensor_from(v["E_s_image"]);
+    across = v["u"].numbers(), along = v["v"].numbers();
+    axis = v["face"]["axis"].integer_in(0, 2), side = v["face"]["side"].integer_in(-1, 1);
+    if (image->shape != scene::TensorShape{int(across.size()), int(along.size()), 1})
+      v["E_s_image"].complain("a row for each u, a column for each v");
+  }
+  return {"", [=](VerifyProfile) {
+            const legendre_fluids::PaperLight paper(*box, options, {true, true, flat == 1});
+            const Eigen::VectorXd e_d = incoming * paper.direct(light, sigma);
+            const Eigen::VectorXd e_s = paper.scattered(e_d, view, sigma, beta * omega);
+            Outcome out{largest_differences("E_d", direct.values, flat * e_d, tolerance)};
+            out.comparisons.push_back(largest_differences("E_s", scattered.values, flat * e_s, tolerance)[0]);
+            if (!image) return out;
+            const Eigen::VectorXd face = paper.on_face(e_s, axis, side);
+            scene::TensorShape shape = paper.shape();
+            shape[std::size_t(axis)] = 1;
+            Eigen::VectorXd got(image->values.size());
+            Eigen::Index at = 0;
             for (const double first : across)
-              for (const double second : along) {
-                Point3 x;
-                x[axis] = side;
-                x[axis == 0 ? 1 : 0] = first;
-                x[axis == 2 ? 1 : 2] = second;
-                out.comparisons.push_back(
-                    scattered(fmt::format("u = {}, v = {}", first, second), s, x, infinity, expected.values[at++]));
-              }
+              for (const double second : along)
+                got[at++] = legendre_fluids::series_value(shape, face.data(), on_face(axis, side, first, second));
+            out.comparisons.push_back(largest_differences("image", image->values, got, tolerance)[0]);
             return out;
           }};
 }

@@ -60,6 +60,7 @@ Check read_legendre_product(const Value&);
 Check read_legendre_scatter(const Value&);
 Check read_legendre_airlight(const Value&);
 Check read_legendre_image(const Value&);
+Check read_legendre_upwind(const Value&);
 
 // sampling_kinds.cpp
 Check read_sampling(const Value&);

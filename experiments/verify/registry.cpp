@@ -143,8 +143,7 @@ Kinds legendre_fluids() {
       {"density-advect", read_legendre_density},
       {"energy-identity", read_legendre_energy_identity},
       {"taylor-green", read_legendre_taylor_green},
-      {"upwind-galerkin",
-       waiting("the upwind form of Legendre light", {"E_in", "R", "beta", "g", "omega_d", "omega_s", "sigma"})},
+      {"upwind-galerkin", read_legendre_upwind},
   };
 }
 

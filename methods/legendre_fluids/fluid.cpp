@@ -1,9 +1,16 @@
 #include "methods/legendre_fluids/fluid.h"
 
+#include <array>
 #include <cmath>
-#include <vector>
 
 namespace airlight::legendre_fluids {
+
+std::vector<Array*> Fluid::carried() {
+  std::vector<Array*> all{&density};
+  for (Array& r : others) all.push_back(&r);
+  all.push_back(&temperature);
+  return all;
+}
 
 double Fluid::energy() const {
   const Components u = at_points();
@@ -19,25 +26,38 @@ double Fluid::greatest_speed() const {
   return std::sqrt(squares.maxCoeff());
 }
 
+// Without memory of its own: particles ask for thousands of them in a step.
 double value_at(const ConfinedSpace& space, const Array& c, int component, const Vec3& x) {
+  constexpr int most = 66;  // the greatest n, and two
   const int n = space.n();
-  std::vector<double> legendre(n + 1);
-  std::array<Array, 3> basis;
+  std::array<std::array<double, most>, 3> basis;
   for (int a = 0; a < 3; ++a) {
     if (a >= space.dimensions()) {
-      basis[a] = Array::Ones(1);
+      basis[a][0] = 1;
       continue;
     }
+    if (a != component) {
+      scene::legendre_values_at(n, x[a], basis[a].data());
+      continue;
+    }
+    std::array<double, most> legendre;
     scene::legendre_values_at(n + 1, x[a], legendre.data());
-    const Eigen::Map<const Array> values(legendre.data(), n + 1);
-    basis[a] = a == component ? Array(space.phi().transpose() * values) : Array(values.head(n));
+    // Column i - 1 of phi has the integral of L_i: two neighbours of it.
+    for (int i = 1; i < n; ++i)
+      basis[a][i - 1] = space.phi()(i + 1, i - 1) * legendre[i + 1] + space.phi()(i - 1, i - 1) * legendre[i - 1];
   }
   const TensorShape s = space.shape(component);
   double sum = 0;
   const double* at = c.data();
-  for (int i = 0; i < s[0]; ++i)
-    for (int j = 0; j < s[1]; ++j, at += s[2])
-      sum += basis[0][i] * basis[1][j] * basis[2].dot(Eigen::Map<const Array>(at, s[2]));
+  for (int i = 0; i < s[0]; ++i) {
+    double plane = 0;
+    for (int j = 0; j < s[1]; ++j, at += s[2]) {
+      double line = 0;
+      for (int k = 0; k < s[2]; ++k) line += basis[2][k] * at[k];
+      plane += basis[1][j] * line;
+    }
+    sum += basis[0][i] * plane;
+  }
   return sum;
 }
 

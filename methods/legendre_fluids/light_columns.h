@@ -1,0 +1,57 @@
+// What light from one direction comes through on its way to points of a Legendre box: the integral of the density to the face where it
+// enters.
+//
+// To one face that is a polynomial of the point: the integral of one of degree d over a length that is linear in it. So three polynomials
+// hold it, of the faces that the light comes in by, and the nearest is the right one. Where the light grazes, a face's polynomial is large
+// outside the part of the box that it is right in, and cancels there: such a face is integrated by Gauss points instead, exact as well.
+// Where the density is clamped there is no polynomial: then every point integrates what is positive on its own way.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "methods/legendre_fluids/point_values.h"
+#include "scene/media/legendre_box.h"
+
+namespace airlight::legendre_fluids {
+
+class LightColumns {
+ public:
+  // The box outlives this. `to_light` is a unit vector of the world. A face keeps its polynomial where that is right to `rounding` [m].
+  LightColumns(const scene::LegendreBox&, const Vec3& to_light, double rounding);
+
+  // Integral of the density from places of a ray to the light [m], `count` of them; the ray may be outside of the box. Between the first and
+  // the last place the light comes in and goes out by the same faces (cuts).
+  void along(const Ray&, const double* t, int count, double* columns) const;
+  double at(const Point3& x) const;  // at one point of the world
+
+  // Ray parameters where the face changes by which light enters or leaves, ascending in no order: the planes that light and edges span.
+  // With `inside` only of the edges that matter within the box.
+  void cuts(const Ray&, bool inside, std::vector<double>&) const;
+
+  int polynomials() const;                                              // faces that have one, 0 to 3
+  int face_count() const { return int((rate_.array() != 0).count()); }  // that light comes in by
+  // Coefficients of a polynomial, and its shape; empty where a face has none. For a backend that evaluates them itself.
+  struct Face {
+    scene::TensorShape shape{};
+    Eigen::VectorXd coefficients;
+  };
+  const std::array<Face, 3>& faces() const { return face_; }
+  const Vec3& rate() const { return rate_; }  // of the box's own coordinates, per metre towards the light
+
+ private:
+  using LocalLanes = std::array<Lanes, 3>;
+  int nearest_face(const Vec3& local) const;
+  int first_face(const Vec3& local) const;
+  double to_face(int axis, const Vec3& local, int side) const { return (side - local[axis]) / rate_[axis]; }
+  Face polynomial(int axis, int along, double rounding) const;
+  double rounding_of(const Face&, int axis) const;
+  Lanes integrated(const LocalLanes&, const Lanes& length) const;
+
+  const scene::LegendreBox* box_;
+  Vec3 to_light_, rate_;
+  Eigen::Vector3i side_;               // -1 or 1: of the faces that the light comes in by
+  std::vector<double> node_, weight_;  // on [0, 1], exact for the density on any line
+  std::array<Face, 3> face_;
+};
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,63 @@
+#include "methods/legendre_fluids/light_options.h"
+
+#include "methods/legendre_fluids/paper_picture.h"
+
+namespace airlight::legendre_fluids {
+namespace {
+
+constexpr int least_gmres = 7;  // coefficients along an axis from which on GMRES is faster than dense factors
+
+}  // namespace
+
+std::vector<scene::SettingSpec> light_settings() {
+  using namespace scene;
+  return {
+      choice_setting(
+          "variant", "ray", {"ray", "paper"},
+          "ray: exact optical depths, Gauss points on panels of every camera ray; paper: equations 22 to 24, "
+          "one medium seen by an orthographic camera"),
+      integer_setting("points", "8", 2, 16, "of ray: Gauss points of a panel"),
+      real_setting("tolerance", "1e-5", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative"),
+      integer_setting("shadow_steps", "64", 1, 65536,
+                      "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
+                      "finds shadows wider than that"),
+      integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis"),
+      choice_setting("closure", "least_squares", {"least_squares", "upwind"},
+                     "of paper, where light comes in: rows of a system of least squares; weak upwind inflow"),
+      real_setting("boundary_weight", "3", 1e-6, 1e6, "of least_squares: weight of the rows of inflow"),
+      choice_setting("truncation", "l2", {"l2", "chebyshev"}, "of paper: T of its equations 22 and 23"),
+      choice_setting("solver", "auto", {"auto", "dense", "gmres"},
+                     "of paper: auto is gmres with upwind and n of 7 or more, else dense, of at most 12^3 unknowns"),
+  };
+}
+
+LightOptions read_light_options(const scene::Settings& settings) {
+  LightOptions o;
+  o.variant = settings.choice<LightOptions::Variant>("variant");
+  o.ray.points = int(settings.integer("points"));
+  o.ray.tolerance = settings.real("tolerance");
+  o.ray.shadow_steps = int(settings.integer("shadow_steps"));
+  o.paper.n = int(settings.integer("n"));
+  o.paper.truncation = settings.choice<LightTruncation>("truncation");
+  LightSolver& solver = o.paper.solver;
+  solver.closure = settings.choice<Closure>("closure");
+  solver.weight = settings.real("boundary_weight");
+  const std::string& how = settings.text("solver");
+  solver.dense =
+      how == "dense" || (how == "auto" && (solver.closure == Closure::least_squares || o.paper.n < least_gmres));
+  return o;
+}
+
+std::vector<std::string> reasons_against_light(const scene::Scene& scene, const LightOptions& o) {
+  std::vector<std::string> reasons;
+  if (o.variant == LightOptions::Variant::paper) reasons = reasons_against_paper(scene, o.paper);
+  for (std::size_t i = 0; i < scene.media.size(); ++i)
+    if (const std::string why = field_against(scene.media, i); !why.empty()) reasons.push_back(why);
+  for (std::size_t i = 0; i < scene.lights.size() && o.variant == LightOptions::Variant::ray; ++i)
+    if (const std::string why = scene::unknown_light<scene::DirectionalLight, scene::EnvironmentLight>(scene.lights, i);
+        !why.empty())
+      reasons.push_back(why);
+  return reasons;
+}
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,19 @@
+// Settings of the renderer, and what its variants cannot do.
+#pragma once
+#include "methods/legendre_fluids/light_rays.h"
+#include "methods/legendre_fluids/paper_light.h"
+#include "scene/settings.h"
+
+namespace airlight::legendre_fluids {
+
+struct LightOptions {
+  enum class Variant { ray, paper } variant = Variant::ray;
+  RayOptions ray;
+  PaperOptions paper;
+};
+
+std::vector<scene::SettingSpec> light_settings();
+LightOptions read_light_options(const scene::Settings&);
+std::vector<std::string> reasons_against_light(const scene::Scene&, const LightOptions&);
+
+}  // namespace airlight::legendre_fluids

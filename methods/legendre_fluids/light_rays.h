@@ -1,0 +1,50 @@
+// Light that a ray collects by one scattering, where optical depths are exact: spec section 9, in place of the paper's systems.
+//
+//   L = sum over lights, media  integral  albedo sigma_t r(t) p(c) E exp(-tau_view(t) - tau_light(t)) visible(t) dt
+//
+// The ray is cut where it enters and leaves boxes, and at the planes where light comes in by another face. Between two cuts density and
+// both depths are polynomials: their values at as many Gauss points as they have coefficients give them as Legendre series, and panels
+// (light_panels.h) integrate those. Where a density is negative the ray is also cut at its sign changes, and halved until the depth towards
+// the light, which then has kinks, is a polynomial to the tolerance.
+#pragma once
+#include "methods/legendre_fluids/light_panels.h"
+#include "methods/legendre_fluids/lit_media.h"
+
+namespace airlight::legendre_fluids {
+
+struct RayOptions {
+  int points = 8;           // of a panel
+  double tolerance = 1e-5;  // relative, of a light's share of the radiance
+  int shadow_steps = 64;    // shadow rays over the media on a ray, where surfaces may stand before a light
+};
+
+struct RayVisits {
+  long segments = 0, panels = 0, shadow_rays = 0;
+};
+
+class LightRays {
+ public:
+  LightRays(const scene::Scene&, const RayOptions&);  // keeps a reference to the scene
+  const LitMedia& media() const { return media_; }
+  bool shadowed() const;  // can surfaces stand before a light at all
+
+  // Over 0 < t < end, which may be infinite [W/m^2/sr].
+  Rgb airlight(const Ray&, double end, RayVisits&) const;
+
+ private:
+  struct Walk;  // of one ray under one light
+  struct Visibility {
+    bool first = true;  // lit where the ray begins
+    std::vector<double> changes;
+  };
+  std::vector<double> cuts(const Ray&, double end, std::size_t light) const;
+  Visibility visibility(const Ray&, Interval, std::size_t light, RayVisits&) const;
+
+  const scene::Geometry* geometry_;
+  RayOptions options_;
+  LitMedia media_;
+  PanelRule rule_;
+  std::vector<bool> shadowed_;  // by light
+};
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,34 @@
+// Media as Legendre boxes under directional lights: what rays through them read. The preparation of variant `ray`.
+#pragma once
+#include "methods/legendre_fluids/light_columns.h"
+#include "scene/scene.h"
+
+namespace airlight::legendre_fluids {
+
+struct LitMedium {
+  const scene::Medium* medium;
+  scene::LegendrePointer field;       // within the medium's region; homogeneous ones are of one coefficient
+  std::vector<LightColumns> columns;  // of each light
+};
+
+struct LitMedia {
+  // The scene outlives this, and has nothing that `field_against` objects to. Depths towards lights are right to `rounding` [-].
+  LitMedia(const scene::Scene&, double rounding);
+  std::vector<scene::DirectionalLight> lights;  // those that shine
+  std::vector<LitMedium> media;                 // those that extinguish
+  int coefficients = 2;                         // of any density's integral along a ray, at most
+  bool grey = true;                             // are all extinctions the same in the three channels
+
+  // From a place towards a light, and along a ray [-], per channel.
+  Rgb light_depth(const Point3&, std::size_t light) const;
+  Rgb view_depth(const Ray&, double end) const;
+};
+
+// Why a medium is no polynomial in a box; empty if it is one.
+std::string field_against(const std::vector<scene::Medium>&, std::size_t i);
+// A medium that is one, as such: its box is what of the field's lies in the medium's region; null if nothing does.
+scene::LegendrePointer field_within_region(const scene::Medium&);
+// Share of [-1, 1]^3 where a series is below 0, at Gauss points.
+double negative_share(const scene::TensorShape&, const Eigen::VectorXd& coefficients);
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,35 @@
+// Light of one medium in Legendre coefficients: E_d of a direction, and E_s scattered along another, equations 22 to 24.
+#pragma once
+#include "methods/legendre_fluids/light_system.h"
+#include "scene/media/legendre_box.h"
+
+namespace airlight::legendre_fluids {
+
+struct PaperOptions {
+  int n = 6;  // coefficients of an intensity along an axis; along one where nothing varies 1
+  LightTruncation truncation = LightTruncation::l2;
+  LightSolver solver = {Closure::least_squares};
+};
+
+class PaperLight {
+ public:
+  // The box outlives this. Axes where the density is constant and that are none of `moving` hold one coefficient.
+  PaperLight(const scene::LegendreBox&, const PaperOptions&, const std::array<bool, 3>& moving);
+  const scene::TensorShape& shape() const { return product_.shape(); }
+
+  // Coefficients of E_d for light that travels along a unit direction of the world, 1 where it comes in (eq. 22).
+  Eigen::VectorXd direct(const Vec3& direction, double sigma, int* iterations = nullptr) const;
+  // Of E_s along a direction, for `scattering` (beta Omega) times the density as it scatters (eq. 23).
+  Eigen::VectorXd scattered(const Eigen::VectorXd& direct, const Vec3& direction, double sigma, double scattering,
+                            int* iterations = nullptr) const;
+  // Of n x n functions on the face `side` (-1 or 1) of an axis: the shape with 1 along it, whose function is L_0 (eq. 24).
+  Eigen::VectorXd on_face(const Eigen::VectorXd& coefficients, int axis, int side) const;
+
+ private:
+  Vec3 rate(const Vec3& direction) const { return 2 * direction.cwiseQuotient(box_->box().size()); }
+  const scene::LegendreBox* box_;
+  PaperOptions options_;
+  DensityProduct product_;
+};
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,19 @@
+// Values of Legendre series in three variables at eight points at once.
+#pragma once
+#include <Eigen/Core>
+
+#include "scene/math/legendre.h"
+#include "scene/math/types.h"
+
+namespace airlight::legendre_fluids {
+
+constexpr int lanes = 8;
+using Lanes = Eigen::Array<double, lanes, 1>;
+
+// The series of that shape (at most 96 coefficients along an axis) at the points (x, y, z).
+Lanes series_values(const scene::TensorShape&, const double* coefficients, const Lanes& x, const Lanes& y,
+                    const Lanes& z);
+// At one point.
+double series_value(const scene::TensorShape&, const double* coefficients, const Vec3& x);
+
+}  // namespace airlight::legendre_fluids

@@ -1,0 +1,170 @@
+#include "methods/legendre_fluids/ray_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "scene/background.h"
+#include "scene/camera_rays.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::legendre_fluids {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+class PreparedRays final : public scene::Prepared {
+ public:
+  PreparedRays(std::shared_ptr<const Scene> scene, const RayOptions& options, std::string settings)
+      : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), rays_(*scene_, options) {
+    times_ = {{"columns", watch_.lap()}};
+    for (const LitMedium& m : rays_.media().media)
+      if (m.field->negative())
+        negative_ = std::max(negative_, negative_share(m.field->shape(), m.field->coefficients()));
+  }
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+
+ private:
+  struct Pixel {
+    Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
+  };
+  bool any_medium() const { return !rays_.media().media.empty(); }
+  bool scatters() const {
+    const auto scattering = [](const LitMedium& m) { return (m.medium->albedo * m.medium->sigma_t).maxCoeff() > 0; };
+    const LitMedia& lit = rays_.media();
+    return !lit.lights.empty() && std::any_of(lit.media.begin(), lit.media.end(), scattering);
+  }
+  bool behind_kept() const {
+    return (scene_->geometry && !rays_.media().lights.empty()) || scene::has_environment(*scene_) ||
+           !scene_->backdrops.empty();
+  }
+  bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
+  Pixel pixel(const Ray&, RayVisits&) const;
+  Rgb behind(const Ray&, const scene::RayEnd&) const;
+
+  scene::Stopwatch watch_;
+  std::shared_ptr<const Scene> scene_;
+  RayOptions options_;
+  std::string settings_;
+  LightRays rays_;
+  std::vector<scene::StageTime> times_;
+  double negative_ = 0;  // greatest share of a box
+};
+
+std::vector<scene::Stage> PreparedRays::stages() const {
+  const LitMedia& lit = rays_.media();
+  int polynomials = 0, faces = 0;
+  for (const LitMedium& m : lit.media)
+    for (const LightColumns& columns : m.columns) polynomials += columns.polynomials(), faces += columns.face_count();
+  const std::string why = lit.media.empty()    ? "no medium extinguishes"
+                          : lit.lights.empty() ? "no directional light shines"
+                                               : "no medium scatters";
+  return {{"polynomials of light paths", polynomials > 0,
+           lit.media.empty() || lit.lights.empty() ? why
+                                                   : fmt::format("of {} of {} faces that light comes in by; the others "
+                                                                 "are integrated by Gauss points",
+                                                                 polynomials, faces)},
+          {"clamping", negative_ > 0,
+           negative_ > 0 ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_)
+                         : "no density is below 0"},
+          {"airlight", scatters(),
+           scatters() ? fmt::format("{} points on panels, tolerance {:g}", options_.points, options_.tolerance) : why},
+          {"shadows", scatters() && rays_.shadowed(),
+           rays_.shadowed() ? "surfaces may stand before a light" : "no surface stands before a light"},
+          {"transmittance", any_medium(), any_medium() ? "exact along camera rays" : why},
+          {"surfaces", behind_kept(),
+           behind_kept() ? "lights through the media, background" : "no surface is lit, no background"},
+          {"ambient", ambient_kept(),
+           ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"},
+          {"environment as a light", false,
+           scene::has_environment(*scene_) ? "no direction: only the background is drawn" : "no environment"}};
+}
+
+// What the ray ends on sends back, without the media in between.
+Rgb PreparedRays::behind(const Ray& ray, const scene::RayEnd& end) const {
+  if (!end.hit) return scene::background(*scene_, end, ray.direction);
+  const scene::Hit& hit = *end.hit;
+  const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
+  Rgb sum = Rgb::Zero();
+  for (std::size_t l = 0; l < rays_.media().lights.size(); ++l) {
+    const scene::DirectionalLight& light = rays_.media().lights[l];
+    const double cosine = hit.normal.dot(light.to_light);
+    if (!(cosine > 0)) continue;
+    const Rgb reflected = scene::brdf(material, hit.normal, light.to_light, -ray.direction) * light.irradiance * cosine;
+    if (!(reflected.maxCoeff() > 0)) continue;
+    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, light.to_light);
+    if (scene_->geometry->occluded({start, light.to_light})) continue;
+    sum += reflected * (-rays_.media().light_depth(hit.position, l)).exp();
+  }
+  return sum;
+}
+
+PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
+  Pixel pixel;
+  const scene::RayEnd end = scene::camera_end(*scene_, ray);
+  const Rgb depth = rays_.media().view_depth(ray, end.t);
+  pixel.transmittance = (-depth).exp();
+  if (scatters()) pixel.airlight = rays_.airlight(ray, end.t, visits);
+  if (behind_kept() && pixel.transmittance.maxCoeff() > 0) pixel.surface = pixel.transmittance * behind(ray, end);
+  // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
+  if (ambient_kept())
+    pixel.ambient = scene_->ambient_in_scatter * depth.unaryExpr([](double d) { return -std::expm1(-d); });
+  return pixel;
+}
+
+scene::Rendering PreparedRays::render(const View& view, const Execution& execution) const {
+  require_own_camera(*scene_, view);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  scene::Film& film = result.film;
+  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
+  float *airlight = film.add("airlight").data(), *surface = film.add("surface").data();
+  float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
+  film.metadata = {
+      {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  scene::Stopwatch watch;
+  const scene::CameraRays rays(view.camera, view.width, view.height);
+  std::mutex mutex;
+  RayVisits total;
+  scene::parallel_rows(view.height, execution, [&](int y) {
+    RayVisits visits;
+    for (int x = 0; x < view.width; ++x) {
+      const Pixel p = pixel(rays(x + 0.5, y + 0.5), visits);
+      const Rgb sum = p.airlight + p.surface + p.ambient;
+      const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = Eigen::Index(c);
+        mean[at + c] = float(sum[channel]);
+        airlight[at + c] = float(p.airlight[channel]);
+        surface[at + c] = float(p.surface[channel]);
+        transmittance[at + c] = float(p.transmittance[channel]);
+        if (ambient) ambient[at + c] = float(p.ambient[channel]);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    total.segments += visits.segments;
+    total.panels += visits.panels;
+    total.shadow_rays += visits.shadow_rays;
+  });
+  result.times.push_back({"rays", watch.lap()});
+  result.counters = {{"rays", double(film.pixels())},
+                     {"segments", double(total.segments)},
+                     {"panels", double(total.panels)},
+                     {"points", double(total.panels) * options_.points},
+                     {"shadow_rays", double(total.shadow_rays)},
+                     {"negative_share", negative_}};
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<scene::Prepared> prepare_rays(std::shared_ptr<const Scene> scene, const RayOptions& options,
+                                              const std::string& settings) {
+  return std::make_unique<PreparedRays>(std::move(scene), options, settings);
+}
+
+}  // namespace airlight::legendre_fluids

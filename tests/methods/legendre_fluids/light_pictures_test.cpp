@@ -1,0 +1,154 @@
+// Pictures of variant `ray` against the deterministic reference and, as statistical tests, the path tracer: scenes that share nothing.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "experiments/equality.h"
+#include "methods/legendre_fluids/light.h"
+#include "reference/deterministic/renderer.h"
+#include "reference/path_tracer/renderer.h"
+#include "tests/methods/legendre_fluids/light_scenes.h"
+
+using namespace airlight;
+using namespace airlight::test;
+using namespace airlight::legendre_fluids::testing;
+
+namespace {
+
+const legendre_fluids::LegendreLight method;
+
+scene::DirectionalLight sun(const Vec3& to_light, const Rgb& irradiance) { return {to_light.normalized(), irradiance}; }
+
+scene::Surface wall(const Point3& at, const Vec3& normal, const Rgb& albedo) {
+  return {"wall", scene::Plane{at, normal}, scene::Lambert{albedo}};
+}
+
+struct Case {
+  const char* name;
+  std::function<void(scene::Scene&)>
+      change;           // of one medium of 4^3 coefficients in the unit box, seen by an orthographic camera
+  double most;          // relative L2 error against the quadrature
+  const char* samples;  // of the path tracer
+};
+
+const Case cases[] = {
+    {"coloured, forward",
+     [](scene::Scene& s) {
+       s.media[0].sigma_t = {0.3, 1, 3};
+       s.media[0].albedo = {0.9, 0.5, 0.7};
+       s.media[0].phase = scene::HenyeyGreenstein{0.6};
+       s.lights = {sun(oblique_light, {3, 2, 1})};
+     },
+     5e-8, "256"},
+    {"perspective, from within, backward",
+     [](scene::Scene& s) {
+       s.camera = scene::look_at({0.5, -0.3, 0.2}, {-1, 0.4, -0.3}, Vec3::UnitY());
+       s.camera.vertical_fov = 1.6;
+       s.media[0].sigma_t = {2, 2, 2};
+       s.media[0].phase = scene::HenyeyGreenstein{-0.4};
+     },
+     5e-8, "256"},
+    {"two media in each other, two suns",
+     [](scene::Scene& s) {
+       s.media.push_back(smoke(random_density({3, 5, 2}, 8, 1, {{-0.4, -2, -0.7}, {1.6, 0.5, 0.9}}), 1));
+       s.media[0].albedo = {0.9, 0.2, 0.4};
+       s.media[0].phase = scene::Rayleigh{};
+       s.media[1].sigma_t = {2, 1, 0.5};
+       s.lights = {sun({0.2, 1, 0.1}, {1, 1, 1}), sun({-1, 0.3, 0.8}, {1, 2, 4})};
+     },
+     5e-8, "512"},
+    {"one medium in the shadow of another",
+     [](scene::Scene& s) {
+       s.media.push_back(smoke(random_density({4, 4, 4}, 9, 1, {{-1.2, 1.3, -0.3}, {0.2, 2.4, 0.8}}), 4, 0.3));
+       s.lights = {sun({-0.2, 1, 0.1}, {2, 2, 2})};
+       s.camera.height = 5;
+     },
+     5e-8, "1280"},
+    {"negative in places",
+     [](scene::Scene& s) {
+       Eigen::VectorXd c = std::get<scene::LegendrePointer>(s.media[0].field)->coefficients();
+       c.tail(63) *= 2.5;
+       s.media[0].field = std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{4, 4, 4}, c);
+     },
+     2e-7, "256"},
+    {"a shadowgram on a wall, two suns",
+     [](scene::Scene& s) {
+       s.camera = scene::look_at({1, 2, 7}, {0, 0, -1}, Vec3::UnitY());
+       s.camera.vertical_fov = 0.7;
+       s.media[0].sigma_t = {0.5, 1, 2};
+       s.lights = {sun({0.5, 0.3, 1}, {2, 2, 2}), sun({-0.6, 0.1, 1}, {1, 0.5, 0.2})};
+       s.surfaces = {wall({0, 0, -1.8}, Vec3::UnitZ(), {0.8, 0.7, 0.6})};
+     },
+     5e-8, "512"},
+    {"a ball in the smoke, its shadow, a floor",
+     [](scene::Scene& s) {
+       s.camera = scene::look_at({3, 2, 5}, {0, -0.2, 0}, Vec3::UnitY());
+       s.camera.vertical_fov = 0.6;
+       s.lights = {sun({0.5, 1, 0.3}, {2, 3, 4})};
+       s.surfaces = {wall({0, -1, 0}, Vec3::UnitY(), {0.5, 0.5, 0.5}),
+                     {"ball", scene::Sphere{{0.1, 0.2, 0.1}, 0.4}, scene::Phong{Rgb(.3, .4, .5), Rgb(.3, .3, .3), 10}}};
+     },
+     3e-7, "512"},
+    {"flat, beside an even box, against the light",
+     [](scene::Scene& s) {
+       s.media = {smoke(random_density({6, 2, 5}, 4, 1, {{-1, -0.2, -1}, {1, 0.1, 1}}), 4, 0.95),
+                  smoke(nullptr, 0.5, 0.6)};
+       s.media[0].phase = scene::HenyeyGreenstein{-0.2};
+       s.media[1].field = scene::Homogeneous{2};
+       s.media[1].region = Box{{-0.8, 0.1, -0.5}, {0.9, 0.7, 0.6}};
+       s.lights = {sun(oblique_view, {2, 2, 2})};
+     },
+     5e-8, "1536"},
+};
+
+std::shared_ptr<scene::Scene> scene_of(const Case& c, int width, int height) {
+  auto scene = lit_scene(smoke(random_density({4, 4, 4}, 3), 1.5), oblique_light, oblique_view, width, height, 3);
+  c.change(*scene);
+  finish(*scene);
+  return scene;
+}
+
+}  // namespace
+
+// False alarms: 1e-3 for all scenes together.
+TEST_CASE("legendre light: pictures equal the quadrature's and the path tracer's", "[legendre_fluids][light]") {
+  const double alpha = 1e-3 / double(std::size(cases));
+  for (const Case& c : cases) {
+    const auto scene = scene_of(c, 24, 18);
+    CAPTURE(c.name);
+    const scene::Film film = picture(method, scene, {}, 0);
+    const scene::Film truth = picture(*deterministic::make_renderer(), scene, {{"relative_tolerance", "1e-8"}}, 0);
+    for (const char* layer : {"airlight", "transmittance", "mean"}) CHECK(relative_l2(film, truth, layer) <= c.most);
+    if (scene->geometry) CHECK(relative_l2(film, truth, "surface") <= c.most);
+    // The path tracer lets light go from surface to surface: black ones.
+    auto black = std::make_shared<scene::Scene>(*scene);
+    for (scene::Surface& surface : black->surfaces) surface.material = scene::Lambert{Rgb::Zero()};
+    finish(*black);
+    scene::Film alone = picture(method, black, {}, 0);
+    const scene::Film traced =
+        picture(path_tracer::PathTracer(), black, {{"samples", c.samples}, {"max_order", "1"}}, 0);
+    const experiments::Equality e = experiments::compare_equal(alone, traced, "mean", {}, alpha);
+    if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+      fmt::print("{}: error {:.1e}, mean {:.1e}; {}\n", c.name, relative_l2(film, truth),
+                 relative_l2(film, truth, "mean"), experiments::text(e));
+    CHECK(e.equal);
+    CHECK(e.detectable_bias < 0.03);
+    // Twice the bias that it must be able to detect: it does.
+    for (float& v : alone.layers["mean"]) v *= 0.94f;
+    CHECK_FALSE(experiments::compare_equal(alone, traced, "mean", {}, alpha).equal);
+  }
+}
+
+TEST_CASE("legendre light: threads change nothing; layers add up", "[legendre_fluids][light]") {
+  auto scene = scene_of(cases[6], 24, 18);
+  scene->ambient_in_scatter = {0.1, 0.2, 0.3};
+  finish(*scene);
+  const scene::Film film = picture(method, scene, {}, 1);
+  CHECK(picture(method, scene, {}, 3).layers == film.layers);
+  for (std::size_t i = 0; i < film.layer("mean").size(); ++i)
+    CHECK(film.layer("mean")[i] ==
+          Approx(film.layer("airlight")[i] + film.layer("surface")[i] + film.layer("ambient")[i]));
+  const scene::Film truth = picture(*deterministic::make_renderer(), scene, {{"relative_tolerance", "1e-7"}}, 0);
+  CHECK(relative_l2(film, truth, "ambient") <= 1e-6);
+}
