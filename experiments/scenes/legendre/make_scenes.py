@@ -288,8 +288,8 @@ type = "legendre"
 file = "lake_mist.csv"
 size = [8, 5, 8]
 lo = [-3400, -565, -7800]
-hi = [3400, 300, 5200]
-sigma_t = 0.0018
+hi = [3400, 100, 5200]
+sigma_t = 0.0014
 """ + lights + lake_surfaces())
 
 
