@@ -127,6 +127,15 @@ Interval legendre_range(const Eigen::VectorXd& f, const TensorShape& shape, int 
   return {hull.minCoeff() - rest, hull.maxCoeff() + rest};
 }
 
+Interval legendre_range(const Eigen::VectorXd& series) {
+  using Hull = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, hull_size, 1>;
+  const int low = std::min(int(series.size()), hull_size);
+  const Hull hull = bernstein_matrix(low).lazyProduct(series.head(low));
+  double rest = 0;
+  for (int k = low; k < int(series.size()); ++k) rest += std::abs(series[k]) * greatest_of(k, true);
+  return {hull.minCoeff() - rest, hull.maxCoeff() + rest};
+}
+
 double legendre_bound(const Eigen::VectorXd& f, const TensorShape& shape, int dimensions) {
   double bound = 0;
   for_each(f, shape, dimensions, [&](int, double c, double greatest) { bound += std::abs(c) * greatest; });

@@ -30,12 +30,35 @@ Eigen::VectorXd series_primitive(const Eigen::VectorXd& f) {
   return primitive;
 }
 
+namespace {
+
+// sqrt(k + 1/2), and what the recurrence of P_k takes: P_{k+1} = first x P_k - second P_{k-1}.
+struct Term {
+  double scale, first, second;
+};
+constexpr int tabulated = 128;
+Term term(int k) {
+  const double d = k;
+  return {std::sqrt(d + 0.5), (2 * d + 1) / (d + 1), d / (d + 1)};
+}
+const std::array<Term, tabulated>& terms() {
+  static const auto all = [] {
+    std::array<Term, tabulated> list;
+    for (int k = 0; k < tabulated; ++k) list[std::size_t(k)] = term(k);
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace
+
 double series_value(const Eigen::VectorXd& f, double x) {
+  const auto& table = terms();
   double p = 1, before = 0, sum = 0;
   for (Eigen::Index k = 0; k < f.size(); ++k) {
-    const double d = double(k);
-    sum += f[k] * std::sqrt(d + 0.5) * p;
-    const double next = ((2 * d + 1) * x * p - d * before) / (d + 1);
+    const Term t = k < tabulated ? table[std::size_t(k)] : term(int(k));
+    sum += f[k] * t.scale * p;
+    const double next = t.first * x * p - t.second * before;
     before = p;
     p = next;
   }

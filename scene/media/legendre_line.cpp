@@ -10,7 +10,19 @@
 namespace airlight::scene {
 namespace {
 
-Interval range_of(const Eigen::VectorXd& series) { return legendre_range(series, {int(series.size()), 1, 1}, 1); }
+// Where a series that is monotone, of different signs at -1 and 1, passes 0: Newton's steps, halves where they leave what encloses the root.
+double only_root(const Eigen::VectorXd& series, const Eigen::VectorXd& slope, bool rises) {
+  double lo = -1, hi = 1, x = 0;
+  for (int step = 0; step < 100 && x > lo && x < hi; ++step) {
+    const double value = series_value(series, x);
+    if (value == 0) return x;
+    ((value > 0) == rises ? hi : lo) = x;
+    const double next = x - value / series_value(slope, x);
+    if (std::abs(next - x) <= 1e-15) return std::clamp(next, lo, hi);
+    x = next > lo && next < hi ? next : 0.5 * (lo + hi);
+  }
+  return x;
+}
 
 // The polynomial at places of the range, given as ones of [-1, 1]: summed along z for all of them at once.
 Eigen::VectorXd values_on(const LegendreBox& field, const Ray& ray, Interval t, const Eigen::VectorXd& places) {
@@ -74,7 +86,7 @@ void LegendreLine::add(Interval t) {
 }
 
 void LegendreLine::isolate(const Eigen::VectorXd& series, Interval t) {
-  const Interval range = range_of(series);
+  const Interval range = legendre_range(series);
   if (range.hi <= 0) return;
   if (range.lo >= 0) return add(t);
   const double middle = 0.5 * (t.lo + t.hi), most = std::max(range.hi, -range.lo);
@@ -82,15 +94,14 @@ void LegendreLine::isolate(const Eigen::VectorXd& series, Interval t) {
     if (series[0] > 0) add(t);  // positive or negative on the whole: no one can tell
     return;
   }
-  const Interval slope = range_of(series_slope(series));
+  const Eigen::VectorXd slopes = series_slope(series);
+  const Interval slope = legendre_range(slopes);
   if (slope.lo >= 0 || slope.hi <= 0) {  // monotone: one root at most
     const bool rises = slope.lo >= 0;
     const double first = series_value(series, -1), last = series_value(series, 1);
     if (first <= 0 && last <= 0) return;
     if (first >= 0 && last >= 0) return add(t);
-    double lo = -1, hi = 1;
-    for (double x = 0; x > lo && x < hi; x = 0.5 * (lo + hi)) (series_value(series, x) > 0) == rises ? hi = x : lo = x;
-    const double root = t.lo + 0.5 * (1 + lo) * t.length();
+    const double root = t.lo + 0.5 * (1 + only_root(series, slopes, rises)) * t.length();
     return add(rises ? Interval{root, t.hi} : Interval{t.lo, root});
   }
   isolate(series_half(series, false), {t.lo, middle});

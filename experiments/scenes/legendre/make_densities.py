@@ -18,7 +18,7 @@ height = 120
 [camera]
 type = "orthographic"
 position = {position}
-look_at = [0, 0, 0]
+look_at = {look_at}
 height = {height}
 """
 
@@ -65,38 +65,50 @@ def smoke_cube(n):
     return [c[0]] + [theta * v + 0 for v in c[1:]]  # no -0
 
 
-def medium(n, c, lines):
-    numbers = textwrap.fill(", ".join(f"{v:.10g}" for v in c), 136, initial_indent="  ", subsequent_indent="  ")
+def medium(n, lines, density):
     return f"""
 [[medium]]
 type = "legendre"
 {lines}lo = [-1, -1, -1]
 hi = [1, 1, 1]
 size = [{n}, {n}, {n}]
-coefficients = [
-{numbers},
-]
+{density}
 """
+
+
+def coefficients(c):
+    numbers = textwrap.fill(", ".join(f"{v:.10g}" for v in c), 136, initial_indent="  ", subsequent_indent="  ")
+    return f"coefficients = [\n{numbers},\n]"
+
+
+def write_csv(name, n, c):
+    rows = [f"{i // (n * n)},{i // n % n},{i % n},{v:.10g}\n" for i, v in enumerate(c) if v != 0]
+    (FOLDER / name).write_text("i,j,k,coefficient\n" + "".join(rows))
 
 
 def oblique(name, title, n, seed, decay):
     """Light along (.48, .6, -.64), seen along (-.36, .48, .8); as the paper's systems need it: orthographic, one medium, nothing else."""
     text = f"# {title[0].upper() + title[1:]}, light and view oblique, for the errors of systems and rays. By make_densities.py.\n"
-    text += f'name = "{title}"\n\n' + CAMERA.format(position="[-1.8, 2.4, 4]", height=2.8)
+    text += f'name = "{title}"\n\n' + CAMERA.format(position="[-1.8, 2.4, 4]", look_at="[0, 0, 0]", height=2.8)
     text += '\n[[light]]\ntype = "directional"\nto_light = [-0.48, -0.6, 0.64]\nirradiance = 1\n'
-    text += medium(n, random_density(n, seed, decay), "sigma_t = 0.5  # times 2 it is the mean optical depth along an edge\nalbedo = 0.8\n")
+    text += medium(n, "sigma_t = 0.5  # times 2 it is the mean optical depth along an edge\nalbedo = 0.8\n",
+                   coefficients(random_density(n, seed, decay)))
     (FOLDER / f"{name}.toml").write_text(text)
 
 
 def main():
     oblique("smooth", "smooth density of 64 coefficients", 4, 1, 2)
     oblique("rough", "rough density of 216 coefficients", 6, 2, 0)
+    write_csv("smoke_cube.csv", 4, smoke_cube(4))
     text = "# A cube of smoke in 64 coefficients before a wall: Gupta and Narasimhan 2007, Figure 13. By make_densities.py.\n"
-    text += 'name = "smoke cube before a wall"\n\n' + CAMERA.format(position="[2.4, 1.2, 8]", height=5.6)
-    text += '\n[[light]]\ntype = "directional"\nto_light = [-0.9, 0.5, 1]\nirradiance = 3.5\n'
+    text += 'name = "smoke cube before a wall"\n\n'
+    text += CAMERA.format(position="[2, 1.6, 8]", look_at="[0.4, -0.1, -0.6]", height=3.6)
+    text += '\n[[light]]\ntype = "directional"\nto_light = [-0.9, 0.7, 1]\nirradiance = [11, 10.4, 9.4]\n'
     text += '\n[[surface]]\ntype = "plane"\nname = "wall"\npoint = [0, 0, -1.6]\nnormal = [0, 0, 1]\n'
-    text += 'material = { type = "lambert", albedo = 0.8 }\n'
-    text += medium(4, smoke_cube(4), "sigma_t = 8\nalbedo = 0.95\n")
+    text += 'material = { type = "lambert", albedo = [0.16, 0.18, 0.22] }\n'
+    text += '\n[[surface]]\ntype = "plane"\nname = "floor"\npoint = [0, -1.15, 0]\nnormal = [0, 1, 0]\n'
+    text += 'material = { type = "lambert", albedo = [0.2, 0.19, 0.17] }\n'
+    text += medium(4, "sigma_t = 6\nalbedo = 0.97\n", 'file = "smoke_cube.csv"')
     (FOLDER / "smoke_cube.toml").write_text(text)
 
 
