@@ -68,12 +68,31 @@ values = [)" + [] {
   return values;
 }() + "]\nregion = { type = \"slab\", lo = -2, hi = 2 }\n";
 
+const std::string series = perspective + R"([[light]]
+type = "directional"
+to_light = [1, 3, 2]
+irradiance = 3
+[[medium]]
+type = "legendre"
+sigma_t = [0.3, 0.4, 0.6]
+lo = [-3, -3, -8]
+hi = [3, 3, 3]
+size = [2, 1, 3]
+coefficients = [2, 0.3, 0.2, 0.4, -0.1, 0.1]
+)";
+
+// With the media and lights that a renderer knows.
+const std::string& text_for(const std::string& renderer) {
+  return renderer == "wavelet_fog" ? map : renderer == "legendre_fluids" ? series : gaussians;
+}
+
 }  // namespace
 
 TEST_CASE("renderers see a picture with depth through the medium before it", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog");
+  const std::string name =
+      GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog", "legendre_fluids");
   CAPTURE(name);
-  const auto scene = before_picture(name == "wavelet_fog" ? map : gaussians);
+  const auto scene = before_picture(text_for(name));
   const std::map<std::string, std::string> settings =
       name == "path_tracer" ? std::map<std::string, std::string>{{"samples", "4"}, {"max_order", "1"}}
                             : std::map<std::string, std::string>{};
@@ -164,12 +183,13 @@ TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous"
 }
 
 TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]") {
-  const std::vector<std::string> know = {"ray_marcher", "path_tracer", "deterministic",
-                                         "fogshop",     "wavelet_fog", "legendre_fluids"};
+  const std::vector<std::string> know = {"ray_marcher", "ray_marcher_gpu", "path_tracer",    "deterministic",
+                                         "fogshop",     "wavelet_fog",     "legendre_fluids"};
   for (const std::string& name : experiments::renderer_names()) {
     CAPTURE(name);
     const scene::Renderer& renderer = experiments::find_renderer(name, "test");
-    const auto reasons = renderer.supports(*before_picture(gaussians), scene::Settings(renderer.settings(), {}, name));
+    const auto reasons =
+        renderer.supports(*before_picture(text_for(name)), scene::Settings(renderer.settings(), {}, name));
     const bool refused = std::any_of(reasons.begin(), reasons.end(),
                                      [](const std::string& r) { return r.find("backdrop") != std::string::npos; });
     CHECK(refused == (std::find(know.begin(), know.end(), name) == know.end()));
@@ -177,8 +197,9 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
 }
 
 TEST_CASE("a view through another camera than the scene's is refused where there is a backdrop", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog");
-  const auto scene = before_picture(name == "wavelet_fog" ? map : gaussians);
+  const std::string name =
+      GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog", "legendre_fluids");
+  const auto scene = before_picture(text_for(name));
   const scene::Renderer& renderer = experiments::find_renderer(name, "test");
   scene::View view = view_of(*scene);
   view.camera.position += Vec3(0.1, 0, 0);
