@@ -2,6 +2,7 @@
 
 #include "experiments/find_component.h"
 #include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
 #include "gpu/wavelet_fog/wavelet_fog_gpu.h"
@@ -29,6 +30,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
     list.push_back(std::make_unique<gpu::WaveletFogGpu>());
     list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
+    list.push_back(std::make_unique<gpu::LegendreLightGpu>());
     return list;
   }();
   return renderers;

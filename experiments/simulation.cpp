@@ -69,10 +69,11 @@ class Folder {
   // The first file that is gone, of the frames up to the last; nothing where all are there.
   std::string missing(const Kept& kept) const {
     for (int frame = 0; frame <= kept.last; ++frame) {
-      if (!fs::exists(frame_name(frame))) return frame_name(frame);
-      if (!s_.problem->particles.empty() && !fs::exists(particles_name(frame))) return particles_name(frame);
-      for (int density = 0; density < kept.coefficients; ++density)
-        if (!fs::exists(coefficients_name(density, frame))) return coefficients_name(density, frame);
+      std::vector<std::string> files{frame_name(frame)};
+      for (int density = 0; density < kept.coefficients; ++density) files.push_back(coefficients_name(density, frame));
+      if (!s_.problem->particles.empty()) files.push_back(particles_name(frame));
+      for (const std::string& file : files)
+        if (!fs::exists(file)) return file;
     }
     return "";
   }
@@ -101,7 +102,6 @@ class Folder {
   }
 
   void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
-    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
     int coefficients = 0;
     for (int density = 0; density <= int(s_.problem->densities.size()); ++density) {
       const scene::DensityField medium = flow.medium(density);
@@ -110,6 +110,7 @@ class Folder {
       scene::write_legendre_csv(coefficients_name(density, frame), **box);
       ++coefficients;
     }
+    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
     scene::write_frame(frame_name(frame), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},

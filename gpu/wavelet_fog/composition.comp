@@ -1,5 +1,6 @@
 // The film's layers from optical depths and what lies behind them (eq. 4).
 layout(local_size_x = LOCAL_SIZE_X) in;
+#include "common/opacity.glsl"
 #include "wavelet_fog/lit.glsl"
 layout(std430, binding = AT_DEPTHS) readonly buffer Depths { vec4 depths[]; };
 layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer TransmittanceLayer { float transmittance_layer[]; };
@@ -9,11 +10,6 @@ layout(std430, binding = AT_MEAN_LAYER) writeonly buffer MeanLayer { float mean_
 layout(std430, binding = AT_AIRLIGHT_LAYER) readonly buffer AirlightLayer { float airlight_layer[]; };
 uniform int pixels, has_fog, has_lit, has_ambient, has_airlight;
 uniform vec3 ambient;  // [W/m^2/sr]
-
-// 1 - exp(-depth) without the digits that the difference loses in thin fog.
-float opacity(float depth) {
-  return depth > 0.125 ? 1 - exp(-depth) : depth * (1 - depth / 2 * (1 - depth / 3 * (1 - depth / 4 * (1 - depth / 5))));
-}
 
 void main() {
   int place = int(gl_GlobalInvocationID.x);

@@ -16,6 +16,8 @@ constexpr int tile = 8;
 constexpr int most_nodes =
     12000;  // of the tree, with up to four triangles each: 65535 iterations of loops (gpu/README.md)
 
+}  // namespace
+
 void set_lamp(Program& p, const scene::Light& light) {
   const auto set = [&](int kind, const Point3& position, const Vec3& axis, const Rgb& colour) {
     p.set("lamp_kind", kind);
@@ -33,8 +35,6 @@ void set_lamp(Program& p, const scene::Light& light) {
       [&](const scene::DirectionalLight& sun) { set(0, Point3::Zero(), sun.to_light, sun.irradiance); },
       [](const scene::EnvironmentLight&) {});
 }
-
-}  // namespace
 
 bool something_ends_rays(const scene::Scene& scene) {
   return scene.geometry || std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
@@ -92,18 +92,14 @@ void SurfaceLight::reflect(const scene::Light& light, const scene::View& view, c
   p.dispatch(view.width, view.height);
 }
 
-void SurfaceLight::render(const scene::Scene& scene, const scene::View& view,
-                          const std::vector<std::unique_ptr<FogOnDevice>>& fogs, const Buffer* primitives,
-                          const Buffer& lit) {
+void SurfaceLight::render(const scene::Scene& scene, const scene::View& view, const Buffer* primitives,
+                          const Buffer& lit, const std::function<void(const scene::Light&)>& dim) {
   bool first = true;
   for (const scene::Light& light : scene.lights) {
     if (!reflects_ || !scene::is_delta(light)) continue;
     reflect(light, view, *primitives, lit, first);
     first = false;
-    for (const auto& fog : fogs) {
-      set_lamp(fog->light_rays(), light);
-      fog->dim(view, lit);
-    }
+    dim(light);
   }
   for (int i = 0; i < environments_.count(); ++i) {
     Program& p = *backgrounds_[i];

@@ -1,19 +1,23 @@
 // What rays end on, seen without the fog in front of it: surfaces in the light of lamps, which comes through the fog, and the
 // environment.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "gpu/environment_lights.h"
 #include "gpu/material_tables.h"
 #include "gpu/raster/first_hits.h"
-#include "gpu/wavelet_fog/fog_on_device.h"
+#include "gpu/wavelet_fog/interface.h"
 
 namespace airlight::gpu::fogmaps {
 
 // Does anything end rays: surfaces, or balls of lights; does a lamp light surfaces.
 bool something_ends_rays(const scene::Scene&);
 bool lamps_light_surfaces(const scene::Scene&);
+
+// The uniforms of lamp.glsl.
+void set_lamp(Program&, const scene::Light&);
 
 class SurfaceLight {
  public:
@@ -23,9 +27,10 @@ class SurfaceLight {
 
   // False: no lamp lights a surface, and there is no environment: `lit` is not written.
   bool shines() const { return reflects_ || environments_.count() > 0; }
-  // Of the lights of `scene`, the one it was made for or one whose lamps moved. `primitives` may be null.
-  void render(const scene::Scene&, const scene::View&, const std::vector<std::unique_ptr<FogOnDevice>>&,
-              const Buffer* primitives, const Buffer& lit);
+  // Of the lights of `scene`, the one it was made for or one whose lamps moved. `primitives` may be null. `dim` takes from what `lit` has
+  // of a light what the media between it and the surfaces take.
+  void render(const scene::Scene&, const scene::View&, const Buffer* primitives, const Buffer& lit,
+              const std::function<void(const scene::Light&)>& dim);
 
  private:
   SurfaceLight(Context&, const scene::Scene&, const FirstHits*, const MaterialTables&);

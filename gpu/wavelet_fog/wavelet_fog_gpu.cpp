@@ -220,7 +220,12 @@ scene::Rendering PreparedWaveletFogGpu::draw(const View& view, const Execution& 
   }
   if (surfaces_->shines()) {
     frame_.timer.begin("surfaces");
-    surfaces_->render(*scene_, view, fogs_, primitives, lit);
+    surfaces_->render(*scene_, view, primitives, lit, [&](const scene::Light& light) {
+      for (const auto& fog : fogs_) {
+        set_lamp(fog->light_rays(), light);
+        fog->dim(view, lit);
+      }
+    });
   }
   frame_.timer.begin("composition");
   compose(view, depths, lit);

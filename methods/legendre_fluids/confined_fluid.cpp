@@ -26,6 +26,15 @@ Array values_on(const Array& x, const Array& y, const Array& z, const std::funct
 
 }  // namespace
 
+int runge_kutta_steps(double dt, int n, double speed, bool air_comes_in) {
+  const double rule = std::max(n / step_rule, air_comes_in ? n * n / inflow_rule : 0);
+  const double steps = std::ceil(dt * speed * rule * (1 - 1e-9));
+  if (!(steps <= 1e6))
+    throw scene::Unstable(
+        fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
+  return std::max(1, int(steps));
+}
+
 ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Material& material,
                              const ConfinedOptions& options, std::optional<Wind> wind)
     : Fluid(dimensions, n, half, material), options_(options), wind_(std::move(wind)) {
@@ -147,20 +156,24 @@ Array ConfinedFluid::state_rate(const Array& y) {
   return rate;
 }
 
+// Speeds may rise on the way: what is left is divided anew after each part.
 void ConfinedFluid::advect_by_runge_kutta(double dt) {
-  const double n = space_.n(), speed = greatest_speed() + (wind_ ? wind_->gust.norm() : 0);
-  const double steps = std::ceil(dt * speed * std::max(n / step_rule, wind_ ? n * n / inflow_rule : 0) * (1 - 1e-9));
-  if (!(steps <= 1e6))
-    throw scene::Unstable(
-        fmt::format("a greatest speed of {:.3g} half boxes a second, too much for steps of {:g} s", speed, dt));
-  const int count = std::max(1, int(steps));
-  Array y = joined_state();
-  const auto rate = [&](const Array& now) { return state_rate(now); };
-  for (int i = 0; i < count; ++i) y = runge_kutta_4(y, dt / count, rate);
-  substeps_ += count;
+  const double gusts = wind_ ? wind_->gust.norm() : 0;
+  for (double left = dt; left > 0;) {
+    const int steps = runge_kutta_steps(left, space_.n(), greatest_speed() + gusts, wind_.has_value());
+    const double part = left / steps;
+    runge_kutta_part(part);
+    left = steps > 1 ? left - part : 0;
+    ++substeps_;
+  }
+}
+
+void ConfinedFluid::runge_kutta_part(double dt) {
+  const Array y = runge_kutta_4(joined_state(), dt, [&](const Array& now) { return state_rate(now); });
   Eigen::Index begin = velocity.size();
   velocity = y.head(begin);
-  for (Array* r : carried()) *r = y.segment(begin, r->size()).eval(), begin += r->size();
+  for (Array* r : carried()) *r = y.segment(begin, r->size()), begin += r->size();
+  time = y[begin];
 }
 
 Array ConfinedFluid::krylov(const Array& y, double dt, const SkewOperator& a) {

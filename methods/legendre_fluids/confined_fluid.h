@@ -18,6 +18,10 @@ struct ConfinedOptions {
   double filter_velocity = 0, filter_carried = 0, filter_order = 8;
 };
 
+// How many steps of Runge-Kutta dt [s] takes where the greatest speed is `speed` [half sizes per second], and whether air comes in. Throws
+// scene::Unstable above 1e6, and where the speed is no number.
+int runge_kutta_steps(double dt, int n, double speed, bool air_comes_in);
+
 using BySide = std::array<std::array<double, 2>, 3>;  // [axis][low, high]
 
 // Wind through the box: a velocity that is not confined, and what its air brings along.
@@ -55,6 +59,7 @@ class ConfinedFluid : public Fluid {
   Array joined_state();
   Array state_rate(const Array& y);  // of advection
   void advect_by_runge_kutta(double dt);
+  void runge_kutta_part(double dt);
   void advect_by_krylov(double dt);
   Array krylov(const Array& y, double dt, const SkewOperator&);
   void filter(double dt);

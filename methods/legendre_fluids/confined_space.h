@@ -56,6 +56,16 @@ class ConfinedSpace {
   const Array& nodes() const { return points_.node; }  // along an axis, the second half the first one's mirror image
   const Array& weights() const { return points_.weight; }
   const Eigen::MatrixXd& phi() const { return phi_; }  // coefficients of phi in L: (n+1) x (n-1)
+  // What the operators are made of, for those who apply them elsewhere: pairs are of L and of phi. n > 1.
+  struct Matrices {
+    const std::array<Eigen::MatrixXd, 2>&at_points, &slope_at_points, &from_points;
+    const Eigen::MatrixXd &pressure_modes, &wall_modes, &free_modes, &from_scalar;
+    const Array &wall_rates, &free_rates;
+  };
+  Matrices matrices() const {
+    return {at_points_,  slope_at_points_, from_points_, pressure_modes_, wall_modes_,
+            free_modes_, from_scalar_,     wall_rates_,  free_rates_};
+  }
   TensorShape points_shape() const;
   double integral(const Array& values) const;                 // over the box [m^d]
   Array scalar_from_points(const Array& values) const;        // L2 projection
@@ -92,13 +102,13 @@ class ConfinedSpace {
   int d_, n_;
   Vec3 half_;
   std::array<int, 4> offset_{};
-  scene::LegendrePoints points_;                            // of n + 1 coefficients: the degree of phi
-  Eigen::MatrixXd phi_;                                     // coefficients of phi in L: (n+1) x (n-1)
-  Eigen::MatrixXd mass_, inverse_;                          // of phi; its inverse
-  Eigen::MatrixXd wall_modes_, free_modes_;                 // orthogonal: of the mass, n-1; of D^T D, n
-  Array wall_rates_, free_rates_;                           // the eigenvalues of -d^2/dx^2 along phi and along L
-  Eigen::MatrixXd pressure_modes_;                          // 1 and the wall modes: n
-  std::array<Eigen::MatrixXd, 2> at_points_, from_points_;  // [0] L, [1] phi
+  scene::LegendrePoints points_;             // of n + 1 coefficients: the degree of phi
+  Eigen::MatrixXd phi_;                      // coefficients of phi in L: (n+1) x (n-1)
+  Eigen::MatrixXd mass_, inverse_;           // of phi; its inverse
+  Eigen::MatrixXd wall_modes_, free_modes_;  // orthogonal: of the mass, n-1; of D^T D, n
+  Array wall_rates_, free_rates_;            // the eigenvalues of -d^2/dx^2 along phi and along L
+  Eigen::MatrixXd pressure_modes_;           // 1 and the wall modes: n
+  std::array<Eigen::MatrixXd, 2> at_points_, slope_at_points_, from_points_;  // [0] L, [1] phi
   AdvectionKernel kernel_;
   Eigen::MatrixXd from_scalar_;  // L to phi, L2 projection
 };

@@ -50,7 +50,12 @@ bool is_given(const FlowProblem& p) {
   return p.velocity_stays &&
          (std::holds_alternative<scene::Wind>(p.velocity) || std::holds_alternative<scene::RigidRotation>(p.velocity));
 }
+
+}  // namespace
+
 bool air_comes_in(const FlowProblem& p) { return is_given(p) || has_open_sides(p); }
+
+namespace {
 
 void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
   for (int a = 0; a < p.dimensions; ++a)
@@ -103,17 +108,6 @@ std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& probl
   return wind;
 }
 
-ConfinedOptions options_from(const Settings& settings) {
-  ConfinedOptions options;
-  options.time_step = settings.choice<TimeStep>("time_step");
-  options.krylov = int(settings.integer("krylov"));
-  options.tolerance = settings.real("tolerance");
-  options.filter_velocity = settings.real("filter_velocity");
-  options.filter_carried = settings.real("filter_carried");
-  options.filter_order = settings.real("filter_order");
-  return options;
-}
-
 // Of two densities the sum and the first one's share, which comes from nowhere but the start and does not spread.
 void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reasons) {
   const std::string mixing = "mixing = albedo with ";
@@ -146,6 +140,17 @@ void object_to_paper(const FlowProblem& problem, const Settings& settings, std::
 }
 
 }  // namespace
+
+ConfinedOptions confined_options(const Settings& settings) {
+  ConfinedOptions options;
+  options.time_step = settings.choice<TimeStep>("time_step");
+  options.krylov = int(settings.integer("krylov"));
+  options.tolerance = settings.real("tolerance");
+  options.filter_velocity = settings.real("filter_velocity");
+  options.filter_carried = settings.real("filter_carried");
+  options.filter_order = settings.real("filter_order");
+  return options;
+}
 
 std::string LegendreFluids::about() const {
   return "Gupta and Narasimhan 2007: velocity and density in n Legendre coefficients along each axis of a box";
@@ -206,13 +211,13 @@ std::unique_ptr<scene::Flow> LegendreFluids::start_supported(std::shared_ptr<con
   const Material material{problem->viscosity, problem->diffusivity, !problem->velocity_stays};
   std::unique_ptr<Fluid> fluid;
   if (settings.choice<Variant>("variant") == Variant::galerkin)
-    fluid = std::make_unique<ConfinedFluid>(box.dimensions, n, box.half, material, options_from(settings),
+    fluid = std::make_unique<ConfinedFluid>(box.dimensions, n, box.half, material, confined_options(settings),
                                             wind_through(problem, box));
   else
     fluid =
         std::make_unique<PaperFluid>(box.dimensions, n, box.half, material, settings.choice<Truncation>("truncation"),
                                      settings.choice<Variant>("variant") == Variant::paper_repaired);
-  return start_flow(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
+  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
 }
 
 }  // namespace airlight::legendre_fluids

@@ -1,9 +1,15 @@
 // Legendre fluids: Gupta and Narasimhan, "Legendre Fluids: A Unified Framework for Analytic Reduced Space Modeling and Rendering of
 // Participating Media" (SCA 2007), section 5. A box of n coefficients along each axis, in two or three dimensions.
 #pragma once
+#include "methods/legendre_fluids/confined_fluid.h"
 #include "scene/flow.h"
 
 namespace airlight::legendre_fluids {
+
+// Whether anything goes through the sides of the box.
+bool air_comes_in(const scene::FlowProblem&);
+// Those of the variant galerkin.
+ConfinedOptions confined_options(const scene::Settings&);
 
 class LegendreFluids : public scene::Solver {
  public:

@@ -86,14 +86,6 @@ std::string content_hash(const FlowProblem& p) {
     hash.add(push.acceleration);
     for (const double value : {push.time.lo, push.time.hi, push.frequency}) hash.add(value);
   }
-  for (const ParticleSet& set : p.particles) {
-    hash.tag("particles");
-    hash.add(set.count);
-    add(hash, set.region);
-    hash.add(std::int64_t(set.seed));
-    hash.add(set.fall);
-    hash.add(int(set.leaving));
-  }
   for (const NamedDensity& d : p.densities) {
     hash.tag("density " + d.name);
     hash.add(d.density);
@@ -103,6 +95,14 @@ std::string content_hash(const FlowProblem& p) {
     for (const auto& axis : p.sides)
       for (const Side& side : axis) hash.add(side.of);
     for (const Source& s : p.sources) hash.add(s.of);
+  }
+  for (const ParticleSet& set : p.particles) {
+    hash.tag("particles");
+    hash.add(set.count);
+    add(hash, set.region);
+    hash.add(std::int64_t(set.seed));
+    hash.add(set.fall);
+    hash.add(int(set.leaving));
   }
   return hash.digits();
 }

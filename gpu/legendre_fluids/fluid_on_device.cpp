@@ -1,0 +1,237 @@
+#include "gpu/legendre_fluids/fluid_on_device.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "scene/flow.h"
+
+namespace airlight::gpu::legendre {
+namespace {
+
+constexpr int lines_of_group = 32;
+
+std::string indexed(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
+
+}  // namespace
+
+FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Material& material,
+                             const ConfinedOptions& options, const Regions& regions)
+    : context_(context),
+      space_(fluid.space()),
+      material_(material),
+      options_(options),
+      moves_(material.moves),
+      carries_density_(fluid.density.size() > 0),
+      carries_temperature_(fluid.temperature.size() > 0),
+      velocities_(space_.dimensions()),
+      fields_(velocities_ + carries_density_ + carries_temperature_),
+      slab_(std::size_t(space_.shape()[1] * space_.shape()[2])),
+      size_(std::size_t(space_.n()) * slab_),
+      lines_(std::size_t(space_.points_shape()[1] * space_.points_shape()[2])) {
+  const Use use(context_);
+  Tables tables(space_, options.filter_order);
+  std::vector<float> amounts;
+  for (const auto* list : {&regions.sources, &regions.pushes})
+    for (const Array& region : *list) amounts.insert(amounts.end(), region.data(), region.data() + region.size());
+  Definitions definitions = tables.definitions();
+  const auto number = [&](const char* name, std::size_t value) { definitions[name] = std::to_string(value); };
+  number("FIELDS", std::size_t(fields_));
+  number("MOVES", moves_);
+  number("DENSITY", carries_density_ ? std::size_t(velocities_) : 0);  // 0: there is none
+  number("TEMPERATURE", carries_temperature_ ? std::size_t(fields_ - 1) : 0);
+  number("SOURCES", regions.sources.size());
+  number("PUSHES", regions.pushes.size());
+  const int n = space_.n();
+  slab_group_ = (space_.points_shape()[0] + 7) / 8 * 8;  // a lane for every row and column
+  expand_ = &program(context_, "expand", slab_group_, 1, definitions);
+  collect_ = &program(context_, "collect", slab_group_, 1, definitions);
+  points_ = &program(context_, "points", lines_of_group, 1, definitions);
+  columns_ = &program(context_, "columns", lines_of_group, 1, definitions);
+  tables_ = std::make_unique<Buffer>(context_, "matrices of the fluid", tables.values());
+  regions_ = std::make_unique<Buffer>(context_, "regions of the fluid", amounts);
+  const auto floats = [&](const char* name, std::size_t count) {
+    return std::make_unique<Buffer>(context_, name, count * sizeof(float), Contents::undefined);
+  };
+  const std::size_t all = std::size_t(fields_);
+  for (auto& state : states_) state = floats("state of the fluid", all * size_);
+  rates_ = floats("rates of the fluid", 2 * all * size_);
+  pressure_ = floats("pressure", 2 * size_);
+  spread_ = floats("slabs of the fluid", all * std::max(size_, 3 * std::size_t(n) * lines_));
+  gathered_ = floats("lines of the fluid", all * std::size_t(n) * lines_);
+  status_ = std::make_unique<Buffer>(context_, "status of the fluid", 2 * sizeof(unsigned));
+  upload(fluid);
+}
+
+void FluidOnDevice::upload(const Fluid& fluid) {
+  std::vector<float> state;
+  for (int a = 0; a < velocities_; ++a) put_field(space_, a, space_.component(fluid.velocity, a), state);
+  if (carries_density_) put_field(space_, -1, fluid.density, state);
+  if (carries_temperature_) put_field(space_, -1, fluid.temperature, state);
+  states_[current_]->upload(state);
+}
+
+void FluidOnDevice::download(Fluid& fluid) const { take(states_[current_]->download<float>(), fluid); }
+
+void FluidOnDevice::take(const std::vector<float>& fields, Fluid& fluid) const {
+  legendre_fluids::Components parts;
+  const float* from = fields.data();
+  for (int a = 0; a < velocities_; ++a, from += size_) parts[a] = take_field(space_, a, from);
+  fluid.velocity = space_.joined(parts);
+  if (carries_density_) fluid.density = take_field(space_, -1, from), from += size_;
+  if (carries_temperature_) fluid.temperature = take_field(space_, -1, from);
+}
+
+void FluidOnDevice::set(Program& p, Fields fields) {
+  p.set("first_field", fields.first);
+  p.set("per_area", Vec3(space_.half().cwiseAbs2().cwiseInverse()));
+}
+
+void FluidOnDevice::expand(Fields fields, GoesOn goes_on, bool adds, int stage, double dt, bool begins, bool ends) {
+  Program& p = *expand_;
+  set(p, fields);
+  states_[begins ? current_ : 1 - current_]->bind(at::start);
+  p.set("adds", adds);
+  p.set("stage", stage);
+  p.set("dt", dt);
+  p.set("goes_on", int(goes_on));
+  p.set("begins", begins);
+  p.set("ends", ends);
+  p.dispatch(space_.n() * slab_group_, fields.count);
+}
+
+void FluidOnDevice::points(bool measures) {
+  points_->set("measures", measures);
+  points_->dispatch(int(lines_));
+}
+
+void FluidOnDevice::collect(Fields fields, ComesFrom comes_from) {
+  Program& p = *collect_;
+  const int of_velocity = std::max(0, velocities_ - fields.first);
+  p.set("comes_from", int(comes_from));
+  p.set("velocity", of_velocity > 0);
+  p.set("first_scalar", std::max(fields.first, velocities_));
+  p.dispatch(space_.n() * slab_group_, (of_velocity > 0) + fields.count - of_velocity);
+}
+
+void FluidOnDevice::columns(Fields fields, bool diffuses, double dt) {
+  Program& p = *columns_;
+  set(p, fields);
+  p.set("diffuses", diffuses);
+  p.set("velocity_amount", material_.viscosity * dt);
+  p.set("carried_amount", material_.diffusivity * dt);
+  p.dispatch(int(slab_), diffuses ? fields.count : 1);
+}
+
+FluidOnDevice::Fields FluidOnDevice::diffusing() const {
+  const bool velocity = moves_ && material_.viscosity > 0, carried = material_.diffusivity > 0;
+  return {velocity ? 0 : velocities_, (velocity ? velocities_ : 0) + (carried ? fields_ - velocities_ : 0)};
+}
+
+// From the modes along y and z that expand left; of a velocity up to the pressure that expand adds.
+void FluidOnDevice::spread_modes_back(Fields fields, double dt) {
+  columns(fields, true, dt);
+  collect(fields, ComesFrom::modes);
+  if (fields.first == 0) columns(fields, false);
+}
+
+void FluidOnDevice::run(double dt, int count, const StepForces& forces) {
+  const Fields all{0, fields_}, moving = this->moving(), diffusing = this->diffusing();
+  const bool any = diffusing.count > 0, viscous = any && diffusing.first == 0;
+  const bool pushes =
+      moves_ && (!forces.pushes.empty() || !forces.by_density.isZero(0) || !forces.by_temperature.isZero(0));
+  expand(all, any ? GoesOn::to_modes : GoesOn::to_points, false, -1, 0, true);
+  if (any) {
+    spread_modes_back(diffusing, 0.5 * dt);
+    expand(all, GoesOn::to_points, viscous, -1, 0);
+  }
+  for (int step = 0; step < count; ++step)
+    for (int stage = 0; stage < 4; ++stage) {
+      const bool last = step + 1 == count && stage == 3;
+      points(step == 0 && stage == 0);
+      collect(moving, ComesFrom::points);
+      if (moves_) columns(moving, false);
+      const GoesOn next = !last ? GoesOn::to_points : any ? GoesOn::to_modes : GoesOn::nowhere;
+      expand(moving, next, true, stage, dt / count, false, last && !any && !pushes);
+    }
+  if (any) spread_modes_back(diffusing, 0.5 * dt);
+  if (pushes) {
+    collect({0, velocities_}, ComesFrom::forces);
+    columns({0, velocities_}, false);
+  }
+  if (any || pushes) expand(all, GoesOn::nowhere, viscous || pushes, -1, 0, false, true);
+}
+
+void FluidOnDevice::bind() {
+  regions_->bind(at::regions);
+  tables_->bind_as(GL_UNIFORM_BUFFER, at::matrices);
+  rates_->bind(at::rates);
+  pressure_->bind(at::pressure);
+  spread_->bind(at::spread);
+  gathered_->bind(at::gathered);
+  status_->bind(at::status);
+  states_[1 - current_]->bind(at::state);
+}
+
+void FluidOnDevice::project() {
+  const Use use(context_);
+  bind();
+  const Fields velocity{0, velocities_};
+  for (const char* none : {"by_density", "by_temperature"}) collect_->set(none, Vec3(Vec3::Zero()));
+  expand({0, fields_}, GoesOn::nowhere, false, -1, 0, true);
+  collect(velocity, ComesFrom::forces);
+  columns(velocity, false);
+  expand(velocity, GoesOn::nowhere, true, -1, 0);
+  current_ = 1 - current_;
+}
+
+void FluidOnDevice::diffuse(double dt) {
+  const Use use(context_);
+  bind();
+  const Fields all{0, fields_};
+  expand(all, GoesOn::to_modes, false, -1, 0, true);
+  columns(all, true, dt);
+  collect(all, ComesFrom::modes);
+  current_ = 1 - current_;
+}
+
+void FluidOnDevice::advect(Fluid& rates) {
+  const Use use(context_);
+  bind();
+  expand({0, fields_}, GoesOn::to_points, false, -1, 0, true);
+  points(false);
+  collect(moving(), ComesFrom::points);
+  take(rates_->download<float>(), rates);
+}
+
+void FluidOnDevice::step(double dt, const StepForces& forces) {
+  const Use use(context_);
+  bind();
+  for (std::size_t i = 0; i < forces.density.size(); ++i) {
+    expand_->set(indexed("density_amounts", i), forces.density[i]);
+    expand_->set(indexed("temperature_amounts", i), forces.temperature[i]);
+  }
+  for (std::size_t i = 0; i < forces.pushes.size(); ++i) collect_->set(indexed("push_amounts", i), forces.pushes[i]);
+  collect_->set("by_density", forces.by_density);
+  collect_->set("by_temperature", forces.by_temperature);
+  expand_->set("fades", forces.fades);
+  expand_->set("filters_velocity", moves_ ? options_.filter_velocity * dt : 0.0);
+  expand_->set("filters_carried", options_.filter_carried * dt);
+  // How many steps of Runge-Kutta it takes is known when the first has begun: as many as the last time, else all again.
+  while (true) {
+    run(dt, guess_, forces);
+    const std::vector<unsigned> status = status_->download<unsigned>();
+    float squared;
+    std::memcpy(&squared, &status[0], sizeof squared);
+    const int count = legendre_fluids::runge_kutta_steps(dt, space_.n(), std::sqrt(double(squared)), false);
+    if (count == guess_ && status[1] == 0) break;
+    if (count == guess_) throw scene::Unstable("coefficients are no longer finite");
+    guess_ = count;
+  }
+  context_.check("a step of the fluid");
+  substeps_ += guess_;
+  current_ = 1 - current_;
+}
+
+}  // namespace airlight::gpu::legendre

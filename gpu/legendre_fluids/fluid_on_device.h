@@ -1,0 +1,88 @@
+// The variant `galerkin` of methods/legendre_fluids on the device: coefficients live there, in single precision, and so does every step.
+//
+// An evaluation of the right side is four dispatches: expand.comp takes slabs of one x to Gauss points along y and z, points.comp lines of
+// points along x, where products are taken, and back, collect.comp slabs back to coefficients, columns.comp the pressure along x; the rest
+// of the pressure is done where the next begins.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "gpu/legendre_fluids/tables.h"
+#include "methods/legendre_fluids/confined_fluid.h"
+
+namespace airlight::gpu::legendre {
+
+using legendre_fluids::ConfinedOptions;
+using legendre_fluids::Fluid;
+using legendre_fluids::Material;
+
+constexpr int most_regions = 64;  // of sources, and of forces: uniforms
+
+// Regions that sources fill and forces push, by their coefficients.
+struct Regions {
+  std::vector<Array> sources, pushes;
+};
+
+// What a step adds and takes beside the fluid's own motion.
+struct StepForces {
+  std::vector<double> density, temperature;                     // by source, added before the step
+  std::vector<Vec3> pushes;                                     // by force [half sizes per second], added after it
+  Vec3 by_density = Vec3::Zero(), by_temperature = by_density;  // likewise, of a density or temperature of 1
+  double fades = 1;                                             // what decay leaves
+};
+
+class FluidOnDevice {
+ public:
+  // With the coefficients of a fluid: its density and temperature are carried where they are not empty. 2 <= n <= most_coefficients. Throws
+  // Unavailable as Buffer and Program do.
+  FluidOnDevice(Context&, const Fluid&, const Material&, const ConfinedOptions&, const Regions& = {});
+
+  // By dt [s]. Runge-Kutta divides it as on the CPU. One wait, for how many steps that takes and whether all is finite. Throws
+  // scene::Unstable, and leaves the state as it was.
+  void step(double dt, const StepForces& = {});
+  double substeps() const { return substeps_; }  // of Runge-Kutta so far
+
+  // Into a fluid that was made alike, and from it.
+  void download(Fluid&) const;
+  void upload(const Fluid&);
+
+  // Coefficients of now: fields as fields.glsl has them. Another buffer after every step.
+  const Buffer& state() const { return *states_[current_]; }
+  std::size_t density_at() const { return size_t(space_.dimensions()); }  // its field, where there is one
+
+  // Parts of a step: the nearest velocity without divergence; diffusion of all over a time [s], divergence left; the rates of advection
+  // before projection, into a fluid that was made alike.
+  void project();
+  void diffuse(double dt);
+  void advect(Fluid& rates);
+
+ private:
+  struct Fields {
+    int first, count;
+  };
+  void bind();
+  void take(const std::vector<float>& fields, Fluid&) const;
+  void set(Program&, Fields);
+  void expand(Fields, GoesOn, bool adds, int stage, double dt, bool begins = false, bool ends = false);
+  void points(bool measures);
+  void collect(Fields, ComesFrom);
+  void columns(Fields, bool diffuses, double dt = 0);
+  void spread_modes_back(Fields, double dt);
+  void run(double dt, int count, const StepForces&);
+  Fields moving() const { return {moves_ ? 0 : velocities_, fields_ - (moves_ ? 0 : velocities_)}; }
+  Fields diffusing() const;
+
+  Context& context_;
+  ConfinedSpace space_;
+  Material material_;
+  ConfinedOptions options_;
+  bool moves_, carries_density_, carries_temperature_;
+  int velocities_, fields_, slab_group_, guess_ = 1;
+  std::size_t slab_, size_, lines_;
+  double substeps_ = 0;
+  std::unique_ptr<Buffer> tables_, regions_, states_[2], rates_, pressure_, spread_, gathered_, status_;
+  int current_ = 0;  // of the states
+  Program *expand_, *points_, *collect_, *columns_;
+};
+
+}  // namespace airlight::gpu::legendre

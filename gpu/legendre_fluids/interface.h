@@ -1,0 +1,49 @@
+// What host and shaders of this method must agree about, said once.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/program.h"
+
+namespace airlight::gpu::legendre {
+
+// Storage blocks, AT_... in shaders. What no shader has at the same time shares a number.
+namespace at {
+enum Binding {
+  start = 1,
+  state = 2,
+  rates = 3,
+  pressure = 4,
+  spread = 5,
+  status = 6,
+  gathered = 7,
+  regions = 0,
+  // light_*.comp
+  distances = 0,
+  reached = 1,
+  columns = 2,
+  airlight = 3,
+  lit = 4,
+  transmittance = 5,
+  ambient = 6,
+  surface = 7,
+  mean = 0,
+  seen = 1,     // light_composition.comp
+  targets = 0,  // light_density.comp
+  // uniform blocks
+  matrices = 0,
+  densities = 0,
+  rule = 1,
+};
+}  // namespace at
+
+// Where expand.comp goes on to, and collect.comp comes from.
+enum class GoesOn { nowhere, to_points, to_modes };
+enum class ComesFrom { points, modes, forces };
+
+using Definitions = std::map<std::string, std::string>;
+
+// A program of this folder: `file` without folder and .comp, a work group of x times y invocations.
+Program& program(Context&, const std::string& file, int x, int y, Definitions definitions);
+
+}  // namespace airlight::gpu::legendre

@@ -1,0 +1,127 @@
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "gpu/legendre_fluids/fluid_on_device.h"
+#include "methods/legendre_fluids/legendre_flow.h"
+#include "methods/legendre_fluids/legendre_fluids.h"
+
+namespace airlight::gpu {
+namespace {
+
+using legendre::FluidOnDevice;
+using legendre::StepForces;
+using legendre_fluids::ConfinedFluid;
+using legendre_fluids::ConfinedOptions;
+using legendre_fluids::Fluid;
+using legendre_fluids::LegendreFlow;
+using legendre_fluids::Material;
+using scene::FlowProblem;
+
+class LegendreFlowGpu final : public LegendreFlow {
+ public:
+  LegendreFlowGpu(std::shared_ptr<const FlowProblem> problem, const Material& material, const ConfinedOptions& options,
+                  std::unique_ptr<Fluid> fluid, int cells)
+      : LegendreFlow(std::move(problem), std::move(fluid), cells),
+        device_(Context::get(), *fluid_, material, options, {source_, push_}) {}
+
+  std::map<std::string, double> counters() const override {
+    auto counters = LegendreFlow::counters();
+    counters["Runge-Kutta steps"] = device_.substeps();
+    counters.erase("energy filtered");  // nobody looks
+    return counters;
+  }
+  void restore(const std::string& state) override {
+    LegendreFlow::restore(state);
+    device_.upload(*fluid_);
+    here_ = true;
+  }
+
+  std::optional<legendre::DensityOnDevice> density_on_device() const {
+    if (p_->dimensions != 3 || !fluid_->density.size()) return {};
+    return legendre::DensityOnDevice{device_.state(), device_.density_at(), fluid_->space().n(), p_->box};
+  }
+
+ private:
+  void move(double dt) override {
+    timed("steps on the device", [&] { device_.step(dt, forces(dt)); });
+    here_ = false;
+  }
+  Fluid& now() const override {
+    if (!here_) device_.download(*fluid_);
+    here_ = true;
+    return *fluid_;
+  }
+
+  StepForces forces(double dt) const {
+    StepForces f;
+    const std::vector<double> seconds = source_seconds(dt), push_seconds = this->push_seconds(dt);
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+      f.density.push_back(seconds[i] * p_->sources[i].density_rate);
+      f.temperature.push_back(seconds[i] * p_->sources[i].temperature_rate);
+    }
+    for (std::size_t i = 0; i < push_seconds.size(); ++i)
+      f.pushes.push_back(push_seconds[i] * p_->pushes[i].acceleration.cwiseQuotient(box_.half));
+    if (fluid_->density.size()) f.by_density = dt * p_->weight * p_->gravity.cwiseQuotient(box_.half);
+    if (fluid_->temperature.size()) f.by_temperature = -dt * p_->expansion * p_->gravity.cwiseQuotient(box_.half);
+    f.fades = fluid_->faded(p_->decay * dt);
+    return f;
+  }
+
+  FluidOnDevice device_;
+  mutable bool here_ = true;  // *fluid_ has the coefficients of now
+};
+
+}  // namespace
+
+std::optional<legendre::DensityOnDevice> legendre::density_on_device(const scene::Flow& flow) {
+  const auto* here = dynamic_cast<const LegendreFlowGpu*>(&flow);
+  return here ? here->density_on_device() : std::nullopt;
+}
+
+std::string LegendreFluidsGpu::about() const {
+  return "legendre_fluids in compute shaders: the variant galerkin in single precision (Gupta and Narasimhan 2007)";
+}
+
+std::vector<scene::SettingSpec> LegendreFluidsGpu::settings() const {
+  return legendre_fluids::LegendreFluids().settings();
+}
+
+std::vector<std::string> LegendreFluidsGpu::supports(const FlowProblem& problem,
+                                                     const scene::Settings& settings) const {
+  std::vector<std::string> reasons = legendre_fluids::LegendreFluids().supports(problem, settings);
+  if (settings.text("variant") != "galerkin")
+    reasons.push_back("variant = " + settings.text("variant") + " is for the CPU: shaders know galerkin");
+  if (settings.text("time_step") != "runge_kutta")
+    reasons.push_back("time_step = " + settings.text("time_step") + " is for the CPU: shaders know runge_kutta");
+  if (const auto n = settings.integer("n"); n < 2 || n > legendre::most_coefficients)
+    reasons.push_back(
+        fmt::format("n = {}: shaders take 2 to {} coefficients along an axis", n, legendre::most_coefficients));
+  if (legendre_fluids::air_comes_in(problem))
+    reasons.push_back("air that comes in through sides: shaders know a closed box");
+  if (!problem.densities.empty())
+    reasons.push_back(fmt::format("{} densities: shaders carry one", problem.densities.size() + 1));
+  if (std::max(problem.sources.size(), problem.pushes.size()) > std::size_t(legendre::most_regions))
+    reasons.push_back(fmt::format("{} sources and {} forces: shaders have room for {} of each", problem.sources.size(),
+                                  problem.pushes.size(), legendre::most_regions));
+  return reasons;
+}
+
+int LegendreFluidsGpu::steps_per_frame(const FlowProblem& problem, const scene::Settings& settings) const {
+  return legendre_fluids::LegendreFluids().steps_per_frame(problem, settings);
+}
+
+std::unique_ptr<scene::Flow> LegendreFluidsGpu::start_supported(std::shared_ptr<const FlowProblem> problem,
+                                                                const scene::Settings& settings,
+                                                                const scene::Execution&) const {
+  const legendre_fluids::ReferenceBox box(*problem);
+  const Material material{problem->viscosity, problem->diffusivity, !problem->velocity_stays};
+  const ConfinedOptions options = legendre_fluids::confined_options(settings);
+  auto fluid = std::make_unique<ConfinedFluid>(box.dimensions, int(settings.integer("n")), box.half, material, options);
+  return std::make_unique<LegendreFlowGpu>(std::move(problem), material, options, std::move(fluid),
+                                           int(settings.integer("cells")));
+}
+
+}  // namespace airlight::gpu

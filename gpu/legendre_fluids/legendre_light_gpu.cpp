@@ -1,0 +1,263 @@
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/frame.h"
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/light_media_on_device.h"
+#include "gpu/raster/backdrops.h"
+#include "gpu/view_uniforms.h"
+#include "gpu/wavelet_fog/surface_light.h"
+#include "methods/legendre_fluids/light.h"
+#include "methods/legendre_fluids/light_options.h"
+#include "scene/error.h"
+#include "scene/single_precision.h"
+
+namespace airlight::gpu {
+namespace {
+
+using namespace legendre;
+
+using legendre_fluids::LightRays;
+using legendre_fluids::LitMedium;
+using legendre_fluids::RayOptions;
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+constexpr int tile = 4;                   // of rays, both ways
+constexpr double least_tolerance = 1e-6;  // that single precision can keep
+
+// The range of the depth over a panel, up to which that many points miss no more than the tolerance: coefficients of exp(-r z) are at most
+// 2 (r/2)^k / k!.
+double widest_panel(const RayOptions& options) {
+  const double order = 2 * options.points;
+  return 4 * std::exp((std::log(0.5 * std::max(options.tolerance, least_tolerance)) + std::lgamma(order + 1)) / order);
+}
+
+class PreparedLightGpu final : public scene::Prepared {
+ public:
+  PreparedLightGpu(std::shared_ptr<const Scene>, const RayOptions&, std::string settings);
+
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+  bool take(const DensityOnDevice& d) {
+    const Use use(context_);
+    return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
+  }
+
+ private:
+  bool any_medium() const { return !lit_.media.empty(); }
+  bool scatters() const;
+  bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
+  void follow(const View&, const Buffer* distances, std::size_t pixels) const;
+  void dim(const View&, const scene::Light&) const;
+  void compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const;
+
+  std::shared_ptr<const Scene> scene_;
+  RayOptions options_;
+  std::string settings_;
+  legendre_fluids::LitMedia lit_;
+  Context& context_;
+  std::unique_ptr<LightMediaOnDevice> media_;  // null: no medium extinguishes
+  std::unique_ptr<FirstHits> first_hits_;      // null: no surface ends a ray
+  std::unique_ptr<Backdrops> backdrops_;       // null: there are none
+  std::unique_ptr<fogmaps::SurfaceLight> surfaces_;
+  Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr;
+  mutable Frame frame_;
+  std::vector<scene::StageTime> times_;
+};
+
+PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const RayOptions& options, std::string settings)
+    : scene_(std::move(scene)),
+      options_(options),
+      settings_(std::move(settings)),
+      lit_(*scene_, 0),
+      context_(Context::get()),
+      frame_(context_) {
+  const Use use(context_);
+  StageTimer timer(context_);
+  timer.begin("upload");
+  if (fogmaps::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+  surfaces_ = std::make_unique<fogmaps::SurfaceLight>(context_, *scene_, first_hits_.get());
+  Definitions definitions{{"MEDIA", "0"}};
+  if (any_medium()) {
+    media_ = std::make_unique<LightMediaOnDevice>(context_, lit_, options_);
+    definitions = media_->definitions();
+    rays_ = &program(context_, "light_rays", tile, tile, definitions);
+    if (fogmaps::lamps_light_surfaces(*scene_)) dim_ = &program(context_, "light_dim", tile, tile, definitions);
+  }
+  composition_ = &program(context_, "light_composition", 64, 1, definitions);
+  times_ = timer.times();
+}
+
+bool PreparedLightGpu::scatters() const {
+  const auto scattering = [](const LitMedium& m) { return (m.medium->albedo * m.medium->sigma_t).maxCoeff() > 0; };
+  return !lit_.lights.empty() && std::any_of(lit_.media.begin(), lit_.media.end(), scattering);
+}
+
+std::vector<scene::Stage> PreparedLightGpu::stages() const {
+  const std::string why = !any_medium()         ? "no medium extinguishes"
+                          : lit_.lights.empty() ? "no directional light shines"
+                                                : "no medium scatters";
+  const bool ends = first_hits_ != nullptr, lit = surfaces_->shines();
+  return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
+          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
+          {"rays", any_medium(),
+           scatters() ? fmt::format("{} dispatches for each light, a stretch of every ray each", media_->stretches())
+           : any_medium() ? "columns alone: " + why
+                          : why},
+          {"surfaces", lit, lit ? "lights through the media, background" : "no surface is lit, no background"},
+          {"composition", true, "layers of the film"}};
+}
+
+// Every ray, under one light after the other, to its end: columns and airlight.
+void PreparedLightGpu::follow(const View& view, const Buffer* distances, std::size_t pixels) const {
+  Program& p = *rays_;
+  const Buffer& columns = frame_.buffers.get("columns", 4 * pixels * lit_.media.size());
+  const Buffer& reached = frame_.buffers.get("reached", 8 * pixels);
+  (distances ? *distances : columns).bind(at::distances);
+  reached.bind(at::reached);
+  columns.bind(at::columns);
+  frame_.buffers.get("airlight", 12 * pixels).bind(at::airlight);
+  set_view(p, view);
+  p.set("has_distances", distances != nullptr);
+  p.set("loop_count", 3);
+  p.set("tolerance", std::max(options_.tolerance, least_tolerance));
+  p.set("widest", widest_panel(options_));
+  for (std::size_t m = 0; m < lit_.media.size(); ++m) {
+    const scene::PhaseFunction& phase = lit_.media[m].medium->phase;
+    const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase);
+    p.set(fmt::format("phase_kind[{}]", m), int(phase.index()));
+    p.set(fmt::format("phase_g[{}]", m), hg ? hg->g : 0.0);
+  }
+  const std::size_t lights = scatters() ? lit_.lights.size() : 0;
+  for (std::size_t l = 0; l < std::max<std::size_t>(1, lights); ++l) {
+    media_->bind(p, lights > 0 ? lit_.lights[l].to_light : Vec3(Vec3::Zero()));
+    p.set("has_light", lights > 0);
+    p.set("first_light", l == 0);
+    p.set("irradiance", lights > 0 ? lit_.lights[l].irradiance : Rgb(Rgb::Zero()));
+    for (int stretch = 0; stretch < media_->stretches(); ++stretch) {
+      p.set("begins", stretch == 0);
+      p.dispatch(view.width, view.height);
+    }
+  }
+}
+
+void PreparedLightGpu::dim(const View& view, const scene::Light& light) const {
+  const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+  if (!media_ || !sun) return;
+  frame_.buffers.get("lit", sizeof(fogmaps::LitData) * std::size_t(view.width) * std::size_t(view.height))
+      .bind(at::lit);
+  set_view(*dim_, view);
+  media_->bind(*dim_, sun->to_light);
+  dim_->dispatch(view.width, view.height);
+}
+
+void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const {
+  Program& p = *composition_;
+  const auto layer = [&](const char* name, int binding) {
+    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
+    buffer.bind(binding);
+    frame_.download.add(name, buffer, 12 * pixels);
+  };
+  layer("transmittance", at::transmittance);
+  layer("surface", at::surface);
+  layer("mean", at::mean);
+  layer("airlight", at::airlight);
+  if (ambient()) layer("ambient", at::ambient);
+  lit.bind(at::lit);
+  (any_medium() ? frame_.buffers.get("columns", 4 * pixels * lit_.media.size()) : lit).bind(at::columns);
+  (seen ? *seen : lit).bind(at::seen);
+  p.set("has_seen", seen != nullptr);
+  p.set("pixels", int(pixels));
+  p.set("has_lit", surfaces_->shines());
+  p.set("has_ambient", ambient());
+  p.set("ambient", scene_->ambient_in_scatter);
+  for (std::size_t m = 0; m < lit_.media.size(); ++m)
+    p.set(fmt::format("sigma_t[{}]", m), lit_.media[m].medium->sigma_t);
+  p.dispatch(int(pixels));
+}
+
+scene::Rendering PreparedLightGpu::render(const View& view, const Execution& execution) const {
+  const Use use(context_);
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  frame_.begin(execution);
+  const Buffer& lit = frame_.buffers.get("lit", sizeof(fogmaps::LitData) * (surfaces_->shines() ? pixels : 1));
+  const Buffer *distances = nullptr, *primitives = nullptr;
+  if (first_hits_) {
+    frame_.timer.begin("distances");
+    distances = &frame_.buffers.get("distances", 4 * pixels);
+    primitives = &frame_.buffers.get("primitives", 4 * pixels);
+    first_hits_->find(view, *distances, primitives);
+  }
+  const Buffer* seen = nullptr;
+  if (backdrops_) {
+    frame_.timer.begin("backdrops");
+    if (!distances) distances = &frame_.buffers.get("distances", 4 * pixels);
+    seen = &frame_.buffers.get("seen", 12 * pixels);
+    backdrops_->find(view, *distances, bool(first_hits_), *seen);
+  }
+  if (any_medium()) {
+    frame_.timer.begin("rays");
+    follow(view, distances, pixels);
+  } else {
+    frame_.buffers.get("airlight", 12 * pixels).clear();
+  }
+  if (surfaces_->shines()) {
+    frame_.timer.begin("surfaces");
+    surfaces_->render(*scene_, view, primitives, lit, [&](const scene::Light& light) { dim(view, light); });
+  }
+  frame_.timer.begin("composition");
+  compose(pixels, lit, seen);
+  frame_.finish(result);
+  result.counters["rays"] = double(pixels);
+  result.film.metadata = {
+      {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  return result;
+}
+
+}  // namespace
+
+bool draw_flow(scene::Prepared& picture, const scene::Flow& flow) {
+  auto* prepared = dynamic_cast<PreparedLightGpu*>(&picture);
+  const std::optional<DensityOnDevice> density = density_on_device(flow);
+  return prepared && density && prepared->take(*density);
+}
+
+std::string LegendreLightGpu::about() const {
+  return "legendre_fluids in compute shaders: single scattering in Legendre boxes, exact optical depths (Gupta and Narasimhan 2007)";
+}
+
+std::vector<scene::SettingSpec> LegendreLightGpu::settings() const {
+  return legendre_fluids::LegendreLight().settings();
+}
+
+std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const scene::Settings& settings) const {
+  std::vector<std::string> reasons = legendre_fluids::LegendreLight().supports(scene, settings);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
+  const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
+  if (options.variant != legendre_fluids::LightOptions::Variant::ray)
+    reasons.push_back("variant = " + settings.text("variant") + " is for the CPU: shaders know ray");
+  if (!reasons.empty()) return reasons;
+  const LightRays rays(scene, options.ray);
+  for (const std::string& reason : legendre::reasons_against(rays.media())) reasons.push_back(reason);
+  if (rays.shadowed())
+    reasons.push_back("surfaces that may stand between a light and a medium: shaders know no shadows within media");
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> LegendreLightGpu::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                                     const scene::Settings& settings,
+                                                                     const Execution&) const {
+  return std::make_unique<PreparedLightGpu>(std::move(scene), legendre_fluids::read_light_options(settings).ray,
+                                            settings.canonical());
+}
+
+}  // namespace airlight::gpu

@@ -1,0 +1,42 @@
+// Media as polynomials under directional lights, as light_media.glsl reads them: the device's side of LitMedia.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/legendre_fluids/interface.h"
+#include "methods/legendre_fluids/light_rays.h"
+
+namespace airlight::gpu::legendre {
+
+constexpr int most_densities =
+    4096;  // coefficients of all media, each filled up to the same shape: 16 KiB of a uniform block
+
+// Why shaders cannot hold media that the CPU can; empty if they can.
+std::vector<std::string> reasons_against(const legendre_fluids::LitMedia&);
+
+class LightMediaOnDevice {
+ public:
+  // Keeps the media by reference. Throws as Buffer does.
+  LightMediaOnDevice(Context&, const legendre_fluids::LitMedia&, const legendre_fluids::RayOptions&);
+
+  int count() const { return int(media_.media.size()); }
+  // Of a program that includes light_media.glsl.
+  const Definitions& definitions() const { return definitions_; }
+  void bind(Program&, const Vec3& to_light) const;
+  // The density of a medium of n^3 coefficients becomes a field of a fluid's state, made positive where it is not; nothing leaves the device.
+  // False, and nothing is done, where the medium has another shape or box.
+  bool take(std::size_t medium, const Buffer& state, std::size_t field, int n, const Box&);
+  // Dispatches after which every ray has left all boxes.
+  int stretches() const;
+
+ private:
+  Context& context_;
+  const legendre_fluids::LitMedia& media_;
+  Definitions definitions_;
+  Buffer densities_, rule_;
+  std::unique_ptr<Buffer> least_;  // of take(), and its program
+  Program* taking_ = nullptr;
+};
+
+}  // namespace airlight::gpu::legendre

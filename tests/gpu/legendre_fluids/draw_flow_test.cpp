@@ -1,0 +1,113 @@
+// A flow that is moved and drawn on the device: nothing comes down between step and picture.
+#include <catch2/catch.hpp>
+
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "methods/legendre_fluids/light.h"
+#include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
+#include "tests/methods/legendre_fluids/light_scenes.h"
+
+using namespace airlight;
+using namespace legendre_fluids::testing;
+
+namespace {
+
+constexpr int n = 6;
+
+std::unique_ptr<scene::Flow> rising_blob(double background) {
+  scene::FlowProblem problem;
+  problem.box = unit_box;
+  problem.velocity = scene::Swirl{0.5};
+  problem.gravity = Vec3(0, -9.81, 0);
+  problem.expansion = 1.0 / 300;
+  problem.density = background;
+  problem.blobs.push_back({Point3(0.2, -0.3, 0.1), 0.6, 1, 30});
+  const gpu::LegendreFluidsGpu solver;
+  return solver.start(std::make_shared<const scene::FlowProblem>(problem),
+                      scene::Settings(solver.settings(), {{"n", std::to_string(n)}}), {});
+}
+
+// By the flow's density at Gauss points, drawn towards its mean by `share`.
+scene::LegendrePointer box_of(const scene::Flow& flow, double share) {
+  const scene::LegendrePoints points(n, n);
+  Eigen::VectorXd values(n * n * n);
+  Eigen::Index at = 0;
+  for (const double x : points.node)
+    for (const double y : points.node)
+      for (const double z : points.node) values[at++] = flow.density(Point3(x, y, z));
+  const auto& to = points.analysis;
+  Eigen::VectorXd c = scene::along_axes(to, to, to, values, {n, n, n});
+  c.tail(c.size() - 1) *= share;
+  return std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, c);
+}
+
+std::shared_ptr<scene::Scene> scene_with(scene::LegendrePointer field) {
+  return lit_scene(smoke(std::move(field), 1.5), oblique_light, oblique_view, 24, 20);
+}
+
+}  // namespace
+
+TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0.5);
+  Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
+  constant[0] = 1;
+  const auto scene =
+      scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
+  const gpu::LegendreLightGpu method;
+  const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+  const scene::View view = view_of(*scene);
+  scene::Execution none{1, {}};
+  none.layers.emplace();
+  gpu::Traffic& traffic = gpu::Context::get().traffic();
+  const auto frame = [&](const scene::Execution& execution) {
+    flow->step(0.05);
+    REQUIRE(gpu::draw_flow(*picture, *flow));
+    return picture->render(view, execution).film;
+  };
+  frame(none);
+  const gpu::Traffic before = traffic;
+  for (int i = 0; i < 4; ++i) frame(none);
+  const gpu::Traffic warm = traffic - before;
+  CHECK(warm.bytes_down == 4 * 8);  // the status of a step
+  CHECK(warm.bytes_up == 0);
+  CHECK(warm.allocations == 0);
+  CHECK(warm.look_ups == 0);
+  const scene::Film drawn = frame({1, {}});
+  const scene::LegendrePointer field = box_of(*flow, 1);
+  REQUIRE(!field->negative());
+  const scene::Film expected = test::render(legendre_fluids::LegendreLight(), scene_with(field)).film;
+  for (const auto& [layer, values] : expected.layers) {
+    CAPTURE(layer);
+    CHECK(gpu::test::quantile(expected, drawn, layer, 1) < 5e-6);
+  }
+}
+
+TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its mean", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0);
+  flow->step(0.05);
+  REQUIRE(box_of(*flow, 1)->negative());
+  Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
+  constant[0] = 1;
+  const auto scene =
+      scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
+  const gpu::LegendreLightGpu method;
+  const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+  REQUIRE(gpu::draw_flow(*picture, *flow));
+  const scene::Film drawn = picture->render(view_of(*scene), {1, {}}).film;
+  // The share that theta leaves, by a search on a fine lattice.
+  const scene::LegendrePointer field = box_of(*flow, 1);
+  double least = 0;
+  for (int i = 0; i < 41 * 41 * 41; ++i)
+    least = std::min(least, field->value(Vec3(i % 41, i / 41 % 41, i / 1681) / 20.0 - Vec3::Ones()));
+  const double mean = field->coefficients()[0] / std::sqrt(8.0);
+  const scene::Film expected =
+      test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, mean / (mean - least)))).film;
+  // The margin for what lies between points is 2 % of the way to the mean.
+  for (const char* layer : {"transmittance", "airlight"})
+    CHECK(test::relative_l2(drawn, expected, layer) < 0.01);
+  CHECK_FALSE(gpu::draw_flow(
+      *method.prepare(scene_with(random_density({4, 4, 4}, 1)), {method.settings(), {}}, {1, {}}), *flow));
+}

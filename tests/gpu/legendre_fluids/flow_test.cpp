@@ -1,0 +1,241 @@
+// Whole flows on the device: agreement with the CPU, what they keep, what passes between both, extremes, refusals.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/legendre_fluids/fluid_on_device.h"
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "methods/legendre_fluids/legendre_fluids.h"
+#include "scene/stopwatch.h"
+#include "tests/gpu/device.h"
+#include "tests/methods/legendre_fluids/swirl.h"
+
+using namespace airlight;
+using Catch::Contains;
+using scene::FlowProblem;
+using Given = std::map<std::string, std::string>;
+
+namespace {
+
+template <class Solver>
+std::unique_ptr<scene::Flow> start(const FlowProblem& problem, const Given& settings) {
+  const Solver solver;
+  return solver.start(std::make_shared<const FlowProblem>(problem), scene::Settings(solver.settings(), settings), {});
+}
+std::unique_ptr<scene::Flow> on_device(const FlowProblem& problem, const Given& settings) {
+  return start<gpu::LegendreFluidsGpu>(problem, settings);
+}
+
+FlowProblem box(int dimensions, const Vec3& size = Vec3::Ones()) {
+  FlowProblem problem;
+  problem.dimensions = dimensions;
+  problem.box = {Point3(1, 2, 0), Point3(1 + size[0], 2 + size[1], dimensions == 2 ? 0 : size[2])};
+  return problem;
+}
+
+// All there is: both scalars, buoyancy of both, a source and a force for a time, diffusion, decay.
+FlowProblem everything(int dimensions) {
+  FlowProblem problem = box(dimensions, Vec3(1, 1.5, 0.75));
+  const Point3 middle = 0.5 * (problem.box.lo + problem.box.hi);
+  problem.velocity = scene::Swirl{0.5};
+  problem.gravity = Vec3(2, -9.81, 1);
+  problem.expansion = 1.0 / 300;
+  problem.weight = 0.02;
+  problem.viscosity = 1e-3, problem.diffusivity = 5e-4, problem.decay = 0.3;
+  problem.blobs.push_back({middle - Vec3(0.1, 0.3, 0), 0.3, 1, 30});
+  scene::Source source;
+  source.region = Box{middle - Vec3(0.3, 0.6, 0.3), middle + Vec3(0.3, 0, 0.3)};
+  source.time = {0.05, 0.3};
+  source.density_rate = 2, source.temperature_rate = 40;
+  problem.sources.push_back(source);
+  scene::Push push;
+  push.region = scene::Sphere{middle, 0.4};
+  push.acceleration = Vec3(1, 0.5, -0.5);
+  push.frequency = 2;
+  problem.pushes.push_back(push);
+  return problem;
+}
+
+void run(scene::Flow& flow, int steps, double dt) {
+  for (int i = 0; i < steps; ++i) flow.step(dt);
+}
+
+struct Difference {
+  double velocity = 0, density = 0, temperature = 0;  // greatest over a lattice, over the greatest value
+};
+Difference difference(const scene::Flow& a, const scene::Flow& b, const FlowProblem& p) {
+  Difference d;
+  Vec3 most = Vec3::Constant(1e-300);
+  for (int i = 0; i < 125; ++i) {
+    const Point3 x = p.box.lo + Vec3(i % 5, i / 5 % 5, i / 25).cwiseProduct(p.box.size()) / 4;
+    const Vec3 values(b.velocity(x).norm(), std::abs(b.density(x)), std::abs(b.temperature(x)));
+    most = most.cwiseMax(values);
+    d.velocity = std::max(d.velocity, (a.velocity(x) - b.velocity(x)).norm());
+    d.density = std::max(d.density, std::abs(a.density(x) - b.density(x)));
+    d.temperature = std::max(d.temperature, std::abs(a.temperature(x) - b.temperature(x)));
+  }
+  return {d.velocity / most[0], d.density / most[1], d.temperature / most[2]};
+}
+
+std::vector<std::string> objections(const FlowProblem& problem, const Given& settings) {
+  const gpu::LegendreFluidsGpu solver;
+  return solver.supports(problem, scene::Settings(solver.settings(), settings));
+}
+
+}  // namespace
+
+TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  struct Case {
+    int dimensions;
+    const char* n;
+    bool stays;
+  };
+  for (const Case& c :
+       {Case{3, "5", false}, Case{3, "8", false}, Case{3, "8", true}, Case{2, "7", false}, Case{2, "16", false}}) {
+    FlowProblem problem = everything(c.dimensions);
+    problem.velocity_stays = c.stays;
+    const Given settings{{"n", c.n}, {"filter_velocity", "0.5"}, {"filter_carried", "1"}};
+    const auto cpu = start<legendre_fluids::LegendreFluids>(problem, settings), gpu = on_device(problem, settings);
+    const Difference before = difference(*gpu, *cpu, problem);
+    run(*cpu, 40, 0.02);
+    run(*gpu, 40, 0.02);
+    const Difference d = difference(*gpu, *cpu, problem);
+    CAPTURE(c.dimensions, c.n, c.stays);
+    CHECK(before.velocity < 1e-6);
+    CHECK(d.velocity < 2e-5);
+    CHECK(d.density < 2e-5);
+    CHECK(d.temperature < 2e-5);
+    for (const char* counter : {"steps", "Runge-Kutta steps"})
+      CHECK(gpu->counters().at(counter) == cpu->counters().at(counter));
+    CHECK(gpu->time() == cpu->time());
+    CHECK(gpu->totals().mass == Approx(cpu->totals().mass).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without divergence",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  using namespace legendre_fluids;
+  const std::pair<int, int> cases[] = {{2, 8}, {2, 16}, {3, 8}};
+  for (const auto& [dimensions, n] : cases) {
+    ConfinedFluid fluid(dimensions, n, Vec3::Ones(), {}, {});
+    fluid.velocity = testing::swirl(fluid.space());
+    const double before = fluid.energy();
+    gpu::legendre::FluidOnDevice device(gpu::Context::get(), fluid, {}, {});
+    for (int i = 0; i < 500; ++i) device.step(0.02);
+    device.download(fluid);
+    CAPTURE(dimensions, n);
+    CHECK(device.substeps() == 500);
+    CHECK(std::abs(fluid.energy() / before - 1) < 1e-5);  // measured 9e-7, 2e-7, 3.7e-6
+    CHECK(fluid.space().divergence(fluid.velocity).cwiseAbs().maxCoeff() < 5e-6);
+  }
+}
+
+TEST_CASE("legendre fluids on the device: a warm step sends nothing and waits once", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const FlowProblem problem = everything(3);
+  const auto flow = on_device(problem, {{"n", "6"}});
+  gpu::Traffic& traffic = gpu::Context::get().traffic();
+  run(*flow, 2, 0.02);
+  gpu::Traffic before = traffic;
+  run(*flow, 10, 0.02);
+  gpu::Traffic warm = traffic - before;
+  CHECK(warm.bytes_up == 0);
+  CHECK(warm.bytes_down == 80);
+  CHECK(warm.syncs == 10);
+  CHECK(warm.allocations == 0);
+  CHECK(warm.look_ups == 0);
+  CHECK(warm.dispatches <= 270);
+  // What is asked for comes down once.
+  before = traffic;
+  flow->totals();
+  flow->velocity(problem.box.lo);
+  flow->frame();
+  warm = traffic - before;
+  CHECK(warm.syncs == 1);
+  CHECK(warm.bytes_down == 5 * 6 * 6 * 6 * 4);
+  CHECK(warm.bytes_up == 0);
+}
+
+TEST_CASE("legendre fluids on the device: restart gives the same bits", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const Given settings{{"n", "6"}, {"filter_carried", "1"}};
+  const auto whole = on_device(everything(3), settings), again = on_device(everything(3), settings);
+  run(*whole, 4, 0.02);
+  again->restore(whole->state());
+  run(*whole, 4, 0.02);
+  run(*again, 4, 0.02);
+  CHECK(whole->state() == again->state());
+}
+
+TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  FlowProblem problem = box(3);
+  problem.velocity = scene::Swirl{1};
+  problem.density = 1;
+  for (const char* n : {"2", "3", "7", "16"}) {
+    CAPTURE(n);
+    problem.viscosity = 1e6;  // times a step of 1 s in a box of 1 m
+    auto flow = on_device(problem, {{"n", n}});
+    flow->step(1);
+    CHECK(flow->totals().energy == 0);
+    CHECK(flow->totals().mass == Approx(1).epsilon(1e-5));
+    problem.viscosity = 0;
+    flow = on_device(problem, {{"n", n}});
+    const double energy = flow->totals().energy;
+    run(*flow, 5, 1e-4);
+    CHECK(flow->totals().energy == Approx(energy).epsilon(1e-5));
+    CHECK(flow->totals().density_least == Approx(1).epsilon(1e-5));
+  }
+  problem.velocity = scene::Swirl{10};
+  const auto fast = on_device(problem, {{"n", "8"}}),
+             same = start<legendre_fluids::LegendreFluids>(problem, {{"n", "8"}});
+  fast->step(1), same->step(1);
+  CHECK(fast->counters().at("Runge-Kutta steps") == same->counters().at("Runge-Kutta steps"));
+  problem.velocity = scene::Swirl{1e30};
+  const auto wild = on_device(problem, {{"n", "4"}});
+  const std::string before = wild->state();
+  CHECK_THROWS_WITH(wild->step(1), Contains("step 1") && Contains("too much"));
+  CHECK(wild->state() == before);
+}
+
+TEST_CASE("legendre fluids on the device: what shaders do not know is refused by name", "[gpu][legendre_fluids]") {
+  CHECK(objections(box(3), {}).empty());
+  CHECK_THAT(objections(box(3), {{"variant", "paper"}}).at(0), Contains("variant = paper"));
+  CHECK_THAT(objections(box(3), {{"time_step", "cayley"}}).at(0), Contains("time_step = cayley"));
+  CHECK_THAT(objections(box(3), {{"n", "17"}}).at(0), Contains("n = 17"));
+  CHECK_THAT(objections(box(3), {{"n", "1"}}).at(0), Contains("n = 1"));
+  FlowProblem problem = box(3);
+  problem.velocity = scene::Wind{Vec3(1, 0, 0)};
+  for (scene::Side& side : problem.sides[0]) side.kind = scene::Side::Kind::open;
+  CHECK_THAT(objections(problem, {}).at(0), Contains("air that comes in"));
+  problem = box(3);
+  problem.confinement = 1;
+  CHECK_THAT(objections(problem, {}).at(0), Contains("confinement"));
+}
+
+TEST_CASE("legendre fluids on the device: times", "[.][legendre_fluids_times]") {
+  if (!gpu::test::device()) return;
+  for (const char* n : {"4", "6", "8", "12", "16"}) {
+    for (const bool all : {false, true}) {
+      FlowProblem problem = box(3);
+      problem.velocity = scene::Swirl{0.5};
+      problem.blobs.push_back({Point3(1.4, 2.5, 0.5), 0.3, 1, 0});
+      if (all) problem = everything(3);
+      const auto flow = on_device(problem, {{"n", n}}),
+                 cpu = start<legendre_fluids::LegendreFluids>(problem, {{"n", n}});
+      run(*flow, 3, 0.02);
+      const auto time = [&](scene::Flow& f) {
+        scene::Stopwatch watch;
+        double best = 1e9;
+        for (int i = 0; i < 20; ++i) watch.lap(), f.step(0.02), best = std::min(best, watch.lap());
+        return 1e3 * best;
+      };
+      const long dispatches = gpu::Context::get().traffic().dispatches;
+      const double gpu_time = time(*flow);
+      const long count = (gpu::Context::get().traffic().dispatches - dispatches) / 20;
+      fmt::print("n {:>2} {}: {:7.3f} ms a step ({} dispatches), CPU {:7.3f} ms\n", n,
+                 all ? "everything" : "blob      ", gpu_time, count, time(*cpu));
+    }
+  }
+}

@@ -1,0 +1,131 @@
+// Light in Legendre boxes on the device against the CPU: every layer, at the 99th percentile and at the worst pixel.
+#include "methods/legendre_fluids/light.h"
+
+#include <fmt/ranges.h>
+
+#include <catch2/catch.hpp>
+
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
+#include "tests/methods/legendre_fluids/light_scenes.h"
+
+using namespace airlight;
+using namespace legendre_fluids::testing;
+using Catch::Contains;
+using gpu::test::p99;
+using gpu::test::quantile;
+
+namespace {
+
+constexpr double bound = 3e-6;  // three times what is measured
+
+using ScenePointer = std::shared_ptr<scene::Scene>;
+
+// The worst pixel of any layer.
+double compare(const char* name, const ScenePointer& scene, double most, const test::Given& given = {}) {
+  const scene::Film a = test::render(legendre_fluids::LegendreLight(), scene, given).film;
+  const scene::Film b = test::render(gpu::LegendreLightGpu(), scene, given).film;
+  CAPTURE(name, given);
+  REQUIRE(a.layers.size() == b.layers.size());
+  double worst = 0;
+  most += 20 * gpu::test::injected_error();
+  for (const auto& [layer, values] : a.layers) {
+    const double error = quantile(a, b, layer, 1);
+    worst = std::max(worst, error);
+    CAPTURE(layer, p99(a, b, layer), error);
+    CHECK(error < most);
+  }
+  if (std::getenv("AIRLIGHT_TEST_FIGURES"))
+    fmt::print("{} {}: {:.1e} of {:.1e}\n", name, fmt::join(given, " "), worst, most);
+  return worst;
+}
+
+ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 3) {
+  return lit_scene(smoke(random_density(n, seed), 0.5 * depth), oblique_light, oblique_view, 24, 20);
+}
+
+}  // namespace
+
+TEST_CASE("legendre light on the device: optical depths from thin to black", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const double depth : {1e-3, 0.1, 1.0, 5.0, 20.0, 100.0, 5e3}) {
+    CAPTURE(depth);
+    // Depths are rounded to 6e-8 of the whole one.
+    compare("depth", oblique({4, 4, 4}, depth), bound + 2.5e-7 * depth);
+  }
+  compare("6", oblique({6, 6, 6}, 2), bound);
+  compare("points", oblique({6, 6, 6}, 20), 3 * bound, {{"points", "4"}});
+  compare("points", oblique({6, 6, 6}, 20), 3 * bound, {{"points", "12"}, {"tolerance", "1e-10"}});
+  compare("unequal", oblique({5, 3, 7}, 2), bound);
+  compare("one", oblique({1, 1, 1}, 2), bound);
+}
+
+TEST_CASE("legendre light on the device: colours, several media and lights, cameras, phase functions",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  ScenePointer scene = oblique({4, 5, 3}, 2);
+  scene->media[0].sigma_t = Rgb(0.5, 1, 2);
+  scene->media[0].albedo = Rgb(0.9, 0.7, 0.5);
+  scene->media[0].phase = scene::HenyeyGreenstein{0.6};
+  scene->ambient_in_scatter = Rgb(0.1, 0.2, 0.3);
+  compare("colours", scene, bound);
+  scene->lights.push_back(scene::DirectionalLight{Vec3(0, 1, 0), Rgb(1, 2, 3)});
+  scene->lights.push_back(scene::DirectionalLight{Vec3(1, 1e-6, 0).normalized(), Rgb(3, 2, 1)});
+  compare("lights", scene, bound);
+  scene->camera = scene::look_at(Point3(0.3, 0.2, 3), Point3::Zero(), Vec3::UnitY());
+  compare("perspective", scene, bound);
+  scene->camera = scene::look_at(Point3(0.3, 0.2, -0.4), Point3(2, 0, 0), Vec3::UnitY());
+  compare("within", scene, bound);
+  scene::Medium other = smoke(random_density({3, 3, 3}, 5, 1, {Point3(0.2, -1.5, -0.5), Point3(2, 0.5, 1)}), 1.5);
+  other.phase = scene::Rayleigh{};
+  scene->media.push_back(other);
+  scene->camera = scene::look_at(Point3(0.3, 0.2, 5), Point3::Zero(), Vec3::UnitY());
+  compare("two media", scene, bound);
+  scene::Medium haze;
+  haze.region = Box{Point3(-3, -1, -3), Point3(3, 0, 3)};
+  haze.sigma_t = Rgb::Constant(0.05);
+  haze.phase = scene::Hazy{};
+  scene->media.push_back(haze);
+  compare("three media", scene, bound);
+}
+
+TEST_CASE("legendre light on the device: scenes without light, without media", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  ScenePointer scene = oblique({4, 4, 4}, 2);
+  scene->lights.clear();
+  compare("dark", scene, bound);
+  scene->media.clear();
+  compare("empty", scene, bound);
+}
+
+TEST_CASE("legendre light on the device: surfaces behind and within the medium", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  ScenePointer scene = oblique({4, 4, 4}, 2);
+  scene->lights = {scene::DirectionalLight{Vec3(0.2, 0.3, 1).normalized(), Rgb(1, 2, 3)}};
+  scene->camera = scene::look_at(Point3(0.3, 0.2, 5), Point3::Zero(), Vec3::UnitY());
+  scene::Surface wall;
+  wall.shape = scene::Plane{Point3(0, 0, -1.5), Vec3::UnitZ()};
+  scene->surfaces = {wall};
+  finish(*scene);
+  compare("wall", scene, bound);
+}
+
+TEST_CASE("legendre light on the device: what shaders do not know is refused by name", "[gpu][legendre_fluids]") {
+  const gpu::LegendreLightGpu method;
+  const auto objections = [&](const scene::Scene& scene) {
+    return method.supports(scene, scene::Settings(method.settings(), {}));
+  };
+  ScenePointer scene = oblique({4, 4, 4}, 2);
+  CHECK(objections(*scene).empty());
+  scene->surfaces.emplace_back();
+  scene->surfaces[0].shape = scene::Plane{Point3(0, 0, 0), Vec3::UnitZ()};
+  CHECK_THAT(objections(*scene).at(0), Contains("surfaces that may stand"));
+  scene->surfaces.clear();
+  Eigen::VectorXd wave = Eigen::VectorXd::Zero(8);
+  wave[0] = 1, wave[7] = 2;
+  scene->media[0].field = std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{2, 2, 2}, wave);
+  CHECK_THAT(objections(*scene).at(0), Contains("below 0"));
+  scene->media[0].field = random_density({20, 20, 20}, 1);
+  CHECK_THAT(objections(*scene).at(0), Contains("8000"));
+}

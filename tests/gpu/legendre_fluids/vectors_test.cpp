@@ -1,0 +1,141 @@
+// The fluid on the device against the oracle's vectors, in single precision: 2e-5 of the largest entry.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/legendre_fluids/fluid_on_device.h"
+#include "tests/gpu/device.h"
+#include "tests/methods/legendre_fluids/swirl.h"
+#include "tests/oracle_vectors.h"
+
+using namespace airlight;
+using namespace airlight::legendre_fluids;
+using gpu::legendre::FluidOnDevice;
+using legendre_fluids::testing::error;
+using test::json;
+
+namespace {
+
+constexpr double gate = 2e-5;
+
+void flatten(const json& v, std::vector<double>& out) {
+  if (!v.is_array()) return out.push_back(test::number(v));
+  for (const json& part : v) flatten(part, out);
+}
+Array array_of(const json& v) {
+  std::vector<double> values;
+  flatten(v, values);
+  return Eigen::Map<Array>(values.data(), Eigen::Index(values.size()));
+}
+Array velocity_of(const ConfinedSpace& space, const json& v, const std::string& before = "",
+                  const std::string& after = "") {
+  Components parts;
+  for (int a = 0; a < space.dimensions(); ++a) parts[a] = array_of(v.at(before + "abc"[a] + after));
+  return space.joined(parts);
+}
+
+int dimensions(const json& v) { return v.value("d", 2); }
+
+// A fluid of the vector's velocity and density, there and back.
+struct Twin {
+  Twin(const json& v, const Material& material, const char* velocity = "")
+      : fluid(dimensions(v), v.at("n"), Vec3::Ones(), material, {}) {
+    fluid.velocity = velocity_of(fluid.space(), v, velocity);
+    if (v.contains("r")) fluid.density = array_of(v.at("r"));
+    device = std::make_unique<FluidOnDevice>(gpu::Context::get(), fluid, material, ConfinedOptions{});
+  }
+  const ConfinedSpace& space() const { return fluid.space(); }
+  const Fluid& now() {
+    device->download(fluid);
+    return fluid;
+  }
+  ConfinedFluid fluid;
+  std::unique_ptr<FluidOnDevice> device;
+};
+
+}  // namespace
+
+TEST_CASE("legendre fluids on the device: projections of the vectors", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const char* kind : {"project", "coefficients"})
+    for (const json& v : test::vectors_of("legendre_fluids", kind)) {
+      CAPTURE(v.at("id"));
+      Twin twin(v, {});
+      twin.device->project();
+      CHECK(error(twin.now().velocity, velocity_of(twin.space(), v, "", "_proj")) < gate);
+      CHECK(twin.space().divergence(twin.fluid.velocity).cwiseAbs().maxCoeff() < 2e-6);
+    }
+}
+
+TEST_CASE("legendre fluids on the device: advection of the vectors, before and after the projection",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "advect")) {
+    if (v.contains("w_a")) continue;  // by another velocity: below
+    CAPTURE(v.at("id"));
+    Twin twin(v, {});
+    const Array u = twin.fluid.velocity;
+    ConfinedFluid rate = twin.fluid;
+    twin.device->advect(rate);
+    CHECK(error(rate.velocity, velocity_of(twin.space(), v, "rhs_unprojected_")) < gate);
+    twin.device->upload(rate);
+    twin.device->project();
+    CHECK(error(twin.now().velocity, velocity_of(twin.space(), v, "rhs_")) < gate);
+    const double size = twin.space().inner(u, u) * twin.space().inner(twin.fluid.velocity, twin.fluid.velocity);
+    CHECK(std::abs(twin.space().inner(u, twin.fluid.velocity)) < 1e-6 * std::sqrt(size));
+  }
+}
+
+TEST_CASE("legendre fluids on the device: diffusion and steps of the vectors", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "diffuse")) {
+    CAPTURE(v.at("id"));
+    Twin twin(v, {1, 0, true});
+    twin.device->diffuse(v.at("nu_dt"));
+    CHECK(error(twin.now().velocity, velocity_of(twin.space(), v, "exp_")) < gate);
+  }
+  for (const char* kind : {"rk4", "step"})
+    for (const json& v : test::vectors_of("legendre_fluids", kind)) {
+      CAPTURE(v.at("id"));
+      Twin twin(v, {v.value("nu", 0.0), 0, true});
+      twin.device->step(v.at("dt"));
+      CHECK(error(twin.now().velocity, velocity_of(twin.space(), v, "", "_1")) < gate);
+      const double energy = 0.5 * twin.space().inner(twin.fluid.velocity, twin.fluid.velocity);
+      CHECK(energy == Approx(test::number(v.at("energy_after"))).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("legendre fluids on the device: the density of the vectors", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "density-advect")) {
+    Twin twin(v, {0, 0, false});
+    ConfinedFluid rate = twin.fluid;
+    twin.device->advect(rate);
+    CHECK(error(rate.density, array_of(v.at("rhs"))) < gate);
+    const Array before = twin.fluid.velocity;
+    twin.device->step(v.at("dt"));
+    CHECK(error(twin.now().density, array_of(v.at("r_1"))) < gate);
+    CHECK(error(twin.fluid.velocity, before) < 1e-7);
+    CHECK(std::abs(twin.fluid.density[0] / array_of(v.at("r"))[0] - 1) < 1e-6);
+  }
+}
+
+// What `w` makes of a scalar, and of each component of a velocity: a space with a coefficient more holds them as scalars.
+TEST_CASE("legendre fluids on the device: the form of advection, by velocities with and without divergence",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "energy-identity")) {
+    Twin twin(v, {0, 0, false}, "w_");
+    ConfinedFluid rate = twin.fluid;
+    const Array r = array_of(v.at("r"));
+    const double norm = r.norm();
+    twin.device->advect(rate);
+    CHECK(-rate.density.dot(r) == Approx(test::number(v.at("w_grad_r_times_r"))).margin(gate * norm));
+    CHECK(-std::sqrt(8.0) * rate.density[0] == Approx(test::number(v.at("w_grad_r_integral"))).margin(gate * norm));
+    twin.device->project();
+    twin.device->advect(rate);
+    CHECK(std::abs(rate.density.dot(r)) < gate * norm * rate.density.norm());
+    CHECK(std::abs(rate.density[0]) < gate * rate.density.norm());
+    const Array w = twin.now().velocity;
+    CHECK(0.5 * twin.space().inner(w, w) == Approx(test::number(v.at("w_projected_energy"))).epsilon(1e-6));
+  }
+}
