@@ -23,6 +23,7 @@ const std::vector<Binding> bindings = {{"START", at::start},
                                        {"AMBIENT", at::ambient},
                                        {"SURFACE", at::surface},
                                        {"MEAN", at::mean},
+                                       {"SEEN", at::seen},
                                        {"TARGETS", at::targets},
                                        {"DENSITIES", at::densities},
                                        {"RULE", at::rule}};

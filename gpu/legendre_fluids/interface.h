@@ -28,6 +28,7 @@ enum Binding {
   ambient = 6,
   surface = 7,
   mean = 0,
+  seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
   // uniform blocks
   matrices = 0,

@@ -8,6 +8,7 @@
 #include "gpu/frame.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/light_media_on_device.h"
+#include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/legendre_fluids/light.h"
@@ -55,7 +56,7 @@ class PreparedLightGpu final : public scene::Prepared {
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
   void follow(const View&, const Buffer* distances, std::size_t pixels) const;
   void dim(const View&, const scene::Light&) const;
-  void compose(std::size_t pixels, const Buffer& lit) const;
+  void compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const;
 
   std::shared_ptr<const Scene> scene_;
   RayOptions options_;
@@ -63,7 +64,8 @@ class PreparedLightGpu final : public scene::Prepared {
   legendre_fluids::LitMedia lit_;
   Context& context_;
   std::unique_ptr<LightMediaOnDevice> media_;  // null: no medium extinguishes
-  std::unique_ptr<FirstHits> first_hits_;      // null: rays are infinite
+  std::unique_ptr<FirstHits> first_hits_;      // null: no surface ends a ray
+  std::unique_ptr<Backdrops> backdrops_;       // null: there are none
   std::unique_ptr<fogmaps::SurfaceLight> surfaces_;
   Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr;
   mutable Frame frame_;
@@ -81,6 +83,7 @@ PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const Ray
   StageTimer timer(context_);
   timer.begin("upload");
   if (fogmaps::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
   surfaces_ = std::make_unique<fogmaps::SurfaceLight>(context_, *scene_, first_hits_.get());
   Definitions definitions{{"MEDIA", "0"}};
   if (any_medium()) {
@@ -104,6 +107,7 @@ std::vector<scene::Stage> PreparedLightGpu::stages() const {
                                                 : "no medium scatters";
   const bool ends = first_hits_ != nullptr, lit = surfaces_->shines();
   return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
+          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
           {"rays", any_medium(),
            scatters() ? fmt::format("{} dispatches for each light, a stretch of every ray each", media_->stretches())
            : any_medium() ? "columns alone: " + why
@@ -155,7 +159,7 @@ void PreparedLightGpu::dim(const View& view, const scene::Light& light) const {
   dim_->dispatch(view.width, view.height);
 }
 
-void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit) const {
+void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const {
   Program& p = *composition_;
   const auto layer = [&](const char* name, int binding) {
     const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
@@ -169,6 +173,8 @@ void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit) const {
   if (ambient()) layer("ambient", at::ambient);
   lit.bind(at::lit);
   (any_medium() ? frame_.buffers.get("columns", 4 * pixels * lit_.media.size()) : lit).bind(at::columns);
+  (seen ? *seen : lit).bind(at::seen);
+  p.set("has_seen", seen != nullptr);
   p.set("pixels", int(pixels));
   p.set("has_lit", surfaces_->shines());
   p.set("has_ambient", ambient());
@@ -191,6 +197,13 @@ scene::Rendering PreparedLightGpu::render(const View& view, const Execution& exe
     primitives = &frame_.buffers.get("primitives", 4 * pixels);
     first_hits_->find(view, *distances, primitives);
   }
+  const Buffer* seen = nullptr;
+  if (backdrops_) {
+    frame_.timer.begin("backdrops");
+    if (!distances) distances = &frame_.buffers.get("distances", 4 * pixels);
+    seen = &frame_.buffers.get("seen", 12 * pixels);
+    backdrops_->find(view, *distances, bool(first_hits_), *seen);
+  }
   if (any_medium()) {
     frame_.timer.begin("rays");
     follow(view, distances, pixels);
@@ -202,7 +215,7 @@ scene::Rendering PreparedLightGpu::render(const View& view, const Execution& exe
     surfaces_->render(*scene_, view, primitives, lit, [&](const scene::Light& light) { dim(view, light); });
   }
   frame_.timer.begin("composition");
-  compose(pixels, lit);
+  compose(pixels, lit, seen);
   frame_.finish(result);
   result.counters["rays"] = double(pixels);
   result.film.metadata = {

@@ -8,7 +8,8 @@ layout(std430, binding = AT_TRANSMITTANCE) writeonly buffer Transmittance { floa
 layout(std430, binding = AT_AMBIENT) writeonly buffer Ambient { float ambient_layer[]; };
 layout(std430, binding = AT_SURFACE) writeonly buffer Surface { float surface_layer[]; };
 layout(std430, binding = AT_MEAN) writeonly buffer Mean { float mean_layer[]; };
-uniform int pixels, has_lit, has_ambient;
+layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen_there[]; };  // of backdrops [W/m^2/sr]; -1: none
+uniform int pixels, has_lit, has_ambient, has_seen;
 uniform vec3 ambient;  // [W/m^2/sr]
 #if MEDIA > 0
 uniform vec3 sigma_t[MEDIA];
@@ -22,6 +23,7 @@ void main() {
   for (int m = 0; m < MEDIA; ++m) depth += sigma_t[m] * columns[place * MEDIA + m];
 #endif
   for (int c = 0; c < 3; ++c) {
+    if (has_seen != 0 && seen_there[3 * place + c] >= 0) behind[c] = seen_there[3 * place + c];
     float clear = exp(-min(depth[c], 200)), seen = clear * behind[c], fog = ambient[c] * opacity(min(depth[c], 200));
     transmittance[3 * place + c] = clear;
     surface_layer[3 * place + c] = seen;

@@ -1,7 +1,9 @@
 // Backdrops and particles on the device: the picture of the CPU.
 #include <catch2/catch.hpp>
 
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
+#include "methods/legendre_fluids/light.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "tests/gpu/device.h"
 
@@ -9,7 +11,29 @@ using namespace airlight;
 
 namespace {
 
-scene::Scene with_backdrops(const std::string& more) {
+const std::string lamp = R"([[light]]
+type = "point"
+position = [1, 3, 2]
+intensity = [30, 25, 20]
+[[medium]]
+type = "gaussians"
+sigma_t = [0.3, 0.4, 0.6]
+gaussians = [{ center = [0, 0, -1], width = 2, amplitude = 1 }, { center = [1, 1, -4], width = 1.5, amplitude = 0.8 }]
+)";
+const std::string sun = R"([[light]]
+type = "directional"
+to_light = [1, 3, 2]
+irradiance = 9
+[[medium]]
+type = "legendre"
+sigma_t = [0.3, 0.4, 0.6]
+lo = [-3, -3, -8]
+hi = [3, 3, 3]
+size = [2, 1, 3]
+coefficients = [2, 0.3, 0.2, 0.4, -0.1, 0.1]
+)";
+
+scene::Scene with_backdrops(const std::string& lit_medium, const std::string& more) {
   scene::Scene scene = scene::parse_scene(R"([film]
 width = 40
 height = 30
@@ -17,17 +41,9 @@ height = 30
 position = [0, 0, 5]
 look_at = [0, 0, 0]
 [[light]]
-type = "point"
-position = [1, 3, 2]
-intensity = [30, 25, 20]
-[[light]]
 type = "environment"
 radiance = [0.1, 0.2, 0.3]
-[[medium]]
-type = "gaussians"
-sigma_t = [0.3, 0.4, 0.6]
-gaussians = [{ center = [0, 0, -1], width = 2, amplitude = 1 }, { center = [1, 1, -4], width = 1.5, amplitude = 0.8 }]
-[[particles]]
+)" + lit_medium + R"([[particles]]
 type = "sheet"
 count = 60
 region = { type = "sphere", center = [0, 0, -1], radius = 2 }
@@ -46,20 +62,13 @@ radiance = [[1, 0.2, 0.1], [0.2, 0.3, 1]]
   return scene;
 }
 
-}  // namespace
-
-TEST_CASE("ray marcher: the device sees backdrops and particles as the processor does",
-          "[gpu][ray_marcher][backdrop]") {
-  if (!gpu::test::device()) return;
-  const std::string more = GENERATE("", "[[surface]]\ntype = 'sphere'\ncenter = [0, 0, -2]\nradius = 1\n");
-  const auto scene = std::make_shared<const scene::Scene>(with_backdrops(more));
-  const std::map<std::string, std::string> given{
-      {"steps", "32"}, {"shadow_steps", "8"}, {"environment_directions", "8"}};
-  const ray_marcher::RayMarcher marcher;
-  const gpu::RayMarcherGpu on_device;
+// Of the two films, layer by layer, on a cold and on a warm frame.
+void compare(const scene::Renderer& processor, const scene::Renderer& device, const scene::Scene& content,
+             const std::map<std::string, std::string>& given) {
+  const auto scene = std::make_shared<const scene::Scene>(content);
   const scene::Film expected =
-      marcher.prepare(scene, {marcher.settings(), given}, {})->render(view_of(*scene), {}).film;
-  const auto prepared = on_device.prepare(scene, {on_device.settings(), given}, {});
+      processor.prepare(scene, {processor.settings(), given}, {})->render(view_of(*scene), {}).film;
+  const auto prepared = device.prepare(scene, {device.settings(), given}, {});
   for (int frame = 0; frame < 2; ++frame) {
     const scene::Film found = prepared->render(view_of(*scene), {}).film;
     for (const char* layer : {"surface", "transmittance", "airlight", "mean"}) {
@@ -76,4 +85,20 @@ TEST_CASE("ray marcher: the device sees backdrops and particles as the processor
   scene::View other = view_of(*scene);
   other.camera.position += Vec3(1, 0, 0);
   CHECK_THROWS_WITH(prepared->render(other, {}), Catch::Contains("own camera"));
+}
+
+}  // namespace
+
+TEST_CASE("ray marcher: the device sees backdrops and particles as the processor does",
+          "[gpu][ray_marcher][backdrop]") {
+  if (!gpu::test::device()) return;
+  const std::string more = GENERATE("", "[[surface]]\ntype = 'sphere'\ncenter = [0, 0, -2]\nradius = 1\n");
+  compare(ray_marcher::RayMarcher(), gpu::RayMarcherGpu(), with_backdrops(lamp, more),
+          {{"steps", "32"}, {"shadow_steps", "8"}, {"environment_directions", "8"}});
+}
+
+TEST_CASE("Legendre light: the device sees backdrops and particles as the processor does",
+          "[gpu][legendre_fluids][backdrop]") {
+  if (!gpu::test::device()) return;
+  compare(legendre_fluids::LegendreLight(), gpu::LegendreLightGpu(), with_backdrops(sun, ""), {});
 }
