@@ -94,7 +94,7 @@ inline Agreement compare(Context& context, const scene::Scene& scene, const scen
         edge = edge || kind_of(there) != kind_of(end) || std::abs(there.t - end.t) > 1e-4 * end.t;
         if (scene.geometry)
           for (const scene::Hit& any : scene.geometry->all_hits(moved))
-            met = met || shows(hit[i], surface[i], centre, {any.t, any, false});
+            met = met || shows(hit[i], surface[i], centre, {any.t, any, false, {}});
       }
       const bool beside = seen || (met && edge);
       ++(beside ? result.moved : result.wrong);

@@ -41,10 +41,10 @@ scene::RayEnd PixelEnds::at(int primitive, float distance, const Ray& ray) const
     const auto& mesh = std::get<scene::TriangleMesh>(scene_.surfaces[mesh_[i]].shape);
     scene::Hit hit = meet(mesh, primitive - first_triangle_[i], distance, ray);
     hit.surface = mesh_[i];
-    return {hit.t, hit, false};
+    return {hit.t, hit, false, {}};
   }
   const std::size_t solid = std::size_t(primitive - triangles_);
-  if (solid >= solid_.size()) return {distance, std::nullopt, true};
+  if (solid >= solid_.size()) return {distance, std::nullopt, true, {}};
   const scene::Shape& shape = scene_.surfaces[solid_[solid]].shape;
   std::array<scene::Crossing, 2> crossings;
   int count = 0;
@@ -54,7 +54,7 @@ scene::RayEnd PixelEnds::at(int primitive, float distance, const Ray& ray) const
     count = cross_plane(ray, std::get<scene::Plane>(shape), crossings[0]);
   if (count == 0) return {};  // a tangent, by the last bit
   const scene::Crossing& met = crossings[0];
-  return {met.t, scene::Hit{met.t, met.position, met.normal, solid_[solid], -1}, false};
+  return {met.t, scene::Hit{met.t, met.position, met.normal, solid_[solid], -1}, false, {}};
 }
 
 }  // namespace airlight::gpu::test
