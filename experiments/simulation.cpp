@@ -10,6 +10,7 @@
 #include "experiments/frames.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
+#include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
 #include "scene/read_file.h"
 
@@ -30,15 +31,18 @@ std::string history_row(int frame, double time, const scene::Totals& totals) {
   return line + "\n";
 }
 
-// The first two lines of `state`: of what it is, and after which frame.
+// The first two lines of `state`: of what it is; after which frame, and how many files of coefficients each has.
 std::string key_of(const Simulation& s) {
   return content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()});
 }
-std::optional<std::pair<std::string, int>> what_is_in(const fs::path& folder) {
-  std::ifstream in(folder / "state", std::ios::binary);
+struct Kept {
   std::string key;
-  int last = -1;
-  if (std::getline(in, key) && in >> last) return std::pair(key, last);
+  int last = -1, coefficients = 0;
+};
+std::optional<Kept> what_is_in(const fs::path& folder) {
+  std::ifstream in(folder / "state", std::ios::binary);
+  Kept kept;
+  if (std::getline(in, kept.key) && in >> kept.last >> kept.coefficients) return kept;
   return std::nullopt;
 }
 
@@ -53,6 +57,19 @@ class Folder {
   std::string frame_name(int frame) const {
     return (s_.folder / fmt::format("{}.{:04d}.vdb", s_.problem->name, frame)).string();
   }
+  std::string coefficients_name(int density, int frame) const {
+    const std::string of = density == 0 ? "" : "." + scene::density_name(*s_.problem, density);
+    return (s_.folder / fmt::format("{}{}.{:04d}.csv", s_.problem->name, of, frame)).string();
+  }
+  // The first file that is gone, of the frames up to the last; nothing where all are there.
+  std::string missing(const Kept& kept) const {
+    for (int frame = 0; frame <= kept.last; ++frame) {
+      if (!fs::exists(frame_name(frame))) return frame_name(frame);
+      for (int density = 0; density < kept.coefficients; ++density)
+        if (!fs::exists(coefficients_name(density, frame))) return coefficients_name(density, frame);
+    }
+    return "";
+  }
 
   // The last frame that is complete, -1 where there is none, and into `flow` what followed it.
   int resume(scene::Flow& flow) {
@@ -64,17 +81,25 @@ class Folder {
       throw Error(
           fmt::format("{}: of another problem, solver, settings or program, expected an empty folder or another one",
                       s_.folder.string()));
-    const int last = std::stoi(bytes.substr(line + 1, next - line - 1));
-    for (int frame = 0; frame <= last; ++frame)
-      if (!fs::exists(frame_name(frame)))
-        throw Error(fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames",
-                                frame_name(frame)));
+    const Kept kept = what_is_in(s_.folder).value();
+    const int last = kept.last;
+    if (const std::string gone = missing(kept); !gone.empty())
+      throw Error(
+          fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames", gone));
     history_ = rows_up_to(last);
     flow.restore(bytes.substr(next + 1));
     return last;
   }
 
   void keep(int frame, const scene::Flow& flow, double dt) {
+    int coefficients = 0;
+    for (int density = 0; density <= int(s_.problem->densities.size()); ++density) {
+      const scene::DensityField medium = flow.medium(density);
+      const auto* box = std::get_if<scene::LegendrePointer>(&medium);
+      if (!box) break;
+      scene::write_legendre_csv(coefficients_name(density, frame), **box);
+      ++coefficients;
+    }
     scene::write_frame(frame_name(frame), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},
@@ -85,7 +110,7 @@ class Folder {
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
     std::string state = flow.state();  // as long as the flow itself
-    state.insert(0, fmt::format("{}\n{}\n", key_, frame));
+    state.insert(0, fmt::format("{}\n{} {}\n", key_, frame, coefficients));
     scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
@@ -112,11 +137,8 @@ class Folder {
 
 int frames_there(const Simulation& s) {
   const auto found = what_is_in(s.folder);
-  if (!found || found->first != key_of(s)) return 0;
-  const Folder folder(s);
-  for (int frame = 0; frame <= found->second; ++frame)
-    if (!fs::exists(folder.frame_name(frame))) return 0;
-  return found->second + 1;
+  if (!found || found->key != key_of(s) || !Folder(s).missing(*found).empty()) return 0;
+  return found->last + 1;
 }
 
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {

@@ -1,6 +1,7 @@
 // A flow as a sequence of files, in a folder that can be gone on with after any end.
 //
 //   NAME.0000.vdb, NAME.0001.vdb, ...   the frames, from the start on
+//   NAME.0000.csv, ...                  the density as coefficients, where its medium is a Legendre box; NAME.OTHER.0000.csv further ones
 //   history.csv                         a row for each: sums over the box
 //   state                               what goes on after the last of them, whose files are complete
 //

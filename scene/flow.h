@@ -32,6 +32,7 @@ struct Frame {
   Point3 low = Point3::Zero();                     // corner of the first cell [m]
   // By cell, x fastest; empty where the flow carries none.
   std::vector<float> density, temperature;
+  std::map<std::string, std::vector<float>> densities;  // beside the first, by name
   // On the low faces of each cell, and of one more cell along each axis, for the last faces: (u, v, w) [m/s], 3 numbers
   // each, size + 1 of them along an axis.
   std::vector<float> velocity;
@@ -50,11 +51,11 @@ class Flow {
   // By dt > 0 [s]. Throws Unstable (step and cell).
   virtual void step(double dt) = 0;
   // At points of the box; outside it at the nearest one.
-  virtual Vec3 velocity(const Point3&) const = 0;  // [m/s]
-  virtual double density(const Point3&) const = 0;
+  virtual Vec3 velocity(const Point3&) const = 0;   // [m/s]
+  virtual double density(const Point3&) const = 0;  // the first one, as in totals()
   virtual double temperature(const Point3&) const = 0;
-  // Its density as renderers know it, not below 0.
-  virtual DensityField medium() const = 0;
+  // A density as renderers know it, not below 0: 0 the first, k the k-th of FlowProblem::densities.
+  virtual DensityField medium(int density = 0) const = 0;
   virtual Frame frame() const = 0;
   virtual Totals totals() const = 0;
   // Wall clock of each stage, summed over the steps; what was counted.
@@ -65,7 +66,7 @@ class Flow {
   virtual void restore(const std::string& state) = 0;
 };
 
-// Grids `density`, `temperature` (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`
+// Grids `density`, `temperature`, those named (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`
 // as its metadata. Nothing is pruned: what read_vdb reads are the frame's values. Moved here, a frame
 // is freed on the way. Throws Error.
 void write_frame(const std::string& path, Frame, const std::map<std::string, std::string>& notes);

@@ -38,6 +38,34 @@ Vec3 velocity_at(const StartVelocity& start, const Box& box, const Point3& x) {
       [&](const Wind& v) -> Vec3 { return v.velocity; });
 }
 
+FlowProblem with_density(const FlowProblem& problem, int which) {
+  FlowProblem one = problem;
+  one.densities.clear();
+  for (Source& s : one.sources) {
+    if (s.of != which) s.density_rate = 0, s.density.reset();
+    s.of = 0;
+  }
+  for (auto& axis : one.sides)
+    for (Side& side : axis) {
+      if (side.of != which) side.density = 0;
+      side.of = 0;
+    }
+  if (which > 0) {
+    const NamedDensity& own = problem.densities.at(std::size_t(which) - 1);
+    for (Blob& blob : one.blobs) blob.density = 0;
+    one.blobs.insert(one.blobs.end(), own.blobs.begin(), own.blobs.end());
+    one.density = own.density;
+    one.wave = own.wave;
+    one.density_grid = own.grid;
+  }
+  one.hash = content_hash(one);
+  return one;
+}
+
+std::string density_name(const FlowProblem& problem, int which) {
+  return which == 0 ? "density" : problem.densities.at(std::size_t(which) - 1).name;
+}
+
 namespace {
 
 double blob_at(const Blob& blob, const Point3& x) {

@@ -7,6 +7,7 @@
 // `density` is that of smoke [-], as media of scenes have it; `temperature` the excess over what is around [K].
 #pragma once
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct Side {
   // The velocity times 16 s^2 (1-s)^2 over the side, s along the velocity: a lid without jumps in the corners.
   bool regularized = false;
   double density = 0, temperature = 0;  // of what comes in
+  int of = 0;                           // which density: 0 the first, k the k-th of FlowProblem::densities
 };
 std::string side_name(Side::Kind);
 
@@ -50,11 +52,13 @@ struct RigidRotation {
   Point3 center = Point3::Zero();
   Vec3 rate = Vec3::UnitZ();  // [1/s]
 };
-struct Wind {
-  Vec3 velocity = Vec3::Zero();  // [m/s]
+struct Wind {                                         // velocity + gust sin(2 pi frequency t)
+  Vec3 velocity = Vec3::Zero(), gust = Vec3::Zero();  // [m/s]
+  double frequency = 0;                               // [Hz]
+  Vec3 at(double time) const { return velocity + std::sin(2 * pi * frequency * time) * gust; }
 };
 using StartVelocity = std::variant<AtRest, TaylorGreen, Swirl, RigidRotation, Wind>;
-Vec3 velocity_at(const StartVelocity&, const Box&, const Point3&);
+Vec3 velocity_at(const StartVelocity&, const Box&, const Point3&);  // at first
 
 // amount * exp(-|x - center|^2 / width^2), as Gaussians of media.
 struct Blob {
@@ -72,12 +76,22 @@ struct Wave {
 // Without the offset.
 double wave_at(const Wave&, const Box&, const Point3&);
 
+// A further density, beside the first: carried by the same velocity, a medium of its own.
+struct NamedDensity {
+  std::string name;
+  double density = 0;  // at first, everywhere
+  std::vector<Blob> blobs;
+  std::optional<Wave> wave;
+  std::shared_ptr<const VoxelGrid> grid;  // added to what is above
+};
+
 struct Source {
   Region region;
   Interval time{0, infinity};                     // [s]
   double density_rate = 0, temperature_rate = 0;  // [1/s], [K/s]: added
   std::optional<double> density, temperature;     // held at
   std::optional<Vec3> velocity;                   // held at [m/s]
+  int of = 0;                                     // which density, as for a Side
 };
 
 struct Push {  // an acceleration in time
@@ -105,6 +119,7 @@ struct FlowProblem {
   double density = 0, temperature = 0;  // at first, everywhere
   std::vector<Blob> blobs;
   std::optional<Wave> wave;
+  std::vector<NamedDensity> densities;                              // beside the first, which the members above begin
   std::shared_ptr<const VoxelGrid> density_grid, temperature_grid;  // added to what is above
   std::shared_ptr<const VelocityGrid> velocity_grid;
   std::vector<Source> sources;
@@ -123,6 +138,11 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
 
 // The hash of its values; its name, and how they are written, do not count.
 std::string content_hash(const FlowProblem&);
+
+// The same problem with that one of its densities alone, as the first one: 0 the first, k the k-th of `densities`.
+FlowProblem with_density(const FlowProblem&, int which);
+// "density" for the first, else the name.
+std::string density_name(const FlowProblem&, int which);
 
 // At the beginning, without what obstacles take away.
 double start_velocity(const FlowProblem&, int axis, const Point3&);

@@ -1,6 +1,7 @@
 #include "experiments/driver/sequences.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
@@ -41,14 +42,21 @@ TableReader reader_of(const toml::table& list, const std::string& name) {
   return reader;
 }
 
+// "swirl.red.csv": the sequence swirl, the coefficients of its density red. Frames by default.
+std::pair<std::string, std::string> name_and_kind(const std::string& asked) {
+  const std::size_t dot = std::min(asked.find('.'), asked.size());
+  return {asked.substr(0, dot), dot < asked.size() ? asked.substr(dot) : ".vdb"};
+}
+
 fs::path problem_of(const fs::path& root, const TableReader& reader) {
   return root / "experiments" / reader.text("problem");
 }
 
 }  // namespace
 
-std::string sequence_files(const fs::path& root, const std::string& name, const std::string& profile,
+std::string sequence_files(const fs::path& root, const std::string& asked, const std::string& profile,
                            const std::string& where) {
+  const auto [name, kind] = name_and_kind(asked);
   const toml::table list = read_list(root);
   std::vector<std::string> known;
   for (const auto& [key, table] : list) known.emplace_back(key.str());
@@ -56,7 +64,14 @@ std::string sequence_files(const fs::path& root, const std::string& name, const 
     throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
                             scene::nearest_hint(name, known)));
   const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
-  return (folder_of(root, name, profile) / (problem.name + ".####.vdb")).string();
+  std::vector<std::string> kinds{".vdb", ".csv"};
+  for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw Error(fmt::format("{}: the sequence '{}' has no files {}, expected one of {}", where, name, kind,
+                            fmt::join(kinds, ", ")));
+  return (folder_of(root, name, profile) /
+          (problem.name + kind.substr(0, kind.size() - 4) + ".####" + kind.substr(kind.size() - 4)))
+      .string();
 }
 
 void name_sequences(const fs::path& root, const std::string& profile, const std::string& where, Pairs& overrides,
@@ -65,11 +80,13 @@ void name_sequences(const fs::path& root, const std::string& profile, const std:
     if (value.size() < 2 || value.compare(1, mark.size(), mark) != 0) continue;  // in quotes of TOML
     const std::string name = value.substr(1 + mark.size(), value.size() - mark.size() - 2);
     value = fmt::format("\"{}\"", sequence_files(root, name, profile, where));
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    const std::string plain = name_and_kind(name).first;
+    if (std::find(names.begin(), names.end(), plain) == names.end()) names.push_back(plain);
   }
 }
 
-void make_sequence(const fs::path& root, const std::string& name, const std::string& profile, int threads) {
+void make_sequence(const fs::path& root, const std::string& asked, const std::string& profile, int threads) {
+  const std::string name = name_and_kind(asked).first;
   const toml::table list = read_list(root);
   const TableReader reader = reader_of(list, name);
   TableReader of_profile = reader.required_table(profile);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -14,19 +15,25 @@ constexpr int lines_of_group = 32;
 
 std::string indexed(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
+std::vector<std::size_t> carried_by(Fluid& fluid) {
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < fluid.carried().size(); ++i)
+    if (fluid.carried()[i]->size() > 0) which.push_back(i);
+  return which;
+}
+
 }  // namespace
 
-FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Material& material,
-                             const ConfinedOptions& options, const Regions& regions)
+FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& material, const ConfinedOptions& options,
+                             const Regions& regions)
     : context_(context),
       space_(fluid.space()),
       material_(material),
       options_(options),
       moves_(material.moves),
-      carries_density_(fluid.density.size() > 0),
-      carries_temperature_(fluid.temperature.size() > 0),
+      carried_(carried_by(fluid)),
       velocities_(space_.dimensions()),
-      fields_(velocities_ + carries_density_ + carries_temperature_),
+      fields_(velocities_ + int(carried_.size())),
       slab_(std::size_t(space_.shape()[1] * space_.shape()[2])),
       size_(std::size_t(space_.n()) * slab_),
       lines_(std::size_t(space_.points_shape()[1] * space_.points_shape()[2])) {
@@ -39,8 +46,7 @@ FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Materia
   const auto number = [&](const char* name, std::size_t value) { definitions[name] = std::to_string(value); };
   number("FIELDS", std::size_t(fields_));
   number("MOVES", moves_);
-  number("DENSITY", carries_density_ ? std::size_t(velocities_) : 0);  // 0: there is none
-  number("TEMPERATURE", carries_temperature_ ? std::size_t(fields_ - 1) : 0);
+  number("SCALARS", carried_.size());
   number("SOURCES", regions.sources.size());
   number("PUSHES", regions.pushes.size());
   const int n = space_.n();
@@ -64,11 +70,10 @@ FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Materia
   upload(fluid);
 }
 
-void FluidOnDevice::upload(const Fluid& fluid) {
+void FluidOnDevice::upload(Fluid& fluid) {
   std::vector<float> state;
   for (int a = 0; a < velocities_; ++a) put_field(space_, a, space_.component(fluid.velocity, a), state);
-  if (carries_density_) put_field(space_, -1, fluid.density, state);
-  if (carries_temperature_) put_field(space_, -1, fluid.temperature, state);
+  for (const std::size_t which : carried_) put_field(space_, -1, *fluid.carried()[which], state);
   states_[current_]->upload(state);
 }
 
@@ -79,8 +84,7 @@ void FluidOnDevice::take(const std::vector<float>& fields, Fluid& fluid) const {
   const float* from = fields.data();
   for (int a = 0; a < velocities_; ++a, from += size_) parts[a] = take_field(space_, a, from);
   fluid.velocity = space_.joined(parts);
-  if (carries_density_) fluid.density = take_field(space_, -1, from), from += size_;
-  if (carries_temperature_) fluid.temperature = take_field(space_, -1, from);
+  for (const std::size_t which : carried_) *fluid.carried()[which] = take_field(space_, -1, from), from += size_;
 }
 
 void FluidOnDevice::set(Program& p, Fields fields) {
@@ -139,8 +143,9 @@ void FluidOnDevice::spread_modes_back(Fields fields, double dt) {
 void FluidOnDevice::run(double dt, int count, const StepForces& forces) {
   const Fields all{0, fields_}, moving = this->moving(), diffusing = this->diffusing();
   const bool any = diffusing.count > 0, viscous = any && diffusing.first == 0;
+  const auto acts = [](const Vec3& v) { return !v.isZero(0); };
   const bool pushes =
-      moves_ && (!forces.pushes.empty() || !forces.by_density.isZero(0) || !forces.by_temperature.isZero(0));
+      moves_ && (!forces.pushes.empty() || std::any_of(forces.weights.begin(), forces.weights.end(), acts));
   expand(all, any ? GoesOn::to_modes : GoesOn::to_points, false, -1, 0, true);
   if (any) {
     spread_modes_back(diffusing, 0.5 * dt);
@@ -178,7 +183,7 @@ void FluidOnDevice::project() {
   const Use use(context_);
   bind();
   const Fields velocity{0, velocities_};
-  for (const char* none : {"by_density", "by_temperature"}) collect_->set(none, Vec3(Vec3::Zero()));
+  for (std::size_t r = 0; r < carried_.size(); ++r) collect_->set(indexed("weights", r), Vec3(Vec3::Zero()));
   expand({0, fields_}, GoesOn::nowhere, false, -1, 0, true);
   collect(velocity, ComesFrom::forces);
   columns(velocity, false);
@@ -208,13 +213,12 @@ void FluidOnDevice::advect(Fluid& rates) {
 void FluidOnDevice::step(double dt, const StepForces& forces) {
   const Use use(context_);
   bind();
-  for (std::size_t i = 0; i < forces.density.size(); ++i) {
-    expand_->set(indexed("density_amounts", i), forces.density[i]);
-    expand_->set(indexed("temperature_amounts", i), forces.temperature[i]);
-  }
+  for (std::size_t i = 0; i < forces.sources.size(); ++i)
+    for (std::size_t r = 0; r < carried_.size(); ++r)
+      expand_->set(indexed("amounts", i * carried_.size() + r), forces.sources[i][r]);
   for (std::size_t i = 0; i < forces.pushes.size(); ++i) collect_->set(indexed("push_amounts", i), forces.pushes[i]);
-  collect_->set("by_density", forces.by_density);
-  collect_->set("by_temperature", forces.by_temperature);
+  for (std::size_t r = 0; r < carried_.size(); ++r)
+    collect_->set(indexed("weights", r), r < forces.weights.size() ? forces.weights[r] : Vec3(Vec3::Zero()));
   expand_->set("fades", forces.fades);
   expand_->set("filters_velocity", moves_ ? options_.filter_velocity * dt : 0.0);
   expand_->set("filters_carried", options_.filter_carried * dt);

@@ -45,12 +45,22 @@ scene::GridPointer Cells::grid(const ConfinedSpace& space, const Array& density)
   return grid;
 }
 
+scene::DensityField Cells::medium(const ConfinedSpace& space, const Array& density) const {
+  if (space.n() > scene::LegendreBox::most) return grid(space, density);
+  Array c = density.size() ? density : Array(Array::Zero(space.scalars()));
+  Box where{box.center - box.half, box.center + box.half};
+  if (box.dimensions == 2) {
+    where.lo[2] = low[2] - 0.5 * size, where.hi[2] = low[2] + 0.5 * size;
+    c *= std::sqrt(2.0);  // over L_0
+  }
+  return std::make_shared<const scene::LegendreBox>(where, space.shape(), std::move(c));
+}
+
 scene::Frame Cells::frame(const Fluid& fluid) const {
   scene::Frame f;
   f.size = count;
   f.cell = size;
   f.low = low;
-  f.density = values(fluid.space(), fluid.density);
   f.temperature = values(fluid.space(), fluid.temperature);
   const std::size_t nx = count[0] + 1, ny = count[1] + 1;
   f.velocity.assign(3 * nx * ny * std::size_t(count[2] + 1), 0.0f);
@@ -99,11 +109,11 @@ void add_slopes(const Fluid& fluid, scene::Totals& t) {
 
 }  // namespace
 
-scene::Totals totals_of(const Fluid& fluid, const Cells& cells) {
+scene::Totals totals_of(const Fluid& fluid, const Array& density, const Cells& cells) {
   scene::Totals t;
   t.energy = fluid.energy();
   t.center_of_mass = cells.box.center;
-  if (fluid.density.size()) add_density(fluid.space(), fluid.density, cells, t);
+  if (density.size()) add_density(fluid.space(), density, cells, t);
   for (int a = 0; a < cells.box.dimensions; ++a) {
     const Array u = cells.box.half[a] * fluid.sampled(a, cells.positions());
     t.greatest_speed = std::max(t.greatest_speed, u.cwiseAbs().maxCoeff());

@@ -19,12 +19,16 @@ struct Cells {
   Components positions(int faces = -1) const;
   // A scalar at the centres, x fastest; nothing for no coefficients.
   std::vector<float> values(const ConfinedSpace&, const Array& r) const;
-  scene::GridPointer grid(const ConfinedSpace&, const Array& density) const;  // not below 0
-  scene::Frame frame(const Fluid&) const;
+  // Not below 0: the polynomial itself, in two dimensions one cell deep; a grid above LegendreBox::most coefficients along an axis.
+  scene::DensityField medium(const ConfinedSpace&, const Array& density) const;
+  scene::Frame frame(const Fluid&) const;  // without densities
+
+ private:
+  scene::GridPointer grid(const ConfinedSpace&, const Array& density) const;
 };
 
 // Energy, enstrophy, mass and its centre are integrals of polynomials, exact; extremes are those at the cells' centres, divergence at the
 // Gauss points. `cfl` is left 0.
-scene::Totals totals_of(const Fluid&, const Cells&);
+scene::Totals totals_of(const Fluid&, const Array& density, const Cells&);
 
 }  // namespace airlight::legendre_fluids

@@ -59,22 +59,30 @@ void ConfinedFluid::begin(const VelocityFunction& u) {
   last_rate_ = Array();
 }
 
-Components ConfinedFluid::carrying(const Array& u) const {
-  if (!wind_) return space_.at_points(u);
+Vec3 ConfinedFluid::gust(double at) const {
+  return wind_ ? Vec3(std::sin(2 * pi * wind_->frequency * at) * wind_->gust) : Vec3(Vec3::Zero());
+}
+
+Components ConfinedFluid::wind_at(double at) const {
   Components w = wind_at_points_;
-  if (!wind_->added) return w;
-  const Components own = space_.at_points(u);
-  for (int a = 0; a < space_.dimensions(); ++a) w[a] += own[a];
+  for (int a = 0; wind_ && a < space_.dimensions(); ++a) w[a].array() += gust(at)[a];
   return w;
 }
-Components ConfinedFluid::at_points() const { return carrying(velocity); }
+
+Components ConfinedFluid::at_points() const {
+  if (!confined()) return wind_at(time);
+  Components w = space_.at_points(velocity);
+  const Components wind = wind_at(time);
+  for (int a = 0; wind_ && a < space_.dimensions(); ++a) w[a] += wind[a];
+  return w;
+}
 
 Array ConfinedFluid::sampled(int component, const Components& positions) const {
   Array values = space_.sampled(velocity, component, positions);
   if (!wind_) return values;
   const Array last = space_.dimensions() == 3 ? positions[2] : Array(Array::Zero(1));
-  const Array wind =
-      values_on(positions[0], positions[1], last, [&](const Vec3& x) { return wind_->velocity(component, x); });
+  const Array wind = values_on(positions[0], positions[1], last,
+                               [&](const Vec3& x) { return wind_->velocity(component, x) + gust(time)[component]; });
   return confined() ? Array(values + wind) : wind;
 }
 
@@ -90,45 +98,74 @@ Array ConfinedFluid::sampled_slope(int component, int axis, const Components& po
 double ConfinedFluid::at(int component, const Vec3& x) const {
   double value =
       confined() && space_.n() > 1 ? value_at(space_, space_.component(velocity, component), component, x) : 0;
-  return wind_ ? value + wind_->velocity(component, x) : value;
+  return wind_ ? value + wind_->velocity(component, x) + gust(time)[component] : value;
 }
 
-Array ConfinedFluid::carried_rate(const Components& w, const Array& r, const BySide& incoming) const {
-  Array rate = space_.scalar_advected(w, r);
-  for (int a = 0; wind_ && a < space_.dimensions(); ++a)
-    for (int side = 0; side < 2; ++side)
-      rate += space_.scalar_inflow(a, side, wind_on_sides_[a][side], r, incoming[a][side]);
-  return rate;
+void ConfinedFluid::add_inflow(double at, const Array& r, std::size_t which, Array& rate) const {
+  for (int a = 0; a < space_.dimensions(); ++a)
+    for (int side = 0; side < 2; ++side) {
+      const Array speed = wind_on_sides_[a][side].array() + gust(at)[a];
+      rate += space_.scalar_inflow(a, side, speed, r, wind_->incoming[which][a][side]);
+    }
 }
 
 void ConfinedFluid::diffuse(double dt) {
   if (material_.viscosity > 0 && material_.moves && confined())
     velocity = space_.project(space_.diffused(velocity, material_.viscosity * dt));
   if (!(material_.diffusivity > 0)) return;
-  for (Array* r : {&density, &temperature})
+  for (Array* r : carried())
     if (r->size()) *r = space_.scalar_diffused(*r, material_.diffusivity * dt);
 }
 
-// The velocity and what it carries together: stages of one see stages of the other.
-void ConfinedFluid::advect_by_runge_kutta(double dt) {
-  const int count = runge_kutta_steps(dt, space_.n(), greatest_speed(), wind_.has_value());
-  const Eigen::Index nu = velocity.size(), nd = density.size(), nt = temperature.size();
-  Array y(nu + nd + nt);
-  y.head(nu) = velocity, y.segment(nu, nd) = density, y.tail(nt) = temperature;
-  const auto rate = [&](const Array& now) {
-    Array change = Array::Zero(now.size());
-    const Components w = carrying(now.head(nu));
-    if (material_.moves && confined()) {
-      const Components own = wind_ ? space_.at_points(now.head(nu)) : w;
-      change.head(nu) = space_.project(space_.advected(own, now.head(nu)));
+// The velocity, what it carries, and the time: stages of one see stages of the other.
+Array ConfinedFluid::joined_state() {
+  Eigen::Index size = velocity.size() + 1;
+  for (const Array* r : carried()) size += r->size();
+  Array y(size);
+  Eigen::Index begin = velocity.size();
+  y.head(begin) = velocity;
+  for (const Array* r : carried()) y.segment(begin, r->size()) = *r, begin += r->size();
+  y[begin] = time;
+  return y;
+}
+
+Array ConfinedFluid::state_rate(const Array& y) {
+  Array rate = Array::Zero(y.size());
+  const double at = y[y.size() - 1];
+  std::vector<const double*> scalars;
+  std::vector<double*> rates;
+  std::vector<std::size_t> which;
+  const std::vector<Array*> all = carried();
+  Eigen::Index begin = velocity.size();
+  for (std::size_t i = 0; i < all.size(); begin += all[i++]->size())
+    if (all[i]->size()) {
+      scalars.push_back(y.data() + begin), rates.push_back(rate.data() + begin);
+      which.push_back(i);
     }
-    if (nd) change.segment(nu, nd) = carried_rate(w, now.segment(nu, nd), wind_ ? wind_->density : BySide{});
-    if (nt) change.tail(nt) = carried_rate(w, now.tail(nt), wind_ ? wind_->temperature : BySide{});
-    return change;
-  };
+  // A wind that is added carries what it carries, not the velocity beside it: that would leave by the sides.
+  const bool moves = material_.moves && confined();
+  if (moves && wind_) space_.advected_together(y.data(), true, {}, {}, rate.data(), {});
+  space_.advected_together(confined() ? y.data() : nullptr, moves && !wind_, wind_at(at), scalars, rate.data(), rates);
+  if (moves) rate.head(velocity.size()) = space_.project(rate.head(velocity.size()));
+  for (std::size_t i = 0; i < which.size() && wind_; ++i) {
+    Array change = Eigen::Map<Array>(rates[i], all[which[i]]->size());
+    add_inflow(at, Eigen::Map<const Array>(scalars[i], change.size()), which[i], change);
+    Eigen::Map<Array>(rates[i], change.size()) = change;
+  }
+  rate[y.size() - 1] = 1;
+  return rate;
+}
+
+void ConfinedFluid::advect_by_runge_kutta(double dt) {
+  const double speed = greatest_speed() + (wind_ ? wind_->gust.norm() : 0);
+  const int count = runge_kutta_steps(dt, space_.n(), speed, wind_.has_value());
+  Array y = joined_state();
+  const auto rate = [&](const Array& now) { return state_rate(now); };
   for (int i = 0; i < count; ++i) y = runge_kutta_4(y, dt / count, rate);
   substeps_ += count;
-  velocity = y.head(nu), density = y.segment(nu, nd), temperature = y.tail(nt);
+  Eigen::Index begin = velocity.size();
+  velocity = y.head(begin);
+  for (Array* r : carried()) *r = y.segment(begin, r->size()).eval(), begin += r->size();
 }
 
 Array ConfinedFluid::krylov(const Array& y, double dt, const SkewOperator& a) {
@@ -157,14 +194,14 @@ void ConfinedFluid::advect_by_krylov(double dt) {
   }
   const Components w = space_.at_points(middle);
   if (material_.moves) velocity = krylov(now, dt, skew(w));
-  const SkewOperator carried{[&](const Array& r) { return space_.scalar_advected(w, r); },
-                             [](const Array& r) { return r; }};
-  for (Array* r : {&density, &temperature}) {
+  const SkewOperator move{[&](const Array& r) { return space_.scalar_advected(w, r); },
+                          [](const Array& r) { return r; }};
+  for (Array* r : carried()) {
     if (!r->size()) continue;
     // The mean moves by itself: without it, that of the rest stays 0 whatever the tolerance.
     const double mean = (*r)[0];
     (*r)[0] = 0;
-    *r = krylov(*r, dt, carried);
+    *r = krylov(*r, dt, move);
     (*r)[0] = mean;
   }
   last_rate_ = (velocity - now) / dt;
@@ -199,7 +236,7 @@ void ConfinedFluid::filter(double dt) {
     filtered_ += 0.5 * (before - space_.inner(velocity, velocity));
   }
   if (!(options_.filter_carried > 0)) return;
-  for (Array* r : {&density, &temperature})
+  for (Array* r : carried())
     if (r->size()) *r = damped(*r, -1, options_.filter_carried);
 }
 

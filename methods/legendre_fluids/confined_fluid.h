@@ -26,9 +26,11 @@ using BySide = std::array<std::array<double, 2>, 3>;  // [axis][low, high]
 
 // Wind through the box: a velocity that is not confined, and what its air brings along.
 struct Wind {
-  VelocityFunction velocity;        // polynomial of degree below n
-  bool added = false;               // to a confined velocity; else it is all there is
-  BySide density{}, temperature{};  // that come in
+  VelocityFunction velocity;     // polynomial of degree below n
+  Vec3 gust = Vec3::Zero();      // half sizes per second, times sin(2 pi frequency t), added
+  double frequency = 0;          // [Hz]
+  bool added = false;            // to a confined velocity; else it is all there is
+  std::vector<BySide> incoming;  // of each of Fluid::carried()
 };
 
 class ConfinedFluid : public Fluid {
@@ -49,9 +51,13 @@ class ConfinedFluid : public Fluid {
   std::map<std::string, double> counters() const override;
 
  private:
-  Components carrying(const Array& u) const;  // at the points: the velocity u and the wind
-  Array carried_rate(const Components& w, const Array& r, const BySide& incoming) const;
+  Components wind_at(double time) const;  // at the points; empty where there is none
+  Vec3 gust(double time) const;
+  // What comes in with the wind, of Fluid::carried()[which].
+  void add_inflow(double time, const Array& r, std::size_t which, Array& rate) const;
   void diffuse(double dt);
+  Array joined_state();
+  Array state_rate(const Array& y);  // of advection
   void advect_by_runge_kutta(double dt);
   void advect_by_krylov(double dt);
   Array krylov(const Array& y, double dt, const SkewOperator&);

@@ -27,7 +27,7 @@ void each(const TensorShape& shape, const Body& body) {
 }  // namespace
 
 ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
-    : d_(dimensions), n_(n), half_(half), points_(n + 1, (3 * n + 1) / 2) {
+    : d_(dimensions), n_(n), half_(half), points_(mirrored({n + 1, (3 * n + 1) / 2})) {
   for (int a = 0; a < d_; ++a) offset_[a + 1] = offset_[a] + tensor_size(shape(a));
   phi_ = scene::legendre_integral(n).rightCols(n - 1);
   mass_ = phi_.transpose() * phi_;
@@ -47,11 +47,13 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
     free_rates_.tail(n - 1) = free.eigenvalues();
   }
   at_points_ = {points_.values.leftCols(n), points_.values * phi_};
-  slope_at_points_ = {points_.slopes.leftCols(n), points_.values.middleCols(1, n - 1)};
   from_points_[0] = points_.analysis.topRows(n);
   if (n == 1) return;
   from_points_[1] = inverse_ * phi_.transpose() * points_.analysis;
   from_scalar_ = inverse_ * phi_.topRows(n).transpose();
+  const int m = int(points_.node.size());
+  kernel_ = AdvectionKernel(d_, {n, m, at_points_[0], points_.slopes.leftCols(n), from_points_[0]},
+                            {n - 1, m, at_points_[1], points_.values.middleCols(1, n - 1), from_points_[1]});
 }
 
 TensorShape ConfinedSpace::shape() const { return {n_, n_, d_ == 3 ? n_ : 1}; }
@@ -169,21 +171,6 @@ Array ConfinedSpace::scalar_at_points(const Array& r) const {
   return transformed(r, shape(), {&at_points_[0], &at_points_[0], &at_points_[0]});
 }
 
-// From the last axis to the first: what no axis so far has derived, and what each of them has.
-Components ConfinedSpace::slopes(const Array& c, int component) const {
-  Components slope;
-  Array plain = c;
-  TensorShape s = shape(component);
-  for (int axis = d_ - 1; axis >= 0; --axis) {
-    const MatrixXd& value = at_points_[axis == component];
-    for (int b = axis + 1; b < d_; ++b) slope[b] = along_axis(axis, value, slope[b], s);
-    slope[axis] = along_axis(axis, slope_at_points_[axis == component], plain, s);
-    if (axis > 0) plain = along_axis(axis, value, plain, s);
-    s[axis] = int(points_.node.size());
-  }
-  return slope;
-}
-
 double ConfinedSpace::integral(const Array& values) const {
   const MatrixXd weights = points_.weight.transpose();
   return half_.head(d_).prod() * transformed(values, points_shape(), {&weights, &weights, &weights})[0];
@@ -204,22 +191,34 @@ Array ConfinedSpace::from_points(const Components& values) const {
   return joined(parts);
 }
 
+void ConfinedSpace::advected_together(const double* u, bool moves, const Components& wind,
+                                      const std::vector<const double*>& scalars, double* u_rate,
+                                      const std::vector<double*>& rates) const {
+  if (n_ == 1) {
+    for (double* rate : rates) *rate = 0;
+    return;
+  }
+  std::vector<AdvectionKernel::Field> fields;
+  for (int a = 0; a < d_ && u; ++a) fields.push_back({a, u + offset_[a], moves ? u_rate + offset_[a] : nullptr, true});
+  for (std::size_t i = 0; i < scalars.size(); ++i) fields.push_back({-1, scalars[i], rates[i], false});
+  std::array<const double*, 3> at{};
+  for (int a = 0; a < d_; ++a) at[a] = wind[a].size() ? wind[a].data() : nullptr;
+  kernel_(fields, at);
+}
+
 Array ConfinedSpace::advected(const Components& w, const Array& u) const {
   if (n_ == 1) return u;
-  Components change;
-  for (int a = 0; a < d_; ++a) {
-    const Components slope = slopes(component(u, a), a);
-    change[a] = -w[0].cwiseProduct(slope[0]);
-    for (int b = 1; b < d_; ++b) change[a] -= w[b].cwiseProduct(slope[b]);
-  }
-  return from_points(change);
+  Array rate(u.size());
+  std::vector<AdvectionKernel::Field> fields;
+  for (int a = 0; a < d_; ++a) fields.push_back({a, u.data() + offset_[a], rate.data() + offset_[a], false});
+  kernel_(fields, {w[0].data(), w[1].data(), d_ == 3 ? w[2].data() : nullptr});
+  return rate;
 }
 
 Array ConfinedSpace::scalar_advected(const Components& w, const Array& r) const {
-  const Components slope = slopes(r, -1);
-  Array change = -w[0].cwiseProduct(slope[0]);
-  for (int b = 1; b < d_; ++b) change -= w[b].cwiseProduct(slope[b]);
-  return scalar_from_points(change);
+  Array rate(r.size());
+  advected_together(nullptr, false, w, {r.data()}, nullptr, {rate.data()});
+  return rate;
 }
 
 Array ConfinedSpace::scalar_inflow(int axis, int side, const Array& speed, const Array& r, double r_in) const {

@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 
+#include "methods/legendre_fluids/advection_kernel.h"
 #include "scene/math/legendre.h"
 #include "scene/math/types.h"
 
@@ -52,18 +53,19 @@ class ConfinedSpace {
   // At ceil(3n/2) Gauss points per axis, with which every product below is integrated exactly.
   Components at_points(const Array& u) const;
   Array scalar_at_points(const Array& r) const;
-  const Array& nodes() const { return points_.node; }  // along an axis
+  const Array& nodes() const { return points_.node; }  // along an axis, the second half the first one's mirror image
   const Array& weights() const { return points_.weight; }
   const Eigen::MatrixXd& phi() const { return phi_; }  // coefficients of phi in L: (n+1) x (n-1)
   // What the operators are made of, for those who apply them elsewhere: pairs are of L and of phi. n > 1.
   struct Matrices {
-    const std::array<Eigen::MatrixXd, 2>&at_points, &slope_at_points, &from_points;
+    const scene::LegendrePoints& points;  // of n + 1 coefficients
+    const std::array<Eigen::MatrixXd, 2>&at_points, &from_points;
     const Eigen::MatrixXd &pressure_modes, &wall_modes, &free_modes, &from_scalar;
     const Array &wall_rates, &free_rates;
   };
   Matrices matrices() const {
-    return {at_points_,  slope_at_points_, from_points_, pressure_modes_, wall_modes_,
-            free_modes_, from_scalar_,     wall_rates_,  free_rates_};
+    return {points_,     at_points_,   from_points_, pressure_modes_, wall_modes_,
+            free_modes_, from_scalar_, wall_rates_,  free_rates_};
   }
   TensorShape points_shape() const;
   double integral(const Array& values) const;                 // over the box [m^d]
@@ -71,6 +73,10 @@ class ConfinedSpace {
   Array from_points(const Components& values) const;          // the same of a velocity, before project()
   Array advected(const Components& w, const Array& u) const;  // -w.grad u, projected in L2 but not onto div = 0
   Array scalar_advected(const Components& w, const Array& r) const;
+  // Both at once, of a velocity that carries itself and scalars, beside a wind at the points (empty: none): rates one after the other. A
+  // velocity that does not move carries (its rate is 0).
+  void advected_together(const double* u, bool moves, const Components& wind, const std::vector<const double*>& scalars,
+                         double* u_rate, const std::vector<double*>& rates) const;
   // What comes in through the side of an axis (0: low, 1: high) with a weak condition: (w.n)(r - r_in) where w.n < 0. `speed` is w along
   // the axis [half sizes per second] at the Gauss points of the side. Added to the above, |r| cannot grow for r_in = 0.
   Array scalar_inflow(int axis, int side, const Array& speed, const Array& r, double r_in) const;
@@ -90,7 +96,6 @@ class ConfinedSpace {
   Array scalar_sampled_slope(const Array& r, int axis, const Components& positions) const;
 
  private:
-  Components slopes(const Array& c, int component) const;  // at the points; component -1: of a scalar
   Array transformed(const Array&, TensorShape, const std::array<const Eigen::MatrixXd*, 3>&) const;
   Array sampled(const Array& c, int component, int slope_axis, const Components& positions) const;
   Array diffused_part(const Array&, int component, double amount, Diffusion) const;
@@ -98,14 +103,15 @@ class ConfinedSpace {
   int d_, n_;
   Vec3 half_;
   std::array<int, 4> offset_{};
-  scene::LegendrePoints points_;             // of n + 1 coefficients: the degree of phi
-  Eigen::MatrixXd phi_;                      // coefficients of phi in L: (n+1) x (n-1)
-  Eigen::MatrixXd mass_, inverse_;           // of phi; its inverse
-  Eigen::MatrixXd wall_modes_, free_modes_;  // orthogonal: of the mass, n-1; of D^T D, n
-  Array wall_rates_, free_rates_;            // the eigenvalues of -d^2/dx^2 along phi and along L
-  Eigen::MatrixXd pressure_modes_;           // 1 and the wall modes: n
-  std::array<Eigen::MatrixXd, 2> at_points_, slope_at_points_, from_points_;  // [0] L, [1] phi
-  Eigen::MatrixXd from_scalar_;                                               // L to phi, L2 projection
+  scene::LegendrePoints points_;                            // of n + 1 coefficients: the degree of phi
+  Eigen::MatrixXd phi_;                                     // coefficients of phi in L: (n+1) x (n-1)
+  Eigen::MatrixXd mass_, inverse_;                          // of phi; its inverse
+  Eigen::MatrixXd wall_modes_, free_modes_;                 // orthogonal: of the mass, n-1; of D^T D, n
+  Array wall_rates_, free_rates_;                           // the eigenvalues of -d^2/dx^2 along phi and along L
+  Eigen::MatrixXd pressure_modes_;                          // 1 and the wall modes: n
+  std::array<Eigen::MatrixXd, 2> at_points_, from_points_;  // [0] L, [1] phi
+  AdvectionKernel kernel_;
+  Eigen::MatrixXd from_scalar_;  // L to phi, L2 projection
 };
 
 }  // namespace airlight::legendre_fluids

@@ -1,9 +1,15 @@
 #include "methods/legendre_fluids/fluid.h"
 
 #include <cmath>
-#include <vector>
 
 namespace airlight::legendre_fluids {
+
+std::vector<Array*> Fluid::carried() {
+  std::vector<Array*> all{&density};
+  for (Array& r : others) all.push_back(&r);
+  all.push_back(&temperature);
+  return all;
+}
 
 double Fluid::energy() const {
   const Components u = at_points();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "methods/legendre_fluids/confined_space.h"
 #include "methods/legendre_fluids/time_steps.h"
@@ -26,6 +27,10 @@ class Fluid {
   const ConfinedSpace& space() const { return space_; }
   Array velocity;              // coefficients, of the variant's own shape
   Array density, temperature;  // coefficients; empty where there is none
+  std::vector<Array> others;   // further densities
+  double time = 0;             // at which the next step begins [s]
+  // Density, others, temperature: all, empty ones too.
+  std::vector<Array*> carried();
 
   virtual void begin(const VelocityFunction&) = 0;
   // A step is advance, then push where there are forces, then finish. The first and the last throw scene::Unstable.

@@ -11,17 +11,16 @@ namespace airlight::legendre_fluids {
 
 using scene::FlowProblem;
 
-LegendreFlow::LegendreFlow(std::shared_ptr<const FlowProblem> problem, std::unique_ptr<Fluid> fluid, int cells)
-    : p_(std::move(problem)), box_(*p_), fluid_(std::move(fluid)), cells_(box_, p_->box.lo, cells) {
+LegendreFlow::LegendreFlow(std::shared_ptr<const FlowProblem> problem, std::unique_ptr<Fluid> fluid, int cells,
+                           Mixing mixing)
+    : p_(std::move(problem)), box_(*p_), fluid_(std::move(fluid)), cells_(box_, p_->box.lo, cells), mixing_(mixing) {
   begin();
 }
 
 void LegendreFlow::begin() {
   const ConfinedSpace& space = fluid_->space();
   fluid_->begin([&](int a, const Vec3& x) { return scene::start_velocity(*p_, a, box_.outside(x)) / box_.half[a]; });
-  if (carries_density(*p_))
-    fluid_->density =
-        space.scalar_from_function([&](const Vec3& x) { return scene::start_density(*p_, box_.outside(x)); });
+  begin_densities();
   if (carries_temperature(*p_))
     fluid_->temperature =
         space.scalar_from_function([&](const Vec3& x) { return scene::start_temperature(*p_, box_.outside(x)); });
@@ -29,6 +28,28 @@ void LegendreFlow::begin() {
     source_.push_back(region_coefficients(*p_, space, box_, p_->sources[i].region, fmt::format("source {}", i)));
   for (std::size_t i = 0; i < p_->pushes.size(); ++i)
     push_.push_back(region_coefficients(*p_, space, box_, p_->pushes[i].region, fmt::format("force {}", i)));
+  settle();
+}
+
+void LegendreFlow::begin_densities() {
+  std::vector<FlowProblem> alone;
+  for (int k = 0; k <= int(p_->densities.size()); ++k) alone.push_back(scene::with_density(*p_, k));
+  const auto set = [&](Array& r, const std::function<double(const Point3&)>& value) {
+    r = fluid_->space().scalar_from_function([&](const Vec3& x) { return value(box_.outside(x)); });
+  };
+  fluid_->others.resize(p_->densities.size());
+  if (mixing_ == Mixing::albedo) {
+    const auto sum = [&](const Point3& x) { return start_density(alone[0], x) + start_density(alone[1], x); };
+    set(fluid_->density, sum);
+    set(fluid_->others[0], [&](const Point3& x) {
+      return sum(x) > 0 ? start_density(alone[0], x) / sum(x) : 0.5;  // of nothing, any share
+    });
+    return;
+  }
+  for (std::size_t k = 0; k < alone.size(); ++k)
+    if (carries_density(alone[k]))
+      set(k == 0 ? fluid_->density : fluid_->others[k - 1],
+          [&](const Point3& x) { return scene::start_density(alone[k], x); });
 }
 
 void LegendreFlow::step(double dt) {
@@ -42,6 +63,7 @@ void LegendreFlow::step(double dt) {
   last_step_ = dt;
   time_ = since_ + ++equal_steps_ * dt;
   ++steps_;
+  settle();
 }
 
 void LegendreFlow::move(double dt) {
@@ -50,8 +72,29 @@ void LegendreFlow::move(double dt) {
   if (!p_->velocity_stays) timed("forces", [&] { push(dt); });
   timed("projection and filter", [&] { fluid_->finish(dt); });
   require_finite();
-  for (Array* r : {&fluid_->density, &fluid_->temperature})
-    if (p_->decay > 0) *r *= fluid_->faded(p_->decay * dt);
+  if (p_->decay > 0) fade(fluid_->faded(p_->decay * dt));
+}
+
+// The time of its wind, and the densities that the share of an albedo stands for.
+void LegendreFlow::settle() {
+  fluid_->time = time_;
+  if (mixing_ != Mixing::albedo) return;
+  const ConfinedSpace& space = fluid_->space();
+  products_[0] = scene::legendre_product(fluid_->density, space.shape(), fluid_->others[0], space.shape(),
+                                         space.shape(), space.dimensions());
+  products_[1] = fluid_->density - products_[0];
+}
+
+const Array& LegendreFlow::smoke(int which) const {
+  if (mixing_ == Mixing::albedo) return products_.at(std::size_t(which));
+  return which == 0 ? now().density : now().others.at(std::size_t(which) - 1);
+}
+
+void LegendreFlow::fade(double factor) {
+  fluid_->density *= factor;
+  fluid_->temperature *= factor;
+  for (Array& r : fluid_->others)
+    if (mixing_ == Mixing::densities) r *= factor;
 }
 
 std::vector<double> LegendreFlow::source_seconds(double dt) const {
@@ -79,7 +122,8 @@ void LegendreFlow::add_sources(double dt) {
   for (std::size_t i = 0; i < source_.size(); ++i) {
     const scene::Source& s = p_->sources[i];
     if (!(seconds[i] > 0)) continue;
-    if (s.density_rate != 0) fluid_->density += seconds[i] * s.density_rate * source_[i];
+    Array& density = s.of == 0 ? fluid_->density : fluid_->others[std::size_t(s.of) - 1];
+    if (s.density_rate != 0) density += seconds[i] * s.density_rate * source_[i];
     if (s.temperature_rate != 0) fluid_->temperature += seconds[i] * s.temperature_rate * source_[i];
   }
 }
@@ -90,7 +134,10 @@ void LegendreFlow::push(double dt) {
   bool any = false;
   for (int a = 0; a < p_->dimensions; ++a) {
     change[a] = Array::Zero(fluid_->space().scalars());
-    if (fluid_->density.size()) change[a] += dt * p_->gravity[a] * p_->weight / box_.half[a] * fluid_->density;
+    const double weight = dt * p_->gravity[a] * p_->weight / box_.half[a];
+    if (fluid_->density.size()) change[a] += weight * fluid_->density;
+    for (const Array& r : fluid_->others)
+      if (r.size() && mixing_ == Mixing::densities) change[a] += weight * r;
     if (fluid_->temperature.size())
       change[a] -= dt * p_->gravity[a] * p_->expansion / box_.half[a] * fluid_->temperature;
     for (std::size_t i = 0; i < push_.size(); ++i)
@@ -101,8 +148,9 @@ void LegendreFlow::push(double dt) {
 }
 
 void LegendreFlow::require_finite() const {
-  for (const Array* a : {&fluid_->velocity, &fluid_->density, &fluid_->temperature})
-    if (!a->allFinite()) throw scene::Unstable("coefficients are no longer finite");
+  bool finite = fluid_->velocity.allFinite();
+  for (const Array* r : fluid_->carried()) finite &= r->allFinite();
+  if (!finite) throw scene::Unstable("coefficients are no longer finite");
 }
 
 Vec3 LegendreFlow::velocity(const Point3& x) const {
@@ -116,8 +164,16 @@ double LegendreFlow::carried_at(const Array& r, const Point3& x) const {
   return r.size() ? value_at(fluid_->space(), r, -1, box_.inside(x)) : 0;
 }
 
+scene::Frame LegendreFlow::frame() const {
+  scene::Frame f = cells_.frame(now());
+  f.density = cells_.values(now().space(), smoke(0));
+  for (int k = 1; k <= int(p_->densities.size()); ++k)
+    f.densities[scene::density_name(*p_, k)] = cells_.values(now().space(), smoke(k));
+  return f;
+}
+
 scene::Totals LegendreFlow::totals() const {
-  scene::Totals t = totals_of(now(), cells_);
+  scene::Totals t = totals_of(now(), smoke(0), cells_);
   t.cfl = t.greatest_speed * last_step_ / cells_.size;
   return t;
 }
@@ -130,32 +186,37 @@ std::map<std::string, double> LegendreFlow::counters() const {
 }
 
 std::string LegendreFlow::state() const {
-  const Fluid& fluid = now();
+  Fluid& fluid = now();
   StateWriter writer(shape());
   Array numbers(5);
   numbers << time_, since_, last_step_, double(equal_steps_), double(steps_);
-  for (const Array& a : {numbers, fluid.velocity, fluid.density, fluid.temperature, fluid.history()}) writer.array(a);
+  for (const Array& a : {numbers, fluid.velocity, fluid.history()}) writer.array(a);
+  for (const Array* r : fluid.carried()) writer.array(*r);
   return writer.done();
 }
 
 void LegendreFlow::restore(const std::string& state) {
   StateReader reader(state, shape());
-  const Array numbers = reader.array(), velocity = reader.array(), density = reader.array(),
-              temperature = reader.array(), history = reader.array();
+  const Array numbers = reader.array(), velocity = reader.array(), history = reader.array();
+  std::vector<Array> carried(fluid_->carried().size());
+  for (Array& r : carried) r = reader.array();
   reader.done();
-  if (numbers.size() != 5 || velocity.size() != fluid_->velocity.size() || density.size() != fluid_->density.size() ||
-      temperature.size() != fluid_->temperature.size())
-    throw Error("the state is of a flow with other coefficients");
+  bool alike = numbers.size() == 5 && velocity.size() == fluid_->velocity.size();
+  for (std::size_t i = 0; i < carried.size(); ++i) alike &= carried[i].size() == fluid_->carried()[i]->size();
+  if (!alike) throw Error("the state is of a flow with other coefficients");
   time_ = numbers[0], since_ = numbers[1], last_step_ = numbers[2];
   equal_steps_ = (long long)(numbers[3]), steps_ = (long long)(numbers[4]);
-  fluid_->velocity = velocity, fluid_->density = density, fluid_->temperature = temperature;
+  fluid_->velocity = velocity;
+  for (std::size_t i = 0; i < carried.size(); ++i) *fluid_->carried()[i] = carried[i];
   fluid_->set_history(history);
+  settle();
 }
 
 std::string LegendreFlow::shape() const {
-  return fmt::format("Legendre fluids, {} coefficients along {} axes, {} of velocity, {} of density, {} of temperature",
-                     fluid_->space().n(), p_->dimensions, fluid_->velocity.size(), fluid_->density.size(),
-                     fluid_->temperature.size());
+  std::string text = fmt::format("Legendre fluids, {} coefficients along {} axes, {} of velocity", fluid_->space().n(),
+                                 p_->dimensions, fluid_->velocity.size());
+  for (const Array* r : fluid_->carried()) text += fmt::format(", {} carried", r->size());
+  return text;
 }
 
 void LegendreFlow::add_time(const std::string& stage, double seconds) {
@@ -167,8 +228,8 @@ void LegendreFlow::add_time(const std::string& stage, double seconds) {
 }
 
 std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const FlowProblem> problem, std::unique_ptr<Fluid> fluid,
-                                        int cells) {
-  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells);
+                                        int cells, Mixing mixing) {
+  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells, mixing);
 }
 
 }  // namespace airlight::legendre_fluids

@@ -10,22 +10,28 @@
 
 namespace airlight::legendre_fluids {
 
-// Starts the fluid with what the problem has at first. `cells` are those of frames and media along the longest axis. Throws Error where a
-// region of a source or force is too small to be seen.
-std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells);
+enum class Mixing {
+  densities,  // each density moves
+  albedo,  // of two the sum r and the first one's share a: densities are the products a r and r - a r, cut to n (the paper's section 7)
+};
+
+// Starts the fluid with what the problem has at first. `cells` are those of frames and of media that are grids, along the longest axis.
+// Throws Error where a region of a source or force is too small to be seen.
+std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells,
+                                        Mixing);
 
 // What start_flow returns, for those who move the coefficients elsewhere than in the fluid.
 class LegendreFlow : public scene::Flow {
  public:
-  LegendreFlow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells);
+  LegendreFlow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells, Mixing);
 
   double time() const override { return time_; }
   void step(double dt) override;
   Vec3 velocity(const Point3& x) const override;
-  double density(const Point3& x) const override { return carried_at(now().density, x); }
+  double density(const Point3& x) const override { return carried_at(smoke(0), x); }
   double temperature(const Point3& x) const override { return carried_at(now().temperature, x); }
-  scene::DensityField medium() const override { return cells_.grid(now().space(), now().density); }
-  scene::Frame frame() const override { return cells_.frame(now()); }
+  scene::DensityField medium(int density) const override { return cells_.medium(now().space(), smoke(density)); }
+  scene::Frame frame() const override;
   scene::Totals totals() const override;
   std::vector<scene::StageTime> times() const override { return times_; }
   std::map<std::string, double> counters() const override;
@@ -36,7 +42,7 @@ class LegendreFlow : public scene::Flow {
   // Moves the coefficients by a step of dt [s] that begins at time(). Throws scene::Unstable.
   virtual void move(double dt);
   // The fluid with its coefficients of now.
-  virtual const Fluid& now() const { return *fluid_; }
+  virtual Fluid& now() const { return *fluid_; }
 
   // What the step from time() adds of each source [s], and of each force's acceleration [s]: 0 outside their times.
   std::vector<double> source_seconds(double dt) const;
@@ -56,6 +62,10 @@ class LegendreFlow : public scene::Flow {
 
  private:
   void begin();
+  void begin_densities();
+  void settle();
+  const Array& smoke(int which) const;
+  void fade(double factor);
   void add_sources(double dt);
   void push(double dt);
   void require_finite() const;
@@ -63,6 +73,8 @@ class LegendreFlow : public scene::Flow {
   std::string shape() const;
   void add_time(const std::string& stage, double seconds);
 
+  Mixing mixing_;
+  std::array<Array, 2> products_;
   double time_ = 0, since_ = 0, last_step_ = 0;
   long long steps_ = 0, equal_steps_ = 0;
   std::vector<scene::StageTime> times_;

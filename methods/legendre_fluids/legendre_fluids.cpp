@@ -40,6 +40,10 @@ Vec3 wind_of(const FlowProblem& p) {
   const auto* wind = std::get_if<scene::Wind>(&p.velocity);
   return wind && has_open_sides(p) ? wind->velocity : Vec3(Vec3::Zero());
 }
+bool blows_along(const FlowProblem& p, int axis) {
+  const auto* wind = std::get_if<scene::Wind>(&p.velocity);
+  return wind && (wind->velocity[axis] != 0 || wind->gust[axis] != 0);
+}
 
 // A velocity that stays and may go through sides, at most linear: what swirls and vortices have is confined.
 bool is_given(const FlowProblem& p) {
@@ -62,13 +66,15 @@ void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
         break;
       }
     }
+  if (const auto* wind = std::get_if<scene::Wind>(&p.velocity); wind && !wind->gust.isZero(0) && !air_comes_in(p))
+    reasons.push_back("a gust without open sides");
   if (p.velocity_stays && p.velocity_grid) reasons.push_back("a grid of velocities that stays");
   if (!has_open_sides(p) || is_given(p)) return;
   if (!std::holds_alternative<scene::Wind>(p.velocity))
     reasons.push_back("open sides where the velocity is neither a wind nor a rotation that stays");
   for (int a = 0; a < p.dimensions; ++a)
     for (const Side& side : p.sides[a])
-      if ((side.kind == Side::Kind::open) != (wind_of(p)[a] != 0)) {
+      if ((side.kind == Side::Kind::open) != blows_along(p, a)) {
         reasons.push_back(
             fmt::format("sides of axis {} are {}, expected open where the wind goes through, else free_slip", "xyz"[a],
                         scene::side_name(side.kind)));
@@ -81,6 +87,11 @@ std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& probl
   if (!air_comes_in(*problem)) return {};
   Wind wind;
   wind.added = !is_given(*problem);
+  wind.incoming.resize(problem->densities.size() + 2);
+  if (const auto* blown = std::get_if<scene::Wind>(&problem->velocity)) {
+    wind.gust = blown->gust.cwiseQuotient(box.half);
+    wind.frequency = blown->frequency;
+  }
   const Vec3 through = wind_of(*problem);
   if (wind.added)
     wind.velocity = [=](int a, const Vec3&) { return through[a] / box.half[a]; };
@@ -90,16 +101,33 @@ std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& probl
     };
   for (int a = 0; a < problem->dimensions; ++a)
     for (int side = 0; side < 2; ++side) {
-      wind.density[a][side] = problem->sides[a][side].density;
-      wind.temperature[a][side] = problem->sides[a][side].temperature;
+      const Side& from = problem->sides[a][side];
+      wind.incoming[std::size_t(from.of)][a][side] = from.density;
+      wind.incoming.back()[a][side] = from.temperature;
     }
   return wind;
+}
+
+// Of two densities the sum and the first one's share, which comes from nowhere but the start and does not spread.
+void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reasons) {
+  const std::string mixing = "mixing = albedo with ";
+  if (problem.densities.size() != 1)
+    reasons.push_back(fmt::format("{}{} densities, expected 2", mixing, problem.densities.size() + 1));
+  for (const scene::Source& s : problem.sources)
+    if (s.density_rate != 0) {
+      reasons.push_back(mixing + "sources of a density");
+      break;
+    }
+  if (air_comes_in(problem)) reasons.push_back(mixing + "air that comes in");
+  if (problem.diffusivity > 0) reasons.push_back(mixing + "diffusivity");
 }
 
 // What the paper's variants do not have.
 void object_to_paper(const FlowProblem& problem, const Settings& settings, std::vector<std::string>& reasons) {
   const std::string& variant = settings.text("variant");
   if (has_open_sides(problem)) reasons.push_back(variant + " with open sides: its operators know no inflow");
+  if (const auto* wind = std::get_if<scene::Wind>(&problem.velocity); wind && !wind->gust.isZero(0))
+    reasons.push_back(variant + " with a gust");
   if (settings.text("time_step") != "runge_kutta")
     reasons.push_back(variant + " with time_step = " + settings.text("time_step") + ": a setting of galerkin");
   for (const char* filter : {"filter_velocity", "filter_carried"})
@@ -138,6 +166,8 @@ std::vector<scene::SettingSpec> LegendreFluids::settings() const {
       scene::choice_setting("time_step", "runge_kutta", {"runge_kutta", "exponential", "cayley"},
                             "of galerkin's advection; Runge-Kutta divides steps that are too long for it"),
       scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants"),
+      scene::choice_setting("mixing", "densities", {"densities", "albedo"},
+                            "of two densities move both, or their sum and the first one's share (the paper's albedo)"),
       scene::integer_setting("krylov", "30", 1, 200, "vectors of a Krylov space at most (exponential, cayley)"),
       scene::real_setting("tolerance", "1e-10", 0, 1, "of a Krylov space's error, relative"),
       scene::real_setting("filter_velocity", "0", 0, 1e9,
@@ -158,6 +188,7 @@ std::vector<std::string> LegendreFluids::supports(const FlowProblem& problem, co
       reasons.push_back("sources that hold a value, expected rates");
       break;
     }
+  if (settings.choice<Mixing>("mixing") == Mixing::albedo) object_to_albedo(problem, reasons);
   if (settings.choice<Variant>("variant") != Variant::galerkin) object_to_paper(problem, settings, reasons);
   const bool krylov = settings.text("time_step") != "runge_kutta";
   if (krylov && air_comes_in(problem))
@@ -186,7 +217,7 @@ std::unique_ptr<scene::Flow> LegendreFluids::start_supported(std::shared_ptr<con
     fluid =
         std::make_unique<PaperFluid>(box.dimensions, n, box.half, material, settings.choice<Truncation>("truncation"),
                                      settings.choice<Variant>("variant") == Variant::paper_repaired);
-  return start_flow(std::move(problem), std::move(fluid), cells);
+  return start_flow(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
 }
 
 }  // namespace airlight::legendre_fluids

@@ -108,7 +108,7 @@ void PaperFluid::advance(double dt) {
     if (!(growth_ <= 1e300)) throw scene::Unstable("the energy is no longer finite");
     require_tame();
   }
-  for (Array* r : {&density, &temperature}) {
+  for (Array* r : carried()) {
     *r = advection_.exponential(*r, dt);
     if (r->size() == 0 || !(material_.diffusivity > 0)) continue;
     const double amount = material_.diffusivity * dt;

@@ -31,6 +31,7 @@ Vec3 wind_of(const FlowProblem& p) {
 }
 
 std::string why_velocity_is_unknown(const FlowProblem& p) {
+  if (const auto* wind = std::get_if<scene::Wind>(&p.velocity); wind && !wind->gust.isZero(0)) return "a gust";
   if (p.velocity_stays) return "";
   if (!p.pushes.empty()) return "forces";
   if (p.confinement != 0) return "confinement of vorticity";
@@ -93,7 +94,7 @@ class ExactFlow : public scene::Flow {
   }
   double temperature(const Point3& x) const override { return fading() * scene::start_temperature(*p_, origin_of(x)); }
 
-  scene::DensityField medium() const override {
+  scene::DensityField medium(int) const override {
     auto grid = std::make_shared<scene::VoxelGrid>();
     grid->size = n_;
     grid->voxel_size = cell_;
@@ -218,6 +219,7 @@ std::vector<std::string> ExactFlows::supports(const FlowProblem& problem, const 
   };
   if (!problem.sources.empty()) unknown("sources");
   if (!problem.obstacles.empty()) unknown("obstacles");
+  if (!problem.densities.empty()) unknown("several densities");
   unknown(why_velocity_is_unknown(problem));
   unknown(why_carried_is_unknown(problem));
   return reasons;

@@ -79,7 +79,7 @@ class GridFlow : public scene::Flow {
   double density(const Point3& x) const override { return carried_at(Quantity::density, x); }
   double temperature(const Point3& x) const override { return carried_at(Quantity::temperature, x); }
 
-  scene::DensityField medium() const override { return density_grid(l_, find(Quantity::density)); }
+  scene::DensityField medium(int) const override { return density_grid(l_, find(Quantity::density)); }
   scene::Frame frame() const override { return frame_of(l_, u_, find(Quantity::density), find(Quantity::temperature)); }
 
   scene::Totals totals() const override {

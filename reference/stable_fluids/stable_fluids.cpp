@@ -52,6 +52,9 @@ std::vector<scene::SettingSpec> StableFluids::settings() const {
 
 std::vector<std::string> StableFluids::supports(const FlowProblem& problem, const Settings& settings) const {
   std::vector<std::string> reasons;
+  if (!problem.densities.empty()) reasons.push_back("several densities");
+  if (const auto* wind = std::get_if<scene::Wind>(&problem.velocity); wind && !wind->gust.isZero(0))
+    reasons.push_back("a gust: it knows winds that begin a flow only");
   if (settings.text("pressure") == "transforms" && !problem.obstacles.empty())
     reasons.push_back("pressure = transforms solves in boxes without obstacles only");
   if (const double steps = steps_in_frame(problem, settings); steps > most_steps)

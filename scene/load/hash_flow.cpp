@@ -5,6 +5,26 @@
 namespace airlight::scene {
 using load::ContentHash;
 
+namespace {
+
+void add_start(ContentHash& hash, const std::vector<Blob>& blobs, const std::optional<Wave>& wave,
+               const std::shared_ptr<const VoxelGrid>& grid) {
+  hash.tag("blobs");
+  for (const Blob& blob : blobs) {
+    hash.add(blob.center);
+    for (const double value : {blob.width, blob.density, blob.temperature}) hash.add(value);
+  }
+  hash.tag(wave ? "wave" : "no wave");
+  if (wave) {
+    hash.add(wave->waves);
+    for (const double value : {wave->density, wave->offset, wave->phase}) hash.add(value);
+  }
+  hash.tag(grid ? "density grid" : "no grid");
+  if (grid) add(hash, *grid);
+}
+
+}  // namespace
+
 std::string content_hash(const FlowProblem& p) {
   ContentHash hash;
   hash.tag("airlight flow 1");
@@ -34,20 +54,14 @@ std::string content_hash(const FlowProblem& p) {
         hash.add(v.center);
         hash.add(v.rate);
       },
-      [&](const Wind& v) { hash.add(v.velocity); });
+      [&](const Wind& v) {
+        hash.add(v.velocity);
+        if (v.gust.isZero(0)) return;
+        hash.add(v.gust);
+        hash.add(v.frequency);
+      });
   hash.add(int(p.velocity_stays));
-  hash.tag("blobs");
-  for (const Blob& blob : p.blobs) {
-    hash.add(blob.center);
-    for (const double value : {blob.width, blob.density, blob.temperature}) hash.add(value);
-  }
-  hash.tag(p.wave ? "wave" : "no wave");
-  if (p.wave) {
-    hash.add(p.wave->waves);
-    for (const double value : {p.wave->density, p.wave->offset, p.wave->phase}) hash.add(value);
-  }
-  hash.tag(p.density_grid ? "density grid" : "no grid");
-  if (p.density_grid) add(hash, *p.density_grid);
+  add_start(hash, p.blobs, p.wave, p.density_grid);
   if (p.temperature_grid) {
     hash.tag("temperature grid");
     add(hash, *p.temperature_grid);
@@ -71,6 +85,16 @@ std::string content_hash(const FlowProblem& p) {
     add(hash, push.region);
     hash.add(push.acceleration);
     for (const double value : {push.time.lo, push.time.hi, push.frequency}) hash.add(value);
+  }
+  for (const NamedDensity& d : p.densities) {
+    hash.tag("density " + d.name);
+    hash.add(d.density);
+    add_start(hash, d.blobs, d.wave, d.grid);
+  }
+  if (!p.densities.empty()) {
+    for (const auto& axis : p.sides)
+      for (const Side& side : axis) hash.add(side.of);
+    for (const Source& s : p.sources) hash.add(s.of);
   }
   return hash.digits();
 }

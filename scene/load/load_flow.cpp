@@ -45,9 +45,14 @@ void read_box(TableReader reader, FlowProblem& problem) {
   problem.box = {Point3(lo[0], lo[1], 0), Point3(hi[0], hi[1], 0)};
 }
 
+// `of` says which density the table brings.
+void require_of(const TableReader& reader, bool brings) {
+  if (reader.has("of") && !brings) reader.fail("of", "of has no effect: there is no density");
+}
+
 const std::vector<std::string> side_names = {"left", "right", "bottom", "top", "back", "front"};
 
-Side read_side(TableReader reader, int axis, int which) {
+Side read_side(TableReader reader, const FlowProblem& problem, int axis, int which) {
   Side side;
   const std::string type = reader.type({"periodic", "free_slip", "no_slip", "open", "moving", "inflow"});
   if (type == "moving") {
@@ -57,13 +62,15 @@ Side read_side(TableReader reader, int axis, int which) {
       reader.expected("velocity", fmt::format("0 along {}: a wall moves in its plane", "xyz"[axis]));
     side.regularized = reader.flag("regularized", false);
   } else if (type == "inflow") {
-    reader.allow({"type", "velocity", "density", "temperature"});
+    reader.allow({"type", "velocity", "density", "temperature", "of"});
     side.velocity = speeds(reader, "velocity");
     if (side.velocity[axis] == 0)
       reader.expected("velocity", fmt::format("a number other than 0 along {}, out of the box where it points outwards",
                                               "xyz"[axis]));
     side.density = reader.number("density", {0, density_range.greatest}, 0);
     side.temperature = reader.number("temperature", temperatures, 0);
+    side.of = read_which(reader, problem);
+    require_of(reader, side.density != 0);
     const bool inwards = which == 0 ? side.velocity[axis] > 0 : side.velocity[axis] < 0;
     for (const char* key : {"density", "temperature"})
       if (!inwards && reader.has(key))
@@ -110,8 +117,8 @@ void read_sides(const TableReader& root, FlowProblem& problem) {
     for (int which = 0; which < 2; ++which) {
       const std::string& name = side_names[2 * axis + which];
       Side& side = problem.sides[axis][which];
-      if (const auto all = reader.table("all")) side = read_side(*all, axis, which);
-      if (const auto own = reader.table(name)) side = read_side(*own, axis, which);
+      if (const auto all = reader.table("all")) side = read_side(*all, problem, axis, which);
+      if (const auto own = reader.table(name)) side = read_side(*own, problem, axis, which);
     }
   for (int axis = 0; axis < problem.dimensions; ++axis)
     if ((problem.sides[axis][0].kind == Side::Kind::periodic) != (problem.sides[axis][1].kind == Side::Kind::periodic))
@@ -136,7 +143,8 @@ Region read_place(const TableReader& reader, const FlowProblem& problem) {
 }
 
 Source read_source(TableReader reader, const FlowProblem& problem) {
-  reader.allow({"region", "from", "to", "density_rate", "temperature_rate", "density", "temperature", "velocity"});
+  reader.allow(
+      {"region", "from", "to", "density_rate", "temperature_rate", "density", "temperature", "velocity", "of"});
   Source source;
   source.region = read_place(reader, problem);
   source.time = read_time(reader);
@@ -145,6 +153,8 @@ Source read_source(TableReader reader, const FlowProblem& problem) {
   if (reader.has("density")) source.density = reader.number("density", {0, density_range.greatest});
   if (reader.has("temperature")) source.temperature = reader.number("temperature", temperatures);
   if (reader.has("velocity")) source.velocity = speeds(reader, "velocity");
+  source.of = read_which(reader, problem);
+  require_of(reader, source.density_rate != 0 || source.density);
   if (source.density_rate == 0 && source.temperature_rate == 0 && !source.density && !source.temperature &&
       !source.velocity)
     reader.fail("", "nothing comes from it, expected density_rate, temperature_rate, density, temperature or velocity");
@@ -208,7 +218,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   toml::table root = parse_toml(text, name);
   apply_overrides(root, overrides, name, {"fluid", "start"});
   TableReader reader(root, "");
-  reader.allow({"name", "flow", "sides", "fluid", "start", "source", "obstacle", "force"});
+  reader.allow({"name", "flow", "sides", "fluid", "start", "density", "source", "obstacle", "force"});
   FlowProblem problem;
   problem.file = name;
   problem.name = reader.text("name", std::filesystem::path(name).stem().string());
@@ -221,6 +231,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   if (problem.duration * problem.frame_rate > most_frames)
     flow.expected("duration",
                   fmt::format("at most {:.0e} frames, {:g} of them a second", most_frames, problem.frame_rate));
+  for (const TableReader& density : reader.tables("density")) read_density(density, folder, problem);
   read_sides(reader, problem);
   if (auto fluid = reader.table("fluid")) {
     fluid->allow({"viscosity", "diffusivity", "decay", "gravity", "weight", "expansion", "confinement"});

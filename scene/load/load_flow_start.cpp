@@ -25,8 +25,13 @@ StartVelocity read_velocity(TableReader reader) {
     return RigidRotation{reader.vector("center"), speeds(reader, "rate")};
   }
   if (type == "wind") {
-    reader.allow({"type", "velocity"});
-    return Wind{speeds(reader, "velocity")};
+    reader.allow({"type", "velocity", "gust", "frequency"});
+    Wind wind{speeds(reader, "velocity")};
+    if (reader.has("gust") || reader.has("frequency")) {
+      wind.gust = speeds(reader, "gust");
+      wind.frequency = reader.number("frequency", {1e-9, 1e9});
+    }
+    return wind;
   }
   reader.allow({"type"});
   return AtRest{};
@@ -41,6 +46,13 @@ Wave read_wave(TableReader reader) {
   wave.offset = reader.number("offset", either_sign(density_range), 0);
   wave.phase = reader.number("phase", coordinate, 0);
   return wave;
+}
+
+void require_density(const TableReader& reader, const std::string& path, const VoxelGrid& grid) {
+  require_near(reader, "file", grid);
+  for (const float value : grid.values)
+    if (value > density_range.greatest)
+      reader.fail("file", fmt::format("{}: a density of {}, expected at most {}", path, value, density_range.greatest));
 }
 
 // What the file holds is added to the rest: the grids that are named, or the density.
@@ -60,18 +72,51 @@ void read_start_file(const TableReader& reader, const std::string& folder, FlowP
   } catch (const Error& e) {
     reader.fail("file", e.what());
   }
-  if (problem.density_grid) {
-    require_near(reader, "file", *problem.density_grid);
-    for (const float value : problem.density_grid->values)
-      if (value > density_range.greatest)
-        reader.fail("file",
-                    fmt::format("{}: a density of {}, expected at most {}", path, value, density_range.greatest));
-  }
+  if (problem.density_grid) require_density(reader, path, *problem.density_grid);
   if (problem.temperature_grid) require_near(reader, "file", *problem.temperature_grid);
   if (problem.velocity_grid) require_near(reader, "file", problem.velocity_grid->front());
 }
 
 }  // namespace
+
+int read_which(const TableReader& reader, const FlowProblem& problem) {
+  if (!reader.has("of")) return 0;
+  std::vector<std::string> names{"density"};
+  for (const NamedDensity& d : problem.densities) names.push_back(d.name);
+  const std::string name = reader.choice("of", names);
+  return int(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+void read_density(TableReader reader, const std::string& folder, FlowProblem& problem) {
+  reader.allow({"name", "density", "blob", "wave", "file", "grid"});
+  NamedDensity own;
+  own.name = reader.text("name");
+  const bool plain =
+      !own.name.empty() && own.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  if (!plain) reader.expected("name", "small letters, digits and _: it becomes part of the names of files and grids");
+  std::vector<std::string> taken{"density", "temperature", "velocity"};
+  for (const NamedDensity& d : problem.densities) taken.push_back(d.name);
+  if (std::find(taken.begin(), taken.end(), own.name) != taken.end())
+    reader.fail("name", fmt::format("there is a {} already, expected another name", own.name));
+  own.density = reader.number("density", {0, density_range.greatest}, 0);
+  for (TableReader blob : reader.tables("blob")) {
+    blob.allow({"center", "width", "density"});
+    own.blobs.push_back(
+        {blob.vector("center"), blob.number("width", length), blob.number("density", {0, density_range.greatest}), 0});
+  }
+  if (const auto wave = reader.table("wave")) own.wave = read_wave(*wave);
+  if (!reader.has("file") && reader.has("grid")) reader.fail("grid", "grid has no effect: there is no file");
+  if (reader.has("file")) {
+    const std::string path = find_asset(reader, "file", folder);
+    try {
+      own.grid = std::make_shared<const VoxelGrid>(read_vdb(path, reader.text("grid", own.name)));
+    } catch (const Error& e) {
+      reader.fail("file", e.what());
+    }
+    require_density(reader, path, *own.grid);
+  }
+  problem.densities.push_back(std::move(own));
+}
 
 void read_start(TableReader reader, const std::string& folder, FlowProblem& problem) {
   reader.allow({"velocity", "velocity_stays", "density", "temperature", "blob", "wave", "file", "grid",

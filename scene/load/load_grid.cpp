@@ -13,22 +13,6 @@ namespace {
 // A file of a few bytes can span any number of voxels: these take a gigabyte.
 constexpr std::size_t most_voxels = std::size_t(1) << 28;
 
-// The file of a frame where the name is that of a sequence: # stand for its digits, leading zeros included.
-std::string name_of_frame(const TableReader& reader) {
-  std::string name = reader.text("file");
-  const std::size_t first = name.find('#');
-  if (first == std::string::npos) {
-    if (reader.has("frame")) reader.fail("frame", "frame has no effect: there is no # in the name of the file");
-    return name;
-  }
-  const std::size_t digits = std::min(name.find_first_not_of('#', first), name.size()) - first;
-  if (name.find('#', first + digits) != std::string::npos)
-    reader.expected("file", "the digits of the frame in one place, as in smoke_####.vdb");
-  if (!reader.has("frame")) reader.fail("file", fmt::format("file = \"{}\" is a sequence, expected a frame", name));
-  const std::string frame = fmt::format("{:0{}}", reader.integer("frame", 0, 999'999'999, 0), digits);
-  return name.replace(first, digits, frame);
-}
-
 VoxelGrid read_file(const TableReader& reader, const std::string& folder) {
   const std::string path = find_asset(reader, "file", name_of_frame(reader), folder);
   const std::string name = reader.text("grid", "density");

@@ -39,14 +39,15 @@ Eigen::VectorXd read_csv(const std::string& path, const TensorShape& shape) {
 }  // namespace
 
 LegendrePointer read_legendre(TableReader& reader, const std::string& folder) {
-  reader.allow(medium_keys_and({"lo", "hi", "size", "coefficients", "file"}));
+  reader.allow(medium_keys_and({"lo", "hi", "size", "coefficients", "file", "frame"}));
   const Box box = read_corners(reader);
   const auto size = reader.integers("size", 3, 1, LegendreBox::most);
   const TensorShape shape = {int(size[0]), int(size[1]), int(size[2])};
   Eigen::VectorXd coefficients;
   if (reader.one_of({"coefficients", "file"}) == "file") {
-    coefficients = read_csv(find_asset(reader, "file", folder), shape);
+    coefficients = read_csv(find_asset(reader, "file", name_of_frame(reader), folder), shape);
   } else {
+    reader.allow(medium_keys_and({"lo", "hi", "size", "coefficients"}));
     const std::vector<double> values = reader.numbers("coefficients", coefficient);
     if (values.size() != std::size_t(tensor_size(shape)))
       reader.fail("coefficients", fmt::format("coefficients has {} numbers, expected {} = {} x {} x {}, z fastest",

@@ -124,13 +124,14 @@ void write_frame(const std::string& path, Frame frame, const std::map<std::strin
   cells.voxel_size = frame.cell;
   cells.translation = frame.low + 0.5 * frame.cell * Vec3::Ones();
   openvdb::GridCPtrVec grids;
-  const auto add = [&](std::vector<float>& values, const char* name) {
+  const auto add = [&](std::vector<float>& values, const std::string& name) {
     cells.values = std::move(values);
     cells.values.resize(std::size_t(frame.size[0]) * frame.size[1] * frame.size[2], 0.0f);
     grids.push_back(fog_volume(cells, name));
   };
   add(frame.density, "density");
   if (!frame.temperature.empty()) add(frame.temperature, "temperature");
+  for (auto& [name, values] : frame.densities) add(values, name);
   cells.values = {};
   grids.push_back(staggered(frame, grids.front()->transform()));
   frame.velocity = {};

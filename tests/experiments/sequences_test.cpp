@@ -113,6 +113,10 @@ TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow
                     Contains("e.toml:4:1") && Contains("there is no sequence 'puff'") && Contains("puf"));
   project.list("n = 8, m = 3");
   CHECK_THROWS_WITH(make_sequence(project.path(), "puff", "quick", 1), Contains("puff") && Contains("'m'"));
+  project.list("n = 8");
+  CHECK_THAT(sequence_files(project.path(), "puff.csv", "quick", "here"), Contains("puff.quick/puff.####.csv"));
+  CHECK_THROWS_WITH(sequence_files(project.path(), "puff.red.csv", "quick", "here"),
+                    Contains("here: the sequence 'puff' has no files .red.csv, expected one of .vdb, .csv"));
   project.write("experiments/sequences.toml", "puff = 3\n");
   CHECK_THROWS_WITH(project.read(), Contains("expected a table [puff]"));
 }

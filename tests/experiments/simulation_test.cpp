@@ -131,6 +131,58 @@ TEST_CASE("a simulation that is killed fifty times goes on with the same bits", 
   CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
 }
 
+TEST_CASE("coefficients lie beside the frames, and a scene shows them", "[simulation]") {
+  const std::string two = R"(
+name = "two"
+[flow]
+duration = 0.4
+frame_rate = 10
+box = { lo = [0, 0, 0], hi = [1, 2, 1] }
+[start]
+velocity = { type = "swirl", speed = 1 }
+blob = [ { center = [0.4, 1, 0.5], width = 0.4, density = 1 } ]
+[[density]]
+name = "red"
+blob = [ { center = [0.6, 1, 0.5], width = 0.4, density = 1 } ]
+)";
+  const TemporaryFolder folder, broken;
+  const scene::Solver& solver = find_solver("legendre_fluids", "test");
+  const scene::Settings settings(solver.settings(), {{"n", "6"}, {"dt", "0.05"}});
+  const auto problem = std::make_shared<const scene::FlowProblem>(scene::parse_flow(two, "two.toml", ""));
+  simulate({problem, solver, settings, folder.path()}, {});
+  const auto all = files_of(folder.path());
+  CHECK(all.size() == 3 * 5 + 2);
+  const auto flow = solver.start(problem, settings, {});
+  for (int step = 0; step < 6; ++step) flow->step(0.05);
+  for (const std::string name : {"two", "two.red"}) {
+    const auto scene = scene::parse_scene(
+        "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[film]\nwidth = 1\nheight = 1\n[[medium]]\ntype = "
+        "\"legendre\"\nsigma_t = 1\nsize = [6, 6, 6]\nlo = [0, 0, 0]\nhi = [1, 2, 1]\nframe = 3\nfile = \"" +
+            name + ".####.csv\"\n",
+        "s.toml", folder.path().string());
+    const auto& shown = std::get<scene::LegendrePointer>(scene.media.at(0).field)->coefficients();
+    const scene::DensityField medium = flow->medium(name != "two");
+    // Those below 1e-20 are left out.
+    CHECK((shown - std::get<scene::LegendrePointer>(medium)->coefficients()).cwiseAbs().maxCoeff() < 1e-20);
+  }
+
+  for (int most = 1;; ++most) {
+    int asked = 0;
+    scene::Execution execution;
+    execution.progress = [&](double) { return ++asked < most; };
+    try {
+      if (simulate({problem, solver, settings, broken.path()}, execution).frames == 5) break;
+    } catch (const scene::Interrupted&) {
+    }
+  }
+  CHECK(files_of(broken.path()) == all);
+  const Simulation again{problem, solver, settings, broken.path()};
+  CHECK(frames_there(again) == 5);
+  std::filesystem::remove(broken.path() / "two.red.0002.csv");
+  CHECK(frames_there(again) == 0);
+  CHECK_THROWS_WITH(simulate(again, {}), Contains("two.red.0002.csv: is gone"));
+}
+
 TEST_CASE("a folder of another simulation is refused", "[simulation]") {
   const TemporaryFolder folder;
   simulate(simulation(folder), {});

@@ -2,36 +2,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "methods/legendre_fluids/legendre_fluids.h"
 #include "reference/exact_flows/exact_flows.h"
 #include "reference/stable_fluids/stable_fluids.h"
+#include "tests/methods/legendre_fluids/flows.h"
 
 using namespace airlight;
+using namespace airlight::legendre_fluids::testing;
 using Catch::Contains;
-using scene::FlowProblem;
 using Kind = scene::Side::Kind;
 
 namespace {
-
-using Given = std::map<std::string, std::string>;
-
-template <class Solver = legendre_fluids::LegendreFluids>
-std::unique_ptr<scene::Flow> start(const FlowProblem& problem, const Given& settings) {
-  const Solver solver;
-  return solver.start(std::make_shared<const FlowProblem>(problem), scene::Settings(solver.settings(), settings), {});
-}
-
-std::vector<std::string> objections(const FlowProblem& problem, const Given& settings = {}) {
-  const legendre_fluids::LegendreFluids solver;
-  return solver.supports(problem, scene::Settings(solver.settings(), settings));
-}
-
-FlowProblem box(int dimensions, const Vec3& size = Vec3::Ones()) {
-  FlowProblem problem;
-  problem.dimensions = dimensions;
-  problem.box = {Point3::Zero(), dimensions == 2 ? Point3(size[0], size[1], 0) : Point3(size)};
-  return problem;
-}
 
 FlowProblem warm_blob(int dimensions) {
   FlowProblem problem = box(dimensions);
@@ -40,10 +20,6 @@ FlowProblem warm_blob(int dimensions) {
   problem.viscosity = 1e-3;
   problem.blobs.push_back({Point3(0.5, 0.3, dimensions == 2 ? 0 : 0.5), 0.25, 1, 30});
   return problem;
-}
-
-void run(scene::Flow& flow, int steps, double dt) {
-  for (int i = 0; i < steps; ++i) flow.step(dt);
 }
 
 // Of the velocities on a lattice of 21 points along an axis, relative.

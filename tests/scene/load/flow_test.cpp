@@ -98,6 +98,33 @@ TEST_CASE("flow problems: all keys", "[flow][load]") {
   CHECK(p.pushes[0].frequency == 0.5);
 }
 
+TEST_CASE("flow problems: several densities, each with a start, sources and sides of its own", "[flow][load]") {
+  const FlowProblem p = flow(flow_of_box +
+                             "[start]\ndensity = 0.5\n[[density]]\nname = \"red\"\ndensity = 0.25\n"
+                             "blob = [ { center = [0, 1, 0], width = 1, density = 2 } ]\n[[density]]\nname = \"b_2\"\n"
+                             "wave = { waves = [1, 0, 0], density = 1, offset = 1 }\n"
+                             "[sides]\nleft = { type = \"inflow\", velocity = [1, 0, 0], density = 3, of = \"b_2\" }\n"
+                             "right = { type = \"open\" }\n"
+                             "[[source]]\nregion = { type = \"unbounded\" }\ndensity_rate = 7\nof = \"red\"\n");
+  REQUIRE(p.densities.size() == 2);
+  CHECK(start_density(p, Point3(0, 1, 0)) == 0.5);
+  const FlowProblem red = with_density(p, 1), second = with_density(p, 2);
+  CHECK(start_density(red, Point3(0, 1, 0)) == 2.25);
+  CHECK(start_density(second, Point3(0, 1, 0)) == 2);
+  CHECK(red.sources[0].density_rate == 7);
+  CHECK(second.sources[0].density_rate == 0);
+  CHECK(red.sides[0][0].density == 0);
+  CHECK(second.sides[0][0].density == 3);
+  CHECK(red.hash != second.hash);
+  CHECK(flow(flow_of_box + "[[density]]\nname = \"a\"\n").hash !=
+        flow(flow_of_box + "[[density]]\nname = \"b\"\n").hash);
+  const Wind wind = std::get<Wind>(
+      flow(flow_of_box +
+           "[start]\nvelocity = { type = \"wind\", velocity = [1, 0, 0], gust = [0, 2, 0], frequency = 0.5 }\n")
+          .velocity);
+  CHECK(wind.at(0.5).isApprox(Vec3(1, 2, 0)));
+}
+
 TEST_CASE("flow problems: equal content, equal hash", "[flow][load]") {
   const std::string other =
       "name = \"b\"\n[flow]\nbox = { hi = [1, 2, 1.0], lo = [0, 0, 0] }\nduration = 2.0\nframe_rate = 24\n";
@@ -166,6 +193,16 @@ TEST_CASE("flow problems: refused with place, what was found and what was expect
       {"[flow]\nduration = 1\nframe_rate = 0\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }",
        "f.toml:3:14: flow: frame_rate = 0, expected"},
       {flow_of_box + "[start]\nvelocity = { type = \"wind\" }", "missing key 'velocity'"},
+      {flow_of_box + "[start]\nvelocity = { type = \"wind\", velocity = [1, 0, 0], gust = [1, 0, 0] }",
+       "missing key 'frequency'"},
+      {flow_of_box + "[[density]]\ndensity = 1", "density 0: missing key 'name'"},
+      {flow_of_box + "[[density]]\nname = \"../a\"", "f.toml:5:8: density 0: name = \"../a\", expected small letters"},
+      {flow_of_box + "[[density]]\nname = \"velocity\"", "f.toml:5:8: density 0: there is a velocity already"},
+      {flow_of_box + "[[density]]\nname = \"a\"\ngrid = \"a\"", "grid has no effect: there is no file"},
+      {flow_of_box + "[[source]]\nregion = { type = \"unbounded\" }\ndensity = 1\nof = \"red\"",
+       "source 0: of = \"red\", expected"},
+      {flow_of_box + "[[source]]\nregion = { type = \"unbounded\" }\ntemperature = 1\nof = \"density\"",
+       "source 0: of has no effect: there is no density"},
       {flow_of_box + "[start]\nfile = \"none.vdb\"", "none.vdb"},
       {flow_of_box + "[start]\ngrid = \"density\"", "grid has no effect: there is no file"}};
   for (const auto& [text, says] : cases) {
