@@ -2,6 +2,8 @@
 
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
+#include "experiments/legendre_fluids/fluid_probes.h"
+#include "experiments/legendre_fluids/rendering_probe.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
 #include "experiments/stable_fluids/probes.h"
 #include "experiments/verify/oracle_probe.h"
@@ -26,11 +28,16 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<WaveletSeams>());
     list.push_back(std::make_unique<WaveletErrata>());
     list.push_back(std::make_unique<WaveletMapSize>());
+    list.push_back(std::make_unique<LegendreRendering>());
     list.push_back(std::make_unique<CavityProbe>());
     list.push_back(std::make_unique<FlowStability>());
     list.push_back(std::make_unique<PressureSolvers>());
     list.push_back(std::make_unique<TransformsRate>());
     list.push_back(std::make_unique<AdvectionRate>());
+    list.push_back(std::make_unique<LegendreCost>());
+    list.push_back(std::make_unique<LegendreSpeed>());
+    list.push_back(std::make_unique<LegendreStability>());
+    list.push_back(std::make_unique<LegendreSmoke>());
     return list;
   }();
   return probes;

@@ -12,7 +12,9 @@
 #include "scene/content_key.h"
 #include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
+#include "scene/flow_particles.h"
 #include "scene/read_file.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {
@@ -61,18 +63,23 @@ class Folder {
     const std::string of = density == 0 ? "" : "." + scene::density_name(*s_.problem, density);
     return (s_.folder / fmt::format("{}{}.{:04d}.csv", s_.problem->name, of, frame)).string();
   }
+  std::string particles_name(int frame) const {
+    return (s_.folder / fmt::format("{}.particles.{:04d}.csv", s_.problem->name, frame)).string();
+  }
   // The first file that is gone, of the frames up to the last; nothing where all are there.
   std::string missing(const Kept& kept) const {
     for (int frame = 0; frame <= kept.last; ++frame) {
-      if (!fs::exists(frame_name(frame))) return frame_name(frame);
-      for (int density = 0; density < kept.coefficients; ++density)
-        if (!fs::exists(coefficients_name(density, frame))) return coefficients_name(density, frame);
+      std::vector<std::string> files{frame_name(frame)};
+      for (int density = 0; density < kept.coefficients; ++density) files.push_back(coefficients_name(density, frame));
+      if (!s_.problem->particles.empty()) files.push_back(particles_name(frame));
+      for (const std::string& file : files)
+        if (!fs::exists(file)) return file;
     }
     return "";
   }
 
-  // The last frame that is complete, -1 where there is none, and into `flow` what followed it.
-  int resume(scene::Flow& flow) {
+  // The last frame that is complete, -1 where there is none, and into `flow` and its particles what followed it.
+  int resume(scene::Flow& flow, scene::FlowParticles& particles) {
     const std::string path = (s_.folder / "state").string();
     if (!fs::exists(path)) return -1;
     const std::string bytes = scene::read_whole_file(path, std::size_t(1) << 36);
@@ -87,11 +94,14 @@ class Folder {
       throw Error(
           fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames", gone));
     history_ = rows_up_to(last);
-    flow.restore(bytes.substr(next + 1));
+    const std::size_t of_particles = particles.state().size();
+    if (bytes.size() - (next + 1) < of_particles) throw Error(path + ": shorter than expected");
+    particles.restore(bytes.substr(next + 1, of_particles));
+    flow.restore(bytes.substr(next + 1 + of_particles));
     return last;
   }
 
-  void keep(int frame, const scene::Flow& flow, double dt) {
+  void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
     int coefficients = 0;
     for (int density = 0; density <= int(s_.problem->densities.size()); ++density) {
       const scene::DensityField medium = flow.medium(density);
@@ -100,6 +110,7 @@ class Folder {
       scene::write_legendre_csv(coefficients_name(density, frame), **box);
       ++coefficients;
     }
+    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
     scene::write_frame(frame_name(frame), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},
@@ -110,7 +121,7 @@ class Folder {
     history_ += history_row(frame, flow.time(), flow.totals());
     scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
     std::string state = flow.state();  // as long as the flow itself
-    state.insert(0, fmt::format("{}\n{} {}\n", key_, frame, coefficients));
+    state.insert(0, fmt::format("{}\n{} {}\n{}", key_, frame, coefficients, particles.state()));
     scene::write_file_atomically((s_.folder / "state").string(), state);
   }
 
@@ -133,6 +144,31 @@ class Folder {
   std::string key_, history_;
 };
 
+// Particles, and the flow as it was a step before, between which and now they move.
+class Carried {
+ public:
+  Carried(const Simulation& s, const scene::Execution& execution) : particles(*s.problem), execution_(execution) {
+    if (!particles.empty()) before_ = s.solver.start(s.problem, s.settings, execution);
+  }
+  void from(const scene::Flow& now) {
+    if (before_) before_->restore(now.state());
+  }
+  void move(const scene::Flow& now, double dt) {
+    if (!before_) return;
+    scene::Stopwatch watch;
+    particles.step(*before_, now, dt, execution_);
+    seconds += watch.lap();
+    from(now);
+  }
+
+  scene::FlowParticles particles;
+  double seconds = 0;
+
+ private:
+  const scene::Execution& execution_;
+  std::unique_ptr<scene::Flow> before_;
+};
+
 }  // namespace
 
 int frames_there(const Simulation& s) {
@@ -147,21 +183,25 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
     throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
                             s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
+  Carried carried(s, execution);
   Folder folder(s);
   SimulationReport report;
-  const int last = folder.resume(*flow);
+  const int last = folder.resume(*flow, carried.particles);
   report.resumed = last + 1;
   for (int frame = last + 1; frame < plan.frames; ++frame) {
+    carried.from(*flow);
     if (frame > 0)
       to_next_frame(*flow, plan, [&](double share) {
+        carried.move(*flow, plan.dt);
         const double done = (frame - 1 - report.resumed + share) / (plan.frames - 1 - report.resumed + 1e-9);
         if (execution.progress && !execution.progress(std::clamp(done, 0.0, 1.0)))
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
       });
-    folder.keep(frame, *flow, plan.dt);
+    folder.keep(frame, *flow, carried.particles, plan.dt);
   }
   report.frames = plan.frames;
   report.times = flow->times();
+  if (!carried.particles.empty()) report.times.push_back({"particles", carried.seconds});
   report.counters = flow->counters();
   report.totals = flow->totals();
   return report;

@@ -2,6 +2,7 @@
 //
 //   NAME.0000.vdb, NAME.0001.vdb, ...   the frames, from the start on
 //   NAME.0000.csv, ...                  the density as coefficients, where its medium is a Legendre box; NAME.OTHER.0000.csv further ones
+//   NAME.particles.0000.csv, ...        where its particles are, if it carries any: the files of scenes' [[particles]]
 //   history.csv                         a row for each: sums over the box
 //   state                               what goes on after the last of them, whose files are complete
 //

@@ -16,4 +16,9 @@ Rgb background(const Scene& scene, const Vec3& direction) {
   return sum;
 }
 
+Rgb background(const Scene& scene, const RayEnd& end, const Vec3& direction) {
+  if (end.seen) return *end.seen;
+  return end.on_ball ? Rgb(Rgb::Zero()) : background(scene, direction);
+}
+
 }  // namespace airlight::scene

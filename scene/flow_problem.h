@@ -101,6 +101,20 @@ struct Push {  // an acceleration in time
   double frequency = 0;              // [Hz]: times cos(2 pi frequency t)
 };
 
+// Particles that the flow carries.
+struct ParticleSet {
+  enum class Leaving {
+    stay,     // at the wall
+    wrap,     // comes back on the other side, at the same place of it
+    respawn,  // comes back on the other side, at a random place of it
+  };
+  int count = 1;
+  Region region;  // where they begin, the box where it has no end
+  std::uint32_t seed = 0;
+  Vec3 fall = Vec3::Zero();  // against the air [m/s]
+  Leaving leaving = Leaving::stay;
+};
+
 struct FlowProblem {
   std::string name;
   std::string file;                          // that it was read from, for messages; empty where it was not
@@ -125,6 +139,7 @@ struct FlowProblem {
   std::vector<Source> sources;
   std::vector<Surface> obstacles;  // closed: spheres and meshes, standing still
   std::vector<Push> pushes;
+  std::vector<ParticleSet> particles;
   double duration = 1;     // [s]
   double frame_rate = 24;  // [1/s]
   std::string hash;        // 32 hex digits of the content: equal hash, equal flow

@@ -36,7 +36,7 @@ void require_lights_apart(const Scene& scene, const View& view, double share, co
     const Ray ray = camera_ray(view.camera, pixel[0] + 0.5, pixel[1] + 0.5, view.width, view.height);
     const Vec3 to = light->center - ray.origin;
     const double t = to.dot(ray.direction), beside = (to - t * ray.direction).norm();
-    if (beside >= share * t || ray_end(scene, ray).t < t) continue;
+    if (beside >= share * t || camera_end(scene, ray).t < t) continue;
     throw Error(
         fmt::format("{}: light {} stands {:.3g} m beside the ray of pixel ({}, {}), closer than it can tell; "
                     "expected {:.3g} m or a radius",

@@ -30,8 +30,17 @@ RayEnd ray_end(const Scene& scene, const Ray& ray) {
     const auto sphere = ball(light);
     if (!sphere || sphere->radius <= 0) continue;
     const double t = ball_distance(*sphere, ray);
-    if (t < end.t) end = {t, std::nullopt, true};
+    if (t < end.t) end = {t, std::nullopt, true, std::nullopt};
   }
+  return end;
+}
+
+RayEnd camera_end(const Scene& scene, const Ray& ray) {
+  RayEnd end = ray_end(scene, ray);
+  for (const auto& backdrop : scene.backdrops)
+    if (const auto point = seen_along(*backdrop, scene.camera, ray))
+      if (point->t < end.t || (point->t == infinity && end.t == infinity && !end.seen))
+        end = {point->t, std::nullopt, false, point->radiance};
   return end;
 }
 

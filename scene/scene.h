@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/backdrop.h"
 #include "scene/camera.h"
 #include "scene/geometry/geometry.h"
 #include "scene/light.h"
@@ -20,7 +21,8 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Medium> media;
   std::vector<Surface> surfaces;
-  std::shared_ptr<const Geometry> geometry;  // null without surfaces
+  std::shared_ptr<const Geometry> geometry;                // null without surfaces
+  std::vector<std::shared_ptr<const Backdrop>> backdrops;  // pictures with depth, particles: seen by this camera alone
   Rgb ambient_in_scatter =
       Rgb::Zero();   // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
   std::string hash;  // 32 hex digits of the content: equal hash, equal picture
@@ -39,12 +41,15 @@ Scene parse_scene(const std::string& toml, const std::string& name, const std::s
 // Fills geometry and hash of a scene made in code.
 void finish(Scene&);
 
-// What ends a ray: a surface hit, a light ball, or nothing (t infinite).
+// What ends a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
 struct RayEnd {
   double t = infinity;
-  std::optional<Hit> hit;  // set when a surface is first
-  bool on_ball = false;    // the ray ends on a light's ball
+  std::optional<Hit> hit;   // set when a surface is first
+  bool on_ball = false;     // the ray ends on a light's ball
+  std::optional<Rgb> seen;  // what a backdrop sends from there [W/m^2/sr]; at t = infinity it stands for environments
 };
 RayEnd ray_end(const Scene&, const Ray&);
+// The same of a ray of the scene's own camera, which backdrops end too, where nothing is nearer.
+RayEnd camera_end(const Scene&, const Ray&);
 
 }  // namespace airlight::scene

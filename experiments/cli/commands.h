@@ -14,6 +14,7 @@ struct RenderOptions {
   Pairs settings, overrides;
   int threads = 0;
   double exposure = 0;
+  bool distance = false;  // a layer `distance` too
 };
 // Writes the film with its record in the metadata; with `png` a preview too. A range of samples A..B also leaves
 // `out`.samples for merging. Interrupted, a path tracer keeps the samples it has: the film is written, and the exit
@@ -44,6 +45,7 @@ struct ConvertOptions {
   std::vector<std::string> files;  // in, out, in, out, ...
   std::string layer = "mean";
   double exposure = 0;
+  double depth_scale = 0;  // > 0: of a PNG, grey with 16 bits: the layer's first channel, this many metres are white
   std::string grid = "density";  // of an OpenVDB file
   int pixels = 64, samples = 2, degree = 1;
   std::string medium = "0";              // of a scene: its name, or its number

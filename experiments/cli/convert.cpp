@@ -82,6 +82,13 @@ void convert_projection(const std::string& in, const std::string& out, const Con
 
 void convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
   const scene::Film film = scene::read_exr(in);
+  if (kind_of(out) == ".png" && options.depth_scale > 0) {
+    scene::GreyImage grey{film.width, film.height, {}, ""};
+    const std::vector<float>& depth = film.layer(options.layer);
+    for (std::size_t i = 0; i < depth.size(); i += 3) grey.values.push_back(depth[i] / options.depth_scale);
+    scene::write_grey_image(out, grey);
+    return;
+  }
   if (kind_of(out) == ".png") {
     scene::write_png(out, film, options.layer, options.exposure);
     return;

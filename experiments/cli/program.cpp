@@ -132,6 +132,9 @@ int dispatch(int argc, char** argv) {
   c->add_option("--out,-o", render_options.out, "OpenEXR file to write");
   c->add_option("--png", render_options.png, "also write an 8-bit preview");
   c->add_option("--exposure", render_options.exposure, "of the preview, in powers of two");
+  c->add_flag(
+      "--distance", render_options.distance,
+      "also write where the rays of pixel centres end, in metres along them, 0 where they do not: layer distance");
   c->add_option("--threads", render_options.threads, "0: all")->check(CLI::Range(0, 4096));
   c->add_option("--samples", render_options.samples, "N, or A..B: a range to be merged (path_tracer)");
   c->add_option("--cache", render_options.cache,
@@ -199,6 +202,8 @@ int dispatch(int argc, char** argv) {
       "more pairs may follow");
   c->add_option("--layer", convert_options.layer, "default mean");
   c->add_option("--exposure", convert_options.exposure, "of a PNG, in powers of two");
+  c->add_option("--depth-scale", convert_options.depth_scale,
+                "METRES: the PNG is grey, 16 bits, and so many are white: the depth of a [backdrop] (layer distance)");
   c->add_option("--grid", convert_options.grid, "of an OpenVDB file (density)");
   c->add_option("--pixels", convert_options.pixels, "of a map, along its longer side (64)")->check(CLI::Range(1, 8192));
   c->add_option("--samples", convert_options.samples, "squared: upright rays a pixel (2)")->check(CLI::Range(1, 64));

@@ -17,6 +17,15 @@
 namespace airlight::experiments::cli {
 namespace {
 
+void add_distance(const scene::Scene& scene, scene::Film& film) {
+  film.add("distance");
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const double t = camera_end(scene, scene::camera_ray(scene.camera, x + 0.5, y + 0.5, film.width, film.height)).t;
+      film.set("distance", x, y, Rgb::Constant(t < infinity ? t : 0));
+    }
+}
+
 // Film with its record, and preview.
 void write(const RenderOptions& options, const scene::Renderer& renderer, const scene::Scene& scene,
            const scene::Settings& settings, double seconds, scene::Film& film) {
@@ -63,6 +72,7 @@ int render(const RenderOptions& options) {
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (options.distance) add_distance(*scene, film);
   write(options, renderer, *scene, settings, seconds, film);
   check_interrupted();
   return 0;

@@ -84,7 +84,7 @@ std::vector<unsigned char> foreground_of(const scene::Scene& scene, const scene:
   scene::parallel_rows(view.height, quiet_execution(0), [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-      const Rgb t = scene::transmittance(scene.media, ray, {0, scene::ray_end(scene, ray).t});
+      const Rgb t = scene::transmittance(scene.media, ray, {0, scene::camera_end(scene, ray).t});
       mask[std::size_t(y) * std::size_t(view.width) + std::size_t(x)] = (1 - t > 1e-3).any();
     }
   });

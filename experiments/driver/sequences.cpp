@@ -42,7 +42,7 @@ TableReader reader_of(const toml::table& list, const std::string& name) {
   return reader;
 }
 
-// "swirl.red.csv": the sequence swirl, the coefficients of its density red. Frames by default.
+// "swirl.red.csv": the sequence swirl, the coefficients of its density red; "snow.particles.csv": where its particles are. Frames by default.
 std::pair<std::string, std::string> name_and_kind(const std::string& asked) {
   const std::size_t dot = std::min(asked.find('.'), asked.size());
   return {asked.substr(0, dot), dot < asked.size() ? asked.substr(dot) : ".vdb"};
@@ -65,12 +65,13 @@ std::string sequence_files(const fs::path& root, const std::string& asked, const
                             scene::nearest_hint(name, known)));
   const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
   std::vector<std::string> kinds{".vdb", ".csv"};
+  if (!problem.particles.empty()) kinds.push_back(".particles.csv");
   for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw Error(fmt::format("{}: the sequence '{}' has no files {}, expected one of {}", where, name, kind,
                             fmt::join(kinds, ", ")));
-  return (folder_of(root, name, profile) /
-          (problem.name + kind.substr(0, kind.size() - 4) + ".####" + kind.substr(kind.size() - 4)))
+  const std::size_t ending = kind.size() - 4;
+  return (folder_of(root, name, profile) / (problem.name + kind.substr(0, ending) + ".####" + kind.substr(ending)))
       .string();
 }
 

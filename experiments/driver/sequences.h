@@ -8,9 +8,9 @@
 
 namespace airlight::experiments {
 
-// The pattern of its files, as a medium's `file` with a `frame`, whether they are there or not: of "NAME" its frames, of "NAME.csv" the
-// coefficients of its density, of "NAME.OTHER.csv" those of another. Throws Error, beginning with `where`: no such sequence in
-// experiments/sequences.toml, no such files.
+// The pattern of its files, as a `file` with a `frame`, whether they are there or not: of "NAME" its frames, of "NAME.csv" the coefficients
+// of its density, of "NAME.OTHER.csv" those of another, of "NAME.particles.csv" the places of its particles. Throws Error, beginning with
+// `where`: no such sequence in experiments/sequences.toml, no such files.
 std::string sequence_files(const std::filesystem::path& root, const std::string& name, const std::string& profile,
                            const std::string& where);
 

@@ -227,6 +227,7 @@ std::vector<scene::SettingSpec> FogshopGpu::settings() const {
 
 std::vector<std::string> FogshopGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = fogshop::Fogshop().supports(scene, settings);
+  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   if (scene.lights.size() > fog::most_lights)
     reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), fog::most_lights));

@@ -140,7 +140,19 @@ void FluidOnDevice::spread_modes_back(Fields fields, double dt) {
   if (fields.first == 0) columns(fields, false);
 }
 
-void FluidOnDevice::run(double dt, int count, const StepForces& forces) {
+FluidOnDevice::Status FluidOnDevice::look() const {
+  const std::vector<unsigned> status = status_->download<unsigned>();
+  float squared;
+  std::memcpy(&squared, &status[0], sizeof squared);
+  return {std::sqrt(double(squared)), status[1] == 0};
+}
+
+int FluidOnDevice::steps_in(double dt, const Status& status) const {
+  return legendre_fluids::runge_kutta_steps(dt, space_.n(), status.speed, false);
+}
+
+// How long a part of the step may be is asked before its first stage ends, or not at all: then all is one part.
+int FluidOnDevice::run(double dt, const StepForces& forces, bool looks) {
   const Fields all{0, fields_}, moving = this->moving(), diffusing = this->diffusing();
   const bool any = diffusing.count > 0, viscous = any && diffusing.first == 0;
   const auto acts = [](const Vec3& v) { return !v.isZero(0); };
@@ -151,21 +163,28 @@ void FluidOnDevice::run(double dt, int count, const StepForces& forces) {
     spread_modes_back(diffusing, 0.5 * dt);
     expand(all, GoesOn::to_points, viscous, -1, 0);
   }
-  for (int step = 0; step < count; ++step)
+  int parts = 0;
+  for (double left = dt; left > 0; ++parts) {
+    int steps = 1;
     for (int stage = 0; stage < 4; ++stage) {
-      const bool last = step + 1 == count && stage == 3;
-      points(step == 0 && stage == 0);
+      if (looks && stage == 0) status_->clear();
+      points(stage == 0);
+      if (looks && stage == 0) steps = steps_in(left, look());
       collect(moving, ComesFrom::points);
       if (moves_) columns(moving, false);
+      const bool last = steps == 1 && stage == 3;
       const GoesOn next = !last ? GoesOn::to_points : any ? GoesOn::to_modes : GoesOn::nowhere;
-      expand(moving, next, true, stage, dt / count, false, last && !any && !pushes);
+      expand(moving, next, true, stage, left / steps, false, last && !any && !pushes);
     }
+    left = steps > 1 ? left - left / steps : 0;
+  }
   if (any) spread_modes_back(diffusing, 0.5 * dt);
   if (pushes) {
     collect({0, velocities_}, ComesFrom::forces);
     columns({0, velocities_}, false);
   }
   if (any || pushes) expand(all, GoesOn::nowhere, viscous || pushes, -1, 0, false, true);
+  return parts;
 }
 
 void FluidOnDevice::bind() {
@@ -222,19 +241,18 @@ void FluidOnDevice::step(double dt, const StepForces& forces) {
   expand_->set("fades", forces.fades);
   expand_->set("filters_velocity", moves_ ? options_.filter_velocity * dt : 0.0);
   expand_->set("filters_carried", options_.filter_carried * dt);
-  // How many steps of Runge-Kutta it takes is known when the first has begun: as many as the last time, else all again.
-  while (true) {
-    run(dt, guess_, forces);
-    const std::vector<unsigned> status = status_->download<unsigned>();
-    float squared;
-    std::memcpy(&squared, &status[0], sizeof squared);
-    const int count = legendre_fluids::runge_kutta_steps(dt, space_.n(), std::sqrt(double(squared)), false);
-    if (count == guess_ && status[1] == 0) break;
-    if (count == guess_) throw scene::Unstable("coefficients are no longer finite");
-    guess_ = count;
+  // A step is taken to be one part, if the last one was; where the speed then says otherwise it is taken again.
+  int parts = run(dt, forces, divides_);
+  Status status = look();
+  if (!divides_ && steps_in(dt, status) > 1) {
+    divides_ = true;
+    parts = run(dt, forces, true);
+    status = look();
   }
+  if (!status.finite) throw scene::Unstable("coefficients are no longer finite");
   context_.check("a step of the fluid");
-  substeps_ += guess_;
+  substeps_ += parts;
+  divides_ = parts > 1;
   current_ = 1 - current_;
 }
 

@@ -39,8 +39,8 @@ class FluidOnDevice {
   // Unavailable as Buffer and Program do.
   FluidOnDevice(Context&, Fluid&, const Material&, const ConfinedOptions&, const Regions& = {});
 
-  // By dt [s]. Runge-Kutta divides it as on the CPU. One wait, for how many steps that takes and whether all is finite. Throws
-  // scene::Unstable, and leaves the state as it was.
+  // By dt [s]. Runge-Kutta divides it as on the CPU. One wait, for the greatest speed and whether all is finite, and one more for each
+  // part where it is divided. Throws scene::Unstable, and leaves the state as it was.
   void step(double dt, const StepForces& = {});
   double substeps() const { return substeps_; }  // of Runge-Kutta so far
 
@@ -71,7 +71,13 @@ class FluidOnDevice {
   void collect(Fields, ComesFrom);
   void columns(Fields, bool diffuses, double dt = 0);
   void spread_modes_back(Fields, double dt);
-  void run(double dt, int count, const StepForces&);
+  int run(double dt, const StepForces&, bool looks);
+  struct Status {
+    double speed;  // greatest, of the last points() that measured [half sizes per second]
+    bool finite;
+  };
+  Status look() const;  // waits
+  int steps_in(double dt, const Status&) const;
   Fields moving() const { return {moves_ ? 0 : velocities_, fields_ - (moves_ ? 0 : velocities_)}; }
   Fields diffusing() const;
 
@@ -81,7 +87,8 @@ class FluidOnDevice {
   ConfinedOptions options_;
   bool moves_;
   std::vector<std::size_t> carried_;  // of Fluid::carried(), by field
-  int velocities_, fields_, slab_group_, guess_ = 1;
+  int velocities_, fields_, slab_group_;
+  bool divides_ = false;  // the last step was divided
   std::size_t slab_, size_, lines_;
   double substeps_ = 0;
   std::unique_ptr<Buffer> tables_, regions_, states_[2], rates_, pressure_, spread_, gathered_, status_;

@@ -143,6 +143,7 @@ std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
 
 std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
+  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (scene.media.size() > marcher::most_layers)

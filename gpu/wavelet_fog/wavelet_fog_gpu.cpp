@@ -250,6 +250,7 @@ std::vector<scene::SettingSpec> WaveletFogGpu::settings() const {
 
 std::vector<std::string> WaveletFogGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = wavelet_fog::WaveletFog().supports(scene, settings);
+  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = wavelet_fog::read_options(settings);
   if (options.variant == Options::Variant::pre)

@@ -72,6 +72,7 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
 }
 
 scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
+  require_own_camera(*scene_, view);
   const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
@@ -84,7 +85,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   // Section 5.4, step 1: distances.
   const std::size_t pixels = film.pixels();
   const Needs& needs = plan_.needs;
-  FirstHits hits{std::vector<double>(pixels, infinity), {}};
+  FirstHits hits{std::vector<double>(pixels, infinity), {}, {}};
   if (needs.distances) {
     hits = first_hits(*scene_, view, execution);
     result.times.push_back({"distances", watch.lap()});
@@ -132,6 +133,8 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
                      execution, airlight, surface);
     result.times.push_back({"environment", watch.lap()});
   }
+  for (std::size_t i = 0; i < hits.seen.size(); ++i)
+    if (!std::isnan(hits.seen[i])) surface[i] = transmittance[i] * hits.seen[i];
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
   if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop: " + plan_.doubt;
   result.counters["rays"] = double(pixels);

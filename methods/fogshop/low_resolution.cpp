@@ -58,7 +58,7 @@ std::vector<double> low_distances(const scene::Scene& scene, const scene::View& 
   scene::parallel_rows(r.low_height(), execution, [&](int y) {
     for (int x = 0; x < r.low_width(); ++x)
       distance[std::size_t(y) * r.low_width() + x] =
-          ray_end(scene, camera_ray(view.camera, r.factor * (x + 0.5), r.factor * (y + 0.5), r.width, r.height)).t;
+          camera_end(scene, camera_ray(view.camera, r.factor * (x + 0.5), r.factor * (y + 0.5), r.width, r.height)).t;
   });
   return distance;
 }

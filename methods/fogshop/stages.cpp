@@ -81,9 +81,12 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
   List stage;
   Needs needs{};
   needs.airlight = !no_medium.holds;
-  needs.distances =
-      stage("distances", {{!surfaces && !has_ball(scene), "no surface and no light with a radius: rays are infinite"}},
-            fmt::format("{} surfaces and the balls of the lights end rays", scene.surfaces.size()));
+  const bool backdrops = !scene.backdrops.empty();
+  needs.distances = stage("distances",
+                          {{!surfaces && !has_ball(scene) && !backdrops,
+                            "no surface, no light with a radius, no backdrop: rays are infinite"}},
+                          fmt::format("{} surfaces, balls of lights and {} backdrops end rays", scene.surfaces.size(),
+                                      scene.backdrops.size()));
   const std::string of_all = fmt::format("{} of {}, the rest is below the threshold everywhere", model.gaussians.count,
                                          model.gaussians.count + model.dropped);
   stage("gaussians", {{model.fog.sum.gaussians.empty(), "the medium has none"}, {!gaussians, of_all}}, of_all);

@@ -1,6 +1,7 @@
 #include "methods/fogshop/surface_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "methods/fogshop/surface_lighting.h"
@@ -40,14 +41,16 @@ Rgb direct_reflection(const scene::Scene& scene, const Model& model, const Surfa
 FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const scene::Execution& execution) {
   const std::size_t pixels = std::size_t(view.width) * view.height;
   FirstHits hits{std::vector<double>(pixels, infinity),
-                 std::vector<SurfacePoint>(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1})};
+                 std::vector<SurfacePoint>(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1}),
+                 std::vector<float>(scene.backdrops.empty() ? 0 : 3 * pixels, std::nanf(""))};
   scene::parallel_rows(view.height, execution, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       const scene::RayEnd end =
-          scene::ray_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
+          scene::camera_end(scene, camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
       hits.distance[i] = end.t;
       if (end.hit) hits.points[i] = {end.hit->position, end.hit->normal, end.hit->surface, end.hit->triangle};
+      for (int c = 0; end.seen && c < 3; ++c) hits.seen[3 * i + c] = float((*end.seen)[c]);
     }
   });
   return hits;

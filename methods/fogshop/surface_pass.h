@@ -20,6 +20,7 @@ struct SurfacePoint {
 struct FirstHits {
   std::vector<double> distance;      // d_vp [m] of every pixel; infinite where nothing is hit
   std::vector<SurfacePoint> points;  // surface < 0: none
+  std::vector<float> seen;           // of backdrops [W/m^2/sr], 3 a pixel, NaN where none is; empty without backdrops
 };
 FirstHits first_hits(const scene::Scene&, const scene::View&, const scene::Execution&);
 

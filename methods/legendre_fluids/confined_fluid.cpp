@@ -156,16 +156,24 @@ Array ConfinedFluid::state_rate(const Array& y) {
   return rate;
 }
 
+// Speeds may rise on the way: what is left is divided anew after each part.
 void ConfinedFluid::advect_by_runge_kutta(double dt) {
-  const double speed = greatest_speed() + (wind_ ? wind_->gust.norm() : 0);
-  const int count = runge_kutta_steps(dt, space_.n(), speed, wind_.has_value());
-  Array y = joined_state();
-  const auto rate = [&](const Array& now) { return state_rate(now); };
-  for (int i = 0; i < count; ++i) y = runge_kutta_4(y, dt / count, rate);
-  substeps_ += count;
+  const double gusts = wind_ ? wind_->gust.norm() : 0;
+  for (double left = dt; left > 0;) {
+    const int steps = runge_kutta_steps(left, space_.n(), greatest_speed() + gusts, wind_.has_value());
+    const double part = left / steps;
+    runge_kutta_part(part);
+    left = steps > 1 ? left - part : 0;
+    ++substeps_;
+  }
+}
+
+void ConfinedFluid::runge_kutta_part(double dt) {
+  const Array y = runge_kutta_4(joined_state(), dt, [&](const Array& now) { return state_rate(now); });
   Eigen::Index begin = velocity.size();
   velocity = y.head(begin);
-  for (Array* r : carried()) *r = y.segment(begin, r->size()).eval(), begin += r->size();
+  for (Array* r : carried()) *r = y.segment(begin, r->size()), begin += r->size();
+  time = y[begin];
 }
 
 Array ConfinedFluid::krylov(const Array& y, double dt, const SkewOperator& a) {

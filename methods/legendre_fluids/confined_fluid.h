@@ -59,6 +59,7 @@ class ConfinedFluid : public Fluid {
   Array joined_state();
   Array state_rate(const Array& y);  // of advection
   void advect_by_runge_kutta(double dt);
+  void runge_kutta_part(double dt);
   void advect_by_krylov(double dt);
   Array krylov(const Array& y, double dt, const SkewOperator&);
   void filter(double dt);

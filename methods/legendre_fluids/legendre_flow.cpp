@@ -52,6 +52,21 @@ void LegendreFlow::begin_densities() {
           [&](const Point3& x) { return scene::start_density(alone[k], x); });
 }
 
+// The time of its wind, and the densities that the share of an albedo stands for.
+void LegendreFlow::settle() {
+  fluid_->time = time_;
+  if (mixing_ != Mixing::albedo) return;
+  const ConfinedSpace& space = fluid_->space();
+  products_[0] = scene::legendre_product(fluid_->density, space.shape(), fluid_->others[0], space.shape(),
+                                         space.shape(), space.dimensions());
+  products_[1] = fluid_->density - products_[0];
+}
+
+const Array& LegendreFlow::smoke(int which) const {
+  if (mixing_ == Mixing::albedo) return products_.at(std::size_t(which));
+  return which == 0 ? now().density : now().others.at(std::size_t(which) - 1);
+}
+
 void LegendreFlow::step(double dt) {
   try {
     move(dt);
@@ -73,21 +88,6 @@ void LegendreFlow::move(double dt) {
   timed("projection and filter", [&] { fluid_->finish(dt); });
   require_finite();
   if (p_->decay > 0) fade(fluid_->faded(p_->decay * dt));
-}
-
-// The time of its wind, and the densities that the share of an albedo stands for.
-void LegendreFlow::settle() {
-  fluid_->time = time_;
-  if (mixing_ != Mixing::albedo) return;
-  const ConfinedSpace& space = fluid_->space();
-  products_[0] = scene::legendre_product(fluid_->density, space.shape(), fluid_->others[0], space.shape(),
-                                         space.shape(), space.dimensions());
-  products_[1] = fluid_->density - products_[0];
-}
-
-const Array& LegendreFlow::smoke(int which) const {
-  if (mixing_ == Mixing::albedo) return products_.at(std::size_t(which));
-  return which == 0 ? now().density : now().others.at(std::size_t(which) - 1);
 }
 
 void LegendreFlow::fade(double factor) {
@@ -166,9 +166,9 @@ double LegendreFlow::carried_at(const Array& r, const Point3& x) const {
 
 scene::Frame LegendreFlow::frame() const {
   scene::Frame f = cells_.frame(now());
-  f.density = cells_.values(now().space(), smoke(0));
+  f.density = cells_.values(fluid_->space(), smoke(0));
   for (int k = 1; k <= int(p_->densities.size()); ++k)
-    f.densities[scene::density_name(*p_, k)] = cells_.values(now().space(), smoke(k));
+    f.densities[scene::density_name(*p_, k)] = cells_.values(fluid_->space(), smoke(k));
   return f;
 }
 
@@ -225,11 +225,6 @@ void LegendreFlow::add_time(const std::string& stage, double seconds) {
     times_.push_back({stage, seconds});
   else
     at->seconds += seconds;
-}
-
-std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const FlowProblem> problem, std::unique_ptr<Fluid> fluid,
-                                        int cells, Mixing mixing) {
-  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells, mixing);
 }
 
 }  // namespace airlight::legendre_fluids

@@ -1,5 +1,6 @@
 // A fluid of coefficients as a scene::Flow: metres, sources, forces, states.
 #pragma once
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -15,22 +16,19 @@ enum class Mixing {
   albedo,  // of two the sum r and the first one's share a: densities are the products a r and r - a r, cut to n (the paper's section 7)
 };
 
-// Starts the fluid with what the problem has at first. `cells` are those of frames and of media that are grids, along the longest axis.
-// Throws Error where a region of a source or force is too small to be seen.
-std::unique_ptr<scene::Flow> start_flow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells,
-                                        Mixing);
-
-// What start_flow returns, for those who move the coefficients elsewhere than in the fluid.
 class LegendreFlow : public scene::Flow {
  public:
-  LegendreFlow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells, Mixing);
+  // Starts the fluid with what the problem has at first. `cells` are those of frames and of media that are grids, along the longest axis.
+  // Throws Error where a region of a source or force is too small to be seen.
+  LegendreFlow(std::shared_ptr<const scene::FlowProblem>, std::unique_ptr<Fluid>, int cells,
+               Mixing = Mixing::densities);
 
   double time() const override { return time_; }
   void step(double dt) override;
   Vec3 velocity(const Point3& x) const override;
   double density(const Point3& x) const override { return carried_at(smoke(0), x); }
   double temperature(const Point3& x) const override { return carried_at(now().temperature, x); }
-  scene::DensityField medium(int density) const override { return cells_.medium(now().space(), smoke(density)); }
+  scene::DensityField medium(int density) const override { return cells_.medium(fluid_->space(), smoke(density)); }
   scene::Frame frame() const override;
   scene::Totals totals() const override;
   std::vector<scene::StageTime> times() const override { return times_; }
@@ -41,7 +39,7 @@ class LegendreFlow : public scene::Flow {
  protected:
   // Moves the coefficients by a step of dt [s] that begins at time(). Throws scene::Unstable.
   virtual void move(double dt);
-  // The fluid with its coefficients of now.
+  // The fluid with its coefficients of now, for those who move them elsewhere than in the fluid.
   virtual Fluid& now() const { return *fluid_; }
 
   // What the step from time() adds of each source [s], and of each force's acceleration [s]: 0 outside their times.
@@ -74,7 +72,7 @@ class LegendreFlow : public scene::Flow {
   void add_time(const std::string& stage, double seconds);
 
   Mixing mixing_;
-  std::array<Array, 2> products_;
+  std::array<Array, 2> products_;  // of an albedo
   double time_ = 0, since_ = 0, last_step_ = 0;
   long long steps_ = 0, equal_steps_ = 0;
   std::vector<scene::StageTime> times_;

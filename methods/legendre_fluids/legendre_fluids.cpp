@@ -217,7 +217,7 @@ std::unique_ptr<scene::Flow> LegendreFluids::start_supported(std::shared_ptr<con
     fluid =
         std::make_unique<PaperFluid>(box.dimensions, n, box.half, material, settings.choice<Truncation>("truncation"),
                                      settings.choice<Variant>("variant") == Variant::paper_repaired);
-  return start_flow(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
+  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
 }
 
 }  // namespace airlight::legendre_fluids

@@ -5,7 +5,7 @@
 namespace airlight::legendre_fluids {
 namespace {
 
-constexpr int least_gmres = 7;  // coefficients along an axis from which on GMRES is faster than dense factors
+constexpr int least_gmres = 5;  // coefficients along an axis from which on GMRES is faster than dense factors
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::vector<scene::SettingSpec> light_settings() {
       real_setting("boundary_weight", "3", 1e-6, 1e6, "of least_squares: weight of the rows of inflow"),
       choice_setting("truncation", "l2", {"l2", "chebyshev"}, "of paper: T of its equations 22 and 23"),
       choice_setting("solver", "auto", {"auto", "dense", "gmres"},
-                     "of paper: auto is gmres with upwind and n of 7 or more, else dense, of at most 12^3 unknowns"),
+                     "of paper: auto is gmres with upwind and n of 5 or more, else dense, of at most 12^3 unknowns"),
   };
 }
 

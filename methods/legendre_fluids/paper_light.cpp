@@ -3,20 +3,17 @@
 #include <cmath>
 
 namespace airlight::legendre_fluids {
-namespace {
 
-scene::TensorShape intensity_shape(const scene::LegendreBox& box, int n, const std::array<bool, 3>& moving) {
+scene::TensorShape intensity_shape(const scene::TensorShape& density, int n, const std::array<bool, 3>& moving) {
   scene::TensorShape shape;
-  for (std::size_t a = 0; a < 3; ++a) shape[a] = box.shape()[a] == 1 && !moving[a] ? 1 : n;
+  for (std::size_t a = 0; a < 3; ++a) shape[a] = density[a] == 1 && !moving[a] ? 1 : n;
   return shape;
 }
-
-}  // namespace
 
 PaperLight::PaperLight(const scene::LegendreBox& box, const PaperOptions& options, const std::array<bool, 3>& moving)
     : box_(&box),
       options_(options),
-      product_(box.coefficients(), box.shape(), intensity_shape(box, options.n, moving), options.truncation) {}
+      product_(box.coefficients(), box.shape(), intensity_shape(box.shape(), options.n, moving), options.truncation) {}
 
 Eigen::VectorXd PaperLight::direct(const Vec3& direction, double sigma, int* iterations) const {
   const LightSystem system(product_, rate(direction), sigma, options_.solver);

@@ -11,9 +11,12 @@ struct PaperOptions {
   LightSolver solver = {Closure::least_squares};
 };
 
+// Of E_d and E_s: n along every axis, but 1 where the density is constant along it and nothing moves.
+scene::TensorShape intensity_shape(const scene::TensorShape& density, int n, const std::array<bool, 3>& moving);
+
 class PaperLight {
  public:
-  // The box outlives this. Axes where the density is constant and that are none of `moving` hold one coefficient.
+  // The box outlives this. `moving`: along which axes light or view do.
   PaperLight(const scene::LegendreBox&, const PaperOptions&, const std::array<bool, 3>& moving);
   const scene::TensorShape& shape() const { return product_.shape(); }
 

@@ -49,6 +49,20 @@ class PreparedPaper final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
+// Axes along which light or view move.
+std::array<bool, 3> moving_axes(const scene::Scene& scene) {
+  std::array<bool, 3> moving;
+  for (int a = 0; a < 3; ++a) {
+    const auto along = [&](const scene::Light& light) {
+      const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+      return sun && sun->irradiance.maxCoeff() > 0 && sun->to_light[a] != 0;
+    };
+    moving[std::size_t(a)] =
+        scene.camera.forward[a] != 0 || std::any_of(scene.lights.begin(), scene.lights.end(), along);
+  }
+  return moving;
+}
+
 // Of channels with the same extinction only the first is solved.
 template <class F>
 void for_extinctions(const Rgb& sigma_t, Coefficients& all, const F& solve) {
@@ -70,10 +84,7 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     if (extinguishes(medium)) medium_ = &medium;
   if (medium_) field_ = field_within_region(*medium_);
   if (!field_) return;
-  for (int a = 0; a < 3; ++a) {
-    moving_[std::size_t(a)] = scene_->camera.forward[a] != 0;
-    for (const auto& light : lights_) moving_[std::size_t(a)] = moving_[std::size_t(a)] || light.to_light[a] != 0;
-  }
+  moving_ = moving_axes(*scene_);
   light_.emplace(*field_, options_, moving_);
   for (const scene::DirectionalLight& light : lights_) {
     direct_.emplace_back();
@@ -192,10 +203,13 @@ std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const 
     if (const std::string why = scene::unknown_light<scene::DirectionalLight>(scene.lights, i); !why.empty())
       reasons.push_back(why);
   std::size_t media = 0;
+  int unknowns = 0;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     if (!extinguishes(scene.media[i])) continue;
     ++media;
     const auto* field = std::get_if<scene::LegendrePointer>(&scene.media[i].field);
+    const scene::TensorShape of_density = field ? (*field)->shape() : scene::TensorShape{1, 1, 1};
+    unknowns = std::max(unknowns, scene::tensor_size(intensity_shape(of_density, options.n, moving_axes(scene))));
     if (options.truncation == LightTruncation::chebyshev && field)
       for (const int n : (*field)->shape())
         if (n > options.n)
@@ -205,10 +219,9 @@ std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const 
                           options.n, n, scene::label(scene.media, i)));
   }
   if (media > 1) reasons.push_back(fmt::format("variant = paper with {} media, expected one", media));
-  const double unknowns = std::pow(options.n, 3);
   if (options.solver.dense && unknowns > LightSystem::most_dense)
     reasons.push_back(
-        fmt::format("n = {}: a dense system of {:.0f} unknowns, expected at most {}; closure = upwind has "
+        fmt::format("n = {}: a dense system of {} unknowns, expected at most {}; closure = upwind has "
                     "solver = gmres",
                     options.n, unknowns, LightSystem::most_dense));
   if (options.solver.closure == Closure::least_squares && !options.solver.dense)

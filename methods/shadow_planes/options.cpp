@@ -66,6 +66,7 @@ std::string silhouettes_found(std::size_t edges, std::size_t lights) {
 
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
+  refuse_backdrops(scene, reasons);
   for (std::size_t i = 0; i < scene.media.size(); ++i)
     if (const std::string why = scene::unknown_field<scene::Homogeneous>(scene.media, i); !why.empty())
       reasons.push_back(why);

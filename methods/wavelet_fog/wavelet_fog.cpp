@@ -73,7 +73,7 @@ class PreparedWaveletFog final : public scene::Prepared {
     };
     return options_.sun && !fogs_.empty() && std::any_of(scene_->lights.begin(), scene_->lights.end(), shines);
   }
-  bool ends() const { return scene_->geometry || !scene_->lights.empty(); }
+  bool ends() const { return scene_->geometry || !scene_->lights.empty() || !scene_->backdrops.empty(); }
   Rgb depth(const Ray&, double length, Visits&, const std::vector<PolarTable>& tables = {}) const;
   Rgb behind(const Ray&, const scene::RayEnd&, Visits&) const;
 
@@ -162,8 +162,7 @@ Rgb PreparedWaveletFog::depth(const Ray& ray, double length, Visits& visits,
 
 // What the ray ends on sends back, without the fog in between.
 Rgb PreparedWaveletFog::behind(const Ray& ray, const scene::RayEnd& end, Visits& visits) const {
-  if (end.on_ball) return Rgb::Zero();
-  if (!end.hit) return scene::background(*scene_, ray.direction);
+  if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
   const scene::Material& material = scene_->surfaces[hit.surface].material;
   Rgb sum = Rgb::Zero();
@@ -182,6 +181,7 @@ Rgb PreparedWaveletFog::behind(const Ray& ray, const scene::RayEnd& end, Visits&
 }
 
 scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& execution) const {
+  require_own_camera(*scene_, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   // Looked up once: by name for every pixel it would take as long as the rest of polar.
@@ -206,7 +206,7 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     SunVisits sun_visits;
     for (int x = 0; x < view.width; ++x) {
       const Ray ray = rays(x + 0.5, y + 0.5);
-      const scene::RayEnd end = ends ? scene::ray_end(*scene_, ray) : scene::RayEnd{};
+      const scene::RayEnd end = ends ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
       const Rgb optical = depth(ray, end.t, visits, tables);
       const auto [clear, dense] = fate(optical);
       const Rgb reflected =

@@ -66,6 +66,7 @@ class DeterministicPrepared final : public scene::Prepared {
   }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    require_own_camera(*scene_, view);
     if (view.camera.kind == scene::Camera::Kind::perspective && light_on_camera(*scene_, view.camera.position))
       throw Error(fmt::format("{}: {}", scene_->name, no_finite_answer));
     scene::Rendering out;
@@ -97,12 +98,12 @@ class DeterministicPrepared final : public scene::Prepared {
 
  private:
   bool airlight_kept() const { return any(*scene_, true) && any_scattering(*scene_); }
-  bool surface_kept() const { return scene_->geometry || any(*scene_, false); }
+  bool surface_kept() const { return scene_->geometry || any(*scene_, false) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !scene_->media.empty(); }
 
   void pixel(const scene::View& view, int x, int y, scene::Film& film, Counts& counts) const {
     const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
-    const scene::RayEnd end = scene::ray_end(*scene_, ray);
+    const scene::RayEnd end = scene::camera_end(*scene_, ray);
     const Rgb depth = integrator_.optical_depth(ray, end.t);
     const Rgb transmittance = (-depth).exp();
     film.set("transmittance", x, y, transmittance);

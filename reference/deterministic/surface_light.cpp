@@ -1,17 +1,13 @@
 #include "reference/deterministic/surface_light.h"
 
+#include "scene/background.h"
+
 namespace airlight::deterministic {
 
 Rgb end_radiance(const scene::Scene& scene, const AirlightIntegrator& integrator, const Ray& ray,
                  const scene::RayEnd& end) {
+  if (!end.hit) return background(scene, end, ray.direction);
   Rgb sum = Rgb::Zero();
-  if (end.on_ball) return sum;
-  if (!end.hit) {
-    for (const scene::Light& light : scene.lights)
-      if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
-        sum += scene::radiance(*environment, ray.direction);
-    return sum;
-  }
   const scene::Hit& hit = *end.hit;
   const scene::Material& material = scene.geometry->surfaces()[hit.surface].material;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {

@@ -78,6 +78,7 @@ std::uint64_t Accumulation::least_samples() const {
 }
 
 Accumulation empty_accumulation(const World& world, const scene::View& view) {
+  require_own_camera(world.scene(), view);
   if (view.width < 1 || view.height < 1 || std::uint64_t(view.width) * std::uint64_t(view.height) > 0xffffffffu)
     throw Error(fmt::format("path_tracer: film of {} x {}, expected 1 to 2^32 pixels", view.width, view.height));
   Accumulation a;

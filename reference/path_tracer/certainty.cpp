@@ -28,7 +28,7 @@ bool reflects(const scene::Material& material, int c) {
 }  // namespace
 
 std::array<bool, 3> may_shine(const World& world, const Ray& ray) {
-  const scene::RayEnd end = scene::ray_end(world.scene(), ray);
+  const scene::RayEnd end = scene::camera_end(world.scene(), ray);
   std::array<bool, 3> may{};
   const Options& options = world.options();
   if (options.paths != Options::Paths::all && !end.hit) return may;

@@ -26,7 +26,7 @@ Rgb pixel_transmittance(const World& world, const scene::View& view, int x, int 
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const Ray ray = scene::camera_ray(view.camera, x + (i + 0.5) / n, y + (j + 0.5) / n, view.width, view.height);
-      sum += world.media().transmittance(ray, scene::ray_end(world.scene(), ray).t, counters);
+      sum += world.media().transmittance(ray, scene::camera_end(world.scene(), ray).t, counters);
     }
   return sum / (n * n);
 }

@@ -177,7 +177,7 @@ void Walk::run(const CameraRay& camera) {
   ray_ = camera.ray;
   hull_ = camera.hull;
   flight_ = &camera.flight;
-  if (camera.end.t == infinity) sample_.add(0, 0, camera.background);
+  if (!camera.end.hit) sample_.add(0, 0, camera.background);
   if (lights_.any_connected() && !hull_.empty() && may_scatter()) {
     const Pick pick = lights_.pick_for_ray(ray_, hull_, first.coarse(1));
     if (pick.light >= 0)

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/background.h"
+
 namespace airlight::path_tracer {
 
 World::World(std::shared_ptr<const scene::Scene> scene, const Options& options)
@@ -26,10 +28,10 @@ bool World::visible(const Ray& ray, double tmax, int except) const {
 }
 
 CameraRay prepare_camera_ray(const World& world, const Ray& ray, Counters& counters) {
-  CameraRay camera{ray, scene::ray_end(world.scene(), ray), {}, Rgb::Zero(), {}};
+  CameraRay camera{ray, scene::camera_end(world.scene(), ray), {}, Rgb::Zero(), {}};
   camera.hull = world.media().hull(ray, camera.end.t);
   const Options& options = world.options();
-  const bool sees = camera.end.t == infinity && !world.lights().environments().empty();
+  const bool sees = camera.end.seen || (camera.end.t == infinity && !world.lights().environments().empty());
   // Measured: worth it under an environment, whose background is then free of noise and no longer makes up for
   // collisions that did not happen, and where flights cost next to nothing. Else, and before a surface, which takes a
   // path more, only in media that hardly any path would meet.
@@ -40,10 +42,7 @@ CameraRay prepare_camera_ray(const World& world, const Ray& ray, Counters& count
   if (sees) {
     const bool known = camera.hull.empty() || camera.flight.forced;
     const Rgb T = known ? camera.flight.transmittance : world.media().transmittance(ray, camera.end.t, counters);
-    Rgb radiance = Rgb::Zero();
-    for (const int i : world.lights().environments())
-      radiance += scene::radiance(std::get<scene::EnvironmentLight>(world.lights().light(i)), ray.direction);
-    camera.background = radiance * T;
+    camera.background = background(world.scene(), camera.end, ray.direction) * T;
   }
   return camera;
 }

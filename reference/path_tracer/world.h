@@ -39,7 +39,7 @@ struct CameraRay {
   Ray ray;
   scene::RayEnd end;
   Interval hull;   // where media are
-  Rgb background;  // radiance seen through the medium, where the ray ends nowhere
+  Rgb background;  // radiance seen through the medium, where no surface ends the ray
   Flight flight;
 };
 CameraRay prepare_camera_ray(const World&, const Ray&, Counters&);

@@ -76,6 +76,7 @@ class PreparedMarch final : public scene::Prepared {
   std::vector<scene::StageTime> prepare_times() const override { return {{"prepare", prepare_seconds_}}; }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    require_own_camera(*plan_.scene, view);
     require_lights_apart(*plan_.scene, view, 1e-13, "ray_marcher");
     scene::Rendering result;
     result.film = scene::Film(view.width, view.height);

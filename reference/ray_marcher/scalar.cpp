@@ -141,13 +141,13 @@ Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& coun
 
 Pixel march_ray(const Plan& plan, const Ray& ray, Counters& counters) {
   ++counters.rays;
-  const scene::RayEnd end = ray_end(*plan.scene, ray);
+  const scene::RayEnd end = camera_end(*plan.scene, ray);
   Pixel pixel = march_media(plan, ray, end.t, counters);
   if ((pixel.transmittance == 0).all()) return pixel;
   if (end.hit)
     pixel.surface = pixel.transmittance * lit_surface(plan, *end.hit, ray.direction, counters);
-  else if (!end.on_ball)
-    pixel.surface = pixel.transmittance * background(*plan.scene, ray.direction);
+  else
+    pixel.surface = pixel.transmittance * background(*plan.scene, end, ray.direction);
   return pixel;
 }
 

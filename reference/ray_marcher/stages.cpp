@@ -46,11 +46,12 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
       has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
                              : "no environment light");
   add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
-  const bool seen = (bool(scene.geometry) && lit) || has_environment(scene);
+  const bool seen = (bool(scene.geometry) && lit) || has_environment(scene) || !scene.backdrops.empty();
   add("surfaces", seen,
-      scene.geometry && lit    ? "surfaces are lit directly"
-      : has_environment(scene) ? "the environment is seen through the media"
-                               : "nothing behind the media");
+      scene.geometry && lit      ? "surfaces are lit directly"
+      : !scene.backdrops.empty() ? "backdrops are seen through the media"
+      : has_environment(scene)   ? "the environment is seen through the media"
+                                 : "nothing behind the media");
   if (!(scene.ambient_in_scatter == 0).all()) add("ambient", false, "the ray marcher has no ambient term");
   return stages;
 }

@@ -59,7 +59,7 @@ void TileMarcher::lay_steps() {
   passes_.clear();
   plain_steps_.clear();
   for (int r = 0; r < int(rays_->size()); ++r) {
-    ends_.push_back(ray_end(*plan_->scene, (*rays_)[r]));
+    ends_.push_back(camera_end(*plan_->scene, (*rays_)[r]));
     add_passes(*plan_, r, (*rays_)[r], ends_.back().t, passes_, plain_steps_);
   }
 }
@@ -308,8 +308,8 @@ void TileMarcher::shade_behind() {
     if ((pixels_[r].transmittance == 0).all()) continue;
     if (ends_[r].hit)
       hit_.push_back(r);
-    else if (!ends_[r].on_ball)
-      pixels_[r].surface = pixels_[r].transmittance * background(*plan_->scene, (*rays_)[r].direction);
+    else
+      pixels_[r].surface = pixels_[r].transmittance * background(*plan_->scene, ends_[r], (*rays_)[r].direction);
   }
   if (!hit_.empty()) light_surfaces();
 }

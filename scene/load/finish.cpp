@@ -129,6 +129,13 @@ std::string content_hash(const Scene& scene) {
   hash.tag("surfaces");
   hash.add(std::int64_t(scene.surfaces.size()));
   for (const Surface& surface : scene.surfaces) load::add(hash, surface);
+  for (const auto& backdrop : scene.backdrops) {
+    hash.tag(backdrop->fills ? "backdrop" : "particles");
+    hash.add(backdrop->width);
+    hash.add(backdrop->height);
+    hash.add(backdrop->radiance);
+    hash.add(backdrop->depth);
+  }
   return hash.digits();
 }
 

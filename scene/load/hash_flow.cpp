@@ -96,6 +96,14 @@ std::string content_hash(const FlowProblem& p) {
       for (const Side& side : axis) hash.add(side.of);
     for (const Source& s : p.sources) hash.add(s.of);
   }
+  for (const ParticleSet& set : p.particles) {
+    hash.tag("particles");
+    hash.add(set.count);
+    add(hash, set.region);
+    hash.add(std::int64_t(set.seed));
+    hash.add(set.fall);
+    hash.add(int(set.leaving));
+  }
   return hash.digits();
 }
 

@@ -171,6 +171,20 @@ Push read_push(TableReader reader, const FlowProblem& problem) {
   return push;
 }
 
+ParticleSet read_particle_set(TableReader reader, const FlowProblem& problem) {
+  reader.allow({"count", "region", "seed", "fall", "leaving"});
+  ParticleSet set;
+  set.count = int(reader.integer("count", 1, 1 << 20));
+  if (reader.has("region")) set.region = read_place(reader, problem);
+  set.seed = std::uint32_t(reader.integer("seed", 0, 0xffffffffLL, 0));
+  if (reader.has("fall")) set.fall = speeds(reader, "fall");
+  const std::string leaving = reader.choice("leaving", {"stay", "wrap", "respawn"}, "stay");
+  set.leaving = leaving == "wrap"      ? ParticleSet::Leaving::wrap
+                : leaving == "respawn" ? ParticleSet::Leaving::respawn
+                                       : ParticleSet::Leaving::stay;
+  return set;
+}
+
 // Every edge of a closed mesh is passed as often one way as the other.
 bool closed(const TriangleMesh& mesh) {
   std::multiset<std::pair<int, int>> open;
@@ -218,7 +232,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   toml::table root = parse_toml(text, name);
   apply_overrides(root, overrides, name, {"fluid", "start"});
   TableReader reader(root, "");
-  reader.allow({"name", "flow", "sides", "fluid", "start", "density", "source", "obstacle", "force"});
+  reader.allow({"name", "flow", "sides", "fluid", "start", "density", "source", "obstacle", "force", "particles"});
   FlowProblem problem;
   problem.file = name;
   problem.name = reader.text("name", std::filesystem::path(name).stem().string());
@@ -248,6 +262,8 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   for (const TableReader& obstacle : reader.tables("obstacle"))
     problem.obstacles.push_back(read_obstacle(obstacle, folder, problem));
   for (const TableReader& push : reader.tables("force")) problem.pushes.push_back(read_push(push, problem));
+  for (const TableReader& set : reader.tables("particles"))
+    problem.particles.push_back(read_particle_set(set, problem));
   problem.hash = content_hash(problem);
   return problem;
 }

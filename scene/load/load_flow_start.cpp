@@ -94,7 +94,7 @@ void read_density(TableReader reader, const std::string& folder, FlowProblem& pr
   const bool plain =
       !own.name.empty() && own.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
   if (!plain) reader.expected("name", "small letters, digits and _: it becomes part of the names of files and grids");
-  std::vector<std::string> taken{"density", "temperature", "velocity"};
+  std::vector<std::string> taken{"density", "temperature", "velocity", "particles"};
   for (const NamedDensity& d : problem.densities) taken.push_back(d.name);
   if (std::find(taken.begin(), taken.end(), own.name) != taken.end())
     reader.fail("name", fmt::format("there is a {} already, expected another name", own.name));

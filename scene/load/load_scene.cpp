@@ -18,7 +18,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   toml::table root = parse_toml(text, name);
   apply_overrides(root, overrides, name, {"film"});
   TableReader reader(root, "");
-  reader.allow({"name", "ambient_in_scatter", "film", "camera", "light", "medium", "surface"});
+  reader.allow({"name", "ambient_in_scatter", "film", "camera", "light", "medium", "surface", "backdrop", "particles"});
   Scene scene;
   scene.name = reader.text("name", std::filesystem::path(name).stem().string());
   scene.ambient_in_scatter = reader.color("ambient_in_scatter", amount, Rgb::Zero());
@@ -34,6 +34,10 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
     require_resolved(medium, scene, scene.media.back());
   }
   for (const TableReader& surface : reader.tables("surface")) scene.surfaces.push_back(read_surface(surface, folder));
+  if (const auto backdrop = reader.table("backdrop"))
+    scene.backdrops.push_back(read_backdrop(*backdrop, folder, scene.camera));
+  for (const TableReader& particles : reader.tables("particles"))
+    scene.backdrops.push_back(read_particles(particles, folder, scene));
   try {
     finish(scene);
   } catch (const Error& e) {

@@ -17,6 +17,9 @@ EnvironmentLight read_environment(TableReader, const std::string& folder);
 Medium read_medium(TableReader, const std::string& folder);
 Surface read_surface(TableReader, const std::string& folder);
 Region read_region(TableReader);
+std::shared_ptr<const Backdrop> read_backdrop(TableReader, const std::string& folder, const Camera&);
+// As the scene's camera sees them on its film.
+std::shared_ptr<const Backdrop> read_particles(TableReader, const std::string& folder, const Scene&);
 
 // The kind that the key `type` names, as it is by default; `name` names a kind.
 template <class Variant>

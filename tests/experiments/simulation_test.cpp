@@ -196,3 +196,51 @@ TEST_CASE("a folder of another simulation is refused", "[simulation]") {
   elsewhere.folder = "/proc/nowhere";
   CHECK_THROWS_AS(simulate(elsewhere, {}), Error);
 }
+
+TEST_CASE("particles that a simulation carries come back with it, whenever it was interrupted",
+          "[simulation][particles]") {
+  const std::string text = R"(
+[flow]
+duration = 0.3
+frame_rate = 10
+box = { lo = [-1, -1, -1], hi = [1, 1, 1] }
+[[force]]
+acceleration = [3, 5, -4]
+region = { type = "sphere", center = [0.3, 0, 0], radius = 0.6 }
+[[particles]]
+count = 40
+seed = 4
+fall = [0, -3, 0]
+leaving = "respawn"
+[[particles]]
+count = 3
+)";
+  const TemporaryFolder whole, broken;
+  const auto simulation = [&](const TemporaryFolder& folder) {
+    const scene::Solver& solver = find_solver("legendre_fluids", "test");
+    return Simulation{std::make_shared<const scene::FlowProblem>(scene::parse_flow(text, "thrown.toml", "")),
+                      solver,
+                      {solver.settings(), {{"n", "4"}, {"cells", "6"}, {"dt", "0.05"}}},
+                      folder.path()};
+  };
+  CHECK(simulate(simulation(whole), {}).frames == 4);
+  for (int most = 1;; ++most) {
+    int asked = 0;
+    scene::Execution execution;
+    execution.threads = 1 + most % 2;
+    execution.progress = [&](double) { return ++asked < most; };
+    try {
+      if (simulate(simulation(broken), execution).frames == 4) break;
+    } catch (const scene::Interrupted&) {
+    }
+  }
+  const auto all = files_of(whole.path());
+  CHECK(files_of(broken.path()) == all);
+  const std::string &first = all.at("thrown.particles.0000.csv"), &last = all.at("thrown.particles.0003.csv");
+  CHECK(std::count(first.begin(), first.end(), '\n') == 44);
+  CHECK(first != last);
+
+  std::filesystem::remove(broken.path() / "thrown.particles.0001.csv");
+  CHECK(frames_there(simulation(broken)) == 0);
+  CHECK_THROWS_WITH(simulate(simulation(broken), {}), Contains("is gone"));
+}

@@ -196,7 +196,8 @@ TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed
   problem.velocity = scene::Swirl{10};
   const auto fast = on_device(problem, {{"n", "8"}}),
              same = start<legendre_fluids::LegendreFluids>(problem, {{"n", "8"}});
-  fast->step(1), same->step(1);
+  fast->step(0.2), same->step(0.2);
+  CHECK(same->counters().at("Runge-Kutta steps") > 5);
   CHECK(fast->counters().at("Runge-Kutta steps") == same->counters().at("Runge-Kutta steps"));
   problem.velocity = scene::Swirl{1e30};
   const auto wild = on_device(problem, {{"n", "4"}});

@@ -88,11 +88,13 @@ TEST_CASE("every example of the format's documentation loads", "[load]") {
 TEST_CASE("every kind has an example in the documentation", "[load]") {
   std::string all;
   for (const std::string& example : examples()) all += example;
-  for (const char* kind :
-       {"perspective", "orthographic", "point",  "spot", "directional", "environment",  "homogeneous",      "gaussians",
-        "grid",        "mesh",         "sphere", "box",  "plane",       "height_field", "displaced_sphere", "torus",
-        "tube",        "prism",        "teapot", "city", "lambert",     "phong",        "tabulated",        "rayleigh",
-        "hg",          "hazy",         "murky",  "slab", "fogmap",      "legendre"}) {
+  for (const char* kind : {"perspective", "orthographic", "point",     "spot",         "directional",
+                           "environment", "homogeneous",  "gaussians", "grid",         "mesh",
+                           "sphere",      "box",          "plane",     "height_field", "displaced_sphere",
+                           "torus",       "tube",         "prism",     "teapot",       "city",
+                           "lambert",     "phong",        "tabulated", "rayleigh",     "hg",
+                           "hazy",        "murky",        "slab",      "fogmap",       "legendre",
+                           "disc",        "sheet"}) {
     INFO(kind);
     CHECK(all.find("type = \"" + std::string(kind) + "\"") != std::string::npos);
   }
@@ -141,6 +143,10 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       flow + "[start.wave]",
       flow + "[[source]]",
       flow + "[[force]]",
+      flow + "[[particles]]",
+      "[backdrop]",
+      "[[particles]]\ntype = 'disc'",
+      "[[particles]]\ntype = 'sheet'",
   };
   for (const std::string& table : tables)
     for (const std::string& key : keys_of(table)) {

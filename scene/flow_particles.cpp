@@ -1,0 +1,109 @@
+#include "scene/flow_particles.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "scene/random_points.h"
+#include "scene/threads.h"
+
+namespace airlight::scene {
+namespace {
+
+// Numbers of draws after which those of respawning begin: the first are of places in the region.
+constexpr std::uint32_t respawned = 1u << 16;
+
+}  // namespace
+
+FlowParticles::FlowParticles(const FlowProblem& problem)
+    : box_(problem.box), dimensions_(problem.dimensions), sets_(problem.particles) {
+  for (const ParticleSet& set : sets_) {
+    const Box part = intersect(bounding_box(set.region), box_);
+    try {
+      positions_.push_back(random_points(set.region, part, std::size_t(set.count), set.seed));
+    } catch (const Error& e) {
+      throw Error(fmt::format("{}: {}", problem.file, e.what()));
+    }
+    times_.emplace_back(set.count, 0.0);
+  }
+}
+
+void FlowParticles::step(const Flow& before, const Flow& after, double dt, const Execution& execution) {
+  tbb::task_arena arena(threads_for(execution.threads));
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const ParticleSet& set = sets_[s];
+    const auto middle = [&](const Point3& x) -> Vec3 {
+      return 0.5 * (before.velocity(x) + after.velocity(x)) + set.fall;
+    };
+    const auto move = [&](std::size_t i) {
+      Point3& x = positions_[s][i];
+      const Vec3 a = before.velocity(x) + set.fall, b = middle(x + 0.5 * dt * a), c = middle(x + 0.5 * dt * b);
+      const Vec3 d = after.velocity(x + dt * c) + set.fall;
+      x += dt / 6 * (a + 2 * b + 2 * c + d);
+      let_leave(set, i, x, times_[s][i]);
+    };
+    arena.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions_[s].size(), 64), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) move(i);
+      });
+    });
+  }
+}
+
+// Where nothing passes the walls only rounding, the method's error and the fall take a particle beyond them.
+void FlowParticles::let_leave(const ParticleSet& set, std::size_t i, Point3& x, double& times) const {
+  for (int a = 0; a < dimensions_; ++a) {
+    const double size = box_.size()[a], low = box_.lo[a];
+    if (x[a] >= low && x[a] <= box_.hi[a]) continue;
+    if (set.leaving != ParticleSet::Leaving::stay) {
+      // On the other side, as far from it as it is beyond this one.
+      x[a] = low + size * (((x[a] - low) / size) - std::floor((x[a] - low) / size));
+      if (set.leaving == ParticleSet::Leaving::respawn) {
+        times += 1;
+        const Vec3 share = random_shares(set.seed, i, std::uint32_t(times) + respawned);
+        for (int b = 0; b < dimensions_; ++b)
+          if (b != a) x[b] = box_.lo[b] + box_.size()[b] * share[b];
+      }
+    }
+    x[a] = std::clamp(x[a], low, box_.hi[a]);
+  }
+}
+
+std::string FlowParticles::csv() const {
+  std::string text = std::string(particle_header) + "\n";
+  for (std::size_t s = 0; s < positions_.size(); ++s)
+    for (const Point3& x : positions_[s]) text += fmt::format("{},{},{},{}\n", s, x[0], x[1], x[2]);
+  return text;
+}
+
+std::string FlowParticles::state() const {
+  std::string bytes;
+  const auto add = [&](const double* from, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(from), count * sizeof(double));
+  };
+  for (std::size_t s = 0; s < positions_.size(); ++s) {
+    for (const Point3& x : positions_[s]) add(x.data(), 3);
+    add(times_[s].data(), times_[s].size());
+  }
+  return bytes;
+}
+
+void FlowParticles::restore(const std::string& state) {
+  std::size_t at = 0, expected = 0;
+  for (const auto& set : positions_) expected += 4 * set.size() * sizeof(double);
+  if (state.size() != expected)
+    throw Error(fmt::format("a state of {} bytes of particles, expected {}", state.size(), expected));
+  const auto take = [&](double* to, std::size_t count) {
+    std::memcpy(to, state.data() + at, count * sizeof(double));
+    at += count * sizeof(double);
+  };
+  for (std::size_t s = 0; s < positions_.size(); ++s) {
+    for (Point3& x : positions_[s]) take(x.data(), 3);
+    take(times_[s].data(), times_[s].size());
+  }
+}
+
+}  // namespace airlight::scene
