@@ -19,8 +19,10 @@ std::optional<SeenPoint> seen_along(const Backdrop& backdrop, const Camera& came
   const double half = perspective ? std::tan(0.5 * camera.vertical_fov) : 0.5 * camera.height;
   const double sx = across.dot(camera.right) / half, sy = across.dot(camera.up) / half;
   const double x = 0.5 * (backdrop.width + sx * backdrop.height), y = 0.5 * (1 - sy) * backdrop.height;
-  const auto column = std::size_t(std::clamp(std::floor(x), 0.0, backdrop.width - 1.0));
-  const auto row = std::size_t(std::clamp(std::floor(y), 0.0, backdrop.height - 1.0));
+  // Between two pixels, as centres of a film of half the size lie, the right and lower one, whatever the rounding.
+  constexpr double tie = 1e-6;
+  const auto column = std::size_t(std::clamp(std::floor(x + tie), 0.0, backdrop.width - 1.0));
+  const auto row = std::size_t(std::clamp(std::floor(y + tie), 0.0, backdrop.height - 1.0));
   const std::size_t pixel = row * std::size_t(backdrop.width) + column;
   const double depth = backdrop.depth[pixel];
   if (depth == infinity && !backdrop.fills) return {};

@@ -21,6 +21,7 @@ struct Smoke {
   int dimensions;
   double depth;  // of the box where it is thickest, about
   int width;     // of the film
+  double softness;
 
   double half(int axis) const { return axis < dimensions ? 1 : 1e-4; }
   Box box() const { return {{-1, -1, -half(2)}, {1, 1, half(2)}}; }
@@ -30,6 +31,7 @@ struct Smoke {
     const double z = dimensions == 3 ? 1 : 0;
     sum.gaussians = {
         {{-0.3, -0.4, 0.2 * z}, 0.5, 0.8}, {{0.35, 0.1, -0.3 * z}, 0.45, 0.9}, {{-0.1, 0.55, 0.1 * z}, 0.4, 0.7}};
+    for (scene::Gaussian& g : sum.gaussians) g.width *= softness;
     return sum;
   }
   std::shared_ptr<scene::Scene> scene(scene::Medium medium) const {
@@ -132,6 +134,7 @@ std::vector<scene::SettingSpec> LegendreRendering::settings() const {
           scene::integer_setting("size", "4", 1, 512, "coefficients, or voxels, along an axis"),
           scene::integer_setting("dimensions", "3", 2, 3, "2: the same for all z, a film of one row"),
           scene::real_setting("depth", "4", 1e-6, 1e4, "about the optical depth of the box where it is thickest"),
+          scene::real_setting("softness", "1", 0.1, 10, "times the widths of the three blobs, about half of the box's"),
           scene::integer_setting("width", "64", 4, 4096, "of the film, pixels"),
           scene::integer_setting("runs", "5", 1, 1000, "timed pictures, each with its preparation")};
 }
@@ -144,7 +147,7 @@ std::vector<std::string> LegendreRendering::figures() const {
 }
 
 Findings LegendreRendering::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
-  const Smoke smoke{int(s.integer("dimensions")), s.real("depth"), int(s.integer("width"))};
+  const Smoke smoke{int(s.integer("dimensions")), s.real("depth"), int(s.integer("width")), s.real("softness")};
   const How how = s.choice<How>("how");
   const int size = int(s.integer("size")), runs = int(s.integer("runs"));
   if (how != How::grid && size > scene::LegendreBox::most)

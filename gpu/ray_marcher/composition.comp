@@ -8,6 +8,8 @@ layout(std430, binding = AT_MEAN_LAYER) writeonly buffer Mean { float mean_layer
 layout(std430, binding = AT_SURFACE) buffer Surface { float surface_layer[]; };
 // Low and high words: steps, shadow rays, shadow steps, occlusion rays.
 layout(std430, binding = AT_TOTALS) buffer Totals { uint totals[8]; };
+layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen[]; };  // of backdrops; -1: none
+uniform int has_seen;
 uniform int pixel_count, first_pixel;  // of the band; of it in the film
 uniform int has_media, has_surface, counts;
 
@@ -25,10 +27,12 @@ void main() {
     for (int c = 0; c < 3; ++c) {
       int value = 3 * film_place + c;
       float behind = has_surface != 0 ? surface_layer[value] : 0;
+      bool pictured = has_seen != 0 && seen[value] >= 0;
+      if (pictured) behind = pixel.transmittance[c] * seen[value];
       airlight_layer[value] = pixel.airlight[c];
       transmittance_layer[value] = pixel.transmittance[c];
       mean_layer[value] = pixel.airlight[c] + behind;
-      if (has_surface == 0) surface_layer[value] = 0;
+      if (has_surface == 0 || pictured) surface_layer[value] = behind;
     }
   }
   if (counts == 0) return;

@@ -193,6 +193,8 @@ void PlanOnDevice::compose(const scene::View& view, const MarchedFilm& film, con
   band.pixels.bind(at::pixels);
   film.surface.bind(at::surface);
   film.totals.bind(at::totals);
+  if (film.seen) film.seen->bind(at::seen);
+  p.set("has_seen", film.seen != nullptr);
   p.set("pixel_count", view.width * band.rows);
   p.set("first_pixel", view.width * band.first_row);
   p.set("has_media", march_ != nullptr);

@@ -16,6 +16,7 @@ namespace airlight::gpu::marcher {
 // Layers of a film on the device, 3 floats a pixel, and what ends its rays. Null: nothing does.
 struct MarchedFilm {
   const Buffer *distances = nullptr, *primitives = nullptr;
+  const Buffer* seen = nullptr;  // what backdrops send (gpu/raster/backdrops.h)
   const Buffer &airlight, &transmittance, &surface, &mean;
   const Buffer& totals;  // low and high words of steps, shadow rays, shadow steps, occlusion rays
 };

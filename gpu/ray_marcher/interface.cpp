@@ -24,7 +24,8 @@ const std::vector<Binding> bindings = {{"LAYERS", at::layers},
                                        {"AIRLIGHT_LAYER", at::airlight_layer},
                                        {"TRANSMITTANCE_LAYER", at::transmittance_layer},
                                        {"MEAN_LAYER", at::mean_layer},
-                                       {"TOTALS", at::totals}};
+                                       {"TOTALS", at::totals},
+                                       {"SEEN", at::seen}};
 
 const std::vector<Layout> layouts = {{"layers[0].albedo", offsetof(LayerData, albedo), 0},
                                      {"layers[0].shape", offsetof(LayerData, shape), 0},

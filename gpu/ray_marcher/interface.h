@@ -29,6 +29,7 @@ enum Binding {
   transmittance_layer = 1,
   mean_layer = 2,
   totals = 8,
+  seen = 3,
 };
 }  // namespace at
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gpu/raster/backdrops.h"
 #include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/device_plan.h"
 #include "gpu/ray_marcher/scene_data.h"
@@ -39,7 +40,9 @@ class PreparedMarchGpu final : public scene::Prepared {
     frame_.timer.restart();
     const bool ends = something_ends_rays(*plan_.scene);
     if (ends) first_hits_ = std::make_unique<FirstHits>(context_, *plan_.scene, true, way);
-    const bool seen = (plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene);
+    if (!plan_.scene->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *plan_.scene);
+    const bool seen =
+        (plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene) || bool(backdrops_);
     if (!plan_.layers.empty() || seen)
       device_ = std::make_unique<PlanOnDevice>(context_, plan_, storage, first_hits_.get());
     frame_.timer.stage("upload");
@@ -59,6 +62,7 @@ class PreparedMarchGpu final : public scene::Prepared {
   Context& context_;
   mutable Frame frame_;
   std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
+  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
   std::unique_ptr<PlanOnDevice> device_;   // null: no medium with extinction, and nothing that shines
   std::vector<scene::StageTime> times_;
 };
@@ -68,6 +72,7 @@ std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   const std::string grids = device_ ? device_->grids().description() : "";
   stages.insert(stages.begin(),
                 {{"distances", bool(first_hits_), first_hits_ ? "where camera rays end" : "nothing ends a ray"},
+                 {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
                  {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
   return stages;
 }
@@ -78,13 +83,19 @@ bool PreparedMarchGpu::draw(const View& view, const Execution& execution, bool l
   frame_.begin(execution);
   const auto layer = [&](const char* name) -> Buffer& { return frame_.buffers.get(name, 12 * pixels); };
   Buffer& totals = frame_.buffers.get("totals", 8 * sizeof(unsigned));
-  marcher::MarchedFilm film{nullptr,         nullptr,         layer(names[0]), layer(names[1]),
-                            layer(names[2]), layer(names[3]), totals};
+  marcher::MarchedFilm film{nullptr,         nullptr,         nullptr,         layer(names[0]),
+                            layer(names[1]), layer(names[2]), layer(names[3]), totals};
   if (first_hits_) {
     film.distances = &frame_.buffers.get("distances", 4 * pixels);
     film.primitives = &frame_.buffers.get("primitives", 4 * pixels);
     frame_.timer.begin("distances");
     first_hits_->find(view, *film.distances, film.primitives);
+  }
+  if (backdrops_) {
+    film.distances = &frame_.buffers.get("distances", 4 * pixels);
+    film.seen = &frame_.buffers.get("seen", 12 * pixels);
+    frame_.timer.begin("backdrops");
+    backdrops_->find(view, *film.distances, bool(first_hits_), *film.seen);
   }
   const bool counts = frame_.download.wants_any();
   if (counts) totals.clear();
@@ -143,7 +154,6 @@ std::vector<scene::SettingSpec> RayMarcherGpu::settings() const {
 
 std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = ray_marcher::RayMarcher().supports(scene, settings);
-  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const ray_marcher::Options options = ray_marcher::read_options(settings, 1);
   if (scene.media.size() > marcher::most_layers)

@@ -52,8 +52,9 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
   from_points_[1] = inverse_ * phi_.transpose() * points_.analysis;
   from_scalar_ = inverse_ * phi_.topRows(n).transpose();
   const int m = int(points_.node.size());
-  kernel_ = AdvectionKernel(d_, {n, m, at_points_[0], points_.slopes.leftCols(n), from_points_[0]},
-                            {n - 1, m, at_points_[1], points_.values.middleCols(1, n - 1), from_points_[1]});
+  slope_at_points_ = {points_.slopes.leftCols(n), points_.values.middleCols(1, n - 1)};
+  kernel_ = AdvectionKernel(d_, {n, m, at_points_[0], slope_at_points_[0], from_points_[0]},
+                            {n - 1, m, at_points_[1], slope_at_points_[1], from_points_[1]});
 }
 
 TensorShape ConfinedSpace::shape() const { return {n_, n_, d_ == 3 ? n_ : 1}; }

@@ -103,13 +103,13 @@ class ConfinedSpace {
   int d_, n_;
   Vec3 half_;
   std::array<int, 4> offset_{};
-  scene::LegendrePoints points_;                            // of n + 1 coefficients: the degree of phi
-  Eigen::MatrixXd phi_;                                     // coefficients of phi in L: (n+1) x (n-1)
-  Eigen::MatrixXd mass_, inverse_;                          // of phi; its inverse
-  Eigen::MatrixXd wall_modes_, free_modes_;                 // orthogonal: of the mass, n-1; of D^T D, n
-  Array wall_rates_, free_rates_;                           // the eigenvalues of -d^2/dx^2 along phi and along L
-  Eigen::MatrixXd pressure_modes_;                          // 1 and the wall modes: n
-  std::array<Eigen::MatrixXd, 2> at_points_, from_points_;  // [0] L, [1] phi
+  scene::LegendrePoints points_;             // of n + 1 coefficients: the degree of phi
+  Eigen::MatrixXd phi_;                      // coefficients of phi in L: (n+1) x (n-1)
+  Eigen::MatrixXd mass_, inverse_;           // of phi; its inverse
+  Eigen::MatrixXd wall_modes_, free_modes_;  // orthogonal: of the mass, n-1; of D^T D, n
+  Array wall_rates_, free_rates_;            // the eigenvalues of -d^2/dx^2 along phi and along L
+  Eigen::MatrixXd pressure_modes_;           // 1 and the wall modes: n
+  std::array<Eigen::MatrixXd, 2> at_points_, slope_at_points_, from_points_;  // [0] L, [1] phi
   AdvectionKernel kernel_;
   Eigen::MatrixXd from_scalar_;  // L to phi, L2 projection
 };

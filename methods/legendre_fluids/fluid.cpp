@@ -1,5 +1,7 @@
 #include "methods/legendre_fluids/fluid.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace airlight::legendre_fluids {
@@ -25,25 +27,62 @@ double Fluid::greatest_speed() const {
   return std::sqrt(squares.maxCoeff());
 }
 
+namespace {
+
+constexpr int most = 66;  // the greatest n, and two
+using Basis = std::array<double, most>;
+
+// L_{k+1} = a_k x L_k - b_k L_{k-1}, the orthonormal ones.
+struct Recurrence {
+  Basis a, b;
+  Recurrence() {
+    for (int k = 0; k < most; ++k) {
+      const double next = std::sqrt((2.0 * k + 3) / (2.0 * k + 1));
+      a[k] = (2.0 * k + 1) / (k + 1) * next;
+      b[k] = k == 0 ? 0 : k / (k + 1.0) * next * std::sqrt((2.0 * k + 1) / (2.0 * k - 1));
+    }
+  }
+};
+
+void legendre_basis(int n, double x, Basis& values) {
+  static const Recurrence recurrence;
+  values[0] = std::sqrt(0.5);
+  values[1] = std::sqrt(1.5) * x;
+  for (int k = 1; k + 1 < n; ++k) values[k + 1] = recurrence.a[k] * x * values[k] - recurrence.b[k] * values[k - 1];
+}
+
+}  // namespace
+
+// Without memory of its own, and the last axis summed last: particles ask for thousands of them in a step.
 double value_at(const ConfinedSpace& space, const Array& c, int component, const Vec3& x) {
   const int n = space.n();
-  std::vector<double> legendre(n + 1);
-  std::array<Array, 3> basis;
+  std::array<Basis, 3> basis;
   for (int a = 0; a < 3; ++a) {
     if (a >= space.dimensions()) {
-      basis[a] = Array::Ones(1);
+      basis[a][0] = 1;
       continue;
     }
-    scene::legendre_values_at(n + 1, x[a], legendre.data());
-    const Eigen::Map<const Array> values(legendre.data(), n + 1);
-    basis[a] = a == component ? Array(space.phi().transpose() * values) : Array(values.head(n));
+    if (a != component) {
+      legendre_basis(n, x[a], basis[a]);
+      continue;
+    }
+    Basis legendre;
+    legendre_basis(n + 1, x[a], legendre);
+    // Column i - 1 of phi has the integral of L_i: two neighbours of it.
+    for (int i = 1; i < n; ++i)
+      basis[a][i - 1] = space.phi()(i + 1, i - 1) * legendre[i + 1] + space.phi()(i - 1, i - 1) * legendre[i - 1];
   }
   const TensorShape s = space.shape(component);
-  double sum = 0;
+  Basis line;
+  std::fill_n(line.begin(), s[2], 0.0);
   const double* at = c.data();
   for (int i = 0; i < s[0]; ++i)
-    for (int j = 0; j < s[1]; ++j, at += s[2])
-      sum += basis[0][i] * basis[1][j] * basis[2].dot(Eigen::Map<const Array>(at, s[2]));
+    for (int j = 0; j < s[1]; ++j, at += s[2]) {
+      const double weight = basis[0][i] * basis[1][j];
+      for (int k = 0; k < s[2]; ++k) line[k] += weight * at[k];
+    }
+  double sum = 0;
+  for (int k = 0; k < s[2]; ++k) sum += basis[2][k] * line[k];
   return sum;
 }
 

@@ -120,10 +120,9 @@ struct PanelRule::Integral {
 
 void PanelRule::add(const PanelSeries& series, double scale, Rgb& sum, Work& work) const {
   Integral integral{*this, series.depths, series.sources, sum, work};
-  std::vector<double> all = series.depth;
-  all.insert(all.end(), series.source.begin(), series.source.end());
-  work.series.resize(std::size_t(2 * most_halvings) * integral.size());
-  integral.add(all.data(), scale, 0);
+  const std::size_t size = std::size_t(2 * most_halvings) * integral.size();
+  if (work.series.size() < size) work.series.resize(size);
+  integral.add(series.coefficients.data(), scale, 0);
 }
 
 }  // namespace airlight::legendre_fluids

@@ -13,8 +13,8 @@ namespace airlight::legendre_fluids {
 
 // For one, or for three channels that share places.
 struct PanelSeries {
-  int depths = 1, sources = 1;        // 1 or 3 each
-  std::vector<double> depth, source;  // [channel][coefficient]
+  int depths = 1, sources = 1;       // 1 or 3 each
+  std::vector<double> coefficients;  // [depths, then sources][coefficient]
 };
 
 class PanelRule {

@@ -48,16 +48,16 @@ struct LightRays::Walk {
   const Eigen::MatrixXd& analysis;
   PanelSeries series;
   Rgb sum = Rgb::Zero();
-  PanelRule::Work work;
-  long segments = 0;
+  RayVisits& visits;
 
-  Walk(const LightRays& of, const Ray& over, std::size_t l)
+  Walk(const LightRays& of, const Ray& over, std::size_t l, RayVisits& v)
       : rays(of),
         ray(over),
         light(l),
         before(of.media_.media.size(), 0.0),
         node(scene::legendre_points(of.media_.coefficients).node),
-        analysis(scene::legendre_points(of.media_.coefficients).analysis) {
+        analysis(scene::legendre_points(of.media_.coefficients).analysis),
+        visits(v) {
     const LitMedia& lit = of.media_;
     for (const LitMedium& m : lit.media) {
       // Light goes on along -to_light before, and along -direction after.
@@ -74,9 +74,8 @@ struct LightRays::Walk {
     return source.size() == 1 ? Rgb(irradiance * source[0]) : irradiance;
   }
 
-  Eigen::Map<Eigen::VectorXd> channel(std::vector<double>& all, int c) const {
-    return {all.data() + c * node.size(), node.size()};
-  }
+  // Of the series: depths come first.
+  Eigen::Map<Eigen::VectorXd> channel(int c) { return {series.coefficients.data() + c * node.size(), node.size()}; }
 
   // Values of a density at the Gauss points of a stretch within its box.
   Eigen::VectorXd densities(const scene::LegendreBox& field, const Eigen::VectorXd& t) const {
@@ -115,8 +114,7 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
       return stretch({half, t.hi}, visible, halvings + 1);
     }
   }
-  series.depth.assign(std::size_t(series.depths * n), 0);
-  series.source.assign(std::size_t(series.sources * n), 0);
+  series.coefficients.assign(std::size_t((series.depths + series.sources) * n), 0);
   for (std::size_t m = 0; m < media.size(); ++m) {
     Eigen::VectorXd depth = Eigen::VectorXd::Zero(n);
     depth[0] = std::sqrt(2.0) * before[m];
@@ -126,13 +124,13 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
       depth += 0.5 * t.length() * scene::series_primitive(density).head(n);
       before[m] += 0.5 * t.length() * std::sqrt(2.0) * std::max(0.0, density[0]);
       for (int c = 0; c < series.sources; ++c)
-        channel(series.source, c) += (series.sources == 1 ? 1 : source[m][c]) * density;
+        channel(series.depths + c) += (series.sources == 1 ? 1 : source[m][c]) * density;
     }
-    for (int c = 0; c < series.depths; ++c) channel(series.depth, c) += media[m].medium->sigma_t[c] * depth;
+    for (int c = 0; c < series.depths; ++c) channel(c) += media[m].medium->sigma_t[c] * depth;
   }
   if (!visible) return;
-  ++segments;
-  rays.rule_.add(series, 0.5 * t.length(), sum, work);
+  ++visits.segments;
+  rays.rule_.add(series, 0.5 * t.length(), sum, visits.work);
 }
 
 LightRays::LightRays(const scene::Scene& scene, const RayOptions& options)
@@ -210,7 +208,7 @@ Rgb LightRays::airlight(const Ray& ray, double end, RayVisits& visits) const {
     if (shadowed_[light]) visible = visibility(ray, {cuts.front(), cuts.back()}, light, visits);
     cuts.insert(cuts.end(), visible.changes.begin(), visible.changes.end());
     std::sort(cuts.begin(), cuts.end());
-    Walk walk(*this, ray, light);
+    Walk walk(*this, ray, light, visits);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const Interval piece{cuts[i], cuts[i + 1]};
       if (piece.length() <= least_share * std::max(std::abs(piece.hi), cuts.back() - cuts.front())) continue;
@@ -218,8 +216,6 @@ Rgb LightRays::airlight(const Ray& ray, double end, RayVisits& visits) const {
       walk.stretch(piece, visible.first == ((turns - visible.changes.begin()) % 2 == 0));
     }
     total += walk.unit() * walk.sum;
-    visits.segments += walk.segments;
-    visits.panels += walk.work.panels;
   }
   return total;
 }

@@ -18,8 +18,10 @@ struct RayOptions {
   int shadow_steps = 64;    // shadow rays over the media on a ray, where surfaces may stand before a light
 };
 
+// What rays read, and what a thread needs for them.
 struct RayVisits {
-  long segments = 0, panels = 0, shadow_rays = 0;
+  long segments = 0, shadow_rays = 0;
+  PanelRule::Work work;
 };
 
 class LightRays {

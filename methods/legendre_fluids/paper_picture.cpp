@@ -198,7 +198,9 @@ std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const 
   if (scene.camera.kind != scene::Camera::Kind::orthographic)
     reasons.push_back("variant = paper has one image of a whole view: expected an orthographic camera");
   if (!scene.surfaces.empty()) reasons.push_back("variant = paper knows no surfaces");
+  refuse_backdrops(scene, reasons);
   if ((scene.ambient_in_scatter > 0).any()) reasons.push_back("variant = paper knows no ambient_in_scatter");
+  refuse_backdrops(scene, reasons);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (const std::string why = scene::unknown_light<scene::DirectionalLight>(scene.lights, i); !why.empty())
       reasons.push_back(why);

@@ -33,6 +33,7 @@ class PreparedRays final : public scene::Prepared {
   struct Pixel {
     Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
   };
+  bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool any_medium() const { return !rays_.media().media.empty(); }
   bool scatters() const {
     const auto scattering = [](const LitMedium& m) { return (m.medium->albedo * m.medium->sigma_t).maxCoeff() > 0; };
@@ -40,7 +41,8 @@ class PreparedRays final : public scene::Prepared {
     return !lit.lights.empty() && std::any_of(lit.media.begin(), lit.media.end(), scattering);
   }
   bool behind_kept() const {
-    return (scene_->geometry && !rays_.media().lights.empty()) || scene::has_environment(*scene_);
+    return (scene_->geometry && !rays_.media().lights.empty()) || scene::has_environment(*scene_) ||
+           !scene_->backdrops.empty();
   }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
   Pixel pixel(const Ray&, RayVisits&) const;
@@ -77,7 +79,7 @@ std::vector<scene::Stage> PreparedRays::stages() const {
            rays_.shadowed() ? "surfaces may stand before a light" : "no surface stands before a light"},
           {"transmittance", any_medium(), any_medium() ? "exact along camera rays" : why},
           {"surfaces", behind_kept(),
-           behind_kept() ? "lights through the media, background" : "no surface is lit, no background"},
+           behind_kept() ? "lights through the media, backgrounds" : "no surface is lit, no background"},
           {"ambient", ambient_kept(),
            ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"},
           {"environment as a light", false,
@@ -86,8 +88,7 @@ std::vector<scene::Stage> PreparedRays::stages() const {
 
 // What the ray ends on sends back, without the media in between.
 Rgb PreparedRays::behind(const Ray& ray, const scene::RayEnd& end) const {
-  if (end.on_ball) return Rgb::Zero();
-  if (!end.hit) return scene::background(*scene_, ray.direction);
+  if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
   const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
   Rgb sum = Rgb::Zero();
@@ -106,7 +107,7 @@ Rgb PreparedRays::behind(const Ray& ray, const scene::RayEnd& end) const {
 
 PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
   Pixel pixel;
-  const scene::RayEnd end = scene_->geometry ? scene::ray_end(*scene_, ray) : scene::RayEnd{};
+  const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
   const Rgb depth = rays_.media().view_depth(ray, end.t);
   pixel.transmittance = (-depth).exp();
   if (scatters()) pixel.airlight = rays_.airlight(ray, end.t, visits);
@@ -118,6 +119,7 @@ PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const
 }
 
 scene::Rendering PreparedRays::render(const View& view, const Execution& execution) const {
+  require_own_camera(*scene_, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
@@ -146,14 +148,14 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
     }
     const std::lock_guard lock(mutex);
     total.segments += visits.segments;
-    total.panels += visits.panels;
+    total.work.panels += visits.work.panels;
     total.shadow_rays += visits.shadow_rays;
   });
   result.times.push_back({"rays", watch.lap()});
   result.counters = {{"rays", double(film.pixels())},
                      {"segments", double(total.segments)},
-                     {"panels", double(total.panels)},
-                     {"points", double(total.panels) * options_.points},
+                     {"panels", double(total.work.panels)},
+                     {"points", double(total.work.panels) * options_.points},
                      {"shadow_rays", double(total.shadow_rays)},
                      {"negative_share", negative_}};
   return result;

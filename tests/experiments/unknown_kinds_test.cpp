@@ -29,7 +29,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   scene.media[0].field = scene::GridPointer(grid);
   scene.lights = {scene::DirectionalLight{}};
   scene::finish(scene);
-  int fogshop = 0, shadow_planes = 0, wavelet_fog = 0, legendre = 0, others = 0;
+  int fogshop = 0, shadow_planes = 0, wavelet_fog = 0, legendre_fluids = 0, others = 0;
   for (const auto& renderer : experiments::all_renderers()) {
     const std::string name = renderer->name();
     CAPTURE(name);
@@ -46,7 +46,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
       ++wavelet_fog;
       CHECK(has(reasons, "medium 'smoke' is grid, expected fogmap"));
     } else if (name.starts_with("legendre_fluids")) {
-      ++legendre;
+      ++legendre_fluids;
       CHECK(has(reasons, "medium 'smoke' is grid, expected legendre or homogeneous"));
     } else {
       ++others;
@@ -56,21 +56,24 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(fogshop == 2);
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
-  CHECK(legendre == 2);
+  CHECK(legendre_fluids == 2);
   CHECK(others == 4);
 }
 
-TEST_CASE("a Legendre box is rendered by its method and by the references on the CPU, and refused by all others",
-          "[media][legendre]") {
+TEST_CASE(
+    "a Legendre box is rendered by the references on the CPU and its own method, and refused by name by all others",
+    "[media][legendre]") {
   scene::Scene scene;
   scene.width = scene.height = 4;
   scene.media.resize(1);
   scene.media[0].name = "cloud";
   scene.media[0].field = std::make_shared<const scene::LegendreBox>(
       Box{Point3::Constant(-1), Point3::Constant(1)}, scene::TensorShape{1, 1, 1}, Eigen::VectorXd::Constant(1, 2));
-  scene.lights = {scene::PointLight{{0, 3, 0}, Rgb::Ones(), 0}};
+  scene.lights = {scene::DirectionalLight{}};
   scene::finish(scene);
   const std::map<std::string, std::string> expected = {{"path_tracer", ""},
+                                                       {"legendre_fluids", ""},
+                                                       {"legendre_fluids_gpu", ""},
                                                        {"deterministic", ""},
                                                        {"ray_marcher", ""},
                                                        {"ray_marcher_gpu", "homogeneous or gaussians or grid"},
@@ -83,11 +86,6 @@ TEST_CASE("a Legendre box is rendered by its method and by the references on the
   for (const auto& renderer : experiments::all_renderers()) {
     const std::string name = renderer->name();
     CAPTURE(name);
-    if (name.starts_with("legendre_fluids")) {  // made for it, by other lights
-      CHECK(refusals(*renderer, scene) ==
-            std::vector<std::string>{"light 0 is point, expected directional or environment"});
-      continue;
-    }
     REQUIRE(expected.count(name) == 1);
     const auto reasons = refusals(*renderer, scene);
     if (expected.at(name).empty())

@@ -22,7 +22,7 @@ class Swirl : public scene::Flow {
   }
   double density(const Point3&) const override { return 0; }
   double temperature(const Point3&) const override { return 0; }
-  scene::DensityField medium() const override { return scene::Homogeneous{}; }
+  scene::DensityField medium(int) const override { return scene::Homogeneous{}; }
   scene::Frame frame() const override { return {}; }
   scene::Totals totals() const override { return {}; }
   std::vector<scene::StageTime> times() const override { return {}; }

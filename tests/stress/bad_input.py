@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+import backdrop_cases
 import flow_cases
 import hostile_cases
 import kill_cases
@@ -350,6 +351,7 @@ def main():
         queue_scripts()
         queue_experiments()
         flow_cases.queue(case, write, limit_files)
+        backdrop_cases.queue(case, write, SCENE)
         queue_outputs()
         hostile_cases.queue(WORK, SOURCE, case, write, project, scene_with, SCENE, EXPERIMENT)
         # Standard output to a full device needs its own call.

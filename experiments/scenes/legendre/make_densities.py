@@ -81,7 +81,8 @@ coefficients = [
 
 def oblique(name, title, n, seed, decay):
     """Light along (.48, .6, -.64), seen along (-.36, .48, .8); as the paper's systems need it: orthographic, one medium, nothing else."""
-    text = f'name = "{title}"\n\n' + CAMERA.format(position="[-1.8, 2.4, 4]", height=2.8)
+    text = f"# {title[0].upper() + title[1:]}, light and view oblique, for the errors of systems and rays. By make_densities.py.\n"
+    text += f'name = "{title}"\n\n' + CAMERA.format(position="[-1.8, 2.4, 4]", height=2.8)
     text += '\n[[light]]\ntype = "directional"\nto_light = [-0.48, -0.6, 0.64]\nirradiance = 1\n'
     text += medium(n, random_density(n, seed, decay), "sigma_t = 0.5  # times 2 it is the mean optical depth along an edge\nalbedo = 0.8\n")
     (FOLDER / f"{name}.toml").write_text(text)
@@ -90,7 +91,8 @@ def oblique(name, title, n, seed, decay):
 def main():
     oblique("smooth", "smooth density of 64 coefficients", 4, 1, 2)
     oblique("rough", "rough density of 216 coefficients", 6, 2, 0)
-    text = 'name = "smoke cube before a wall"\n\n' + CAMERA.format(position="[2.4, 1.2, 8]", height=5.6)
+    text = "# A cube of smoke in 64 coefficients before a wall: Gupta and Narasimhan 2007, Figure 13. By make_densities.py.\n"
+    text += 'name = "smoke cube before a wall"\n\n' + CAMERA.format(position="[2.4, 1.2, 8]", height=5.6)
     text += '\n[[light]]\ntype = "directional"\nto_light = [-0.9, 0.5, 1]\nirradiance = 3.5\n'
     text += '\n[[surface]]\ntype = "plane"\nname = "wall"\npoint = [0, 0, -1.6]\nnormal = [0, 0, 1]\n'
     text += 'material = { type = "lambert", albedo = 0.8 }\n'

@@ -269,7 +269,7 @@ vertical_fov = 0.72
 
 def alps():
     write("alps.toml", """# A flight over the lake of lake_clear.toml in fog that drifts (Gupta and Narasimhan 2007, Figure 16); its
-# mountains are surfaces. Experiments give the places of the camera, and frames of flows/alps.toml as the fog; the grid only stands for it.
+# mountains are surfaces. Experiments give the places of the camera, and frames of flows/alps.toml as the fog; the file only stands for it.
 # Written by make_scenes.py.
 name = "legendre/alps"
 
@@ -284,9 +284,12 @@ vertical_fov = 0.8
 
 [[medium]]
 name = "fog"
-type = "grid"
-file = "../../data/plume_0024.vdb"
-sigma_t = 0.0018
+type = "legendre"
+file = "lake_mist.csv"
+size = [8, 5, 8]
+lo = [-3400, -565, -7800]
+hi = [3400, 100, 5200]
+sigma_t = 0.0014
 """ + lights + lake_surfaces())
 
 

@@ -1,0 +1,47 @@
+#include "gpu/raster/backdrops.h"
+
+#include <cmath>
+
+#include "gpu/view_uniforms.h"
+
+namespace airlight::gpu {
+namespace {
+
+constexpr int tile = 8;
+
+}  // namespace
+
+Backdrops::Picture::Picture(Context& context, const scene::Backdrop& backdrop)
+    : width(backdrop.width),
+      height(backdrop.height),
+      fills(backdrop.fills),
+      depth(context, "depths of a backdrop", backdrop.depth),
+      radiance(context, "radiance of a backdrop", backdrop.radiance) {}
+
+Backdrops::Backdrops(Context& context, const scene::Scene& scene)
+    : scene_(scene),
+      program_(context.program("raster/backdrop.comp",
+                               {{"LOCAL_SIZE_X", std::to_string(tile)}, {"LOCAL_SIZE_Y", std::to_string(tile)}})) {
+  const Use use(context);
+  for (const auto& backdrop : scene.backdrops) pictures_.push_back(std::make_unique<Picture>(context, *backdrop));
+}
+
+void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer& seen) const {
+  require_own_camera(scene_, view);
+  set_camera(program_, view);
+  distances.bind(0);
+  seen.bind(1);
+  for (std::size_t i = 0; i < pictures_.size(); ++i) {
+    const Picture& picture = *pictures_[i];
+    program_.set("first", i == 0);
+    program_.set("has_distances", known || i > 0);
+    program_.set("picture_width", picture.width);
+    program_.set("picture_height", picture.height);
+    program_.set("fills", picture.fills);
+    picture.depth.bind(2);
+    picture.radiance.bind(3);
+    program_.dispatch(view.width, view.height);
+  }
+}
+
+}  // namespace airlight::gpu
