@@ -8,7 +8,9 @@ layout(std430, binding = AT_PRESSURE) writeonly buffer Pressure { float pressure
 layout(std430, binding = AT_SPREAD) readonly buffer Spread { float spread[]; };
 layout(std430, binding = AT_GATHERED) readonly buffer Gathered { float gathered[]; };
 uniform int comes_from, velocity, first_scalar;  // is the first group that of the velocity; the scalar of the next
-uniform vec3 by_density, by_temperature;         // half sizes a second, of a density or temperature of 1
+#if SCALARS > 0
+uniform vec3 weights[SCALARS];  // half sizes a second, by 1 of what is carried
+#endif
 #if PUSHES > 0
 layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; };
 uniform vec3 push_amounts[PUSHES];
@@ -17,11 +19,8 @@ uniform vec3 push_amounts[PUSHES];
 // What forces change along an axis, as a scalar: its coefficient at a place of SIZE.
 float force(int axis, int place) {
   float sum = 0;
-#if DENSITY > 0
-  sum += by_density[axis] * state[DENSITY * SIZE + place];
-#endif
-#if TEMPERATURE > 0
-  sum += by_temperature[axis] * state[TEMPERATURE * SIZE + place];
+#if SCALARS > 0
+  for (int r = 0; r < SCALARS; ++r) sum += weights[r][axis] * state[(D + r) * SIZE + place];
 #endif
 #if PUSHES > 0
   for (int p = 0; p < PUSHES; ++p) sum += push_amounts[p][axis] * regions[(SOURCES + p) * SIZE + place];

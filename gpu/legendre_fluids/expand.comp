@@ -12,17 +12,17 @@ uniform int first_field, adds, stage, goes_on, ends, begins;
 uniform float dt;                                        // [s] of a step of Runge-Kutta
 uniform vec3 per_area;                                   // half size^-2 of each axis
 uniform float fades, filters_velocity, filters_carried;  // what decay leaves; rate times time
-#if SOURCES > 0
+#if SOURCES * SCALARS > 0
 layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; };
-uniform float density_amounts[SOURCES], temperature_amounts[SOURCES];
+uniform float amounts[SOURCES * SCALARS];  // of each source, of each of what is carried
 #endif
 
 float added_by_sources(int field, int place) {
   float sum = 0;
-#if SOURCES > 0
+#if SOURCES * SCALARS > 0
   if (begins == 0 || field < D) return 0;
   for (int i = 0; i < SOURCES; ++i)
-    sum += (field == DENSITY ? density_amounts[i] : temperature_amounts[i]) * regions[i * SIZE + place];
+    sum += amounts[i * SCALARS + field - D] * regions[i * SIZE + place];
 #endif
   return sum;
 }

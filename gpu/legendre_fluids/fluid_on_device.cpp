@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -14,19 +15,25 @@ constexpr int lines_of_group = 32;
 
 std::string indexed(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
+std::vector<std::size_t> carried_by(Fluid& fluid) {
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < fluid.carried().size(); ++i)
+    if (fluid.carried()[i]->size() > 0) which.push_back(i);
+  return which;
+}
+
 }  // namespace
 
-FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Material& material,
-                             const ConfinedOptions& options, const Regions& regions)
+FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& material, const ConfinedOptions& options,
+                             const Regions& regions)
     : context_(context),
       space_(fluid.space()),
       material_(material),
       options_(options),
       moves_(material.moves),
-      carries_density_(fluid.density.size() > 0),
-      carries_temperature_(fluid.temperature.size() > 0),
+      carried_(carried_by(fluid)),
       velocities_(space_.dimensions()),
-      fields_(velocities_ + carries_density_ + carries_temperature_),
+      fields_(velocities_ + int(carried_.size())),
       slab_(std::size_t(space_.shape()[1] * space_.shape()[2])),
       size_(std::size_t(space_.n()) * slab_),
       lines_(std::size_t(space_.points_shape()[1] * space_.points_shape()[2])) {
@@ -39,8 +46,7 @@ FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Materia
   const auto number = [&](const char* name, std::size_t value) { definitions[name] = std::to_string(value); };
   number("FIELDS", std::size_t(fields_));
   number("MOVES", moves_);
-  number("DENSITY", carries_density_ ? std::size_t(velocities_) : 0);  // 0: there is none
-  number("TEMPERATURE", carries_temperature_ ? std::size_t(fields_ - 1) : 0);
+  number("SCALARS", carried_.size());
   number("SOURCES", regions.sources.size());
   number("PUSHES", regions.pushes.size());
   const int n = space_.n();
@@ -64,11 +70,10 @@ FluidOnDevice::FluidOnDevice(Context& context, const Fluid& fluid, const Materia
   upload(fluid);
 }
 
-void FluidOnDevice::upload(const Fluid& fluid) {
+void FluidOnDevice::upload(Fluid& fluid) {
   std::vector<float> state;
   for (int a = 0; a < velocities_; ++a) put_field(space_, a, space_.component(fluid.velocity, a), state);
-  if (carries_density_) put_field(space_, -1, fluid.density, state);
-  if (carries_temperature_) put_field(space_, -1, fluid.temperature, state);
+  for (const std::size_t which : carried_) put_field(space_, -1, *fluid.carried()[which], state);
   states_[current_]->upload(state);
 }
 
@@ -79,8 +84,7 @@ void FluidOnDevice::take(const std::vector<float>& fields, Fluid& fluid) const {
   const float* from = fields.data();
   for (int a = 0; a < velocities_; ++a, from += size_) parts[a] = take_field(space_, a, from);
   fluid.velocity = space_.joined(parts);
-  if (carries_density_) fluid.density = take_field(space_, -1, from), from += size_;
-  if (carries_temperature_) fluid.temperature = take_field(space_, -1, from);
+  for (const std::size_t which : carried_) *fluid.carried()[which] = take_field(space_, -1, from), from += size_;
 }
 
 void FluidOnDevice::set(Program& p, Fields fields) {
@@ -136,31 +140,51 @@ void FluidOnDevice::spread_modes_back(Fields fields, double dt) {
   if (fields.first == 0) columns(fields, false);
 }
 
-void FluidOnDevice::run(double dt, int count, const StepForces& forces) {
+FluidOnDevice::Status FluidOnDevice::look() const {
+  const std::vector<unsigned> status = status_->download<unsigned>();
+  float squared;
+  std::memcpy(&squared, &status[0], sizeof squared);
+  return {std::sqrt(double(squared)), status[1] == 0};
+}
+
+int FluidOnDevice::steps_in(double dt, const Status& status) const {
+  return legendre_fluids::runge_kutta_steps(dt, space_.n(), status.speed, false);
+}
+
+// How long a part of the step may be is asked before its first stage ends, or not at all: then all is one part.
+int FluidOnDevice::run(double dt, const StepForces& forces, bool looks) {
   const Fields all{0, fields_}, moving = this->moving(), diffusing = this->diffusing();
   const bool any = diffusing.count > 0, viscous = any && diffusing.first == 0;
+  const auto acts = [](const Vec3& v) { return !v.isZero(0); };
   const bool pushes =
-      moves_ && (!forces.pushes.empty() || !forces.by_density.isZero(0) || !forces.by_temperature.isZero(0));
+      moves_ && (!forces.pushes.empty() || std::any_of(forces.weights.begin(), forces.weights.end(), acts));
   expand(all, any ? GoesOn::to_modes : GoesOn::to_points, false, -1, 0, true);
   if (any) {
     spread_modes_back(diffusing, 0.5 * dt);
     expand(all, GoesOn::to_points, viscous, -1, 0);
   }
-  for (int step = 0; step < count; ++step)
+  int parts = 0;
+  for (double left = dt; left > 0; ++parts) {
+    int steps = 1;
     for (int stage = 0; stage < 4; ++stage) {
-      const bool last = step + 1 == count && stage == 3;
-      points(step == 0 && stage == 0);
+      if (looks && stage == 0) status_->clear();
+      points(stage == 0);
+      if (looks && stage == 0) steps = steps_in(left, look());
       collect(moving, ComesFrom::points);
       if (moves_) columns(moving, false);
+      const bool last = steps == 1 && stage == 3;
       const GoesOn next = !last ? GoesOn::to_points : any ? GoesOn::to_modes : GoesOn::nowhere;
-      expand(moving, next, true, stage, dt / count, false, last && !any && !pushes);
+      expand(moving, next, true, stage, left / steps, false, last && !any && !pushes);
     }
+    left = steps > 1 ? left - left / steps : 0;
+  }
   if (any) spread_modes_back(diffusing, 0.5 * dt);
   if (pushes) {
     collect({0, velocities_}, ComesFrom::forces);
     columns({0, velocities_}, false);
   }
   if (any || pushes) expand(all, GoesOn::nowhere, viscous || pushes, -1, 0, false, true);
+  return parts;
 }
 
 void FluidOnDevice::bind() {
@@ -178,7 +202,7 @@ void FluidOnDevice::project() {
   const Use use(context_);
   bind();
   const Fields velocity{0, velocities_};
-  for (const char* none : {"by_density", "by_temperature"}) collect_->set(none, Vec3(Vec3::Zero()));
+  for (std::size_t r = 0; r < carried_.size(); ++r) collect_->set(indexed("weights", r), Vec3(Vec3::Zero()));
   expand({0, fields_}, GoesOn::nowhere, false, -1, 0, true);
   collect(velocity, ComesFrom::forces);
   columns(velocity, false);
@@ -208,29 +232,27 @@ void FluidOnDevice::advect(Fluid& rates) {
 void FluidOnDevice::step(double dt, const StepForces& forces) {
   const Use use(context_);
   bind();
-  for (std::size_t i = 0; i < forces.density.size(); ++i) {
-    expand_->set(indexed("density_amounts", i), forces.density[i]);
-    expand_->set(indexed("temperature_amounts", i), forces.temperature[i]);
-  }
+  for (std::size_t i = 0; i < forces.sources.size(); ++i)
+    for (std::size_t r = 0; r < carried_.size(); ++r)
+      expand_->set(indexed("amounts", i * carried_.size() + r), forces.sources[i][r]);
   for (std::size_t i = 0; i < forces.pushes.size(); ++i) collect_->set(indexed("push_amounts", i), forces.pushes[i]);
-  collect_->set("by_density", forces.by_density);
-  collect_->set("by_temperature", forces.by_temperature);
+  for (std::size_t r = 0; r < carried_.size(); ++r)
+    collect_->set(indexed("weights", r), r < forces.weights.size() ? forces.weights[r] : Vec3(Vec3::Zero()));
   expand_->set("fades", forces.fades);
   expand_->set("filters_velocity", moves_ ? options_.filter_velocity * dt : 0.0);
   expand_->set("filters_carried", options_.filter_carried * dt);
-  // How many steps of Runge-Kutta it takes is known when the first has begun: as many as the last time, else all again.
-  while (true) {
-    run(dt, guess_, forces);
-    const std::vector<unsigned> status = status_->download<unsigned>();
-    float squared;
-    std::memcpy(&squared, &status[0], sizeof squared);
-    const int count = legendre_fluids::runge_kutta_steps(dt, space_.n(), std::sqrt(double(squared)), false);
-    if (count == guess_ && status[1] == 0) break;
-    if (count == guess_) throw scene::Unstable("coefficients are no longer finite");
-    guess_ = count;
+  // A step is taken to be one part, if the last one was; where the speed then says otherwise it is taken again.
+  int parts = run(dt, forces, divides_);
+  Status status = look();
+  if (!divides_ && steps_in(dt, status) > 1) {
+    divides_ = true;
+    parts = run(dt, forces, true);
+    status = look();
   }
+  if (!status.finite) throw scene::Unstable("coefficients are no longer finite");
   context_.check("a step of the fluid");
-  substeps_ += guess_;
+  substeps_ += parts;
+  divides_ = parts > 1;
   current_ = 1 - current_;
 }
 

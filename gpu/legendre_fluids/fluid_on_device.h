@@ -25,30 +25,33 @@ struct Regions {
 
 // What a step adds and takes beside the fluid's own motion.
 struct StepForces {
-  std::vector<double> density, temperature;                     // by source, added before the step
-  std::vector<Vec3> pushes;                                     // by force [half sizes per second], added after it
-  Vec3 by_density = Vec3::Zero(), by_temperature = by_density;  // likewise, of a density or temperature of 1
-  double fades = 1;                                             // what decay leaves
+  // Of what is carried, in the order of its fields: what sources add before the step, [source][field]; what 1 of it pushes [half sizes per
+  // second], after it.
+  std::vector<std::vector<double>> sources;
+  std::vector<Vec3> weights;
+  std::vector<Vec3> pushes;  // by force [half sizes per second], likewise
+  double fades = 1;          // what decay leaves
 };
 
 class FluidOnDevice {
  public:
-  // With the coefficients of a fluid: its density and temperature are carried where they are not empty. 2 <= n <= most_coefficients. Throws
+  // With the coefficients of a fluid: what of Fluid::carried() is not empty is carried. 2 <= n <= most_coefficients. Throws
   // Unavailable as Buffer and Program do.
-  FluidOnDevice(Context&, const Fluid&, const Material&, const ConfinedOptions&, const Regions& = {});
+  FluidOnDevice(Context&, Fluid&, const Material&, const ConfinedOptions&, const Regions& = {});
 
-  // By dt [s]. Runge-Kutta divides it as on the CPU. One wait, for how many steps that takes and whether all is finite. Throws
-  // scene::Unstable, and leaves the state as it was.
+  // By dt [s]. Runge-Kutta divides it as on the CPU. One wait, for the greatest speed and whether all is finite, and one more for each
+  // part where it is divided. Throws scene::Unstable, and leaves the state as it was.
   void step(double dt, const StepForces& = {});
   double substeps() const { return substeps_; }  // of Runge-Kutta so far
 
   // Into a fluid that was made alike, and from it.
   void download(Fluid&) const;
-  void upload(const Fluid&);
+  void upload(Fluid&);
 
   // Coefficients of now: fields as fields.glsl has them. Another buffer after every step.
   const Buffer& state() const { return *states_[current_]; }
-  std::size_t density_at() const { return size_t(space_.dimensions()); }  // its field, where there is one
+  // Those of Fluid::carried() that are fields, behind the velocity's components.
+  const std::vector<std::size_t>& carried() const { return carried_; }
 
   // Parts of a step: the nearest velocity without divergence; diffusion of all over a time [s], divergence left; the rates of advection
   // before projection, into a fluid that was made alike.
@@ -68,7 +71,13 @@ class FluidOnDevice {
   void collect(Fields, ComesFrom);
   void columns(Fields, bool diffuses, double dt = 0);
   void spread_modes_back(Fields, double dt);
-  void run(double dt, int count, const StepForces&);
+  int run(double dt, const StepForces&, bool looks);
+  struct Status {
+    double speed;  // greatest, of the last points() that measured [half sizes per second]
+    bool finite;
+  };
+  Status look() const;  // waits
+  int steps_in(double dt, const Status&) const;
   Fields moving() const { return {moves_ ? 0 : velocities_, fields_ - (moves_ ? 0 : velocities_)}; }
   Fields diffusing() const;
 
@@ -76,8 +85,10 @@ class FluidOnDevice {
   ConfinedSpace space_;
   Material material_;
   ConfinedOptions options_;
-  bool moves_, carries_density_, carries_temperature_;
-  int velocities_, fields_, slab_group_, guess_ = 1;
+  bool moves_;
+  std::vector<std::size_t> carried_;  // of Fluid::carried(), by field
+  int velocities_, fields_, slab_group_;
+  bool divides_ = false;  // the last step was divided
   std::size_t slab_, size_, lines_;
   double substeps_ = 0;
   std::unique_ptr<Buffer> tables_, regions_, states_[2], rates_, pressure_, spread_, gathered_, status_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gpu/legendre_fluids/fluid_on_device.h"
@@ -24,7 +25,7 @@ class LegendreFlowGpu final : public LegendreFlow {
  public:
   LegendreFlowGpu(std::shared_ptr<const FlowProblem> problem, const Material& material, const ConfinedOptions& options,
                   std::unique_ptr<Fluid> fluid, int cells)
-      : LegendreFlow(std::move(problem), std::move(fluid), cells),
+      : LegendreFlow(std::move(problem), std::move(fluid), cells, legendre_fluids::Mixing::densities),
         device_(Context::get(), *fluid_, material, options, {source_, push_}) {}
 
   std::map<std::string, double> counters() const override {
@@ -39,9 +40,13 @@ class LegendreFlowGpu final : public LegendreFlow {
     here_ = true;
   }
 
-  std::optional<legendre::DensityOnDevice> density_on_device() const {
-    if (p_->dimensions != 3 || !fluid_->density.size()) return {};
-    return legendre::DensityOnDevice{device_.state(), device_.density_at(), fluid_->space().n(), p_->box};
+  std::optional<legendre::DensityOnDevice> density_on_device(int density) const {
+    const auto& carried = device_.carried();
+    const auto at = std::find(carried.begin(), carried.end(), std::size_t(density));
+    if (p_->dimensions != 3 || density < 0 || std::size_t(density) > p_->densities.size() || at == carried.end())
+      return {};
+    return legendre::DensityOnDevice{device_.state(), std::size_t(3 + (at - carried.begin())), fluid_->space().n(),
+                                     p_->box};
   }
 
  private:
@@ -58,14 +63,21 @@ class LegendreFlowGpu final : public LegendreFlow {
   StepForces forces(double dt) const {
     StepForces f;
     const std::vector<double> seconds = source_seconds(dt), push_seconds = this->push_seconds(dt);
+    const std::size_t temperature = p_->densities.size() + 1;  // of Fluid::carried()
+    for (const std::size_t which : device_.carried()) {
+      const double lifts = which == temperature ? -p_->expansion : p_->weight;
+      f.weights.push_back(dt * lifts * p_->gravity.cwiseQuotient(box_.half));
+    }
     for (std::size_t i = 0; i < seconds.size(); ++i) {
-      f.density.push_back(seconds[i] * p_->sources[i].density_rate);
-      f.temperature.push_back(seconds[i] * p_->sources[i].temperature_rate);
+      const scene::Source& s = p_->sources[i];
+      f.sources.emplace_back();
+      for (const std::size_t which : device_.carried())
+        f.sources[i].push_back(which == temperature         ? seconds[i] * s.temperature_rate
+                               : which == std::size_t(s.of) ? seconds[i] * s.density_rate
+                                                            : 0);
     }
     for (std::size_t i = 0; i < push_seconds.size(); ++i)
       f.pushes.push_back(push_seconds[i] * p_->pushes[i].acceleration.cwiseQuotient(box_.half));
-    if (fluid_->density.size()) f.by_density = dt * p_->weight * p_->gravity.cwiseQuotient(box_.half);
-    if (fluid_->temperature.size()) f.by_temperature = -dt * p_->expansion * p_->gravity.cwiseQuotient(box_.half);
     f.fades = fluid_->faded(p_->decay * dt);
     return f;
   }
@@ -76,9 +88,9 @@ class LegendreFlowGpu final : public LegendreFlow {
 
 }  // namespace
 
-std::optional<legendre::DensityOnDevice> legendre::density_on_device(const scene::Flow& flow) {
+std::optional<legendre::DensityOnDevice> legendre::density_on_device(const scene::Flow& flow, int density) {
   const auto* here = dynamic_cast<const LegendreFlowGpu*>(&flow);
-  return here ? here->density_on_device() : std::nullopt;
+  return here ? here->density_on_device(density) : std::nullopt;
 }
 
 std::string LegendreFluidsGpu::about() const {
@@ -96,13 +108,13 @@ std::vector<std::string> LegendreFluidsGpu::supports(const FlowProblem& problem,
     reasons.push_back("variant = " + settings.text("variant") + " is for the CPU: shaders know galerkin");
   if (settings.text("time_step") != "runge_kutta")
     reasons.push_back("time_step = " + settings.text("time_step") + " is for the CPU: shaders know runge_kutta");
+  if (settings.text("mixing") != "densities")
+    reasons.push_back("mixing = albedo is for the CPU: shaders move each density");
   if (const auto n = settings.integer("n"); n < 2 || n > legendre::most_coefficients)
     reasons.push_back(
         fmt::format("n = {}: shaders take 2 to {} coefficients along an axis", n, legendre::most_coefficients));
   if (legendre_fluids::air_comes_in(problem))
     reasons.push_back("air that comes in through sides: shaders know a closed box");
-  if (!problem.densities.empty())
-    reasons.push_back(fmt::format("{} densities: shaders carry one", problem.densities.size() + 1));
   if (std::max(problem.sources.size(), problem.pushes.size()) > std::size_t(legendre::most_regions))
     reasons.push_back(fmt::format("{} sources and {} forces: shaders have room for {} of each", problem.sources.size(),
                                   problem.pushes.size(), legendre::most_regions));

@@ -17,8 +17,8 @@ struct DensityOnDevice {
   int coefficients;
   Box box;
 };
-// Nothing for a flow of another solver, in two dimensions, or without a density.
-std::optional<DensityOnDevice> density_on_device(const scene::Flow&);
+// As for Flow::medium. Nothing for a flow of another solver, in two dimensions, or without that density.
+std::optional<DensityOnDevice> density_on_device(const scene::Flow&, int density = 0);
 
 }  // namespace legendre
 

@@ -121,7 +121,8 @@ vec3 integral(vec3 so_far) {
     vec3 whole = vec3(0), halves = vec3(0);
     float least = 1e37, greatest = -1e37;
     for (int part = 0; part < 3; ++part) {
-      vec3 got = panel(part == 0 ? middle : middle + (float(part) - 1.5) * half_width, part == 0 ? half_width : 0.5 * half_width, least, greatest);
+      float at = part == 0 ? middle : middle + (float(part) - 1.5) * half_width;
+      vec3 got = panel(at, part == 0 ? half_width : 0.5 * half_width, least, greatest);
       if (part == 0)
         whole = got;
       else

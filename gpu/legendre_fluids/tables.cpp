@@ -40,8 +40,8 @@ Tables::Tables(const ConfinedSpace& space, double filter_order) {
   rows(m.at_points[0].transpose());
   rows(widened(m.at_points[1].transpose(), true, false));
   begin("SLOPES");
-  rows(m.slope_at_points[0].transpose());
-  rows(widened(m.slope_at_points[1].transpose(), true, false));
+  rows(m.points.slopes.leftCols(n).transpose());
+  rows(widened(m.points.values.middleCols(1, n - 1).transpose(), true, false));  // phi_i' = L_i
   begin("FROM_POINTS");
   rows(m.from_points[0]);
   rows(widened(m.from_points[1], true, false));

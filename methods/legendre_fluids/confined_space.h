@@ -58,13 +58,14 @@ class ConfinedSpace {
   const Eigen::MatrixXd& phi() const { return phi_; }  // coefficients of phi in L: (n+1) x (n-1)
   // What the operators are made of, for those who apply them elsewhere: pairs are of L and of phi. n > 1.
   struct Matrices {
-    const std::array<Eigen::MatrixXd, 2>&at_points, &slope_at_points, &from_points;
+    const scene::LegendrePoints& points;  // of n + 1 coefficients
+    const std::array<Eigen::MatrixXd, 2>&at_points, &from_points;
     const Eigen::MatrixXd &pressure_modes, &wall_modes, &free_modes, &from_scalar;
     const Array &wall_rates, &free_rates;
   };
   Matrices matrices() const {
-    return {at_points_,  slope_at_points_, from_points_, pressure_modes_, wall_modes_,
-            free_modes_, from_scalar_,     wall_rates_,  free_rates_};
+    return {points_,     at_points_,   from_points_, pressure_modes_, wall_modes_,
+            free_modes_, from_scalar_, wall_rates_,  free_rates_};
   }
   TensorShape points_shape() const;
   double integral(const Array& values) const;                 // over the box [m^d]

@@ -106,8 +106,7 @@ TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its
   const scene::Film expected =
       test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, mean / (mean - least)))).film;
   // The margin for what lies between points is 2 % of the way to the mean.
-  for (const char* layer : {"transmittance", "airlight"})
-    CHECK(test::relative_l2(drawn, expected, layer) < 0.01);
+  for (const char* layer : {"transmittance", "airlight"}) CHECK(test::relative_l2(drawn, expected, layer) < 0.01);
   CHECK_FALSE(gpu::draw_flow(
       *method.prepare(scene_with(random_density({4, 4, 4}, 1)), {method.settings(), {}}, {1, {}}), *flow));
 }
