@@ -4,6 +4,12 @@
 
 namespace airlight::scene {
 
+std::vector<Vec3> Flow::velocities(const std::vector<Point3>& points) const {
+  std::vector<Vec3> u;
+  for (const Point3& x : points) u.push_back(velocity(x));
+  return u;
+}
+
 std::unique_ptr<Flow> Solver::start(std::shared_ptr<const FlowProblem> problem, const Settings& settings,
                                     const Execution& execution) const {
   const std::vector<std::string> reasons = supports(*problem, settings);

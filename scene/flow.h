@@ -51,8 +51,9 @@ class Flow {
   // By dt > 0 [s]. Throws Unstable (step and cell).
   virtual void step(double dt) = 0;
   // At points of the box; outside it at the nearest one.
-  virtual Vec3 velocity(const Point3&) const = 0;   // [m/s]
-  virtual double density(const Point3&) const = 0;  // the first one, as in totals()
+  virtual Vec3 velocity(const Point3&) const = 0;                          // [m/s]
+  virtual std::vector<Vec3> velocities(const std::vector<Point3>&) const;  // of many points: one by one by default
+  virtual double density(const Point3&) const = 0;                         // the first one, as in totals()
   virtual double temperature(const Point3&) const = 0;
   // A density as renderers know it, not below 0: 0 the first, k the k-th of FlowProblem::densities.
   virtual DensityField medium(int density = 0) const = 0;

@@ -28,6 +28,7 @@ class FlowParticles {
   void restore(const std::string& state);
 
  private:
+  void move(const Flow& before, const Flow& after, double dt, std::size_t set, std::size_t begin, std::size_t end);
   void let_leave(const ParticleSet&, std::size_t i, Point3&, double& times) const;
 
   Box box_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/legendre_fluids/point_values.h"
 #include "scene/flow.h"
 
 namespace airlight::legendre_fluids {
@@ -99,6 +100,21 @@ double ConfinedFluid::at(int component, const Vec3& x) const {
   double value =
       confined() && space_.n() > 1 ? value_at(space_, space_.component(velocity, component), component, x) : 0;
   return wind_ ? value + wind_->velocity(component, x) + gust(time)[component] : value;
+}
+
+Array ConfinedFluid::at(int component, const std::vector<Vec3>& x) const {
+  Array values = Array::Zero(Eigen::Index(x.size()));
+  if (confined() && space_.n() > 1) {
+    TensorShape shape = space_.shape(component);
+    const Array series = scene::along_axis(component, space_.phi(), space_.component(velocity, component), shape);
+    shape[component] = space_.n() + 1;
+    values = series_values(shape, series.data(), x);
+    if (space_.dimensions() == 2) values *= std::sqrt(2.0);  // no L_0 along z
+  }
+  if (!wind_) return values;
+  const double blows = gust(time)[component];
+  for (std::size_t i = 0; i < x.size(); ++i) values[Eigen::Index(i)] += wind_->velocity(component, x[i]) + blows;
+  return values;
 }
 
 void ConfinedFluid::add_inflow(double at, const Array& r, std::size_t which, Array& rate) const {

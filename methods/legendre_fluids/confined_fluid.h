@@ -46,6 +46,7 @@ class ConfinedFluid : public Fluid {
   Array sampled(int component, const Components& positions) const override;
   Array sampled_slope(int component, int axis, const Components& positions) const override;
   double at(int component, const Vec3& x) const override;
+  Array at(int component, const std::vector<Vec3>& x) const override;
   Array history() const override { return last_rate_; }
   void set_history(const Array& rate) override { last_rate_ = rate; }
   std::map<std::string, double> counters() const override;

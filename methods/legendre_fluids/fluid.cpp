@@ -54,6 +54,12 @@ void legendre_basis(int n, double x, Basis& values) {
 }  // namespace
 
 // Without memory of its own, and the last axis summed last: particles ask for thousands of them in a step.
+Array Fluid::at(int component, const std::vector<Vec3>& x) const {
+  Array values(Eigen::Index(x.size()));
+  for (std::size_t i = 0; i < x.size(); ++i) values[Eigen::Index(i)] = at(component, x[i]);
+  return values;
+}
+
 double value_at(const ConfinedSpace& space, const Array& c, int component, const Vec3& x) {
   const int n = space.n();
   std::array<Basis, 3> basis;

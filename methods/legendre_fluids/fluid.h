@@ -45,6 +45,7 @@ class Fluid {
   virtual Array sampled(int component, const Components& positions) const = 0;
   virtual Array sampled_slope(int component, int axis, const Components& positions) const = 0;
   virtual double at(int component, const Vec3& x) const = 0;
+  virtual Array at(int component, const std::vector<Vec3>& x) const;  // one by one by default
 
   // [m^(d+2)/s^2]
   double energy() const;

@@ -160,6 +160,16 @@ Vec3 LegendreFlow::velocity(const Point3& x) const {
   return u;
 }
 
+std::vector<Vec3> LegendreFlow::velocities(const std::vector<Point3>& points) const {
+  std::vector<Vec3> inside, u(points.size(), Vec3::Zero());
+  for (const Point3& x : points) inside.push_back(box_.inside(x));
+  for (int a = 0; a < p_->dimensions; ++a) {
+    const Array values = box_.half[a] * now().at(a, inside);
+    for (std::size_t i = 0; i < u.size(); ++i) u[i][a] = values[Eigen::Index(i)];
+  }
+  return u;
+}
+
 double LegendreFlow::carried_at(const Array& r, const Point3& x) const {
   return r.size() ? value_at(fluid_->space(), r, -1, box_.inside(x)) : 0;
 }

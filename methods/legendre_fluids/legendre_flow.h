@@ -26,6 +26,7 @@ class LegendreFlow : public scene::Flow {
   double time() const override { return time_; }
   void step(double dt) override;
   Vec3 velocity(const Point3& x) const override;
+  std::vector<Vec3> velocities(const std::vector<Point3>&) const override;
   double density(const Point3& x) const override { return carried_at(smoke(0), x); }
   double temperature(const Point3& x) const override { return carried_at(now().temperature, x); }
   scene::DensityField medium(int density) const override { return cells_.medium(fluid_->space(), smoke(density)); }

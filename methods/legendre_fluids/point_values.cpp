@@ -1,5 +1,6 @@
 #include "methods/legendre_fluids/point_values.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -48,6 +49,21 @@ Lanes series_values(const scene::TensorShape& shape, const double* coefficients,
     sum += plane * of_x[std::size_t(i)];
   }
   return sum;
+}
+
+Eigen::VectorXd series_values(const scene::TensorShape& shape, const double* coefficients,
+                              const std::vector<Vec3>& points) {
+  Eigen::VectorXd values(Eigen::Index(points.size()));
+  for (std::size_t begin = 0; begin < points.size(); begin += lanes) {
+    const std::size_t here = std::min<std::size_t>(lanes, points.size() - begin);
+    std::array<Lanes, 3> x;
+    for (std::size_t i = 0; i < lanes; ++i)
+      for (std::size_t a = 0; a < 3; ++a)
+        x[a][Eigen::Index(i)] = points[begin + std::min(i, here - 1)][Eigen::Index(a)];
+    const Lanes all = series_values(shape, coefficients, x[0], x[1], x[2]);
+    values.segment(Eigen::Index(begin), Eigen::Index(here)) = all.head(Eigen::Index(here));
+  }
+  return values;
 }
 
 double series_value(const scene::TensorShape& shape, const double* coefficients, const Vec3& at) {

@@ -119,7 +119,7 @@ TEST_CASE("legendre fluids on the device: the density of the vectors", "[gpu][le
   }
 }
 
-// What `w` makes of a scalar, and of each component of a velocity: a space with a coefficient more holds them as scalars.
+// What `w` makes of a scalar.
 TEST_CASE("legendre fluids on the device: the form of advection, by velocities with and without divergence",
           "[gpu][legendre_fluids]") {
   if (!gpu::test::device()) return;
