@@ -241,7 +241,6 @@ std::vector<scene::SettingSpec> LegendreLightGpu::settings() const {
 
 std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = legendre_fluids::LegendreLight().supports(scene, settings);
-  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
   if (options.variant != legendre_fluids::LightOptions::Variant::ray)
