@@ -33,6 +33,13 @@ EXPOSURE = "experiments/driver/pictures.cpp", "experiments/pictures_test.cpp"
 TIGHTEN = "scripts/tighten", "scripts/scripts_test.py"
 FIGURES = "scripts/figures", "scripts/scripts_test.py"
 VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
+CONFINED = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/confined_space_test.cpp"
+BOXES = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/flow_test.cpp"
+TIME_STEPS = "methods/legendre_fluids/time_steps.cpp", "methods/legendre_fluids/time_steps_test.cpp"
+LEGENDRE_LINE = "scene/media/legendre_line.cpp", "scene/media/legendre_box_test.cpp"
+LIGHT_RAYS = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/light_rays_test.cpp"
+LIGHT_PHASES = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/light_pictures_test.cpp"
+PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
 
 
 def bug(name, place, old, new, test, compiled=()):
@@ -193,4 +200,27 @@ MUTANTS = [
         "a file without vectors is no success"),
     bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
         "a number out of tolerance is found"),
+    # Legendre fluids
+    bug("the projection adds the gradient", CONFINED, "rate > 0 ? -p[at] / rate", "rate > 0 ? p[at] / rate",
+        "legendre fluids: the projection holds in boxes that are no cubes, up to 32 coefficients"),
+    bug("the pressure of a cube", CONFINED, "rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a])", "rate += wall_rates_[i[a] - 1]",
+        "legendre fluids: the projection holds in boxes that are no cubes, up to 32 coefficients"),
+    bug("air comes in where it goes out", CONFINED, "(side ? Array(-speed) : speed)", "(side ? speed : Array(-speed))",
+        "legendre fluids: what comes in clear can only thin what is there"),
+    bug("viscosity in half sizes", BOXES, "rate += (*rates[a])[i[a]] / (half_[a] * half_[a])", "rate += (*rates[a])[i[a]]",
+        "legendre fluids: Taylor-Green vortices agree with the closed form in boxes of any size"),
+    bug("the last slope half a step ahead", TIME_STEPS, "k4 = rate(y + dt * k3)", "k4 = rate(y + 0.5 * dt * k3)",
+        "legendre fluids: Runge-Kutta keeps the energy within the step rule"),
+    bug("Cayley's form upside down", TIME_STEPS, "(1.0 + 0.5 * i * angle) / (1.0 - 0.5 * i * angle)",
+        "(1.0 - 0.5 * i * angle) / (1.0 + 0.5 * i * angle)", "legendre fluids: Krylov spaces give the functions they name"),
+    bug("what is below 0 is integrated", LEGENDRE_LINE, "rises ? Interval{root, t.hi} : Interval{t.lo, root}",
+        "rises ? Interval{t.lo, root} : Interval{root, t.hi}", "a Legendre box clamped between two roots, in closed form"),
+    bug("pieces begin from nothing", LEGENDRE_LINE, "positive_.empty() ? 0 : integral(positive_.back().hi)", "0.0",
+        "integrals through Legendre boxes agree with fine sums, and add up"),
+    bug("each stretch sees its own depth alone", LIGHT_RAYS, "std::sqrt(2.0) * before[m]", "0 * before[m]",
+        "legendre light: rays equal quadrature at every optical depth"),
+    bug("forward is backward", LIGHT_PHASES, "lit.lights[l].to_light.dot(ray.direction)", "-lit.lights[l].to_light.dot(ray.direction)",
+        "legendre light: pictures equal the quadrature's and the path tracer's"),
+    bug("the third slope of particles from the step's end", PARTICLES, "slope(b, 0.5 * dt, 0.5)", "slope(b, 0.5 * dt, 1)",
+        "the velocity between two states of a flow is linear in time"),
 ]

@@ -220,7 +220,7 @@ def lake_surfaces():
             k = 2 * math.pi / (140 + 500 * rng.random())
             angle = 2 * math.pi * rng.random()
             mine.append((noise, k * math.cos(angle), k * math.sin(angle), 2 * math.pi * rng.random()))
-        text = (f"\n[[surface]]\nname = \"{name}\"\ntype = \"height_field\"\nsize = [513, 513]\nspacing = [35, 35]\n"
+        text = (f"\n[[surface]]\nname = \"{name}\"\ntype = \"height_field\"\nsize = [361, 361]\nspacing = [49.777778, 49.777778]\n"
                 f"origin = [{terrain_origin[0]}, {(1 - share) * level:.5g}, {terrain_origin[1]}]\nwaves = [\n")
         for a, kx, kz, p in mine:
             text += f"  {{ amplitude = {a:.6g}, wave_vector = [{kx:.6g}, {kz:.6g}], phase = {p:.6g} }},\n"

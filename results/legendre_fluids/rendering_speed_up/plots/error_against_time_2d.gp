@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [6.22944e-05:0.458836]
+set xrange [6.40853e-05:0.160949]
 set logscale y
 set format y "%g"
 set yrange [4.87578e-07:0.200686]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.018199:439.586]
 set logscale y
 set format y "%g"
-set yrange [7.4371e-14:1.59014]
+set yrange [7.43065e-14:1.59021]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_coefficients.Taylor-Green.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \
