@@ -29,8 +29,9 @@ toml::table read_list(const fs::path& root) {
   return scene::load::parse_toml(scene::read_whole_file(file, scene::load::most_toml_bytes), file);
 }
 
+// Absolute: scenes look for files beside themselves.
 fs::path folder_of(const fs::path& root, const std::string& name, const std::string& profile) {
-  return root / "results" / "cache" / "sequences" / (name + "." + profile);
+  return fs::absolute(root) / "results" / "cache" / "sequences" / (name + "." + profile);
 }
 
 TableReader reader_of(const toml::table& list, const std::string& name) {

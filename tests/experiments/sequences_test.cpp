@@ -115,6 +115,8 @@ TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow
   CHECK_THROWS_WITH(make_sequence(project.path(), "puff", "quick", 1), Contains("puff") && Contains("'m'"));
   project.list("n = 8");
   CHECK_THAT(sequence_files(project.path(), "puff.csv", "quick", "here"), Contains("puff.quick/puff.####.csv"));
+  // Wherever the project is named from: scenes look for what is relative beside themselves.
+  CHECK(fs::path(sequence_files(fs::relative(project.path()), "puff.csv", "quick", "here")).is_absolute());
   CHECK_THROWS_WITH(sequence_files(project.path(), "puff.red.csv", "quick", "here"),
                     Contains("here: the sequence 'puff' has no files .red.csv, expected one of .vdb, .csv"));
   project.write("experiments/sequences.toml", "puff = 3\n");
