@@ -99,7 +99,8 @@ TEST_CASE("legendre fluids: sources and sides bring the density that they name, 
   CHECK(flow->totals().mass == 0);
   const Point3 last(1.95, 0.5, 0);
   CHECK(scene::density(box_of(flow->medium(1)), last) == Approx(0.5).epsilon(1e-3));
-  CHECK(scene::density(box_of(flow->medium(2)), last) == Approx(1).epsilon(0.03));  // a second in the source, whose edges are soft
+  CHECK(scene::density(box_of(flow->medium(2)), last) ==
+        Approx(1).epsilon(0.03));  // a second in the source, whose edges are soft
 
   problem = box(2);
   problem.gravity = Vec3(0, -9.81, 0);
