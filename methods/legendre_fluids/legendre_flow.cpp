@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/legendre_fluids/saved_state.h"
+#include "scene/saved_state.h"
 
 namespace airlight::legendre_fluids {
 
@@ -197,7 +197,7 @@ std::map<std::string, double> LegendreFlow::counters() const {
 
 std::string LegendreFlow::state() const {
   Fluid& fluid = now();
-  StateWriter writer(shape());
+  scene::StateWriter writer(shape());
   Array numbers(5);
   numbers << time_, since_, last_step_, double(equal_steps_), double(steps_);
   for (const Array& a : {numbers, fluid.velocity, fluid.history()}) writer.array(a);
@@ -206,7 +206,7 @@ std::string LegendreFlow::state() const {
 }
 
 void LegendreFlow::restore(const std::string& state) {
-  StateReader reader(state, shape());
+  scene::StateReader reader(state, shape());
   const Array numbers = reader.array(), velocity = reader.array(), history = reader.array();
   std::vector<Array> carried(fluid_->carried().size());
   for (Array& r : carried) r = reader.array();

@@ -10,9 +10,9 @@
 #include "reference/stable_fluids/forces.h"
 #include "reference/stable_fluids/frames.h"
 #include "reference/stable_fluids/requirements.h"
-#include "reference/stable_fluids/saved_state.h"
 #include "reference/stable_fluids/totals.h"
 #include "scene/error.h"
+#include "scene/saved_state.h"
 #include "scene/stopwatch.h"
 #include "scene/threads.h"
 
@@ -106,14 +106,14 @@ class GridFlow : public scene::Flow {
     std::size_t numbers = 0;
     for (int a = 0; a < l_.dimensions; ++a) numbers += u_[a].values.size();
     for (const Carried<Real>& c : carried_) numbers += c.now.values.size();
-    StateWriter writer(shape(), numbers * sizeof(Real));
+    scene::StateWriter writer(shape(), numbers * sizeof(Real));
     for (const double value : {time_, since_, last_step_, double(equal_steps_), double(steps_)}) writer.number(value);
     for (int a = 0; a < l_.dimensions; ++a) writer.values(u_[a].values);
     for (const Carried<Real>& c : carried_) writer.values(c.now.values);
     return writer.done();
   }
   void restore(const std::string& state) override {
-    StateReader reader(state, shape());
+    scene::StateReader reader(state, shape());
     for (double* value : {&time_, &since_, &last_step_}) *value = reader.number();
     for (long long* value : {&equal_steps_, &steps_}) *value = (long long)(reader.number());
     for (int a = 0; a < l_.dimensions; ++a) reader.values(u_[a].values);

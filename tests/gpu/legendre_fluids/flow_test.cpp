@@ -5,7 +5,6 @@
 #include "gpu/legendre_fluids/fluid_on_device.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
-#include "scene/stopwatch.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 
@@ -220,30 +219,4 @@ TEST_CASE("legendre fluids on the device: what shaders do not know is refused by
   problem = box(3);
   problem.confinement = 1;
   CHECK_THAT(objections(problem, {}).at(0), Contains("confinement"));
-}
-
-TEST_CASE("legendre fluids on the device: times", "[.][legendre_fluids_times]") {
-  if (!gpu::test::device()) return;
-  for (const char* n : {"4", "6", "8", "12", "16"}) {
-    for (const bool all : {false, true}) {
-      FlowProblem problem = box(3);
-      problem.velocity = scene::Swirl{0.5};
-      problem.blobs.push_back({Point3(1.4, 2.5, 0.5), 0.3, 1, 0});
-      if (all) problem = everything(3);
-      const auto flow = on_device(problem, {{"n", n}}),
-                 cpu = start<legendre_fluids::LegendreFluids>(problem, {{"n", n}});
-      run(*flow, 3, 0.02);
-      const auto time = [&](scene::Flow& f) {
-        scene::Stopwatch watch;
-        double best = 1e9;
-        for (int i = 0; i < 20; ++i) watch.lap(), f.step(0.02), best = std::min(best, watch.lap());
-        return 1e3 * best;
-      };
-      const long dispatches = gpu::Context::get().traffic().dispatches;
-      const double gpu_time = time(*flow);
-      const long count = (gpu::Context::get().traffic().dispatches - dispatches) / 20;
-      fmt::print("n {:>2} {}: {:7.3f} ms a step ({} dispatches), CPU {:7.3f} ms\n", n,
-                 all ? "everything" : "blob      ", gpu_time, count, time(*cpu));
-    }
-  }
 }

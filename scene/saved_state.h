@@ -1,27 +1,32 @@
-// The state of a flow as bytes, and back: what it is of stands first and must agree.
+// The state of a flow as bytes, and back: what it is of stands first and must agree, a checksum stands at the end.
 #pragma once
+#include <Eigen/Core>
 #include <string>
-#include <vector>
 
 #include "scene/content_key.h"
 #include "scene/error.h"
 
-namespace airlight::stable_fluids {
+namespace airlight::scene {
 
 class StateWriter {
  public:
-  // What follows is as long as said, so that it is not copied as it grows.
-  StateWriter(const std::string& shape, std::size_t bytes) {
+  // What follows is about as long as said, so that it is not copied as it grows.
+  explicit StateWriter(const std::string& shape, std::size_t bytes = 0) {
     bytes_.reserve(shape.size() + bytes + 1024);  // and what a file begins and ends with
     bytes_ += shape;
     bytes_ += '\n';
   }
   void number(double value) { append(&value, sizeof value); }
-  template <class Real>
-  void values(const std::vector<Real>& v) {
-    append(v.data(), v.size() * sizeof(Real));
+  // As many as the reader will expect.
+  template <class Numbers>
+  void values(const Numbers& v) {
+    append(v.data(), std::size_t(v.size()) * sizeof(*v.data()));
   }
-  // With a checksum at the end.
+  // With their number.
+  void array(const Eigen::VectorXd& a) {
+    number(double(a.size()));
+    values(a);
+  }
   std::string done() {
     bytes_ += content_key(bytes_);
     return std::move(bytes_);
@@ -48,9 +53,16 @@ class StateReader {
     take(&value, sizeof value);
     return value;
   }
-  template <class Real>
-  void values(std::vector<Real>& v) {
-    take(v.data(), v.size() * sizeof(Real));
+  template <class Numbers>
+  void values(Numbers& v) {
+    take(v.data(), std::size_t(v.size()) * sizeof(*v.data()));
+  }
+  Eigen::VectorXd array() {
+    const double size = number();
+    if (!(size >= 0 && size * sizeof(double) <= double(end_ - at_))) throw Error("the state is shorter than expected");
+    Eigen::VectorXd a{Eigen::Index(size)};
+    values(a);
+    return a;
   }
   void done() const {
     if (at_ != end_) throw Error("the state is longer than expected");
@@ -66,4 +78,4 @@ class StateReader {
   std::size_t at_, end_;
 };
 
-}  // namespace airlight::stable_fluids
+}  // namespace airlight::scene
