@@ -38,9 +38,11 @@ std::array<bool, 3> may_shine(const World& world, const Ray& ray) {
       continue;
     for (const int i : world.lights().environments())
       may[c] = may[c] || (end.t == infinity && shines(world.lights().light(i), c));
-    if (end.hit) may[c] = may[c] || reflects(world.scene().surfaces[end.hit->surface].material, c);
+    if (end.hit && options.max_events != 0)
+      may[c] = may[c] || reflects(world.scene().surfaces[end.hit->surface].material, c);
     for (const TrackedMedium& tracked : world.media().tracked())
-      may[c] = may[c] || (options.max_order != 0 && tracked.medium->sigma_t[c] * tracked.medium->albedo[c] > 0 &&
+      may[c] = may[c] || (options.max_order != 0 && options.max_events != 0 &&
+                          tracked.medium->sigma_t[c] * tracked.medium->albedo[c] > 0 &&
                           !scene::extent(*tracked.medium, ray, {0, end.t}).empty());
   }
   return may;

@@ -43,6 +43,7 @@ std::string unresolved(const World& world, const Accumulation& a) {
   if (!scatters || !world.lights().any()) return {};
   for (int m = 1; m <= layout.orders + 1; ++m) {
     if (world.options().max_order >= 0 && m > world.options().max_order) break;
+    if (world.options().max_events >= 0 && m > world.options().max_events) break;
     if (world.options().paths != Options::Paths::all && m > 1) break;
     double mean = 0, variance = 0;
     for (const auto& nodes : a.tiles) {
@@ -90,7 +91,7 @@ scene::Film to_film(const World& world, const scene::View& view, const Accumulat
   const TallyLayout& layout = a.layout;
   scene::Film film(a.width, a.height);
   const auto order_name = [&](int m) { return m <= layout.orders ? fmt::format("order.{}", m) : "order.rest"; };
-  const bool capped = world.options().max_order >= 0;
+  const bool capped = world.options().max_order >= 0 || world.options().max_events >= 0;
   bool equal_batches = true;
   for (const auto& nodes : a.tiles)
     for (const TallyNode& node : nodes) equal_batches = equal_batches && node.count % batch_count == 0;

@@ -32,11 +32,12 @@ Identity identity_of(const scene::Scene& scene, const scene::View& view, const O
   const char* const paths[] = {"all", "lit_surface", "scattered_to_surface"};
   return {scene.hash,
           hash.digits(),
-          fmt::format("pixel={} orders={} max_order={} roulette_order={} roulette_cap={} supergrid={} "
+          fmt::format("pixel={} orders={} max_order={} max_events={} roulette_order={} roulette_cap={} supergrid={} "
                       "supergrid_cells={} majorant_scale={} transmittance={} first_collision={} connection={} paths={}",
-                      o.box_pixels ? "box" : "center", o.orders, o.max_order, o.roulette_order, o.roulette_cap,
-                      o.supergrid, o.supergrid_cells, o.majorant_scale, o.column_transmittance ? "column" : "ratio",
-                      o.forced ? "forced" : "analog", connections[int(o.connection)], paths[int(o.paths)]),
+                      o.box_pixels ? "box" : "center", o.orders, o.max_order, o.max_events, o.roulette_order,
+                      o.roulette_cap, o.supergrid, o.supergrid_cells, o.majorant_scale,
+                      o.column_transmittance ? "column" : "ratio", o.forced ? "forced" : "analog",
+                      connections[int(o.connection)], paths[int(o.paths)]),
           o.seed,
           o.stream,
           build_id()};

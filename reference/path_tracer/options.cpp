@@ -12,6 +12,9 @@ std::vector<scene::SettingSpec> setting_specs() {
       scene::integer_setting("orders", "4", 1, 12, "scattering orders kept in layers of their own"),
       scene::integer_setting("max_order", "-1", -1, 1e6,
                              "medium scatterings at most, the rest goes to `truncated`; -1: no cap"),
+      scene::integer_setting("max_events", "-1", -1, 1e6,
+                             "scatterings and reflections together at most; 1: what single scattering computes, "
+                             "surfaces lit directly; -1: no cap"),
       scene::real_setting("target_error", "0", 0, 1,
                           "stop a tile at this relative standard error, at n = 2^k <= samples; 0: never"),
       scene::integer_setting("roulette_order", "5", 1, 1e6, "scatterings and reflections before Russian roulette"),
@@ -41,6 +44,7 @@ Options parse_options(const scene::Settings& settings) {
   o.box_pixels = settings.text("pixel") == "box";
   o.orders = int(settings.integer("orders"));
   o.max_order = int(settings.integer("max_order"));
+  o.max_events = int(settings.integer("max_events"));
   o.target_error = settings.real("target_error");
   o.roulette_order = int(settings.integer("roulette_order"));
   o.roulette_cap = settings.real("roulette_cap");

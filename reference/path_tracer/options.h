@@ -14,6 +14,7 @@ struct Options {
   bool box_pixels = false;           // mean over the pixel instead of the ray through its centre
   int orders = 4;                    // order.0 .. order.K are layers of their own
   int max_order = -1;                // medium scatterings at most; -1: no cap
+  int max_events = -1;               // scatterings and reflections together at most; -1: no cap
   double target_error = 0;           // stop by error at n = 2^k; 0: fixed number of samples
   int roulette_order = 5;            // Russian roulette from this many scatterings and reflections on
   double roulette_cap = 1;           // greatest survival probability

@@ -58,6 +58,7 @@ double work(const scene::Scene& scene, const Options& options) {
       most = std::max(most, absorbed < 10 ? absorbed : std::min(absorbed, 2 * thinnest_depth(medium, c)));
     }
     if (options.max_order >= 0) most = std::min(most, double(options.max_order));
+    if (options.max_events >= 0) most = std::min(most, double(options.max_events));
     if (options.paths != Options::Paths::all) most = std::min(most, 1.0);  // they end after one scattering
     collisions += most;
     terms += terms_of(medium.field);
@@ -127,7 +128,9 @@ bool white_room_with_light(const scene::Scene& scene) {
 std::vector<std::string> refusals(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   const bool all_paths = options.paths == Options::Paths::all;  // else they end after one scattering
-  if (options.max_order < 0 && all_paths)
+  if (options.max_events >= 0 && !all_paths)
+    reasons.push_back("max_events caps all paths, found paths of a lit surface alone, which have two events at most");
+  if (options.max_order < 0 && options.max_events < 0 && all_paths)
     for (std::size_t i = 0; i < scene.media.size(); ++i) {
       const scene::Medium& medium = scene.media[i];
       double depth = 0;

@@ -24,7 +24,7 @@ Vertex Walk::next_vertex() {
 bool Walk::leave(const Vertex& v) {
   const RandomBlock scatter = block(Purpose::scatter);
   if (!survive(scatter.coarse(3))) return false;
-  if (lights_.any_connected() && may_scatter()) connect_from(v);
+  if (lights_.any_connected() && may_scatter(v.hit != nullptr)) connect_from(v);
   Vec3 out;
   if (v.hit) {
     const scene::Material& material = world_.scene().surfaces[v.hit->surface].material;
@@ -86,6 +86,7 @@ bool Walk::reflect(const scene::RayEnd& end) {
     escape(ray_);
     return false;
   }
+  if (!may_reflect()) return false;
   Vertex v = next_vertex();
   v.x = end.hit->position;
   v.hit = &*end.hit;

@@ -69,7 +69,12 @@ class Walk {
   inline Vertex next_vertex();
   inline bool leave(const Vertex&);
 
-  bool may_scatter() const { return world_.options().max_order < 0 || m_ < world_.options().max_order; }
+  // After so many reflections more?
+  bool may_scatter(int reflections = 0) const {
+    const Options& o = world_.options();
+    return (o.max_order < 0 || m_ < o.max_order) && (o.max_events < 0 || m_ + s_ + reflections < o.max_events);
+  }
+  bool may_reflect() const { return world_.options().max_events < 0 || m_ + s_ < world_.options().max_events; }
   // The random numbers of this vertex; branches of a walk have their own.
   std::uint32_t dimension() const { return branch_ << branch_shift | vertex_; }
   RandomBlock block(Purpose purpose, std::uint32_t index = 0) const {
