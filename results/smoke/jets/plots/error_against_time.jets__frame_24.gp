@@ -8,23 +8,23 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set logscale x
-set format x "%g"
-set xrange [0.0546799:0.265004]
+set xrange [0:0.436708]
 set logscale y
 set format y "%g"
-set yrange [0.0301868:0.224438]
+set yrange [0.0220439:0.22959]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.jets__frame_24.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
+     data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "path tracer", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.0517484 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0521875 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_time.jets__frame_24.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
+     data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "path tracer", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.0517484 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0521875 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
