@@ -12,7 +12,15 @@ namespace {
 constexpr std::size_t most_gaussians = std::size_t(1) << 20;  // every ray may have to look at each
 constexpr std::string_view header = "center_x,center_y,center_z,width,amplitude";
 
-std::vector<Gaussian> read_csv(const std::string& path) {
+Gaussian read_gaussian(TableReader reader) {
+  reader.allow({"center", "width", "amplitude"});
+  return {reader.vector("center"), reader.number("width", length),
+          reader.number("amplitude", either_sign(density_range))};
+}
+
+}  // namespace
+
+std::vector<Gaussian> read_gaussians_csv(const std::string& path) {
   CsvTable table(path, header);
   std::vector<Gaussian> gaussians;
   while (table.next()) {
@@ -24,21 +32,13 @@ std::vector<Gaussian> read_csv(const std::string& path) {
   return gaussians;
 }
 
-Gaussian read_gaussian(TableReader reader) {
-  reader.allow({"center", "width", "amplitude"});
-  return {reader.vector("center"), reader.number("width", length),
-          reader.number("amplitude", either_sign(density_range))};
-}
-
-}  // namespace
-
 GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file"}));
   GaussianSum sum;
   sum.constant = reader.number("constant", density_range, 0);
   sum.cutoff = reader.number("cutoff", widths, infinity);
   if (reader.one_of({"gaussians", "file"}) == "file") {
-    sum.gaussians = read_csv(find_asset(reader, "file", folder));
+    sum.gaussians = read_gaussians_csv(find_asset(reader, "file", folder));
   } else {
     for (const TableReader& gaussian : reader.tables("gaussians")) sum.gaussians.push_back(read_gaussian(gaussian));
   }

@@ -36,6 +36,10 @@ GaussianSum read_gaussian_sum(TableReader&, const std::string& folder);
 GridPointer read_grid(TableReader&, const std::string& folder);
 FogmapPointer read_fogmap(TableReader&, const std::string& folder);
 LegendrePointer read_legendre(TableReader&, const std::string& folder);
+FittedPointer read_fitted(TableReader&, const std::string& folder);
+
+// The Gaussians of a CSV file. Throws Error (file, line, column).
+std::vector<Gaussian> read_gaussians_csv(const std::string& path);
 
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();
