@@ -104,6 +104,9 @@ Check read_legendre_density(const Value&);
 Check read_legendre_energy_identity(const Value&);
 Check read_legendre_taylor_green(const Value&);
 
+// fit_kinds.cpp: smoke as Gaussians
+Check read_fit_objective(const Value&);
+
 // statistics_kinds.cpp
 Check read_statistics(const Value&);
 

@@ -40,8 +40,9 @@ void Tables<T>::make(const SampleGaussian* gaussians, std::size_t n) {
             const double kept = d * d < 1.01 * limit_ * p.width2 ? value : 0;
             to[k] = T(kept);
             if (moments_) {
-              to[count + k] = T(kept * d);
-              to[2 * count + k] = T(kept * d * d);
+              const bool there = begin + k < layout_.size[0];
+              to[count + k] = there ? T(d) : T(0);
+              to[2 * count + k] = there ? T(d * d) : std::numeric_limits<T>::max();
             }
           }
           to += (moments_ ? 3 : 1) * count;

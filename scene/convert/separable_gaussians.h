@@ -113,10 +113,8 @@ class Tables {
     int first_block() const { return lo[0] / Lanes<T>::count; }
   };
   const Part& part(std::size_t i) const { return parts_[i]; }
-  // exp(-dx^2/w^2), from the first block on; with moments, times dx, and times dx^2 after it.
+  // exp(-dx^2/w^2), from the first block on; with moments, dx after it and dx^2 after that, infinite beyond the grid.
   const T* along_x(const Part& p) const { return values_.data() + p.at; }
-  const T* along_x1(const Part& p) const { return along_x(p) + p.width_in_blocks * Lanes<T>::count; }
-  const T* along_x2(const Part& p) const { return along_x1(p) + p.width_in_blocks * Lanes<T>::count; }
   const T* along_y(const Part& p) const {
     return along_x(p) + (moments_ ? 3 : 1) * p.width_in_blocks * Lanes<T>::count;
   }
@@ -147,6 +145,25 @@ class Tables {
         if (!(rest > 0)) continue;
         const auto [first, last] = run(p, dy * dy + dz * dz, rest);
         if (first <= last) body(y, z, first, last, ey[y] * ez[z], dy, dz);
+      }
+    }
+  }
+
+  // The same for a loop over all vectors of the Gaussian's tables, which is faster where many rows are short: a sample belongs to the
+  // ball where dx^2 < rest, compared in T. body(y, z, rest, factor, dy, dz).
+  template <class Body>
+  void all_rows(const Part& p, int z0, int z1, Body&& body) const {
+    if (p.empty()) return;
+    const T *ey = along_y(p) - p.lo[1], *ez = along_z(p) - p.lo[2];
+    for (int z = std::max(z0, p.lo[2]); z <= std::min(z1 - 1, p.hi[2]); ++z) {
+      const double dz = z - p.center[2], slice = limit_ * p.width2 - dz * dz;
+      if (!(slice > 0)) continue;
+      const double half = std::sqrt(slice) * (1 + 1e-12);
+      const int first = std::max(p.lo[1], int(std::ceil(p.center[1] - half)));
+      const int last = std::min(p.hi[1], int(std::floor(p.center[1] + half)));
+      for (int y = first; y <= last; ++y) {
+        const double dy = y - p.center[1];
+        body(y, z, T(slice - dy * dy), ey[y] * ez[z], dy, dz);
       }
     }
   }

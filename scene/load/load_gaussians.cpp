@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t most_gaussians = std::size_t(1) << 20;  // every ray may have to look at each
 constexpr std::string_view header = "center_x,center_y,center_z,width,amplitude";
+// What `airlight fit` writes: who is who from frame to frame, for programs that interpolate; no renderer asks.
+constexpr std::string_view header_with_ids = "id,center_x,center_y,center_z,width,amplitude";
+constexpr Range id{0, 2147483647};
 
 Gaussian read_gaussian(TableReader reader) {
   reader.allow({"center", "width", "amplitude"});
@@ -21,12 +24,16 @@ Gaussian read_gaussian(TableReader reader) {
 }  // namespace
 
 std::vector<Gaussian> read_gaussians_csv(const std::string& path) {
-  CsvTable table(path, header);
+  CsvTable table(path, header, header_with_ids);
+  std::vector<Range> ranges{coordinate, coordinate, coordinate, length, either_sign(density_range)};
+  const std::size_t first = table.header() == header ? 0 : 1;
+  if (first == 1) ranges.insert(ranges.begin(), id);
   std::vector<Gaussian> gaussians;
   while (table.next()) {
     if (gaussians.size() == most_gaussians)
       table.fail(0, fmt::format("found more than {} Gaussians, expected fewer", most_gaussians));
-    const auto row = table.values({coordinate, coordinate, coordinate, length, either_sign(density_range)});
+    const std::vector<double> values = table.values(ranges);
+    const double* const row = values.data() + first;
     gaussians.push_back({{row[0], row[1], row[2]}, row[3], row[4]});
   }
   return gaussians;
