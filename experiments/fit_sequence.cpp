@@ -11,12 +11,9 @@
 #include "experiments/json_value.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
-#if __has_include("scene/convert/residual_file.h")
 #include "scene/convert/residual_file.h"
-#define WITH_RESIDUAL
-#endif
 #include "scene/error.h"
-#include "scene/load/gaussians_csv.h"
+#include "scene/load/parts.h"
 #include "scene/read_file.h"
 #include "scene/scene.h"
 
@@ -182,7 +179,7 @@ class Folder {
       }
       const int last = there.at("last_filled");
       if (last >= 0) {
-        previous.sum = scene::read_gaussians_csv(at(frames.at(std::size_t(last)).name + ".csv"), &previous.ids);
+        previous.sum.gaussians = scene::load::read_gaussians_csv(at(frames.at(std::size_t(last)).name + ".csv"), &previous.ids);
         previous.sum.cutoff = scene::fit_cutoff;
       }
       previous.first_ratio = there.at("first_ratio");
@@ -197,11 +194,7 @@ class Folder {
   void keep(const Frame& of, const VoxelGrid& grid, const GaussianFit& fit, FittedFrame& frame) {
     const std::string csv = at(frame.name + ".csv"), residual = at(frame.name + ".residual");
     scene::write_gaussians_csv(csv, fit);
-#ifdef WITH_RESIDUAL
     scene::write_residual(residual, scene::residual_of(grid, fit.sum, {s_.threshold, {}}));
-#else
-    scene::write_file_atomically(residual, "interim");
-#endif
     frame.residual_bytes = fs::file_size(residual);
     json entry = as_json(frame, of);
     entry["csv"] = content_key(scene::read_whole_file(csv, most_bytes));

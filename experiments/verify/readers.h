@@ -45,6 +45,12 @@ Check read_multiresolution(const Value&);
 Check read_composite(const Value&);
 Check read_reject(const Value&);
 
+// residual_kinds.cpp: compensated ray marching's residual, and the media that it works on
+Check read_psh_address(const Value&);
+Check read_hash_round_trip(const Value&);
+Check read_gaussian_optical_depth(const Value&);
+Check read_trilinear_border(const Value&);
+
 // legendre_kinds.cpp: the basis
 Check read_legendre_derivative(const Value&);
 Check read_legendre_integral(const Value&);

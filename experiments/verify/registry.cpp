@@ -99,6 +99,10 @@ Kinds compensated_ray_marching() {
                            "trilinear_border",
                            "hash_round_trip"})
     kinds[kind] = waiting("compensated ray marching", {"input", "expected", "rtol", "atol"});
+  kinds["psh_address"] = read_psh_address;
+  kinds["hash_round_trip"] = read_hash_round_trip;
+  kinds["gaussian_optical_depth"] = read_gaussian_optical_depth;
+  kinds["trilinear_border"] = read_trilinear_border;
   kinds["fit_objective"] = read_fit_objective;
   return kinds;
 }

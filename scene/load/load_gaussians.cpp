@@ -3,7 +3,6 @@
 
 #include "scene/load/assets.h"
 #include "scene/load/csv_table.h"
-#include "scene/load/gaussians_csv.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 
@@ -24,13 +23,31 @@ Gaussian read_gaussian(TableReader reader) {
 
 }  // namespace
 
+std::vector<Gaussian> read_gaussians_csv(const std::string& path, std::vector<int>* ids) {
+  CsvTable table(path, header, header_with_ids);
+  std::vector<Range> ranges{coordinate, coordinate, coordinate, length, either_sign(density_range)};
+  const std::size_t first = table.header() == header ? 0 : 1;
+  if (first == 1) ranges.insert(ranges.begin(), id);
+  std::vector<Gaussian> gaussians;
+  if (ids) ids->clear();
+  while (table.next()) {
+    if (gaussians.size() == most_gaussians)
+      table.fail(0, fmt::format("found more than {} Gaussians, expected fewer", most_gaussians));
+    const std::vector<double> values = table.values(ranges);
+    const double* const row = values.data() + first;
+    if (ids && first == 1) ids->push_back(int(values[0]));
+    gaussians.push_back({{row[0], row[1], row[2]}, row[3], row[4]});
+  }
+  return gaussians;
+}
+
 GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file"}));
   GaussianSum sum;
   sum.constant = reader.number("constant", density_range, 0);
   sum.cutoff = reader.number("cutoff", widths, infinity);
   if (reader.one_of({"gaussians", "file"}) == "file") {
-    sum.gaussians = read_gaussians_csv(find_asset(reader, "file", folder)).gaussians;
+    sum.gaussians = read_gaussians_csv(find_asset(reader, "file", folder));
   } else {
     for (const TableReader& gaussian : reader.tables("gaussians")) sum.gaussians.push_back(read_gaussian(gaussian));
   }
@@ -38,26 +55,3 @@ GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
 }
 
 }  // namespace airlight::scene::load
-
-namespace airlight::scene {
-
-GaussianSum read_gaussians_csv(const std::string& path, std::vector<int>* ids) {
-  using namespace load;
-  CsvTable table(path, header, header_with_ids);
-  std::vector<Range> ranges{coordinate, coordinate, coordinate, length, either_sign(density_range)};
-  const std::size_t first = table.header() == header ? 0 : 1;
-  if (first == 1) ranges.insert(ranges.begin(), id);
-  GaussianSum sum;
-  if (ids) ids->clear();
-  while (table.next()) {
-    if (sum.gaussians.size() == most_gaussians)
-      table.fail(0, fmt::format("found more than {} Gaussians, expected fewer", most_gaussians));
-    const std::vector<double> values = table.values(ranges);
-    const double* const row = values.data() + first;
-    if (ids && first == 1) ids->push_back(int(values[0]));
-    sum.gaussians.push_back({{row[0], row[1], row[2]}, row[3], row[4]});
-  }
-  return sum;
-}
-
-}  // namespace airlight::scene

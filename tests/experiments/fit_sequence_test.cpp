@@ -4,8 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/convert/residual_file.h"
 #include "scene/error.h"
-#include "scene/load/gaussians_csv.h"
+#include "scene/load/parts.h"
 #include "scene/read_file.h"
 #include "tests/temporary_folder.h"
 
@@ -54,7 +55,7 @@ FitReport run(const FitSequence& s) { return fit_sequence(s, {}); }
 }  // namespace
 
 TEST_CASE("frames of a fit, and what an empty one leaves", "[fit_sequence]") {
-  const Smoke smoke({0, 1, -1, 2});
+  const Smoke smoke({0, 1, -1, 3});
   int done = 0;
   const FitReport report = fit_sequence(smoke.sequence, {}, [&](const FittedFrame&) { ++done; });
   CHECK(done == 4);
@@ -68,10 +69,19 @@ TEST_CASE("frames of a fit, and what an empty one leaves", "[fit_sequence]") {
     CHECK(report.frames[std::size_t(i)].errors.squared_ratio < 0.05);
     CHECK(report.frames[std::size_t(i)].residual_bytes > 0);
     std::vector<int> ids;
-    const scene::GaussianSum sum =
-        scene::read_gaussians_csv((smoke.sequence.folder / ("puff_" + std::to_string(i) + ".csv")).string(), &ids);
-    CHECK(sum.gaussians.size() == report.frames[std::size_t(i)].gaussians);
-    CHECK(ids.size() == sum.gaussians.size());
+    const auto gaussians = scene::load::read_gaussians_csv(
+        (smoke.sequence.folder / ("puff_" + std::to_string(i) + ".csv")).string(), &ids);
+    CHECK(gaussians.size() == report.frames[std::size_t(i)].gaussians);
+    CHECK(ids.size() == gaussians.size());
+    // With the residual it is the frame again, to a level or two.
+    const auto residual =
+        scene::read_residual((smoke.sequence.folder / ("puff_" + std::to_string(i) + ".residual")).string());
+    const VoxelGrid again = scene::decoded({gaussians, 0, 3}, residual), wanted = puff(16, i);
+    REQUIRE(again.values.size() == wanted.values.size());
+    double worst = 0;
+    for (std::size_t v = 0; v < wanted.values.size(); ++v)
+      worst = std::max(worst, std::abs(double(again.values[v]) - double(wanted.values[v])));
+    CHECK(worst < 1.6 * residual.step);
   }
   CHECK(smoke.results().size() == 8);
 }
