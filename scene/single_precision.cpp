@@ -61,6 +61,11 @@ void look_at(Reasons& r, const Light& light) {
       [&](const EnvironmentLight& environment) { r.light(environment.scale); });
 }
 
+void look_at_voxels(Reasons& r, const VoxelGrid& grid) {
+  r.size("voxel", grid.voxel_size);
+  r.box(support(grid));
+}
+
 void look_at(Reasons& r, const DensityField& field) {
   match(
       field, [](const Homogeneous&) {},
@@ -70,15 +75,13 @@ void look_at(Reasons& r, const DensityField& field) {
           r.size("width", g.width);
         }
       },
-      [&](const GridPointer& grid) {
-        r.size("voxel", grid->voxel_size);
-        r.box(support(*grid));
-      },
+      [&](const GridPointer& grid) { look_at_voxels(r, *grid); },
       [&](const FogmapPointer& fog) {
         r.size("cell", fog->cell);
         for (const auto& [x, z] : ground_corners(*fog)) r.place({x, 0, z});
       },
-      [&](const LegendrePointer& series) { r.box(series->box()); });
+      [&](const LegendrePointer& series) { r.box(series->box()); },
+      [&](const FittedPointer& fitted) { look_at_voxels(r, fitted->grid); });
 }
 
 void look_at(Reasons& r, const PhaseFunction& phase) {

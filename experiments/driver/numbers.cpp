@@ -52,7 +52,8 @@ Outcome run_numbers(Experiment experiment, const RunOptions& options) {
       row.parameter = c.parameter;
       row.scene_hash = key;
       row.key = row_key(e, m, probe, row);
-      rows.push_back({row, [&probe, input, settings](Row known, const scene::Execution& execution) {
+      rows.push_back({row, [&probe, &keeper, input, settings](Row known, scene::Execution execution) {
+                        execution.store = &keeper.store();
                         return make_row(probe, input, settings, std::move(known), execution);
                       }});
     }

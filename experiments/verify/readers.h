@@ -45,6 +45,12 @@ Check read_multiresolution(const Value&);
 Check read_composite(const Value&);
 Check read_reject(const Value&);
 
+// residual_kinds.cpp: compensated ray marching's residual, and the media that it works on
+Check read_psh_address(const Value&);
+Check read_hash_round_trip(const Value&);
+Check read_gaussian_optical_depth(const Value&);
+Check read_trilinear_border(const Value&);
+
 // legendre_kinds.cpp: the basis
 Check read_legendre_derivative(const Value&);
 Check read_legendre_integral(const Value&);
@@ -97,6 +103,9 @@ Check read_legendre_step(const Value&);
 Check read_legendre_density(const Value&);
 Check read_legendre_energy_identity(const Value&);
 Check read_legendre_taylor_green(const Value&);
+
+// fit_kinds.cpp: smoke as Gaussians
+Check read_fit_objective(const Value&);
 
 // statistics_kinds.cpp
 Check read_statistics(const Value&);

@@ -162,7 +162,8 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
   bool grid = false, negative = false;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     const std::string why =
-        scene::unknown_field<scene::Homogeneous, scene::GaussianSum, scene::GridPointer>(scene.media, i);
+        scene::unknown_field<scene::Homogeneous, scene::GaussianSum, scene::GridPointer, scene::FittedPointer>(
+            scene.media, i);
     if (!why.empty()) reasons.push_back(why);
     scene::match(
         scene.media[i].field, [](const scene::Homogeneous&) {},
@@ -170,7 +171,7 @@ std::vector<std::string> RayMarcherGpu::supports(const Scene& scene, const scene
           for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
         },
         [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {},
-        [](const scene::LegendrePointer&) {});
+        [](const scene::LegendrePointer&) {}, [&](const scene::FittedPointer&) { grid = true; });
   }
   if (options.exact_shadow && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",

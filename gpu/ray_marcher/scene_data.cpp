@@ -63,6 +63,16 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
     const ray_marcher::PhaseShape phase = ray_marcher::phase_shape(layer.medium->phase);
     d.phase = int(phase.kind);
     d.g = phase.g;
+    const auto set_grid = [&] {
+      const ray_marcher::GridField& grid = *layer.grid;
+      d.field = 1;
+      d.field_frame = frame_data(grid.frame, middle);
+      d.lo = float3(grid.lo), d.hi = float3(grid.hi);
+      d.first = int(textures ? grids : values), d.first_brick = int(bricks);
+      d.size = {grid.size[0], grid.size[1], grid.size[2]};
+      d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
+      values += samples(grid), bricks += grid.free_distance.size(), ++grids;
+    };
     scene::match(
         layer.medium->field, [](const scene::Homogeneous&) {},
         [&](const scene::GaussianSum&) {
@@ -75,20 +85,12 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
           d.negative = field.any_negative;
           gaussians += field.count;
         },
-        [&](const scene::GridPointer&) {
-          const ray_marcher::GridField& grid = *layer.grid;
-          d.field = 1;
-          d.field_frame = frame_data(grid.frame, middle);
-          d.lo = float3(grid.lo), d.hi = float3(grid.hi);
-          d.first = int(textures ? grids : values), d.first_brick = int(bricks);
-          d.size = {grid.size[0], grid.size[1], grid.size[2]};
-          d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
-          values += samples(grid), bricks += grid.free_distance.size(), ++grids;
-        },
+        [&](const scene::GridPointer&) { set_grid(); },
         [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); },
         [](const scene::LegendrePointer&) {
           throw Error("ray_marcher_gpu: a Legendre box, in spite of its objections");
-        });
+        },
+        [&](const scene::FittedPointer&) { set_grid(); });
     data.push_back(d);
   }
   if (data.empty()) data.emplace_back();  // the block has one at least

@@ -10,6 +10,7 @@
 namespace airlight::fogshop {
 namespace {
 
+using scene::FittedPointer;
 using scene::FogmapPointer;
 using scene::GaussianSum;
 using scene::GridPointer;
@@ -37,7 +38,8 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
     const std::string why = scene::match(
         medium.field, [](const Homogeneous&) { return std::string(); },
         [](const GaussianSum& sum) { return objection_to(sum); }, [](const GridPointer&) { return std::string(); },
-        [](const FogmapPointer&) { return std::string(); }, [](const LegendrePointer&) { return std::string(); });
+        [](const FogmapPointer&) { return std::string(); }, [](const LegendrePointer&) { return std::string(); },
+        [](const FittedPointer&) { return std::string(); });
     if (!why.empty()) object(why);
     if (!std::holds_alternative<scene::Unbounded>(medium.region))
       object("is bounded, and the closed forms know no boundary");
@@ -85,7 +87,8 @@ Fog make_fog(const std::vector<Medium>& media) {
         },
         [](const GridPointer&) { throw Error("fogshop: a grid, in spite of its objections"); },
         [](const FogmapPointer&) { throw Error("fogshop: a fogmap, in spite of its objections"); },
-        [](const LegendrePointer&) { throw Error("fogshop: a Legendre box, in spite of its objections"); });
+        [](const LegendrePointer&) { throw Error("fogshop: a Legendre box, in spite of its objections"); },
+        [](const FittedPointer&) { throw Error("fogshop: a fitted grid, in spite of its objections"); });
   }
   const auto differs = [&](const Rgb& albedo) { return ((albedo - fog.albedo).abs() > 1e-12).any(); };
   if (std::none_of(albedos.begin(), albedos.end(), differs) &&

@@ -75,7 +75,8 @@ struct AirlightIntegrator::Impl {
           [](const scene::GaussianSum& sum) { return make_gaussian_table(sum); },
           [](const scene::GridPointer&) { return std::optional<GaussianTable>(); },
           [](const scene::FogmapPointer&) { return std::optional<GaussianTable>(); },
-          [](const scene::LegendrePointer&) { return std::optional<GaussianTable>(); });
+          [](const scene::LegendrePointer&) { return std::optional<GaussianTable>(); },
+          [](const scene::FittedPointer&) { return std::optional<GaussianTable>(); });
     if (scene.geometry) shadows = std::make_unique<ShadowFinder>(*scene.geometry, 256);
   }
 

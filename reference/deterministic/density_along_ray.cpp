@@ -290,6 +290,9 @@ std::unique_ptr<DensityAlongRay> density_along_ray(const Medium& medium, const G
       [&](const scene::FogmapPointer& fog) -> Result { return std::make_unique<FogmapAlongRay>(inside, *fog, ray); },
       [&](const scene::LegendrePointer& box) -> Result {
         return std::make_unique<LegendreAlongRay>(inside, *box, ray);
+      },
+      [&](const scene::FittedPointer& fitted) -> Result {
+        return std::make_unique<GridAlongRay>(inside, fitted->grid, ray);
       });
 }
 

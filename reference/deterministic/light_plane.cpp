@@ -135,6 +135,14 @@ void add_cone(const LightPlane& plane, const scene::SpotLight& spot, std::vector
   }
 }
 
+void add_grid(const LightPlane& plane, const scene::VoxelGrid& grid, std::vector<double>& t) {
+  if (grid.size.minCoeff() == 0) return;
+  const double margin = grid.clamp_border ? 0.5 : 1;
+  auto corner = corners(Point3::Constant(-margin), grid.size.cast<double>() + Vec3::Constant(margin - 1));
+  for (Point3& c : corner) c = scene::sample_to_world(grid, c);
+  add_box(plane, corner, t);
+}
+
 void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vector<double>& t) {
   scene::match(
       medium.region, [](const scene::Unbounded&) {},
@@ -147,13 +155,7 @@ void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vecto
         if (!(sum.cutoff < infinity)) return;
         for (const scene::Gaussian& g : sum.gaussians) add_tangents(plane, g.center, sum.cutoff * g.width, t);
       },
-      [&](const scene::GridPointer& grid) {
-        if (grid->size.minCoeff() == 0) return;
-        const double margin = grid->clamp_border ? 0.5 : 1;
-        auto corner = corners(Point3::Constant(-margin), grid->size.cast<double>() + Vec3::Constant(margin - 1));
-        for (Point3& c : corner) c = scene::sample_to_world(*grid, c);
-        add_box(plane, corner, t);
-      },
+      [&](const scene::GridPointer& grid) { add_grid(plane, *grid, t); },
       [&](const scene::FogmapPointer& fog) {
         const Box box = scene::bounding_box(medium);
         if (!box.empty() && std::isfinite(box.lo[1]) && std::isfinite(box.hi[1]))
@@ -161,7 +163,8 @@ void add_medium(const LightPlane& plane, const scene::Medium& medium, std::vecto
       },
       [&](const scene::LegendrePointer& series) {
         if (series->greatest() > 0) add_box(plane, corners(series->box().lo, series->box().hi), t);
-      });
+      },
+      [&](const scene::FittedPointer& fitted) { add_grid(plane, fitted->grid, t); });
 }
 
 void add_gaussian_shadows(const LightPlane& plane, const GaussianTable& table, double sigma, double skip,

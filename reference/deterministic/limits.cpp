@@ -36,16 +36,18 @@ Cost cost(const scene::GaussianSum& sum, const Box& box) {
   return {1 + (panels > 0 ? panels : 0), clamped ? clamped_cost * n : n};
 }
 
+Cost cost(const scene::VoxelGrid& grid) {
+  const double voxels = grid.size.cast<double>().sum();  // met by a ray at most
+  return {voxels / 2, voxels};                           // panels of a shorter rule
+}
+
 Cost cost(const scene::Medium& medium) {
   return scene::match(
       medium.field, [](const scene::Homogeneous&) { return Cost{}; },
       [&](const scene::GaussianSum& sum) {
         return cost(sum, intersect(scene::support(medium.field), scene::bounding_box(medium.region)));
       },
-      [](const scene::GridPointer& grid) {
-        const double voxels = grid->size.cast<double>().sum();  // met by a ray at most
-        return Cost{voxels / 2, voxels};                        // panels of a shorter rule
-      },
+      [](const scene::GridPointer& grid) { return cost(*grid); },
       [](const scene::FogmapPointer& fog) {
         const double cells = double(fog->map.range().size[0]) + fog->map.range().size[1];
         return Cost{cells / 2, cells};
@@ -54,7 +56,8 @@ Cost cost(const scene::Medium& medium) {
         const auto& n = series->shape();
         const double points = n[0] + n[1] + n[2] - 2;  // of the polynomial on a ray; each sums up all coefficients
         return Cost{1 + points / 4, points * double(series->coefficients().size()) / 8};
-      });
+      },
+      [](const scene::FittedPointer& fitted) { return cost(fitted->grid); });
 }
 
 }  // namespace

@@ -183,7 +183,8 @@ TrackedMedium prepare(const scene::Medium& medium, const Options& options) {
       [&](const scene::GaussianSum& sum) { prepare_gaussians(tracked, sum, options); },
       [&](const scene::GridPointer& grid) { prepare_grid(tracked, *grid, options); },
       [&](const scene::FogmapPointer& fog) { prepare_fogmap(tracked, *fog, options); },
-      [&](const scene::LegendrePointer& series) { prepare_legendre(tracked, *series, options); });
+      [&](const scene::LegendrePointer& series) { prepare_legendre(tracked, *series, options); },
+      [&](const scene::FittedPointer& fitted) { prepare_grid(tracked, fitted->grid, options); });
   return tracked;
 }
 

@@ -42,7 +42,8 @@ double terms_of(const scene::DensityField& field) {
       field, [](const scene::Homogeneous&) { return 0.0; },
       [](const scene::GaussianSum& sum) { return double(sum.gaussians.size()); },
       [](const scene::GridPointer&) { return 0.0; }, [](const scene::FogmapPointer&) { return 0.0; },
-      [](const scene::LegendrePointer& series) { return double(series->coefficients().size()) / 8; });
+      [](const scene::LegendrePointer& series) { return double(series->coefficients().size()) / 8; },
+      [](const scene::FittedPointer&) { return 0.0; });
 }
 
 // Terms of density that a render sums up, to an order of magnitude: one for each Gaussian at each collision. Paths
@@ -81,7 +82,8 @@ Majorants majorants(const scene::Scene& scene, const Options& options) {
         medium.field, [](const scene::Homogeneous&) { return false; }, [](const scene::GaussianSum&) { return true; },
         [&](const scene::GridPointer&) { return options.supergrid_cells > 0; },
         [&](const scene::FogmapPointer&) { return options.supergrid_cells > 0; },
-        [](const scene::LegendrePointer&) { return true; });
+        [](const scene::LegendrePointer&) { return true; },
+        [&](const scene::FittedPointer&) { return options.supergrid_cells > 0; });
     if (!counted) continue;
     ++all.media;
     all.cells += cells;

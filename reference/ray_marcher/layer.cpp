@@ -58,6 +58,11 @@ void set_shape(Layer& layer) {
       });
 }
 
+void set_grid(Layer& layer, const scene::VoxelGrid& grid) {
+  layer.varies = true;
+  layer.grid = make_grid_field(grid);
+}
+
 // What varies, and its kernel.
 void set_varied(Layer& layer) {
   const Box box = varied_support(layer.medium->field);
@@ -67,12 +72,10 @@ void set_varied(Layer& layer) {
         layer.varies = !sum.gaussians.empty();
         if (layer.varies) layer.gaussians = make_gaussian_field(sum, box);
       },
-      [&](const scene::GridPointer& grid) {
-        layer.varies = true;
-        layer.grid = make_grid_field(*grid);
-      },
+      [&](const scene::GridPointer& grid) { set_grid(layer, *grid); },
       [&](const scene::FogmapPointer&) { layer.varies = true; },
-      [&](const scene::LegendrePointer&) { layer.varies = true; });
+      [&](const scene::LegendrePointer&) { layer.varies = true; },
+      [&](const scene::FittedPointer& fitted) { set_grid(layer, fitted->grid); });
   if (!layer.varies) return;
   layer.varied = box;
   const Box inside = intersect(box, bounding_box(*layer.medium));

@@ -33,7 +33,8 @@ double length_unit(const scene::Scene& scene) {
                               [](const scene::LegendrePointer& series) {
                                 const auto& n = series->shape();
                                 return series->box().size().cwiseQuotient(Vec3(n[0], n[1], n[2])).minCoeff();
-                              }));
+                              },
+                              [](const scene::FittedPointer& fitted) { return fitted->grid.voxel_size; }));
   return unit == infinity ? 1 : unit;
 }
 

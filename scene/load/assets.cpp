@@ -30,8 +30,8 @@ std::string find_asset(const TableReader& reader, const std::string& key, const 
   reader.expected(key, fmt::format("a file: there is neither {} nor {}", beside.string(), shared.string()));
 }
 
-std::string name_of_frame(const TableReader& reader) {
-  std::string name = reader.text("file");
+std::string name_of_frame(const TableReader& reader, const std::string& key) {
+  std::string name = reader.text(key);
   const std::size_t first = name.find('#');
   if (first == std::string::npos) {
     if (reader.has("frame")) reader.fail("frame", "frame has no effect: there is no # in the name of the file");
@@ -39,8 +39,8 @@ std::string name_of_frame(const TableReader& reader) {
   }
   const std::size_t digits = std::min(name.find_first_not_of('#', first), name.size()) - first;
   if (name.find('#', first + digits) != std::string::npos)
-    reader.expected("file", "the digits of the frame in one place, as in smoke_####.vdb");
-  if (!reader.has("frame")) reader.fail("file", fmt::format("file = \"{}\" is a sequence, expected a frame", name));
+    reader.expected(key, "the digits of the frame in one place, as in smoke_####.vdb");
+  if (!reader.has("frame")) reader.fail(key, fmt::format("{} = \"{}\" is a sequence, expected a frame", key, name));
   const std::string frame = fmt::format("{:0{}}", reader.integer("frame", 0, 999'999'999, 0), digits);
   return name.replace(first, digits, frame);
 }

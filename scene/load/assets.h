@@ -12,7 +12,8 @@ std::string find_asset(const TableReader&, const std::string& key, const std::st
 // Of the file `name`, which comes from `key`.
 std::string find_asset(const TableReader&, const std::string& key, const std::string& name, const std::string& folder);
 
-// The name that `file` has for its `frame` where it is that of a sequence: # stand for its digits, leading zeros included. Throws Error.
-std::string name_of_frame(const TableReader&);
+// The name that `key` gives for the table's `frame` where it is that of a sequence: # stand for its digits, leading zeros included. Throws
+// Error.
+std::string name_of_frame(const TableReader&, const std::string& key = "file");
 
 }  // namespace airlight::scene::load

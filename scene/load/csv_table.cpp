@@ -32,13 +32,14 @@ std::string shown(std::string_view text) { return printable(text, 40); }
 
 }  // namespace
 
-CsvTable::CsvTable(const std::string& path, std::string_view header)
+CsvTable::CsvTable(const std::string& path, std::string_view header, std::string_view other)
     : path_(path), content_(read_whole_file(path)), header_(header) {
   const std::size_t end = std::min(content_.find('\n'), content_.size());
   const std::string_view first = trimmed(std::string_view(content_).substr(0, end));
   line_ = 1;
   begin_ = end + 1;
-  if (first != header) fail_at(0, fmt::format("found '{}', expected the header {}", shown(first), header));
+  if (!other.empty() && first == other) header_ = other;
+  if (first != header_) fail_at(0, fmt::format("found '{}', expected the header {}", shown(first), header));
 }
 
 bool CsvTable::next() {

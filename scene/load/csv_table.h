@@ -11,11 +11,12 @@ namespace airlight::scene::load {
 
 class CsvTable {
  public:
-  // Throws Error unless the first line is `header`: the columns' names, commas between them.
-  CsvTable(const std::string& path, std::string_view header);
+  // Throws Error unless the first line is `header`: the columns' names, commas between them; or, where one is given, `other`.
+  CsvTable(const std::string& path, std::string_view header, std::string_view other = {});
   CsvTable(const CsvTable&) = delete;  // holds views of its own text
   CsvTable& operator=(const CsvTable&) = delete;
 
+  std::string_view header() const { return header_; }  // the one that the file has
   bool next();  // to the next row; false after the last one
   // All values of this row, each in its range; as many as the header names. Throws Error.
   std::vector<double> values(const std::vector<Range>&) const;

@@ -1,6 +1,8 @@
 // finish(): what a scene holds beside its description: the ray queries and the hash of its content.
 #include <string>
 
+#include "scene/content_key.h"
+#include "scene/convert/residual_file.h"
 #include "scene/light_on_surface.h"
 #include "scene/load/hash_parts.h"
 #include "scene/scene.h"
@@ -96,6 +98,12 @@ void add(ContentHash& hash, const std::shared_ptr<const LegendreBox>& field) {
   hash.add(field->box().hi);
   for (const int n : field->shape()) hash.add(n);
   hash.add(std::vector<double>(field->coefficients().begin(), field->coefficients().end()));
+}
+
+void add(ContentHash& hash, const FittedPointer& fitted) {
+  add(hash, fitted->gaussians);
+  load::add(hash, fitted->grid);
+  hash.tag(fitted->residual ? content_key(residual_bytes(*fitted->residual)) : "no residual");
 }
 
 void add(ContentHash& hash, const Medium& medium) {

@@ -42,7 +42,8 @@ DensityField read_field(const DensityField& kind, TableReader& reader, const std
       [&](const GaussianSum&) -> DensityField { return read_gaussian_sum(reader, folder); },
       [&](const GridPointer&) -> DensityField { return read_grid(reader, folder); },
       [&](const FogmapPointer&) -> DensityField { return read_fogmap(reader, folder); },
-      [&](const LegendrePointer&) -> DensityField { return read_legendre(reader, folder); });
+      [&](const LegendrePointer&) -> DensityField { return read_legendre(reader, folder); },
+      [&](const FittedPointer&) -> DensityField { return read_fitted(reader, folder); });
 }
 
 }  // namespace

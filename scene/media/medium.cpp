@@ -38,6 +38,10 @@ bool outside(const Slab& slab, const Box& box) {
   return h.hi < slab.lo || h.lo > slab.hi;
 }
 
+double greatest(const VoxelGrid& grid) {
+  return grid.values.empty() ? 0 : *std::max_element(grid.values.begin(), grid.values.end());
+}
+
 }  // namespace
 
 double density(const DensityField& field, const Point3& x) {
@@ -46,7 +50,8 @@ double density(const DensityField& field, const Point3& x) {
       [&](const GaussianSum& sum) { return density(sum, x); },
       [&](const GridPointer& grid) { return density(*grid, x); },
       [&](const FogmapPointer& fog) { return density(*fog, x); },
-      [&](const LegendrePointer& box) { return density(*box, x); });
+      [&](const LegendrePointer& box) { return density(*box, x); },
+      [&](const FittedPointer& fitted) { return density(fitted->grid, x); });
 }
 
 Interval density_bounds(const DensityField& field, const Box& box) {
@@ -58,7 +63,8 @@ Interval density_bounds(const DensityField& field, const Box& box) {
       [&](const GaussianSum& sum) { return density_bounds(sum, box); },
       [&](const GridPointer& grid) { return density_bounds(*grid, box); },
       [&](const FogmapPointer& fog) { return density_bounds(*fog, box); },
-      [&](const LegendrePointer& series) { return density_bounds(*series, box); });
+      [&](const LegendrePointer& series) { return density_bounds(*series, box); },
+      [&](const FittedPointer& fitted) { return density_bounds(fitted->grid, box); });
 }
 
 double density_integral(const DensityField& field, const Ray& ray, Interval t) {
@@ -67,7 +73,8 @@ double density_integral(const DensityField& field, const Ray& ray, Interval t) {
       [&](const GaussianSum& sum) { return density_integral(sum, ray, t); },
       [&](const GridPointer& grid) { return density_integral(*grid, ray, t); },
       [&](const FogmapPointer& fog) { return density_integral(*fog, ray, t); },
-      [&](const LegendrePointer& box) { return density_integral(*box, ray, t); });
+      [&](const LegendrePointer& box) { return density_integral(*box, ray, t); },
+      [&](const FittedPointer& fitted) { return density_integral(fitted->grid, ray, t); });
 }
 
 Interval extent(const DensityField& field, const Ray& ray, Interval t) {
@@ -75,7 +82,8 @@ Interval extent(const DensityField& field, const Ray& ray, Interval t) {
       field, [&](const Homogeneous&) { return t; }, [&](const GaussianSum& sum) { return extent(sum, ray, t); },
       [&](const GridPointer& grid) { return extent(*grid, ray, t); },
       [&](const FogmapPointer& fog) { return extent(*fog, ray, t); },
-      [&](const LegendrePointer& box) { return extent(*box, ray, t); });
+      [&](const LegendrePointer& box) { return extent(*box, ray, t); },
+      [&](const FittedPointer& fitted) { return extent(fitted->grid, ray, t); });
 }
 
 Box support(const DensityField& field) {
@@ -87,14 +95,16 @@ double constant_part(const DensityField& field) {
   return match(
       field, [](const Homogeneous& uniform) { return uniform.density; },
       [](const GaussianSum& sum) { return sum.constant; }, [](const GridPointer&) { return 0.0; },
-      [](const FogmapPointer&) { return 0.0; }, [](const LegendrePointer&) { return 0.0; });
+      [](const FogmapPointer&) { return 0.0; }, [](const LegendrePointer&) { return 0.0; },
+      [](const FittedPointer&) { return 0.0; });
 }
 
 Box varied_support(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return Box{}; }, [](const GaussianSum& sum) { return support(sum); },
       [](const GridPointer& grid) { return support(*grid); }, [](const FogmapPointer& fog) { return support(*fog); },
-      [](const LegendrePointer& box) { return support(*box); });
+      [](const LegendrePointer& box) { return support(*box); },
+      [](const FittedPointer& fitted) { return support(fitted->grid); });
 }
 
 std::optional<double> homogeneous_density(const DensityField& field) {
@@ -104,7 +114,8 @@ std::optional<double> homogeneous_density(const DensityField& field) {
       [](const GaussianSum&) -> Density { return std::nullopt; },
       [](const GridPointer&) -> Density { return std::nullopt; },
       [](const FogmapPointer&) -> Density { return std::nullopt; },
-      [](const LegendrePointer&) -> Density { return std::nullopt; });
+      [](const LegendrePointer&) -> Density { return std::nullopt; },
+      [](const FittedPointer&) -> Density { return std::nullopt; });
 }
 
 double greatest_density(const DensityField& field) {
@@ -115,18 +126,26 @@ double greatest_density(const DensityField& field) {
         for (const Gaussian& g : sum.gaussians) most = std::max(most, std::abs(g.amplitude));
         return most;
       },
-      [](const GridPointer& grid) -> double {
-        return grid->values.empty() ? 0 : *std::max_element(grid->values.begin(), grid->values.end());
-      },
+      [](const GridPointer& grid) { return greatest(*grid); },
       [](const FogmapPointer& fog) { return density_bounds(*fog, bounding_box(Unbounded{})).hi; },
-      [](const LegendrePointer& box) { return box->greatest(); });
+      [](const LegendrePointer& box) { return box->greatest(); },
+      [](const FittedPointer& fitted) { return greatest(fitted->grid); });
 }
 
 std::string field_name(const DensityField& field) {
   return match(
       field, [](const Homogeneous&) { return "homogeneous"; }, [](const GaussianSum&) { return "gaussians"; },
       [](const GridPointer&) { return "grid"; }, [](const FogmapPointer&) { return "fogmap"; },
-      [](const LegendrePointer&) { return "legendre"; });
+      [](const LegendrePointer&) { return "legendre"; }, [](const FittedPointer&) { return "fitted"; });
+}
+
+const VoxelGrid* grid_of(const DensityField& field) {
+  using Grid = const VoxelGrid*;
+  return match(
+      field, [](const Homogeneous&) -> Grid { return nullptr; }, [](const GaussianSum&) -> Grid { return nullptr; },
+      [](const GridPointer& grid) -> Grid { return grid.get(); }, [](const FogmapPointer&) -> Grid { return nullptr; },
+      [](const LegendrePointer&) -> Grid { return nullptr; },
+      [](const FittedPointer& fitted) -> Grid { return &fitted->grid; });
 }
 
 bool extinguishes(const Medium& medium) {
@@ -136,7 +155,8 @@ bool extinguishes(const Medium& medium) {
       [](const GaussianSum& sum) { return sum.constant > 0 || !sum.gaussians.empty(); },
       [](const GridPointer& grid) { return !support(*grid).empty(); },
       [](const FogmapPointer& fog) { return !support(*fog).empty(); },
-      [](const LegendrePointer& box) { return box->greatest() > 0; });
+      [](const LegendrePointer& box) { return box->greatest() > 0; },
+      [](const FittedPointer& fitted) { return !support(fitted->grid).empty(); });
 }
 
 std::string label(const std::vector<Medium>& media, std::size_t i) {

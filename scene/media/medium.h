@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/kinds.h"
+#include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/gaussian_sum.h"
 #include "scene/media/legendre_box.h"
@@ -27,10 +28,11 @@ struct Homogeneous {
 using GridPointer = std::shared_ptr<const VoxelGrid>;        // never null in a scene
 using FogmapPointer = std::shared_ptr<const Fogmap>;         // likewise
 using LegendrePointer = std::shared_ptr<const LegendreBox>;  // likewise
+using FittedPointer = std::shared_ptr<const Fitted>;         // likewise
 
 // The closed set of density fields. Whoever asks which one it is names all of them (match), so that a new one does not
 // compile where it is not thought of; a renderer that does not know one refuses it by name (unknown_field).
-using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer, FogmapPointer, LegendrePointer>;
+using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer, FogmapPointer, LegendrePointer, FittedPointer>;
 
 double density(const DensityField&, const Point3& x);
 Interval density_bounds(const DensityField&, const Box&);
@@ -48,7 +50,9 @@ std::optional<double> homogeneous_density(const DensityField&);
 // Of any of its parts [-]: where Gaussians overlap the sum may be greater.
 double greatest_density(const DensityField&);
 std::string field_name(
-    const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", as scene files call them
+    const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", "fitted", as in scene files
+// The voxels of a field whose density is trilinear between samples, a grid or fitted; null for the others.
+const VoxelGrid* grid_of(const DensityField&);
 
 struct Medium {
   std::string name;

@@ -1,7 +1,11 @@
 // What a renderer does not know it refuses by name, and all of them in the same words.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "experiments/renderers.h"
+#include "scene/convert/residual.h"
+#include "tests/gpu/device.h"
 
 using namespace airlight;
 
@@ -71,18 +75,19 @@ TEST_CASE(
       Box{Point3::Constant(-1), Point3::Constant(1)}, scene::TensorShape{1, 1, 1}, Eigen::VectorXd::Constant(1, 2));
   scene.lights = {scene::DirectionalLight{}};
   scene::finish(scene);
-  const std::map<std::string, std::string> expected = {{"path_tracer", ""},
-                                                       {"legendre_fluids", ""},
-                                                       {"legendre_fluids_gpu", ""},
-                                                       {"deterministic", ""},
-                                                       {"ray_marcher", ""},
-                                                       {"ray_marcher_gpu", "homogeneous or gaussians or grid"},
-                                                       {"fogshop", "homogeneous or gaussians"},
-                                                       {"fogshop_gpu", "homogeneous or gaussians"},
-                                                       {"shadow_planes", "homogeneous"},
-                                                       {"shadow_planes_gpu", "homogeneous"},
-                                                       {"wavelet_fog", "fogmap"},
-                                                       {"wavelet_fog_gpu", "fogmap"}};
+  const std::map<std::string, std::string> expected = {
+      {"path_tracer", ""},
+      {"legendre_fluids", ""},
+      {"legendre_fluids_gpu", ""},
+      {"deterministic", ""},
+      {"ray_marcher", ""},
+      {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
+      {"fogshop", "homogeneous or gaussians"},
+      {"fogshop_gpu", "homogeneous or gaussians"},
+      {"shadow_planes", "homogeneous"},
+      {"shadow_planes_gpu", "homogeneous"},
+      {"wavelet_fog", "fogmap"},
+      {"wavelet_fog_gpu", "fogmap"}};
   for (const auto& renderer : experiments::all_renderers()) {
     const std::string name = renderer->name();
     CAPTURE(name);
@@ -93,4 +98,57 @@ TEST_CASE(
     else
       CHECK(has(reasons, "medium 'cloud' is legendre, expected " + expected.at(name)));
   }
+}
+
+TEST_CASE("a fitted grid is rendered by whoever renders grids, to the same bits, and refused by name by all others",
+          "[media][residual]") {
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = {5, 6, 4};
+  grid->voxel_size = 0.3;
+  grid->translation = {-0.6, -0.7, -0.5};
+  for (int i = 0; i < 120; ++i) grid->values.push_back(float(std::max(0.0, 0.5 + std::sin(0.9 * i))));
+  auto fitted = std::make_shared<scene::Fitted>();
+  fitted->gaussians.gaussians = {{{0, 0, 0}, 0.5, 0.4}};
+  fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(*grid, fitted->gaussians, {0, {}}));
+  fitted->grid = *grid;
+  const auto scene_of = [](const scene::DensityField& field) {
+    auto scene = std::make_shared<scene::Scene>();
+    scene->width = scene->height = 6;
+    scene->camera = scene::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0});
+    scene->media.resize(1);
+    scene->media[0].name = "smoke";
+    scene->media[0].field = field;
+    scene->lights = {scene::DirectionalLight{}};
+    scene::finish(*scene);
+    return scene;
+  };
+  const auto a = scene_of(scene::GridPointer(grid)), b = scene_of(scene::FittedPointer(fitted));
+  CHECK(a->hash != b->hash);
+  int rendered = 0, refused = 0;
+  for (const auto& renderer : experiments::all_renderers()) {
+    const std::string name = renderer->name();
+    CAPTURE(name);
+    const auto reasons = refusals(*renderer, *b);
+    if (!refusals(*renderer, *a).empty()) {
+      ++refused;
+      CHECK(std::any_of(reasons.begin(), reasons.end(), [](const std::string& reason) {
+        return reason.starts_with("medium 'smoke' is fitted, expected ");
+      }));
+      continue;
+    }
+    CHECK(reasons.empty());
+    if (!renderer->device().empty() && !gpu::test::device()) continue;
+    const scene::Settings settings(renderer->settings(), name == "path_tracer"
+                                                             ? std::map<std::string, std::string>{{"samples", "4"}}
+                                                             : std::map<std::string, std::string>{});
+    const auto film = [&](const std::shared_ptr<const scene::Scene>& scene) {
+      return renderer->prepare(scene, settings, {})->render(scene::view_of(*scene), {}).film.layer("mean");
+    };
+    const auto mean = film(a);
+    CHECK(*std::max_element(mean.begin(), mean.end()) > 0);
+    CHECK(film(b) == mean);
+    ++rendered;
+  }
+  CHECK(refused == 8);
+  CHECK(rendered >= 3);
 }

@@ -113,6 +113,7 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
       "[[medium]]\ntype = 'gaussians'\n[[medium.gaussians]]",
       "[[medium]]\ntype = 'legendre'",
       "[[medium]]\ntype = 'grid'",
+      "[[medium]]\ntype = 'fitted'",
       "[[medium]]\ntype = 'homogeneous'\n[medium.phase]\ntype = 'hg'",
       "[[medium]]\ntype = 'homogeneous'\n[medium.region]\ntype = 'box'",
       "[[medium]]\ntype = 'homogeneous'\n[medium.region]\ntype = 'sphere'",

@@ -193,7 +193,7 @@ TEST_CASE("a field that a renderer does not know is refused by name", "[media]")
   // Every kind has a name of its own: scene files tell them apart by it.
   std::vector<std::string> names;
   for (const DensityField& kind : Kinds<DensityField>::all()) names.push_back(field_name(kind));
-  CHECK(names == std::vector<std::string>{"homogeneous", "gaussians", "grid", "fogmap", "legendre"});
+  CHECK(names == std::vector<std::string>{"homogeneous", "gaussians", "grid", "fogmap", "legendre", "fitted"});
   std::vector<Medium> media(2);
   media[0].field = small_grid();
   media[1].field = GaussianSum{};

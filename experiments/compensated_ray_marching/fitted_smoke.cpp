@@ -1,0 +1,111 @@
+#include "experiments/compensated_ray_marching/fitted_smoke.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "experiments/build_info.h"
+#include "scene/content_key.h"
+#include "scene/content_store.h"
+#include "scene/convert/gaussian_fit.h"
+#include "scene/error.h"
+#include "scene/load/hash_parts.h"
+#include "scene/load/parts.h"
+#include "scene/math/random.h"
+#include "scene/scene.h"
+
+namespace airlight::experiments {
+namespace {
+
+// Values from -1 to 1 at the corners of a lattice, smooth between them.
+double noise(const Vec3& p, std::uint32_t stream) {
+  const Vec3 low = p.array().floor();
+  const Vec3 f = p - low, w = f.array().square() * (3 - 2 * f.array());
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    PhiloxCounter at = {0, 0, 0, stream};
+    double weight = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      at[std::size_t(a)] = std::uint32_t(int(low[a]) + up);
+      weight *= up ? w[a] : 1 - w[a];
+    }
+    sum += weight * (2 * uniform32(philox4x32_10(at, {53, 1})[0]) - 1);
+  }
+  return sum;
+}
+
+// The curl of three noises, by differences: without divergence, as what a flow carries along.
+Vec3 curl(const Vec3& p) {
+  constexpr double h = 1e-3;
+  const auto slope = [&](std::uint32_t of, int along) {
+    const Vec3 d = h * Vec3::Unit(along);
+    return (noise(p + d, of) - noise(p - d, of)) / (2 * h);
+  };
+  return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
+}
+
+// Of all that a fit depends on.
+std::string key_of(const scene::VoxelGrid& grid, int count) {
+  scene::load::ContentHash hash;
+  scene::load::add(hash, grid);
+  return content_key({"fit", hash.digits(), std::to_string(count), reference_id(), compiler()});
+}
+
+}  // namespace
+
+scene::VoxelGrid grid_of_scene(const ProbeInput& input) {
+  if (input.file.empty()) throw Error("a [[scene]] with voxels is needed");
+  const scene::Scene scene = scene::load_scene(input.file.string(), input.overrides);
+  for (const scene::Medium& medium : scene.media)
+    if (const scene::VoxelGrid* grid = scene::grid_of(medium.field)) return *grid;
+  throw Error(input.file.string() + ": no medium has voxels");
+}
+
+scene::VoxelGrid noise_smoke(int n, double time) {
+  scene::VoxelGrid grid;
+  grid.size = Eigen::Vector3i::Constant(n);
+  grid.voxel_size = 1.0 / n;
+  grid.translation = Vec3::Constant(0.5 / n);
+  grid.values.resize(std::size_t(n) * n * n);
+  const Vec3 risen = time * Vec3::UnitY();
+  scene::parallel_rows(n, {}, [&](int z) {
+    float* to = grid.values.data() + std::size_t(z) * n * n;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        Vec3 p = (Vec3(x, y, z) + Vec3::Constant(0.5)) / n;
+        p += 0.05 * curl(4 * (p - risen)) + 0.012 * curl(11 * (p - risen) + Vec3(7, 3, 5));
+        // A column that widens with its height.
+        const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
+        const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
+        double detail = 0;
+        for (int octave = 0; octave < 4; ++octave)
+          detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
+        const double value = ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12);
+        *to++ = float(std::max(0.0, value));
+      }
+  });
+  return grid;
+}
+
+scene::GaussianSum gaussians_for(const scene::VoxelGrid& grid, int count, const scene::Execution& execution) {
+  scene::GaussianSum sum;
+  sum.cutoff = scene::fit_cutoff;
+  if (count == 0) return sum;
+  const std::string name = fmt::format("fits/{}.csv", key_of(grid, count));
+  if (const auto kept = execution.store ? execution.store->find(name) : std::nullopt) {
+    sum.gaussians = scene::load::read_gaussians_csv(kept->string());
+    return sum;
+  }
+  scene::FitOptions options;
+  options.gaussians = count;
+  options.threads = execution.threads;
+  const scene::GaussianFit fit = scene::fit_gaussians(grid, options);
+  if (execution.store)
+    execution.store->keep(name, [&](const auto& path) { scene::write_gaussians_csv(path.string(), fit); });
+  return fit.sum;
+}
+
+}  // namespace airlight::experiments

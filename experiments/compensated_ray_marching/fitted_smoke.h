@@ -1,0 +1,19 @@
+// Smoke for the experiments of this folder, and Gaussians fitted to it.
+#pragma once
+#include "experiments/probe.h"
+#include "scene/media/gaussian_sum.h"
+#include "scene/media/voxel_grid.h"
+
+namespace airlight::experiments {
+
+// The voxels of the first medium of the probe's scene that has some. Throws Error if there is none.
+scene::VoxelGrid grid_of_scene(const ProbeInput&);
+
+// A column of smoke that billows, n^3 samples of a cube of 1 m: fractal noise, its places displaced by a curl. The same for every n. With
+// time [s] the noise rises through it, 1 m/s.
+scene::VoxelGrid noise_smoke(int n, double time = 0);
+
+// `count` Gaussians fitted to a grid, kept in the content store that the execution carries; none for 0.
+scene::GaussianSum gaussians_for(const scene::VoxelGrid&, int count, const scene::Execution&);
+
+}  // namespace airlight::experiments

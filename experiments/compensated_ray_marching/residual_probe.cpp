@@ -1,0 +1,259 @@
+#include "experiments/compensated_ray_marching/residual_probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "experiments/compensated_ray_marching/fitted_smoke.h"
+#include "experiments/compensated_ray_marching/nano_grid.h"
+#include "scene/convert/hashed_sequence.h"
+#include "scene/convert/perfect_hash.h"
+#include "scene/convert/residual.h"
+#include "scene/error.h"
+#include "scene/math/random.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::experiments {
+namespace {
+
+using Eigen::Vector3i;
+using Positions = std::vector<Vector3i>;
+
+enum class Store { raw, bricks, apron, hash_tags, hash_domain, hash_sequence, nano_floats, nano_eight_bits };
+enum class Step { residual, density };
+enum class Of { residual, density };
+
+Positions random_positions(const Vector3i& size, int count) {
+  Positions positions;
+  for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
+    const PhiloxCounter w = philox4x32_10({i, 0, 0, 0}, {41, 1});
+    positions.emplace_back(int(w[0] % unsigned(size[0])), int(w[1] % unsigned(size[1])), int(w[2] % unsigned(size[2])));
+  }
+  return positions;
+}
+
+// One sample after another, x fastest, over and over.
+Positions consecutive_positions(const Vector3i& size, int count) {
+  Positions positions;
+  for (int i = 0; i < count; ++i)
+    positions.emplace_back(i % size[0], i / size[0] % size[1], i / size[0] / size[1] % size[2]);
+  return positions;
+}
+
+// What is stored, and where it is looked up.
+struct Task {
+  Vector3i size;
+  std::vector<std::int8_t> levels;
+  Positions random, consecutive;
+  int runs;
+  int level(const Vector3i& p) const {
+    return levels[p[0] + std::size_t(size[0]) * (p[1] + std::size_t(size[1]) * p[2])];
+  }
+};
+
+struct Measured {
+  double bytes = 0;
+  std::vector<double> build, random, consecutive;  // [s], run by run; of all look-ups together
+};
+
+template <class Level>
+double sum_of(const Positions& positions, Level&& level) {
+  double sum = 0;
+  for (const Vector3i& p : positions) sum += level(p);
+  return sum;
+}
+
+// `build` makes the store and gives back its bytes, `sum` adds up what it has at positions. Throws Error if that is not what was stored.
+template <class Build, class Sum>
+Measured measure(const Task& task, double tolerance, Build&& build, Sum&& sum) {
+  Measured m;
+  scene::Stopwatch watch;
+  for (int i = 0; i < task.runs; ++i) {
+    watch.lap();
+    m.bytes = double(build());
+    m.build.push_back(watch.lap());
+  }
+  const auto time = [&](const Positions& at, std::vector<double>& seconds) {
+    const double expected = sum_of(at, [&](const Vector3i& p) { return task.level(p); });
+    for (int i = 0; i < task.runs; ++i) {
+      watch.lap();
+      const double got = sum(at);
+      seconds.push_back(watch.lap());
+      if (std::abs(got - expected) > tolerance)
+        throw Error(fmt::format("residual_stores: levels add up to {}, expected {}", got, expected));
+    }
+  };
+  time(task.random, m.random);
+  time(task.consecutive, m.consecutive);
+  return m;
+}
+
+template <class Built, class Make, class Bytes, class Level>
+Measured measure_levels(const Task& task, Built& built, Make&& make, Bytes&& bytes, Level&& level) {
+  return measure(
+      task, 0,
+      [&] {
+        built = make();
+        return bytes(built);
+      },
+      [&](const Positions& at) { return sum_of(at, [&](const Vector3i& p) { return level(built, p); }); });
+}
+
+Measured measure_nano(const Task& task, NanoGrid::Values values) {
+  std::unique_ptr<NanoGrid> grid;
+  const std::vector<float> levels(task.levels.begin(), task.levels.end());
+  // Eight bits between the extremes of each leaf: half a level off at most, where they are -127 and 127.
+  const double off = values == NanoGrid::Values::floats ? 0 : 0.51 * double(task.random.size());
+  return measure(
+      task, off,
+      [&] {
+        grid = std::make_unique<NanoGrid>(task.size, levels, values);
+        return grid->bytes();
+      },
+      [&](const Positions& at) { return grid->sum_at(at); });
+}
+
+Measured measure_store(const Task& task, const scene::Settings& s, scene::PerfectHash& hash) {
+  const scene::HashOptions options{s.choice<scene::HashOptions::Offsets>("offsets"), 1};
+  const auto hashed = [&](auto bytes, auto level) {
+    return measure_levels(
+        task, hash,
+        [&] { return scene::perfect_hash(task.size, scene::hashed_voxels(task.size, task.levels), options); }, bytes,
+        level);
+  };
+  switch (s.choice<Store>("store")) {
+    case Store::raw: {
+      std::vector<std::int8_t> copy;
+      return measure_levels(
+          task, copy, [&] { return task.levels; }, [](const auto& levels) { return levels.size(); },
+          [&](const auto& levels, const Vector3i& p) {
+            return levels[p[0] + std::size_t(task.size[0]) * (p[1] + std::size_t(task.size[1]) * p[2])];
+          });
+    }
+    case Store::bricks: {
+      scene::ResidualBricks bricks;
+      const int edge = int(s.integer("edge"));
+      return measure_levels(
+          task, bricks, [&] { return scene::bricks_of(task.size, task.levels, edge); },
+          [](const auto& b) { return b.bytes(); }, [](const auto& b, const Vector3i& p) { return b.level(p); });
+    }
+    case Store::apron: {
+      scene::ApronBricks bricks;
+      return measure_levels(
+          task, bricks, [&] { return scene::apron_bricks_of(task.size, task.levels); },
+          [](const auto& b) { return b.bytes(); },
+          [](const auto& b, const Vector3i& p) { return level_between(b, p.template cast<double>()); });
+    }
+    case Store::hash_tags:
+      return hashed([](const auto& h) { return h.bytes_with_tags(); },
+                    [](const auto& h, const Vector3i& p) { return h.value_by_tag(p); });
+    case Store::hash_domain:
+      return hashed([](const auto& h) { return h.bytes_with_domain(); },
+                    [](const auto& h, const Vector3i& p) { return h.value_by_domain(p); });
+    case Store::hash_sequence: {
+      // The same frame 27 times: sizes and times are those of one frame among them.
+      scene::HashedSequence sequence;
+      const std::vector<std::vector<std::int8_t>> frames(scene::HashedSequence::frames_per_table, task.levels);
+      Measured m = measure_levels(
+          task, sequence, [&] { return scene::hashed_sequence(task.size, frames, options); },
+          [&](const auto& h) { return h.tables[0].bytes_with_tags() / frames.size(); },
+          [](const auto& h, const Vector3i& p) { return h.value(13, p); });
+      for (double& seconds : m.build) seconds /= double(frames.size());
+      hash = std::move(sequence.tables[0]);
+      return m;
+    }
+    case Store::nano_floats:
+      return measure_nano(task, NanoGrid::Values::floats);
+    case Store::nano_eight_bits:
+      return measure_nano(task, NanoGrid::Values::eight_bits);
+  }
+  throw Error("residual_stores: no such store");
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+double relative_l2(const scene::VoxelGrid& original, const scene::VoxelGrid& other) {
+  double error = 0, norm = 0;
+  for (std::size_t i = 0; i < original.values.size(); ++i) {
+    error += std::pow(double(other.values[i]) - original.values[i], 2);
+    norm += std::pow(double(original.values[i]), 2);
+  }
+  return norm > 0 ? std::sqrt(error / norm) : 0;
+}
+
+}  // namespace
+
+std::string ResidualStores::about() const {
+  return "size, build and look-up time of a quantised residual: perfect hash, bricks, NanoVDB, raw; Zhou et al. 2008, section 5.2";
+}
+
+std::vector<scene::SettingSpec> ResidualStores::settings() const {
+  return {scene::choice_setting(
+              "store", "bricks",
+              {"raw", "bricks", "apron", "hash_tags", "hash_domain", "hash_sequence", "nano_floats", "nano_eight_bits"},
+              "apron: bricks of 8^3 cells with 9^3 samples; hash_tags, hash_domain: how it tells what is stored; "
+              "hash_sequence: a 27th of 27 frames in one"),
+          scene::choice_setting("smoke", "scene", {"scene", "noise"}, "the grid of the scene's medium, or curl noise"),
+          scene::integer_setting("size", "64", 8, 256, "samples along a side of the curl noise"),
+          scene::integer_setting("gaussians", "400", 0, 100000, "that the residual is against"),
+          scene::integer_setting("threshold", "0", 0, 126, "levels of this size or less are dropped"),
+          scene::choice_setting("step", "residual", {"residual", "density"}, "of a level: max|R|/127, or max D/255"),
+          scene::choice_setting("of", "residual", {"residual", "density"},
+                                "what is stored: the residual, or the density itself"),
+          scene::integer_setting("edge", "8", 1, 64, "of bricks"),
+          scene::choice_setting("offsets", "thirds", {"thirds", "root_thirds", "sixths"},
+                                "first r of a hash: cbrt(K/3) + 9, cbrt(K)/3 + 9, cbrt(K/6)"),
+          scene::integer_setting("lookups", "1000000", 1, 1e8, "that are timed, random and one after another"),
+          scene::integer_setting("runs", "5", 1, 1000, "timed")};
+}
+
+std::vector<std::string> ResidualStores::figures() const {
+  return {"bytes",       "of_raw",   "nonzero_percent", "error_percent",
+          "fit_percent", "build_ms", "random_ns",       "consecutive_ns",
+          "m",           "r",        "retries",         "largest_bucket"};
+}
+
+Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
+                             const scene::Execution& execution) const {
+  const scene::VoxelGrid grid = s.text("smoke") == "scene" ? grid_of_scene(input) : noise_smoke(int(s.integer("size")));
+  const bool density = s.choice<Of>("of") == Of::density;
+  const scene::GaussianSum sum = gaussians_for(grid, density ? 0 : int(s.integer("gaussians")), execution);
+  scene::QuantisationOptions options;
+  options.threshold = int(s.integer("threshold"));
+  const float most = *std::max_element(grid.values.begin(), grid.values.end());
+  if (s.choice<Step>("step") == Step::density) options.step = most / 255;
+  const scene::Residual residual = scene::residual_of(grid, sum, options);
+  Task task{residual.layout.size, levels_of(residual.bricks), {}, {}, int(s.integer("runs"))};
+  task.random = random_positions(task.size, int(s.integer("lookups")));
+  task.consecutive = consecutive_positions(task.size, int(s.integer("lookups")));
+  const auto voxels = scene::hashed_voxels(task.size, task.levels);
+
+  scene::PerfectHash hash;
+  const Measured m = measure_store(task, s, hash);
+  const double samples = double(task.levels.size()), lookups = double(task.random.size());
+  Findings found;
+  found.figures = {exactly("bytes", m.bytes),
+                   exactly("of_raw", m.bytes / samples),
+                   exactly("nonzero_percent", 100 * double(voxels.size()) / samples),
+                   exactly("error_percent", 100 * relative_l2(grid, decoded(sum, residual))),
+                   exactly("fit_percent", 100 * relative_l2(grid, decoded(residual.layout, sum, {}))),
+                   measured("build_ms", scaled(m.build, 1e3)),
+                   measured("random_ns", scaled(m.random, 1e9 / lookups)),
+                   measured("consecutive_ns", scaled(m.consecutive, 1e9 / lookups))};
+  if (hash.m > 0) {
+    const std::string wrong = hash.voxels == voxels.size() ? imperfection(hash, voxels) : "";
+    if (!wrong.empty()) throw Error("residual_stores: the hash is not perfect: " + wrong);
+    for (const auto& [name, value] :
+         {std::pair("m", hash.m), {"r", hash.r}, {"retries", hash.retries}, {"largest_bucket", hash.largest_bucket}})
+      found.figures.push_back(exactly(name, value));
+  }
+  set_time(found, m.random);
+  return found;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,253 @@
+#include "scene/convert/gaussian_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "scene/atomic_file.h"
+#include "scene/convert/fit_gauss_newton.h"
+#include "scene/convert/fit_lbfgs.h"
+#include "scene/convert/fit_placement.h"
+#include "scene/convert/fit_trust_region.h"
+#include "scene/error.h"
+#include "scene/nearest.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::scene {
+namespace {
+
+// Greatest density; whatever is no density is refused.
+double greatest_of(const VoxelGrid& grid) {
+  float greatest = 0;
+  for (std::size_t at = 0; at < grid.values.size(); ++at) {
+    const float value = grid.values[at];
+    if (std::isfinite(value) && value >= 0) {
+      greatest = std::max(greatest, value);
+      continue;
+    }
+    const std::size_t nx = std::size_t(grid.size[0]), ny = std::size_t(grid.size[1]);
+    throw Error(fmt::format("the density at voxel ({}, {}, {}) is {}, expected a finite number, at least 0", at % nx,
+                            at / nx % ny, at / (nx * ny), value));
+  }
+  return greatest;
+}
+
+// A fit at work: a grid's samples as lengths, its greatest density as 1.
+class Frame {
+ public:
+  Frame(const VoxelGrid& grid, double greatest, const FitOptions& options)
+      : grid_(grid),
+        options_(options),
+        greatest_(greatest),
+        objective_(grid.size, grid.values.data(), 1 / greatest, fit_cutoff, options.threads) {
+    const double unit = (options.unit > 0 ? options.unit : fit_unit(grid)) / grid.voxel_size;
+    bounds_.centers = {Point3::Constant(-0.5), grid.size.cast<double>().array() - 0.5};
+    bounds_.widths.lo = std::max(options.widths.lo * unit, least_fit_width);
+    bounds_.widths.hi = std::max(options.widths.hi * unit, 2 * bounds_.widths.lo);
+    bounds_.amplitudes = options.amplitudes;
+  }
+
+  void place() {
+    gaussians_ = place_gaussians(grid_.size, grid_.values.data(), 1 / greatest_, options_.gaussians, bounds_);
+    ids_.resize(gaussians_.size());
+    std::iota(ids_.begin(), ids_.end(), 0);
+    next_id_ = int(ids_.size());
+    amplitudes(5);
+  }
+  void take(const GaussianFit& previous) {
+    for (const Gaussian& g : previous.sum.gaussians) {
+      gaussians_.push_back({world_to_sample(grid_, g.center), g.width / grid_.voxel_size, g.amplitude / greatest_});
+      clamp_to(bounds_, gaussians_.back());
+    }
+    ids_ = previous.ids;
+    next_id_ = previous.next_id;
+  }
+
+  // Whoever is teleported once there is a frame before becomes another one.
+  void minimise(bool teleporting, bool renaming = false) {
+    double before = objective_.value(gaussians_);
+    for (int round = 0; round < options_.rounds; ++round) {
+      const double value = run(options_.iterations);
+      const std::vector<Gaussian> at = renaming ? gaussians_ : std::vector<Gaussian>();
+      const int moved = teleporting && round + 1 < options_.rounds
+                            ? teleport(objective_, bounds_, gaussians_, std::max(1, int(gaussians_.size()) / 20))
+                            : 0;
+      teleported_ += moved;
+      for (std::size_t i = 0; moved > 0 && i < at.size(); ++i)
+        if (gaussians_[i].center != at[i].center) ids_[i] = next_id_++;
+      if (!(before - value > options_.tolerance * before) && moved <= int(gaussians_.size()) / 100) break;
+      before = value;
+    }
+  }
+  void delete_least(int count) {
+    std::vector<std::size_t> order(gaussians_.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto significance = [&](std::size_t i) {
+      return gaussians_[i].amplitude * gaussians_[i].amplitude * std::pow(gaussians_[i].width, 3);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return significance(a) < significance(b); });
+    order.resize(std::min(order.size(), std::size_t(count)));
+    std::sort(order.rbegin(), order.rend());
+    for (const std::size_t i : order) {
+      gaussians_.erase(gaussians_.begin() + std::ptrdiff_t(i));
+      ids_.erase(ids_.begin() + std::ptrdiff_t(i));
+    }
+    deleted_ += int(order.size());
+  }
+  void insert(int count) {
+    objective_.value(gaussians_);
+    for (const Point3& place : missing_places(objective_, bounds_, 2 * std::size_t(count))) {
+      if (count == 0 || int(gaussians_.size()) >= most_fit_gaussians) break;
+      const Placed placed = place_at(objective_, bounds_, place);
+      if (!(placed.gain > 0)) continue;
+      objective_.add(placed.gaussian);
+      gaussians_.push_back(placed.gaussian);
+      ids_.push_back(next_id_++);
+      ++inserted_;
+      --count;
+    }
+  }
+  void amplitudes(int iterations) {
+    iterations_ +=
+        minimize_gauss_newton(objective_, bounds_, gaussians_, {iterations, 1e-6, options_.check}, true).iterations;
+  }
+  double ratio() { return objective_.value(gaussians_) / objective_.sum_of_squares(); }
+
+  GaussianFit result() {
+    GaussianFit fit;
+    objective_.value(gaussians_);
+    fit.errors = objective_.errors();
+    fit.sum.cutoff = fit_cutoff;
+    for (const Gaussian& g : gaussians_)
+      fit.sum.gaussians.push_back(
+          {sample_to_world(grid_, g.center), g.width * grid_.voxel_size, g.amplitude * greatest_});
+    fit.ids = ids_;
+    fit.next_id = next_id_;
+    fit.evaluations = objective_.evaluations();
+    fit.iterations = iterations_;
+    fit.teleported = teleported_;
+    fit.deleted = deleted_;
+    fit.inserted = inserted_;
+    return fit;
+  }
+
+ private:
+  double run(int iterations) {
+    const MinimizerOptions options{iterations, 0.1 * options_.tolerance, options_.check};
+    const auto minimise = [&] {
+      switch (options_.method) {
+        case FitMethod::lbfgs:
+          return minimize_lbfgs(objective_, bounds_, gaussians_, options, false);
+        case FitMethod::lbfgs_blocks:
+          return minimize_lbfgs(objective_, bounds_, gaussians_, options, true);
+        case FitMethod::trust_region:
+          return minimize_trust_region(objective_, bounds_, gaussians_, options);
+        case FitMethod::gauss_newton:
+          break;
+      }
+      return minimize_gauss_newton(objective_, bounds_, gaussians_, options);
+    };
+    const Minimization done = minimise();
+    iterations_ += done.iterations;
+    return done.value;
+  }
+
+  const VoxelGrid& grid_;
+  const FitOptions& options_;
+  double greatest_;
+  FitObjective<float> objective_;
+  FitBounds bounds_;
+  std::vector<Gaussian> gaussians_;
+  std::vector<int> ids_;
+  int next_id_ = 0, iterations_ = 0, teleported_ = 0, deleted_ = 0, inserted_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> fit_method_names() { return {"gauss_newton", "lbfgs", "lbfgs_blocks", "trust_region"}; }
+
+FitMethod fit_method_from(const std::string& name) {
+  const std::vector<std::string> names = fit_method_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw Error(
+        fmt::format("method '{}'{}, expected one of {}", name, nearest_hint(name, names), fmt::join(names, ", ")));
+  return FitMethod(found - names.begin());
+}
+
+void check_fit_options(const FitOptions& o) {
+  const auto require = [](bool good, const std::string& what) {
+    if (!good) throw Error("a fit's " + what);
+  };
+  require(o.gaussians >= 1 && o.gaussians <= most_fit_gaussians,
+          fmt::format("number of Gaussians is {}, expected 1 to {}", o.gaussians, most_fit_gaussians));
+  require(std::isfinite(o.unit) && o.unit >= 0, fmt::format("unit is {}, expected a length", o.unit));
+  require(o.widths.lo > 0 && o.widths.hi > o.widths.lo && std::isfinite(o.widths.hi),
+          "widths are empty, expected 0 < least < greatest");
+  require(o.amplitudes.lo > 0 && o.amplitudes.hi > o.amplitudes.lo && std::isfinite(o.amplitudes.hi),
+          "amplitudes are empty, expected 0 < least < greatest");
+  require(o.rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0,
+          "rounds, iterations or tolerance are out of range, expected at least 0, 1 and 0");
+  require(o.deleted >= 0 && o.inserted >= 0 && o.allowed >= 1,
+          "deleted, inserted or allowed are out of range, expected at least 0, 0 and 1");
+}
+
+double fit_unit(const VoxelGrid& grid) { return grid.voxel_size * std::cbrt(grid.size.cast<double>().prod()); }
+
+GaussianFit fit_gaussians(const VoxelGrid& grid, const FitOptions& options) {
+  check_fit_options(options);
+  Stopwatch watch;
+  const double greatest = greatest_of(grid);
+  GaussianFit fit;
+  fit.sum.cutoff = fit_cutoff;
+  if (greatest > 0) {
+    Frame frame(grid, greatest, options);
+    frame.place();
+    frame.minimise(options.teleport);
+    if (options.polish) frame.amplitudes(10);
+    fit = frame.result();
+    fit.first_ratio = fit.errors.squared_ratio;
+  }
+  fit.seconds = watch.lap();
+  return fit;
+}
+
+GaussianFit next_fit(const VoxelGrid& grid, const GaussianFit& previous, const FitOptions& options) {
+  if (previous.sum.gaussians.empty()) return fit_gaussians(grid, options);
+  check_fit_options(options);
+  Stopwatch watch;
+  const double greatest = greatest_of(grid);
+  GaussianFit fit;
+  fit.sum.cutoff = fit_cutoff;
+  fit.next_id = previous.next_id;
+  if (greatest > 0) {
+    Frame frame(grid, greatest, options);
+    frame.take(previous);
+    frame.delete_least(options.deleted);
+    frame.minimise(false);
+    if (frame.ratio() > options.allowed * previous.first_ratio) {
+      frame.insert(options.inserted);
+      frame.minimise(options.resent, true);
+    }
+    if (options.polish) frame.amplitudes(10);
+    fit = frame.result();
+  }
+  fit.first_ratio = previous.first_ratio;
+  fit.warm = true;
+  fit.seconds = watch.lap();
+  return fit;
+}
+
+void write_gaussians_csv(const std::string& path, const GaussianFit& fit) {
+  std::string text = "id,center_x,center_y,center_z,width,amplitude\n";
+  for (std::size_t i = 0; i < fit.sum.gaussians.size(); ++i) {
+    const Gaussian& g = fit.sum.gaussians[i];
+    text += fmt::format("{},{},{},{},{},{}\n", fit.ids[i], g.center[0], g.center[1], g.center[2], g.width, g.amplitude);
+  }
+  write_file_atomically(path, text);
+}
+
+}  // namespace airlight::scene

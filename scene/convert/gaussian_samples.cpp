@@ -1,0 +1,59 @@
+#include "scene/convert/gaussian_samples.h"
+
+#include "scene/convert/separable_gaussians.h"
+#include "scene/threads.h"
+
+namespace airlight::scene {
+namespace {
+
+using namespace separable;
+
+constexpr std::size_t batch = 4096;  // Gaussians whose tables are held at once
+
+void add(const Tables<float>& tables, int z0, int z1, float* sums) {
+  const Layout& layout = tables.layout();
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const auto& p = tables.part(i);
+    const int begin = p.empty() ? 0 : p.first_block();
+    const float* const ex = tables.along_x(p);
+    tables.rows(p, z0, z1, [&](int y, int z, int first, int last, float factor, double, double) {
+      const float weight = factor * float(p.amplitude);
+      auto* const row = reinterpret_cast<Vector<float>*>(sums) + layout.row(y, z) * layout.blocks;
+      for (int b = first / 8; b <= last / 8; ++b) {
+        const auto value = *reinterpret_cast<const Vector<float>*>(ex + (b - begin) * 8) * weight;
+        row[b] += within<float>(b, first, last) ? value : Vector<float>{};
+      }
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<float> gaussian_samples(const GaussianSum& sum, const VoxelGrid& grid, int threads) {
+  const Layout layout = Layout::of<float>(grid.size);
+  Aligned<float> sums(layout.rows() * layout.blocks * 8);
+  std::fill_n(sums.data(), sums.size(), float(sum.constant));
+  Tables<float> tables(layout, sum.cutoff, false);
+  std::vector<SampleGaussian> part;
+  std::vector<float> values(std::size_t(grid.size[0]) * grid.size[1] * grid.size[2]);
+  tbb::task_arena(threads_for(threads)).execute([&] {
+    for (std::size_t begin = 0; begin < sum.gaussians.size(); begin += batch) {
+      part.clear();
+      for (std::size_t i = begin; i < std::min(begin + batch, sum.gaussians.size()); ++i) {
+        const Gaussian& g = sum.gaussians[i];
+        part.push_back({world_to_sample(grid, g.center), g.width / grid.voxel_size, g.amplitude});
+      }
+      tables.make(part.data(), part.size());
+      // A slice adds the Gaussians in their order, whoever computes it.
+      tbb::parallel_for(
+          tbb::blocked_range<int>(0, grid.size[2], 4),
+          [&](const auto& slices) { add(tables, slices.begin(), slices.end(), sums.data()); },
+          tbb::simple_partitioner());
+    }
+  });
+  for (std::size_t row = 0; row < layout.rows(); ++row)
+    std::copy_n(sums.data() + row * layout.blocks * 8, grid.size[0], values.data() + row * grid.size[0]);
+  return values;
+}
+
+}  // namespace airlight::scene

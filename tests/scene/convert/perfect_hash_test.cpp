@@ -1,0 +1,208 @@
+#include "scene/convert/perfect_hash.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "scene/convert/hashed_sequence.h"
+#include "scene/convert/residual.h"
+#include "scene/error.h"
+#include "scene/math/random.h"
+#include "tests/oracle_vectors.h"
+
+namespace airlight::scene {
+namespace {
+
+using Eigen::Vector3i;
+using Offsets = HashOptions::Offsets;
+
+std::uint32_t word(std::uint32_t i, std::uint32_t set) { return philox4x32_10({i, set, 0, 0}, {77, 1})[0]; }
+
+// Each position of the domain with the probability given, values 1 to 127 with either sign.
+std::vector<HashedVoxel> random_voxels(const Vector3i& extent, double share, std::uint32_t set) {
+  std::vector<std::int8_t> levels(std::size_t(extent.prod()));
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::uint32_t w = word(std::uint32_t(i), set);
+    if (uniform32(w) < share) levels[i] = std::int8_t(1 + w % 127) * (w & 1024 ? 1 : -1);
+  }
+  return hashed_voxels(extent, levels);
+}
+
+Vector3i integers(const test::json& v) { return {v[0].get<int>(), v[1].get<int>(), v[2].get<int>()}; }
+
+}  // namespace
+
+TEST_CASE("addresses of a perfect hash are those of the definition", "[residual]") {
+  for (const test::json& v : test::vectors_of("compensated_ray_marching", "psh_address")) {
+    PerfectHash hash;
+    hash.m = v["input"]["m"];
+    hash.r = v["input"]["r"];
+    hash.offsets.assign(std::size_t(hash.r) * hash.r * hash.r, 0);
+    const Vector3i p = integers(v["input"]["p"]), offset = integers(v["input"]["offset"]);
+    const Vector3i at = integers(v["expected"]["offset_slot"]), slot = integers(v["expected"]["hash_slot"]);
+    const std::size_t i = hash.offset_slot(p);
+    CHECK(i == std::size_t(at[0] + hash.r * (at[1] + hash.r * at[2])));
+    hash.offsets[i] = std::uint32_t(offset[0] | offset[1] << 10 | offset[2] << 20);
+    CHECK(hash.slot(p) == std::size_t(slot[0] + hash.m * (slot[1] + hash.m * slot[2])));
+  }
+}
+
+TEST_CASE("residuals come back from the hash as the vectors say", "[residual]") {
+  int seen = 0;
+  for (const test::json& v : test::vectors_of("compensated_ray_marching", "hash_round_trip")) {
+    const test::json &in = v["input"], &expected = v["expected"];
+    const Vector3i domain = integers(in["domain"]);
+    std::vector<double> residual(std::size_t(domain.prod()), 0.0);
+    const auto at = [&](const Vector3i& p) { return std::size_t(p[0] + domain[0] * (p[1] + domain[1] * p[2])); };
+    for (std::size_t i = 0; i < in["positions"].size(); ++i)
+      residual[at(integers(in["positions"][i]))] = in["residual"][i];
+    const ResidualLevels levels = quantised(domain, residual, {in["threshold"], {}});
+    CHECK(levels.step == Approx(expected["q"].get<double>()).epsilon(1e-12));
+    const std::vector<HashedVoxel> voxels = hashed_voxels(domain, levels.values);
+    CHECK(voxels.size() == expected["count"].get<std::size_t>());
+    const PerfectHash hash = perfect_hash(domain, voxels);
+    CHECK(imperfection(hash, voxels) == "");
+    double greatest = 0;
+    for (std::size_t i = 0; i < in["positions"].size(); ++i) {
+      const int level = hash.value_by_tag(integers(in["positions"][i]));
+      CHECK(level == expected["quantised"][i].get<int>());
+      CHECK(levels.step * level == Approx(expected["decoded"][i].get<double>()).epsilon(1e-12));
+      greatest = std::max(greatest, std::abs(levels.step * level - in["residual"][i].get<double>()));
+    }
+    CHECK(greatest == Approx(expected["max_abs_error"].get<double>()).epsilon(1e-9).margin(1e-15));
+    for (const test::json& p : in["absent_positions"]) {
+      CHECK(hash.value_by_tag(integers(p)) == 0);
+      CHECK(hash.value_by_domain(integers(p)) == 0);
+    }
+    ++seen;
+  }
+  CHECK(seen == 3);
+}
+
+TEST_CASE("hashes of random sets are perfect, whatever their density and shape", "[residual]") {
+  const Vector3i extents[] = {{1, 1, 1}, {7, 1, 1}, {2, 3, 5}, {16, 16, 16}, {40, 7, 23}, {1, 300, 2}, {31, 31, 31}};
+  std::uint32_t set = 0;
+  for (const Vector3i& extent : extents)
+    for (const double share : {0.001, 0.02, 0.15, 0.5, 0.9, 1.0})
+      for (const Offsets offsets : {Offsets::thirds, Offsets::root_thirds, Offsets::sixths}) {
+        const auto voxels = random_voxels(extent, share, ++set);
+        INFO(extent.transpose() << ", share " << share << ", offsets " << int(offsets));
+        const PerfectHash hash = perfect_hash(extent, voxels, {offsets, set});
+        CHECK(imperfection(hash, voxels) == "");
+        CHECK(std::size_t(hash.m) * hash.m * hash.m >= voxels.size());
+        CHECK(perfect_hash(extent, voxels, {offsets, set}).offsets == hash.offsets);
+      }
+}
+
+TEST_CASE("hashes of none, one, two and all, and domains larger than m r", "[residual]") {
+  const PerfectHash none = perfect_hash({64, 64, 64}, {});
+  CHECK(none.m == 0);
+  CHECK(none.bytes_with_tags() == 0);
+  CHECK(none.bytes_with_domain() == 0);
+  CHECK(none.value_by_tag({3, 4, 5}) == 0);
+  CHECK(none.value_by_domain({3, 4, 5}) == 0);
+  CHECK(imperfection(none, {}) == "");
+
+  // One in 384^3 does not take 384^3 offsets.
+  const PerfectHash one = perfect_hash({384, 384, 384}, {{{383, 0, 200}, -5}});
+  CHECK(one.m == 1);
+  CHECK(one.r == 10);
+  CHECK(one.value_by_tag({383, 0, 200}) == -5);
+  CHECK(one.value_by_domain({383, 0, 200}) == -5);
+  CHECK(one.value_by_tag({373, 0, 200}) == 0);
+  CHECK(one.value_by_domain({373, 0, 200}) == 0);
+
+  // Two that m = 2 and r = 11 would take for each other.
+  const std::vector<HashedVoxel> two = {{{0, 0, 0}, 1}, {{22, 0, 0}, 2}};
+  const PerfectHash pair = perfect_hash({64, 2, 2}, two);
+  CHECK(imperfection(pair, two) == "");
+  CHECK(pair.r > 11);
+  CHECK(22 % pair.r != 0);
+
+  // 300 voxels along a line of 100000: m r = 7 * 17 is far less.
+  std::vector<HashedVoxel> line;
+  std::set<int> taken;
+  for (std::uint32_t i = 0; line.size() < 300; ++i)
+    if (const int x = int(word(i, 999) % 100000); taken.insert(x).second) line.push_back({{x, 0, 0}, 7});
+  const PerfectHash sparse = perfect_hash({100000, 1, 1}, line);
+  CHECK(imperfection(sparse, line) == "");
+
+  const auto all = random_voxels({32, 32, 32}, 2, 5);
+  REQUIRE(all.size() == 32768);
+  const PerfectHash dense = perfect_hash({32, 32, 32}, all);
+  CHECK(dense.m == 32);
+  CHECK(imperfection(dense, all) == "");
+}
+
+TEST_CASE("the checker of hashes sees what is wrong", "[residual]") {
+  const auto voxels = random_voxels({12, 12, 12}, 0.3, 3);
+  const PerfectHash good = perfect_hash({12, 12, 12}, voxels);
+  REQUIRE(imperfection(good, voxels) == "");
+  const std::size_t slot = good.slot(voxels[5].position);
+  PerfectHash bad = good;
+  bad.values[slot] = std::int8_t(bad.values[slot] ^ 1);
+  CHECK(imperfection(bad, voxels) != "");
+  bad = good;
+  bad.tags[slot] ^= 1;
+  CHECK(imperfection(bad, voxels) != "");
+  bad = good;
+  bad.domain[3] ^= 1;
+  CHECK(imperfection(bad, voxels) != "");
+  bad = good;
+  bad.offsets[good.offset_slot(voxels[5].position)] ^= 1;
+  CHECK(imperfection(bad, voxels) != "");
+  bad = good;
+  ++bad.voxels;
+  CHECK(imperfection(bad, voxels) != "");
+}
+
+TEST_CASE("what is no set of voxels is refused", "[residual]") {
+  CHECK_THROWS_WITH(perfect_hash({4, 4, 4}, {{{4, 0, 0}, 1}}), "voxel (4, 0, 0) outside the domain of 4 x 4 x 4");
+  CHECK_THROWS_WITH(perfect_hash({4, 4, 4}, {{{0, -1, 0}, 1}}), "voxel (0, -1, 0) outside the domain of 4 x 4 x 4");
+  CHECK_THROWS_WITH(perfect_hash({4, 4, 4}, {{{1, 2, 3}, 0}}), "voxel (1, 2, 3) has the value 0, expected another");
+  CHECK_THROWS_WITH(perfect_hash({4, 4, 4}, {{{1, 2, 3}, 1}, {{1, 2, 3}, 2}}), "voxel (1, 2, 3) is given twice");
+  CHECK_THROWS_AS(perfect_hash({2048, 2048, 1024}, {}), Error);
+  CHECK_THROWS_AS(perfect_hash({-1, 2, 2}, {}), Error);
+}
+
+TEST_CASE("sizes of hashes are counted as they are stored", "[residual]") {
+  // 40632 of 64^3: the row "400, 0" of the table, 279 k with tags and 183 k with domain bits.
+  std::vector<HashedVoxel> voxels;
+  std::set<std::uint32_t> taken;
+  for (std::uint32_t i = 0; voxels.size() < 40632; ++i)
+    if (const std::uint32_t at = word(i, 4) % 262144; taken.insert(at).second)
+      voxels.push_back({{int(at % 64), int(at / 64 % 64), int(at / 4096)}, 1});
+  const PerfectHash hash = perfect_hash({64, 64, 64}, voxels);
+  CHECK(hash.m == 35);
+  CHECK(hash.r == 33);
+  CHECK(hash.retries == 0);
+  CHECK(hash.bytes_with_tags() == 4 * 42875 + 3 * 35937);
+  CHECK(hash.bytes_with_domain() == 42875 + 3 * 35937 + 32768);
+  CHECK(imperfection(hash, voxels) == "");
+}
+
+TEST_CASE("a sequence lies in one hash for 27 frames", "[residual]") {
+  const Vector3i size(6, 5, 7);
+  std::vector<std::vector<std::int8_t>> frames;
+  for (std::uint32_t f = 0; f < 30; ++f) {
+    frames.emplace_back(std::size_t(size.prod()));
+    if (f != 11)  // an empty frame among others
+      for (const HashedVoxel& v : random_voxels(size, 0.2, 100 + f))
+        frames.back()[std::size_t(v.position[0] + size[0] * (v.position[1] + size[1] * v.position[2]))] = v.value;
+  }
+  const HashedSequence sequence = hashed_sequence(size, frames);
+  REQUIRE(sequence.tables.size() == 2);
+  CHECK(sequence.tables[0].extent == Vector3i(18, 15, 21));
+  int wrong = 0;
+  for (int f = 0; f < 30; ++f)
+    for (int z = -1; z <= size[2]; ++z)
+      for (int y = -1; y <= size[1]; ++y)
+        for (int x = -1; x <= size[0]; ++x) {
+          const bool in = x >= 0 && y >= 0 && z >= 0 && x < size[0] && y < size[1] && z < size[2];
+          const int expected = in ? frames[std::size_t(f)][std::size_t(x + size[0] * (y + size[1] * z))] : 0;
+          wrong += sequence.value(f, {x, y, z}) != expected;
+        }
+  CHECK(wrong == 0);
+  CHECK(hashed_sequence(size, {}).tables.empty());
+}
+
+}  // namespace airlight::scene
