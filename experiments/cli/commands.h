@@ -57,6 +57,16 @@ struct ConvertOptions {
 // medium of a scene as a Legendre box.
 int convert(const ConvertOptions&);
 
+struct FitCommand {
+  std::vector<std::string> files;
+  std::string out, grid = "density", medium = "0", method = "gauss_newton";
+  int gaussians = 1000, deleted = 3, inserted = 8, threshold = 1, threads = 0;
+  double unit = 0, allowed = 1.1;
+  bool keep = false;
+};
+// Smoke as Gaussians and residuals, frame by frame, into the folder `out` (experiments/fit_sequence.h), or goes on with them.
+int fit(const FitCommand&);
+
 struct ExplainOptions {
   std::string scene, method;
   Pairs settings, overrides;

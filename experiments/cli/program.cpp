@@ -18,6 +18,7 @@
 #include "experiments/verify/verify.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
+#include "scene/convert/gaussian_fit.h"
 #include "scene/data_folder.h"
 #include "scene/error.h"
 #include "scene/nearest.h"
@@ -223,6 +224,38 @@ int dispatch(int argc, char** argv) {
       require(convert_options.files.size() % 2 == 0 ? convert_options.files.back() : "", "OUT");
       check_exposure(convert_options.exposure);
       return convert(convert_options);
+    };
+  });
+
+  FitCommand fit_options;
+  c = command(app, "fit", "smoke as sums of Gaussians and small residuals: a frame, or a sequence of them");
+  c->add_option(
+      "FILES", fit_options.files,
+      "OpenVDB files in the order of time, or scenes with a medium that is a grid; the results of FILE are called after it");
+  c->add_option("--out,-o", fit_options.out, "folder; what an earlier run left there is gone on with");
+  c->add_option("--gaussians,-n", fit_options.gaussians, "of the first frame (1000)");
+  c->add_option("--grid", fit_options.grid, "of an OpenVDB file (density)");
+  c->add_option("--medium", fit_options.medium, "of a scene: name or number (0)");
+  c->add_option(
+      "--unit", fit_options.unit,
+      "METRES: of widths, which are 0.015 to 0.09 of it (default: the cube root of the volume of the box that all frames fill)");
+  c->add_option("--delete", fit_options.deleted, "so many of the least significant before each later frame (3)");
+  c->add_option("--insert", fit_options.inserted, "at most so many into each later frame that needs them (8)");
+  c->add_option("--allowed", fit_options.allowed,
+                "a later frame needs more where its squared error is this many times that of the first (1.1)");
+  c->add_flag("--keep", fit_options.keep,
+              "send none to another place in later frames, as the publication: fewer new ones, greater errors");
+  c->add_option("--threshold", fit_options.threshold, "residual: levels of this size or less are dropped (1)")
+      ->check(CLI::Range(0, 126));
+  c->add_option("--method,-m", fit_options.method,
+                fmt::format("one of {}", fmt::join(scene::fit_method_names(), ", ")));
+  c->add_option("--threads", fit_options.threads, "0: all")->check(CLI::Range(0, 4096));
+  data_option(c);
+  c->final_callback([&] {
+    action = [&] {
+      require(fit_options.files.empty() ? "" : fit_options.files.front(), "FILES");
+      require(fit_options.out, "--out");
+      return fit(fit_options);
     };
   });
 

@@ -34,23 +34,6 @@ double greatest_of(const VoxelGrid& grid) {
   return greatest;
 }
 
-void check(const FitOptions& o) {
-  const auto require = [](bool good, const std::string& what) {
-    if (!good) throw Error("a fit's " + what);
-  };
-  require(o.gaussians >= 1 && o.gaussians <= most_fit_gaussians,
-          fmt::format("number of Gaussians is {}, expected 1 to {}", o.gaussians, most_fit_gaussians));
-  require(std::isfinite(o.unit) && o.unit >= 0, fmt::format("unit is {}, expected a length", o.unit));
-  require(o.widths.lo > 0 && o.widths.hi > o.widths.lo && std::isfinite(o.widths.hi),
-          "widths are empty, expected 0 < least < greatest");
-  require(o.amplitudes.lo > 0 && o.amplitudes.hi > o.amplitudes.lo && std::isfinite(o.amplitudes.hi),
-          "amplitudes are empty, expected 0 < least < greatest");
-  require(o.rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0,
-          "rounds, iterations or tolerance are out of range, expected at least 0, 1 and 0");
-  require(o.deleted >= 0 && o.inserted >= 0 && o.allowed >= 1,
-          "deleted, inserted or allowed are out of range, expected at least 0, 0 and 1");
-}
-
 // A fit at work: a grid's samples as lengths, its greatest density as 1.
 class Frame {
  public:
@@ -195,10 +178,27 @@ FitMethod fit_method_from(const std::string& name) {
   return FitMethod(found - names.begin());
 }
 
+void check_fit_options(const FitOptions& o) {
+  const auto require = [](bool good, const std::string& what) {
+    if (!good) throw Error("a fit's " + what);
+  };
+  require(o.gaussians >= 1 && o.gaussians <= most_fit_gaussians,
+          fmt::format("number of Gaussians is {}, expected 1 to {}", o.gaussians, most_fit_gaussians));
+  require(std::isfinite(o.unit) && o.unit >= 0, fmt::format("unit is {}, expected a length", o.unit));
+  require(o.widths.lo > 0 && o.widths.hi > o.widths.lo && std::isfinite(o.widths.hi),
+          "widths are empty, expected 0 < least < greatest");
+  require(o.amplitudes.lo > 0 && o.amplitudes.hi > o.amplitudes.lo && std::isfinite(o.amplitudes.hi),
+          "amplitudes are empty, expected 0 < least < greatest");
+  require(o.rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0,
+          "rounds, iterations or tolerance are out of range, expected at least 0, 1 and 0");
+  require(o.deleted >= 0 && o.inserted >= 0 && o.allowed >= 1,
+          "deleted, inserted or allowed are out of range, expected at least 0, 0 and 1");
+}
+
 double fit_unit(const VoxelGrid& grid) { return grid.voxel_size * std::cbrt(grid.size.cast<double>().prod()); }
 
 GaussianFit fit_gaussians(const VoxelGrid& grid, const FitOptions& options) {
-  check(options);
+  check_fit_options(options);
   Stopwatch watch;
   const double greatest = greatest_of(grid);
   GaussianFit fit;
@@ -217,7 +217,7 @@ GaussianFit fit_gaussians(const VoxelGrid& grid, const FitOptions& options) {
 
 GaussianFit next_fit(const VoxelGrid& grid, const GaussianFit& previous, const FitOptions& options) {
   if (previous.sum.gaussians.empty()) return fit_gaussians(grid, options);
-  check(options);
+  check_fit_options(options);
   Stopwatch watch;
   const double greatest = greatest_of(grid);
   GaussianFit fit;

@@ -59,6 +59,9 @@ struct GaussianFit {
   double seconds = 0;  // wall clock
 };
 
+// Throws Error for options out of range.
+void check_fit_options(const FitOptions&);
+
 // Throws Error where a density is not finite or negative (with its index), for options out of range.
 GaussianFit fit_gaussians(const VoxelGrid&, const FitOptions&);
 

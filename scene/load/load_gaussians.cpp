@@ -23,17 +23,19 @@ Gaussian read_gaussian(TableReader reader) {
 
 }  // namespace
 
-std::vector<Gaussian> read_gaussians_csv(const std::string& path) {
+std::vector<Gaussian> read_gaussians_csv(const std::string& path, std::vector<int>* ids) {
   CsvTable table(path, header, header_with_ids);
   std::vector<Range> ranges{coordinate, coordinate, coordinate, length, either_sign(density_range)};
   const std::size_t first = table.header() == header ? 0 : 1;
   if (first == 1) ranges.insert(ranges.begin(), id);
   std::vector<Gaussian> gaussians;
+  if (ids) ids->clear();
   while (table.next()) {
     if (gaussians.size() == most_gaussians)
       table.fail(0, fmt::format("found more than {} Gaussians, expected fewer", most_gaussians));
     const std::vector<double> values = table.values(ranges);
     const double* const row = values.data() + first;
+    if (ids && first == 1) ids->push_back(int(values[0]));
     gaussians.push_back({{row[0], row[1], row[2]}, row[3], row[4]});
   }
   return gaussians;

@@ -39,7 +39,8 @@ LegendrePointer read_legendre(TableReader&, const std::string& folder);
 FittedPointer read_fitted(TableReader&, const std::string& folder);
 
 // The Gaussians of a CSV file. Throws Error (file, line, column).
-std::vector<Gaussian> read_gaussians_csv(const std::string& path);
+// Their ids into `ids`, if the table has some; else that is empty.
+std::vector<Gaussian> read_gaussians_csv(const std::string& path, std::vector<int>* ids = nullptr);
 
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();
