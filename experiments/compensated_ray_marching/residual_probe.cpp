@@ -213,9 +213,8 @@ std::vector<scene::SettingSpec> ResidualStores::settings() const {
 }
 
 std::vector<std::string> ResidualStores::figures() const {
-  return {"kB",       "of_raw",   "nonzero_percent", "error_percent",
-          "fit_percent", "build_ms", "random_ns",       "consecutive_ns",
-          "m",           "r",        "retries",         "largest_bucket"};
+  return {"kB", "of_raw", "nonzero_percent", "error_percent", "fit_percent", "build_ms", "random_ns", "consecutive_ns",
+          "m",  "r",      "retries",         "largest_bucket"};
 }
 
 Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
