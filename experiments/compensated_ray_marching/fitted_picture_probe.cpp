@@ -59,7 +59,7 @@ std::vector<scene::SettingSpec> FittedPicture::settings() const {
 }
 
 std::vector<std::string> FittedPicture::figures() const {
-  return {"rel_l2", "beyond_noise", "bias", "rms_over_max", "noise", "density_percent", "residual_bytes"};
+  return {"rel_l2", "beyond_noise", "bias", "rms_over_max", "noise", "density_percent", "residual_kB"};
 }
 
 Findings FittedPicture::run(const ProbeInput& input, const scene::Settings& s,
@@ -112,7 +112,7 @@ Findings FittedPicture::run(const ProbeInput& input, const scene::Settings& s,
                    exactly("noise", noise),
                    exactly("beyond_noise", std::sqrt(std::max(0.0, d.relative_l2 * d.relative_l2 - noise * noise))),
                    exactly("density_percent", 100 * std::sqrt(squares / norm)),
-                   exactly("residual_bytes", fitted->residual ? double(scene::residual_bytes(residual).size()) : 0)};
+                   exactly("residual_kB", fitted->residual ? 1e-3 * double(scene::residual_bytes(residual).size()) : 0)};
   return found;
 }
 

@@ -213,9 +213,8 @@ std::vector<scene::SettingSpec> ResidualStores::settings() const {
 }
 
 std::vector<std::string> ResidualStores::figures() const {
-  return {"bytes",       "of_raw",   "nonzero_percent", "error_percent",
-          "fit_percent", "build_ms", "random_ns",       "consecutive_ns",
-          "m",           "r",        "retries",         "largest_bucket"};
+  return {"kB", "of_raw", "nonzero_percent", "error_percent", "fit_percent", "build_ms", "random_ns", "consecutive_ns",
+          "m",  "r",      "retries",         "largest_bucket"};
 }
 
 Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
@@ -237,7 +236,7 @@ Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
   const Measured m = measure_store(task, s, hash);
   const double samples = double(task.levels.size()), lookups = double(task.random.size());
   Findings found;
-  found.figures = {exactly("bytes", m.bytes),
+  found.figures = {exactly("kB", 1e-3 * m.bytes),
                    exactly("of_raw", m.bytes / samples),
                    exactly("nonzero_percent", 100 * double(voxels.size()) / samples),
                    exactly("error_percent", 100 * relative_l2(grid, decoded(sum, residual))),
