@@ -2,7 +2,7 @@
 
 #include "methods/fogshop/harmonic_reflection.h"
 #include "methods/fogshop/surface_psf.h"
-#include "methods/fogshop/triple_product.h"
+#include "scene/math/sh_product.h"
 #include "scene/math/sh_rotation.h"
 
 namespace airlight::gpu::fog {
@@ -95,7 +95,7 @@ void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, in
     double value;
   };
   std::vector<std::vector<Term>> terms(std::size_t(order) * order);
-  for (const auto& [i, j, k, value] : fogshop::triple_product(order).terms()) {  // i <= j <= k
+  for (const auto& [i, j, k, value] : scene::triple_product(order).terms()) {  // i <= j <= k
     terms[k].push_back({i, j, value});
     if (j != k) terms[j].push_back({i, k, value});
     if (i != j) terms[i].push_back({j, k, value});

@@ -1,7 +1,7 @@
 #include "methods/fogshop/surface_lighting.h"
 
 #include "methods/fogshop/harmonic_reflection.h"
-#include "methods/fogshop/triple_product.h"
+#include "scene/math/sh_product.h"
 
 namespace airlight::fogshop {
 
@@ -38,7 +38,8 @@ std::vector<Rgb> shadowed_reflectance(const scene::Scene& scene, const SurfaceLi
   std::vector<Rgb> reflectance = (*lighting.reflectances)(scene, point.surface, point.normal, to_view);
   if (!lighting.transfer) return reflectance;
   const std::vector<double> visibility = lighting.transfer->visibility(scene, point);
-  return visibility.empty() ? reflectance : triple_product(lighting.reflectances->order())(reflectance, visibility);
+  return visibility.empty() ? reflectance
+                            : scene::triple_product(lighting.reflectances->order())(reflectance, visibility);
 }
 
 void reflect_environment(const Model& model, const SurfaceLighting& lighting, const SurfacePoint& point,

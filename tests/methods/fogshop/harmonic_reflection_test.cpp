@@ -8,13 +8,15 @@
 
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/surface_psf.h"
-#include "methods/fogshop/triple_product.h"
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
+#include "scene/math/sh_product.h"
 #include "scene/math/spherical_harmonics.h"
 
 using namespace airlight;
 using namespace airlight::fogshop;
+using scene::triple_product;
+using scene::TripleProduct;
 
 namespace {
 

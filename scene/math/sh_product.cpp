@@ -1,4 +1,4 @@
-#include "methods/fogshop/triple_product.h"
+#include "scene/math/sh_product.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 
-namespace airlight::fogshop {
+namespace airlight::scene {
 namespace {
 
 constexpr int greatest_order = 12;
@@ -50,15 +50,15 @@ TripleProduct::TripleProduct(int order) : order_(order) {
     throw Error(fmt::format("products of harmonics of order {}, expected 1 to {}", order, greatest_order));
   // The parts that depend on theta, at the nodes of a rule for polynomials of degree 3 (order - 1).
   const int nodes = (3 * order) / 2 + 1, size = order * order;
-  const scene::GaussLegendre rule = scene::gauss_legendre(nodes);
+  const GaussLegendre rule = gauss_legendre(nodes);
   std::vector<Index> index;
   for (int l = 0; l < order; ++l)
     for (int m = -l; m <= l; ++m) index.push_back({l, m});
   std::vector<std::vector<double>> polar(size, std::vector<double>(nodes));
   for (int n = 0; n < nodes; ++n) {
     const double z = rule.node[n];
-    const std::vector<double> y = scene::evaluate_sh(order, Vec3(std::sqrt((1 - z) * (1 + z)), 0, z));  // phi = 0
-    for (int i = 0; i < size; ++i) polar[i][n] = y[scene::sh_index(index[i].l, std::abs(index[i].m))];
+    const std::vector<double> y = evaluate_sh(order, Vec3(std::sqrt((1 - z) * (1 + z)), 0, z));  // phi = 0
+    for (int i = 0; i < size; ++i) polar[i][n] = y[sh_index(index[i].l, std::abs(index[i].m))];
   }
   const Azimuth azimuth(order);
   for (int i = 0; i < size; ++i)
@@ -74,12 +74,16 @@ TripleProduct::TripleProduct(int order) : order_(order) {
       }
 }
 
-std::vector<Rgb> TripleProduct::operator()(const std::vector<Rgb>& f, const std::vector<double>& h) const {
-  const std::size_t size = std::size_t(order_) * order_;
+namespace {
+
+template <class T>
+std::vector<T> product_of(const TripleProduct& tensor, const std::vector<T>& f, const std::vector<double>& h) {
+  const int order = tensor.order();
+  const std::size_t size = std::size_t(order) * order;
   if (f.size() != size || h.size() != size)
     throw Error(fmt::format("a product of harmonics of {} and {} coefficients, expected {}", f.size(), h.size(), size));
-  std::vector<Rgb> product(size, Rgb::Zero());
-  for (const Term& t : terms_) {
+  std::vector<T> product(size, T(0.0 * f[0]));
+  for (const TripleProduct::Term& t : tensor.terms()) {
     const auto [i, j, k, value] = t;
     // Every distinct order of the three indices once.
     if (i == j && j == k) {
@@ -99,6 +103,15 @@ std::vector<Rgb> TripleProduct::operator()(const std::vector<Rgb>& f, const std:
   return product;
 }
 
+}  // namespace
+
+std::vector<Rgb> TripleProduct::operator()(const std::vector<Rgb>& f, const std::vector<double>& h) const {
+  return product_of(*this, f, h);
+}
+std::vector<double> TripleProduct::operator()(const std::vector<double>& f, const std::vector<double>& h) const {
+  return product_of(*this, f, h);
+}
+
 const TripleProduct& triple_product(int order) {
   static std::mutex mutex;
   static std::array<std::unique_ptr<const TripleProduct>, greatest_order + 1> kept;
@@ -108,4 +121,4 @@ const TripleProduct& triple_product(int order) {
   return *kept[order];
 }
 
-}  // namespace airlight::fogshop
+}  // namespace airlight::scene

@@ -4,7 +4,7 @@
 
 #include "scene/math/types.h"
 
-namespace airlight::fogshop {
+namespace airlight::scene {
 
 // G_ijk = integral over the sphere of y_i y_j y_k where it is not 0, for i, j, k < order^2: symmetric in its indices,
 // G_0jk = delta_jk / sqrt(4 pi). Exact quadrature of polynomials, error 1e-15.
@@ -19,6 +19,7 @@ class TripleProduct {
   // The product f h, each given by order^2 coefficients, projected on as many: its inner product with a third function
   // is the integral of all three.
   std::vector<Rgb> operator()(const std::vector<Rgb>& f, const std::vector<double>& h) const;
+  std::vector<double> operator()(const std::vector<double>& f, const std::vector<double>& h) const;
 
   const std::vector<Term>& terms() const { return terms_; }  // i <= j <= k
   int order() const { return order_; }
@@ -31,4 +32,4 @@ class TripleProduct {
 // That of this order, computed when it is first asked for and kept. Thread safe.
 const TripleProduct& triple_product(int order);
 
-}  // namespace airlight::fogshop
+}  // namespace airlight::scene

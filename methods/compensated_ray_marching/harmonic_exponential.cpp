@@ -1,0 +1,154 @@
+#include "methods/compensated_ray_marching/harmonic_exponential.h"
+
+#include <algorithm>
+
+#include "methods/compensated_ray_marching/gaussian_depth.h"
+#include "methods/compensated_ray_marching/ordinate_directions.h"
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/error.h"
+#include "scene/math/random.h"
+#include "scene/math/spherical_harmonics.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+int order_of(const Harmonics& f) { return int(std::lround(std::sqrt(double(f.size())))); }
+
+// Its size without the mean.
+double size_of(const Harmonics& f) {
+  double sum = 0;
+  for (std::size_t i = 1; i < f.size(); ++i) sum += f[i] * f[i];
+  return std::sqrt(sum);
+}
+
+double exp_of_mean(const Harmonics& f) { return std::exp(f[0] / std::sqrt(4 * pi)); }
+
+// Values at directions that integrate products of exponentials well, and their harmonics.
+struct Sphere {
+  std::vector<Ordinate> directions;
+  std::vector<Harmonics> harmonics;
+  Sphere(int order, int levels, int azimuths) : directions(ordinate_directions(levels, azimuths, false)) {
+    for (const Ordinate& d : directions) harmonics.push_back(scene::evaluate_sh(order, d.direction));
+  }
+  double value(const Harmonics& f, std::size_t i) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < f.size(); ++k) sum += f[k] * harmonics[i][k];
+    return sum;
+  }
+};
+
+// Of what has no mean left: squared `times` times, kept near 1 in size so that nothing overflows; what was taken out comes back at the end.
+Harmonics squared(Harmonics f, int times, double log_scale) {
+  const scene::TripleProduct& product = scene::triple_product(order_of(f));
+  for (int i = 0; i < times; ++i) {
+    f = product(f, f);
+    log_scale *= 2;
+    double largest = 0;
+    for (const double value : f) largest = std::max(largest, std::abs(value));
+    if (!(largest > 0)) return f;
+    for (double& value : f) value /= largest;
+    log_scale += std::log(largest);
+  }
+  for (double& value : f) value *= std::exp(log_scale);
+  return f;
+}
+
+int halvings(double size, double threshold) {
+  return size > threshold ? int(std::ceil(std::log2(size / threshold))) : 0;
+}
+
+Harmonics scaled(Harmonics f, double factor) {
+  for (double& value : f) value *= factor;
+  return f;
+}
+
+}  // namespace
+
+Harmonics exact_exponential(const Harmonics& f) {
+  const Sphere sphere(order_of(f), 24, 48);
+  Harmonics result(f.size(), 0.0);
+  for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
+    const double value = sphere.directions[i].weight * std::exp(sphere.value(f, i));
+    for (std::size_t k = 0; k < f.size(); ++k) result[k] += value * sphere.harmonics[i][k];
+  }
+  return result;
+}
+
+// With e = exp*(-s h) the least squares of a + b (-s h) are a = mean of e_0 / sqrt(4 pi), b = mean of e.(-s h) / s^2: 1 is orthogonal to h.
+LinearExponential::LinearExponential(const std::vector<Harmonics>& family, double longest, int steps)
+    : longest_(longest), log_a_(std::size_t(steps) + 1, 0.0), log_b_(std::size_t(steps) + 1, 0.0) {
+  if (family.empty()) throw Error("a linear exponential of an empty family");
+  const Sphere sphere(order_of(family[0]), 24, 48);
+  std::vector<double> a(log_a_.size(), 0.0), b(log_a_.size(), 0.0);
+  for (const Harmonics& h : family)
+    for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
+      const double value = sphere.value(h, i), weight = sphere.directions[i].weight;
+      const double factor = std::exp(-longest / steps * value);
+      double power = 1;
+      for (int k = 1; k <= steps; ++k) {
+        power = k % 16 ? power * factor : std::exp(-longest * k / steps * value);
+        a[std::size_t(k)] += weight * power;
+        b[std::size_t(k)] -= weight * power * value;
+      }
+    }
+  for (int k = 1; k <= steps; ++k) {
+    const double s = longest * k / steps, members = double(family.size());
+    log_a_[std::size_t(k)] = std::log(a[std::size_t(k)] / (4 * pi * members));
+    log_b_[std::size_t(k)] = std::log(b[std::size_t(k)] / (s * members));
+  }
+}
+
+double LinearExponential::at(const std::vector<double>& table, double size) const {
+  const double place = std::min(size / longest_, 1.0) * double(table.size() - 1);
+  const std::size_t i = std::min(std::size_t(place), table.size() - 2);
+  return table[i] + (place - double(i)) * (table[i + 1] - table[i]);
+}
+
+Harmonics LinearExponential::operator()(const Harmonics& f) const {
+  const double size = size_of(f), mean = f[0] / std::sqrt(4 * pi);
+  Harmonics result = scaled(f, std::exp(mean + at(log_b_, size)));
+  result[0] = std::exp(mean + at(log_a_, size)) * std::sqrt(4 * pi);
+  return result;
+}
+
+std::vector<Harmonics> depth_family(int order, const std::vector<int>& counts, int members) {
+  std::vector<Harmonics> family;
+  std::uint32_t number = 0;
+  for (const int count : counts)
+    for (int m = 0; m < members; ++m) {
+      Harmonics sum(std::size_t(order * order), 0.0);
+      for (int i = 0; i < count; ++i) {
+        const RandomBlock random{philox4x32_10({number++, 0, 0, 0}, {2008, 0})};
+        const double z = 2 * random.coarse(0) - 1, phi = 2 * pi * random.coarse(1), sine = std::sqrt((1 - z) * (1 + z));
+        const double distance = 0.3 * std::pow(10 / 0.3, random.coarse(2));
+        const Harmonics one = about_axis(zonal_depth(order, distance), {sine * std::cos(phi), sine * std::sin(phi), z});
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += one[k];
+      }
+      sum[0] = 0;
+      family.push_back(scaled(sum, 1 / size_of(sum)));
+    }
+  return family;
+}
+
+Harmonics squared_exponential(const Harmonics& f, const LinearExponential& linear, double threshold) {
+  const int times = halvings(size_of(f), threshold);
+  Harmonics small = scaled(f, std::ldexp(1.0, -times));
+  small[0] = 0;
+  return squared(linear(small), times, f[0] / std::sqrt(4 * pi) * std::ldexp(1.0, -times));
+}
+
+Harmonics series_exponential(const Harmonics& f, double threshold) {
+  const int times = halvings(size_of(f), threshold);
+  Harmonics small = scaled(f, std::ldexp(1.0, -times));
+  small[0] = 0;
+  const scene::TripleProduct& product = scene::triple_product(order_of(f));
+  Harmonics sum(f.size(), 0.0);
+  sum[0] = std::sqrt(4 * pi);
+  for (const double degree : {3.0, 2.0, 1.0}) {
+    sum = scaled(product(sum, small), 1 / degree);
+    sum[0] += std::sqrt(4 * pi);
+  }
+  return squared(sum, times, f[0] / std::sqrt(4 * pi) * std::ldexp(1.0, -times));
+}
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,48 @@
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+
+#include <cmath>
+
+#include "scene/math/spherical_harmonics.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+// Calls of(l, index) for every coefficient of some bands.
+template <class Of>
+void each_coefficient(int order, const Of& of) {
+  for (int l = 0; l < order; ++l)
+    for (int m = -l; m <= l; ++m) of(l, std::size_t(scene::sh_index(l, m)));
+}
+
+double band_factor(int l) { return std::sqrt(4 * pi / (2 * l + 1)); }
+
+}  // namespace
+
+std::vector<double> about_axis(const std::vector<double>& zonal, const Vec3& axis) {
+  std::vector<double> f = scene::evaluate_sh(int(zonal.size()), axis);
+  each_coefficient(int(zonal.size()), [&](int l, std::size_t i) { f[i] *= band_factor(l) * zonal[std::size_t(l)]; });
+  return f;
+}
+
+std::vector<double> convolved(const std::vector<double>& f, const std::vector<double>& zonal) {
+  std::vector<double> result = f;
+  each_coefficient(int(zonal.size()),
+                   [&](int l, std::size_t i) { result[i] *= band_factor(l) * zonal[std::size_t(l)]; });
+  return result;
+}
+
+std::vector<double> henyey_greenstein(int order, double g) {
+  std::vector<double> zonal;
+  double power = 1;
+  for (int l = 0; l < order; ++l, power *= g) zonal.push_back(std::sqrt(4 * pi * (2 * l + 1)) * power);
+  return zonal;
+}
+
+std::vector<double> turned_back(std::vector<double> f) {
+  each_coefficient(int(std::lround(std::sqrt(double(f.size())))), [&](int l, std::size_t i) {
+    if (l % 2) f[i] = -f[i];
+  });
+  return f;
+}
+
+}  // namespace airlight::compensated_ray_marching
