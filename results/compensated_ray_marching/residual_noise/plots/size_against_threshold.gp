@@ -1,9 +1,9 @@
-# Draws bytes_against_threshold.svg and bytes_against_threshold.png from bytes_against_threshold.csv: run gnuplot on this file in its folder.
-data = "bytes_against_threshold.csv"
+# Draws size_against_threshold.svg and size_against_threshold.png from size_against_threshold.csv: run gnuplot on this file in its folder.
+data = "size_against_threshold.csv"
 set datafile separator comma
-set title "bytes against setting" noenhanced
+set title "kB against setting" noenhanced
 set xlabel "setting" noenhanced
-set ylabel "bytes" noenhanced
+set ylabel "kB" noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -11,9 +11,9 @@ set tics nomirror
 set xrange [0:2.3]
 set logscale y
 set format y "%g"
-set yrange [79690.1:878468]
+set yrange [79.6901:878.468]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
-set output "bytes_against_threshold.svg"
+set output "size_against_threshold.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "hash, tags", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "hash, domain bits", \
@@ -37,7 +37,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 20 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "density bricks 8", \
      data index 20 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
-set output "bytes_against_threshold.png"
+set output "size_against_threshold.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "hash, tags", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "hash, domain bits", \
