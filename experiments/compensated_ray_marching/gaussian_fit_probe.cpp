@@ -19,7 +19,8 @@ enum class Smoke { noise, scene };
 
 // A frame of the smoke that the settings name.
 VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
-  if (s.choice<Smoke>("smoke") == Smoke::noise) return noise_smoke(int(s.integer("size")), 0.02 * frame);
+  if (s.choice<Smoke>("smoke") == Smoke::noise)
+    return noise_smoke(int(s.integer("size")), 0.02 * frame, int(s.integer("octaves")));
   ProbeInput one = input;
   if (s.integer("frames") > 1)
     one.overrides["medium.0.frame"] = std::to_string(s.integer("first") + frame * s.integer("step"));
