@@ -82,6 +82,7 @@ std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
   return {
       scene::choice_setting("smoke", "noise", {"noise", "scene"}, "curl noise, or the voxels of the [[scene]]"),
       scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise"),
+      scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
       scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
       scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
       scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),
