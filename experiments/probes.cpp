@@ -1,6 +1,7 @@
 #include "experiments/probes.h"
 
 #include "experiments/compensated_ray_marching/fitted_picture_probe.h"
+#include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/residual_probe.h"
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
@@ -41,6 +42,7 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<LegendreStability>());
     list.push_back(std::make_unique<LegendreSmoke>());
     list.push_back(std::make_unique<ResidualStores>());
+    list.push_back(std::make_unique<GaussianFitProbe>());
     list.push_back(std::make_unique<FittedPicture>());
     return list;
   }();

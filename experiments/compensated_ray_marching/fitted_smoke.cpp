@@ -64,25 +64,29 @@ scene::VoxelGrid grid_of_scene(const ProbeInput& input) {
   throw Error(input.file.string() + ": no medium has voxels");
 }
 
-scene::VoxelGrid noise_smoke(int n) {
+scene::VoxelGrid noise_smoke(int n, double time, int octaves) {
   scene::VoxelGrid grid;
   grid.size = Eigen::Vector3i::Constant(n);
   grid.voxel_size = 1.0 / n;
   grid.translation = Vec3::Constant(0.5 / n);
-  for (int z = 0; z < n; ++z)
+  grid.values.resize(std::size_t(n) * n * n);
+  const Vec3 risen = time * Vec3::UnitY();
+  scene::parallel_rows(n, {}, [&](int z) {
+    float* to = grid.values.data() + std::size_t(z) * n * n;
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
         Vec3 p = (Vec3(x, y, z) + Vec3::Constant(0.5)) / n;
-        p += 0.05 * curl(4 * p) + 0.012 * curl(11 * p + Vec3(7, 3, 5));
+        p += 0.05 * curl(4 * (p - risen)) + 0.012 * curl(11 * (p - risen) + Vec3(7, 3, 5));
         // A column that widens with its height.
         const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
         const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
         double detail = 0;
-        for (int octave = 0; octave < 4; ++octave)
-          detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * p, 10 + std::uint32_t(octave));
+        for (int octave = 0; octave < octaves; ++octave)
+          detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
         const double value = ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12);
-        grid.values.push_back(float(std::max(0.0, value)));
+        *to++ = float(std::max(0.0, value));
       }
+  });
   return grid;
 }
 

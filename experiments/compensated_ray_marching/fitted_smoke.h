@@ -9,8 +9,9 @@ namespace airlight::experiments {
 // The voxels of the first medium of the probe's scene that has some. Throws Error if there is none.
 scene::VoxelGrid grid_of_scene(const ProbeInput&);
 
-// A column of smoke that billows, n^3 samples of a cube of 1 m: fractal noise, its places displaced by a curl. The same for every n.
-scene::VoxelGrid noise_smoke(int n);
+// A column of smoke that billows, n^3 samples of a cube of 1 m: fractal noise, its places displaced by a curl. The same for every n. With
+// time [s] the noise rises through it, 1 m/s. The finest of four octaves has 48 cells to the side.
+scene::VoxelGrid noise_smoke(int n, double time = 0, int octaves = 4);
 
 // `count` Gaussians fitted to a grid, kept in the content store that the execution carries; none for 0.
 scene::GaussianSum gaussians_for(const scene::VoxelGrid&, int count, const scene::Execution&);

@@ -1,0 +1,181 @@
+#include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "experiments/compensated_ray_marching/fitted_smoke.h"
+#include "scene/convert/gaussian_fit.h"
+#include "scene/convert/gaussian_samples.h"
+#include "scene/error.h"
+
+namespace airlight::experiments {
+namespace {
+
+using scene::GaussianFit;
+using scene::VoxelGrid;
+
+enum class Smoke { noise, scene };
+
+// A frame of the smoke that the settings name.
+VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
+  if (s.choice<Smoke>("smoke") == Smoke::noise)
+    return noise_smoke(int(s.integer("size")), 0.02 * frame, int(s.integer("octaves")));
+  ProbeInput one = input;
+  if (s.integer("frames") > 1)
+    one.overrides["medium.0.frame"] = std::to_string(s.integer("first") + frame * s.integer("step"));
+  return grid_of_scene(one);
+}
+
+// What changes from one frame to the next, in the density and in what the fit leaves of it: sums of squares over the samples that either
+// frame has, on the lattice that both share.
+class Flicker {
+ public:
+  void add(const VoxelGrid& grid, const GaussianFit& fit) {
+    VoxelGrid left = grid;
+    const std::vector<float> values = scene::gaussian_samples(fit.sum, grid);
+    for (std::size_t i = 0; i < values.size(); ++i) left.values[i] = values[i] - grid.values[i];
+    if (density_) {
+      of_density_ += squared_change(*density_, grid);
+      of_error_ += squared_change(*error_, left);
+    }
+    density_ = grid;
+    error_ = std::move(left);
+  }
+  double ratio() const { return of_density_ > 0 ? std::sqrt(of_error_ / of_density_) : 0; }
+
+ private:
+  static double squared_change(const VoxelGrid& a, const VoxelGrid& b) {
+    const Eigen::Vector3i lo = a.origin_index.cwiseMin(b.origin_index);
+    const Eigen::Vector3i hi = (a.origin_index + a.size).cwiseMax(b.origin_index + b.size);
+    const auto at = [](const VoxelGrid& g, const Eigen::Vector3i& index) {
+      const Eigen::Vector3i p = index - g.origin_index;
+      if ((p.array() < 0).any() || (p.array() >= g.size.array()).any()) return 0.0;
+      return double(g.at(p[0], p[1], p[2]));
+    };
+    double sum = 0;
+    for (int z = lo[2]; z < hi[2]; ++z)
+      for (int y = lo[1]; y < hi[1]; ++y)
+        for (int x = lo[0]; x < hi[0]; ++x) {
+          const double change = at(b, {x, y, z}) - at(a, {x, y, z});
+          sum += change * change;
+        }
+    return sum;
+  }
+  std::optional<VoxelGrid> density_, error_;
+  double of_density_ = 0, of_error_ = 0;
+};
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0 : sum / double(values.size());
+}
+
+}  // namespace
+
+std::string GaussianFitProbe::about() const {
+  return "error and time of smoke as Gaussians, a frame or a sequence (Zhou et al. 2008, section 5.1)";
+}
+
+std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
+  return {
+      scene::choice_setting("smoke", "noise", {"noise", "scene"}, "curl noise, or the voxels of the [[scene]]"),
+      scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise"),
+      scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
+      scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
+      scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
+      scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),
+      scene::integer_setting("rounds", "12", 1, 1000, "at most, each followed by teleportation"),
+      scene::integer_setting("iterations", "5", 1, 1000, "a round"),
+      scene::integer_setting("frames", "1", 1, 1000, "of a sequence"),
+      scene::integer_setting("first", "0", 0, 100000, "frame of the scene's files"),
+      scene::integer_setting("step", "1", 1, 1000, "from frame to frame of the scene's files"),
+      scene::flag_setting("warm", true, "a frame begins with the Gaussians of the one before"),
+      scene::flag_setting("resent", true, "where the error grows, others are sent to another place in later frames"),
+      scene::integer_setting("runs", "1", 1, 100, "of the same, for times")};
+}
+
+std::vector<std::string> GaussianFitProbe::figures() const {
+  return {"squared_percent", "relative_l2_percent", "rms_percent", "rms_filled_percent", "max_percent",
+          "filled_percent",  "evaluations",         "iterations",  "teleported",         "gaussians",
+          "median_width",    "at_bounds_percent",   "flicker",     "first_seconds",      "frame_seconds"};
+}
+
+Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s,
+                               const scene::Execution& execution) const {
+  scene::FitOptions options;
+  options.gaussians = int(s.integer("gaussians"));
+  options.method = s.choice<scene::FitMethod>("method");
+  options.teleport = s.flag("teleport");
+  options.rounds = int(s.integer("rounds"));
+  options.iterations = int(s.integer("iterations"));
+  options.resent = s.flag("resent");
+  options.threads = execution.threads;
+  const auto step = [&] {
+    if (execution.progress && !execution.progress(0)) throw scene::Interrupted("interrupted");
+  };
+  options.check = step;
+  const int frames = int(s.integer("frames")), runs = int(s.integer("runs"));
+
+  std::vector<double> squared, rms, rms_filled, max, filled, evaluations, iterations, teleported, count, first, later;
+  std::vector<double> widths;
+  double at_bounds = 0;
+  Flicker flicker;
+  GaussianFit previous;
+  for (int frame = 0; frame < frames; ++frame) {
+    step();
+    const VoxelGrid grid = smoke_at(input, s, frame);
+    if (frame == 0) options.unit = s.choice<Smoke>("smoke") == Smoke::noise ? scene::fit_unit(grid) : 0;
+    GaussianFit fit;
+    for (int run = 0; run < runs; ++run) {
+      fit = s.flag("warm") ? scene::next_fit(grid, previous, options) : scene::fit_gaussians(grid, options);
+      (frame == 0 ? first : later).push_back(fit.seconds);
+    }
+    if (!fit.sum.gaussians.empty()) previous = fit;
+    squared.push_back(fit.errors.squared_ratio);
+    rms.push_back(fit.errors.rms);
+    rms_filled.push_back(fit.errors.rms_filled);
+    max.push_back(fit.errors.max);
+    filled.push_back(double(std::count_if(grid.values.begin(), grid.values.end(), [](float v) { return v > 0; })) /
+                     double(grid.values.size()));
+    evaluations.push_back(double(fit.evaluations));
+    iterations.push_back(fit.iterations);
+    teleported.push_back(fit.teleported);
+    count.push_back(double(fit.sum.gaussians.size()));
+    const double unit = options.unit > 0 ? options.unit : scene::fit_unit(grid);
+    const double lo = std::max(options.widths.lo * unit, scene::least_fit_width * grid.voxel_size);
+    const double hi = std::max(options.widths.hi * unit, 2 * lo);
+    for (const scene::Gaussian& g : fit.sum.gaussians) {
+      widths.push_back(g.width / unit);
+      at_bounds += g.width < 1.0001 * lo || g.width > 0.9999 * hi;
+    }
+    if (frames > 1) flicker.add(grid, fit);
+  }
+  Findings found;
+  const auto percent = [&](const char* name, double value) { found.figures.push_back(exactly(name, 100 * value)); };
+  percent("squared_percent", mean_of(squared));
+  percent("relative_l2_percent", std::sqrt(mean_of(squared)));
+  percent("rms_percent", mean_of(rms));
+  percent("rms_filled_percent", mean_of(rms_filled));
+  percent("max_percent", *std::max_element(max.begin(), max.end()));
+  percent("filled_percent", mean_of(filled));
+  found.figures.push_back(exactly("evaluations", mean_of(evaluations)));
+  found.figures.push_back(exactly("iterations", mean_of(iterations)));
+  found.figures.push_back(exactly("teleported", mean_of(teleported)));
+  found.figures.push_back(exactly("gaussians", mean_of(count)));
+  if (!widths.empty()) {
+    percent("at_bounds_percent", at_bounds / double(widths.size()));
+    std::nth_element(widths.begin(), widths.begin() + std::ptrdiff_t(widths.size() / 2), widths.end());
+    found.figures.push_back(exactly("median_width", widths[widths.size() / 2]));
+  }
+  found.figures.push_back(measured("first_seconds", first));
+  if (!later.empty()) {
+    found.figures.push_back(exactly("flicker", flicker.ratio()));
+    found.figures.push_back(measured("frame_seconds", later));
+  }
+  set_time(found, later.empty() ? first : later);
+  return found;
+}
+
+}  // namespace airlight::experiments
