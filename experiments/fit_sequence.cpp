@@ -99,7 +99,8 @@ std::string key_of(const FitSequence& s, double unit) {
   return content_key({source_id(),
                       fmt::format("{} {} {} {} {} {} {}", o.gaussians, unit, o.widths.lo, o.widths.hi, o.amplitudes.lo,
                                   o.amplitudes.hi, int(o.method)),
-                      fmt::format("{} {} {} {} {}", o.rounds, o.iterations, o.tolerance, o.teleport, o.polish),
+                      fmt::format("{} {} {} {} {} {} {}", o.rounds, o.iterations, o.tolerance, o.teleport, o.polish,
+                                  o.later_rounds, o.later_tolerance),
                       fmt::format("{} {} {} {} {}", o.deleted, o.inserted, o.allowed, o.resent, s.threshold)});
 }
 
@@ -179,7 +180,8 @@ class Folder {
       }
       const int last = there.at("last_filled");
       if (last >= 0) {
-        previous.sum.gaussians = scene::load::read_gaussians_csv(at(frames.at(std::size_t(last)).name + ".csv"), &previous.ids);
+        previous.sum.gaussians =
+            scene::load::read_gaussians_csv(at(frames.at(std::size_t(last)).name + ".csv"), &previous.ids);
         previous.sum.cutoff = scene::fit_cutoff;
       }
       previous.first_ratio = there.at("first_ratio");

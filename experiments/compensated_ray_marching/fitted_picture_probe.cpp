@@ -55,6 +55,7 @@ std::vector<scene::SettingSpec> FittedPicture::settings() const {
       scene::integer_setting("gaussians", "400", 0, 100000, "fitted to the voxels"),
       scene::choice_setting("residual", "kept", {"left_out", "kept", "within_support"},
                             "within_support: the density is 0 where the Gaussians are below 1e-10, as in the paper"),
+      scene::flag_setting("keep_empty", false, "no density where the smoke has none, whatever the threshold"),
       scene::integer_setting("threshold", "0", 0, 126, "levels of this size or less are dropped")};
 }
 
@@ -72,7 +73,8 @@ Findings FittedPicture::run(const ProbeInput& input, const scene::Settings& s,
   auto fitted = std::make_shared<scene::Fitted>();
   fitted->gaussians = gaussians_for(grid, int(s.integer("gaussians")), execution);
   const Residual kind = s.choice<Residual>("residual");
-  const scene::Residual residual = scene::residual_of(grid, fitted->gaussians, {int(s.integer("threshold")), {}});
+  const scene::Residual residual =
+      scene::residual_of(grid, fitted->gaussians, {int(s.integer("threshold")), {}, s.flag("keep_empty")});
   if (kind != Residual::left_out) fitted->residual = std::make_shared<const scene::Residual>(residual);
   fitted->grid = kind == Residual::left_out ? decoded(residual.layout, fitted->gaussians, {})
                                             : decoded(fitted->gaussians, residual);
@@ -106,13 +108,14 @@ Findings FittedPicture::run(const ProbeInput& input, const scene::Settings& s,
     norm += std::pow(double(grid.values[i]), 2);
   }
   Findings found;
-  found.figures = {exactly("rel_l2", d.relative_l2),
-                   exactly("bias", d.bias),
-                   exactly("rms_over_max", d.over_most),
-                   exactly("noise", noise),
-                   exactly("beyond_noise", std::sqrt(std::max(0.0, d.relative_l2 * d.relative_l2 - noise * noise))),
-                   exactly("density_percent", 100 * std::sqrt(squares / norm)),
-                   exactly("residual_kB", fitted->residual ? 1e-3 * double(scene::residual_bytes(residual).size()) : 0)};
+  found.figures = {
+      exactly("rel_l2", d.relative_l2),
+      exactly("bias", d.bias),
+      exactly("rms_over_max", d.over_most),
+      exactly("noise", noise),
+      exactly("beyond_noise", std::sqrt(std::max(0.0, d.relative_l2 * d.relative_l2 - noise * noise))),
+      exactly("density_percent", 100 * std::sqrt(squares / norm)),
+      exactly("residual_kB", fitted->residual ? 1e-3 * double(scene::residual_bytes(residual).size()) : 0)};
   return found;
 }
 

@@ -64,7 +64,7 @@ scene::VoxelGrid grid_of_scene(const ProbeInput& input) {
   throw Error(input.file.string() + ": no medium has voxels");
 }
 
-scene::VoxelGrid noise_smoke(int n, double time) {
+scene::VoxelGrid noise_smoke(int n, double time, int octaves) {
   scene::VoxelGrid grid;
   grid.size = Eigen::Vector3i::Constant(n);
   grid.voxel_size = 1.0 / n;
@@ -81,7 +81,7 @@ scene::VoxelGrid noise_smoke(int n, double time) {
         const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
         const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
         double detail = 0;
-        for (int octave = 0; octave < 4; ++octave)
+        for (int octave = 0; octave < octaves; ++octave)
           detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
         const double value = ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12);
         *to++ = float(std::max(0.0, value));

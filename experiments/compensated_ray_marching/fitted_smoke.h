@@ -10,8 +10,8 @@ namespace airlight::experiments {
 scene::VoxelGrid grid_of_scene(const ProbeInput&);
 
 // A column of smoke that billows, n^3 samples of a cube of 1 m: fractal noise, its places displaced by a curl. The same for every n. With
-// time [s] the noise rises through it, 1 m/s.
-scene::VoxelGrid noise_smoke(int n, double time = 0);
+// time [s] the noise rises through it, 1 m/s. The finest of four octaves has 48 cells to the side.
+scene::VoxelGrid noise_smoke(int n, double time = 0, int octaves = 4);
 
 // `count` Gaussians fitted to a grid, kept in the content store that the execution carries; none for 0.
 scene::GaussianSum gaussians_for(const scene::VoxelGrid&, int count, const scene::Execution&);

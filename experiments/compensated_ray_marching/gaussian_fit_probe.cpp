@@ -19,7 +19,8 @@ enum class Smoke { noise, scene };
 
 // A frame of the smoke that the settings name.
 VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
-  if (s.choice<Smoke>("smoke") == Smoke::noise) return noise_smoke(int(s.integer("size")), 0.02 * frame);
+  if (s.choice<Smoke>("smoke") == Smoke::noise)
+    return noise_smoke(int(s.integer("size")), 0.02 * frame, int(s.integer("octaves")));
   ProbeInput one = input;
   if (s.integer("frames") > 1)
     one.overrides["medium.0.frame"] = std::to_string(s.integer("first") + frame * s.integer("step"));
@@ -81,6 +82,7 @@ std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
   return {
       scene::choice_setting("smoke", "noise", {"noise", "scene"}, "curl noise, or the voxels of the [[scene]]"),
       scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise"),
+      scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
       scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
       scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
       scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),

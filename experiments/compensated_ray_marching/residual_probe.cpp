@@ -202,6 +202,7 @@ std::vector<scene::SettingSpec> ResidualStores::settings() const {
           scene::integer_setting("size", "64", 8, 256, "samples along a side of the curl noise"),
           scene::integer_setting("gaussians", "400", 0, 100000, "that the residual is against"),
           scene::integer_setting("threshold", "0", 0, 126, "levels of this size or less are dropped"),
+          scene::flag_setting("keep_empty", false, "no density where the smoke has none, whatever the threshold"),
           scene::choice_setting("step", "residual", {"residual", "density"}, "of a level: max|R|/127, or max D/255"),
           scene::choice_setting("of", "residual", {"residual", "density"},
                                 "what is stored: the residual, or the density itself"),
@@ -224,6 +225,7 @@ Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
   const scene::GaussianSum sum = gaussians_for(grid, density ? 0 : int(s.integer("gaussians")), execution);
   scene::QuantisationOptions options;
   options.threshold = int(s.integer("threshold"));
+  options.keep_empty = s.flag("keep_empty");
   const float most = *std::max_element(grid.values.begin(), grid.values.end());
   if (s.choice<Step>("step") == Step::density) options.step = most / 255;
   const scene::Residual residual = scene::residual_of(grid, sum, options);

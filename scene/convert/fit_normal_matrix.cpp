@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -10,43 +11,60 @@ namespace airlight::scene {
 namespace {
 
 constexpr double least_exponent = 6.9;  // 1e-3
+constexpr std::size_t block_size = 5 * 8;
 
-// Gaussians in cubes as wide as the farthest pair reaches.
-class Cells {
+// Gaussians by classes of width, a factor of 1.5 each; those of a class in cubes as wide as two of its widest reach. One list for all would
+// look at every pair as soon as a single Gaussian is wide.
+class Neighbours {
  public:
-  explicit Cells(const std::vector<Gaussian>& gaussians) : gaussians_(gaussians) {
-    double widest = 1e-300;
-    for (const Gaussian& g : gaussians) widest = std::max(widest, g.width);
-    side_ = std::sqrt(2 * least_exponent) * widest;
-    for (std::size_t i = 0; i < gaussians.size(); ++i) cells_[key(gaussians[i].center)].push_back(std::uint32_t(i));
+  explicit Neighbours(const std::vector<Gaussian>& gaussians) : gaussians_(gaussians) {
+    double least = infinity;
+    for (const Gaussian& g : gaussians) least = std::min(least, g.width);
+    for (std::size_t i = 0; i < gaussians.size(); ++i) {
+      const Gaussian& g = gaussians[i];
+      const int which = int(std::log(g.width / least) / std::log(1.5));
+      Class& c = classes_[which];
+      if (c.cells.empty()) {
+        c.widest = least * std::pow(1.5, which + 1);
+        c.side = std::sqrt(2 * least_exponent) * c.widest;
+      }
+      c.cells[key(g.center, c.side)].push_back(std::uint32_t(i));
+    }
   }
-  // In ascending order.
+  // In ascending order, without itself.
   std::vector<std::uint32_t> near(std::size_t i) const {
+    const Gaussian& a = gaussians_[i];
     std::vector<std::uint32_t> found;
-    const auto [x, y, z] = key(gaussians_[i].center);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) {
-          const auto cell = cells_.find({x + dx, y + dy, z + dz});
-          if (cell == cells_.end()) continue;
-          for (const std::uint32_t j : cell->second) {
-            const Gaussian &a = gaussians_[i], &b = gaussians_[j];
-            const double reach2 = least_exponent * (a.width * a.width + b.width * b.width);
-            if (j != i && (a.center - b.center).squaredNorm() < reach2) found.push_back(j);
+    for (const auto& [which, c] : classes_) {
+      const Vec3 reach = Vec3::Constant(std::sqrt(least_exponent * (a.width * a.width + c.widest * c.widest)));
+      const Key lo = key(a.center - reach, c.side), hi = key(a.center + reach, c.side);
+      for (long x = lo[0]; x <= hi[0]; ++x)
+        for (long y = lo[1]; y <= hi[1]; ++y)
+          for (long z = lo[2]; z <= hi[2]; ++z) {
+            const auto cell = c.cells.find({x, y, z});
+            if (cell == c.cells.end()) continue;
+            for (const std::uint32_t j : cell->second) {
+              const Gaussian& b = gaussians_[j];
+              const double reach2 = least_exponent * (a.width * a.width + b.width * b.width);
+              if (j != i && (a.center - b.center).squaredNorm() < reach2) found.push_back(j);
+            }
           }
-        }
+    }
     std::sort(found.begin(), found.end());
     return found;
   }
 
  private:
   using Key = std::array<long, 3>;
-  Key key(const Point3& x) const {
-    return {std::lround(x[0] / side_), std::lround(x[1] / side_), std::lround(x[2] / side_)};
+  struct Class {
+    double widest = 0, side = 0;
+    std::map<Key, std::vector<std::uint32_t>> cells;
+  };
+  static Key key(const Point3& x, double side) {
+    return {std::lround(x[0] / side), std::lround(x[1] / side), std::lround(x[2] / side)};
   }
   const std::vector<Gaussian>& gaussians_;
-  double side_;
-  std::map<Key, std::vector<std::uint32_t>> cells_;
+  std::map<int, Class> classes_;
 };
 
 }  // namespace
@@ -74,7 +92,7 @@ Matrix5 overlap_derivatives(const Gaussian& i, const Gaussian& j) {
 
 NormalMatrix::NormalMatrix(const std::vector<Gaussian>& gaussians)
     : diagonal_(gaussians.size()), begin_(gaussians.size() + 1, 0) {
-  const Cells cells(gaussians);
+  const Neighbours neighbours(gaussians);
   std::vector<std::vector<std::uint32_t>> near(gaussians.size());
   const auto each = [&](auto&& body) {
     tbb::parallel_for(
@@ -84,15 +102,18 @@ NormalMatrix::NormalMatrix(const std::vector<Gaussian>& gaussians)
         },
         tbb::simple_partitioner());
   };
-  each([&](std::size_t i) { near[i] = cells.near(i); });
+  each([&](std::size_t i) { near[i] = neighbours.near(i); });
   for (std::size_t i = 0; i < gaussians.size(); ++i) begin_[i + 1] = begin_[i] + near[i].size();
   column_.resize(begin_.back());
-  block_.resize(begin_.back());
+  block_.resize(begin_.back() * block_size);
   each([&](std::size_t i) {
     diagonal_[i] = overlap_derivatives(gaussians[i], gaussians[i]);
     for (std::size_t k = 0; k < near[i].size(); ++k) {
       column_[begin_[i] + k] = near[i][k];
-      block_[begin_[i] + k] = overlap_derivatives(gaussians[i], gaussians[near[i][k]]).cast<float>();
+      const Matrix5 m = overlap_derivatives(gaussians[i], gaussians[near[i][k]]);
+      float* const to = block_.data() + (begin_[i] + k) * block_size;
+      for (int column = 0; column < 5; ++column)
+        for (int row = 0; row < 8; ++row) to[8 * column + row] = row < 5 ? float(m(row, column)) : 0.0f;
     }
   });
 }
@@ -102,9 +123,15 @@ void NormalMatrix::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const 
       tbb::blocked_range<std::size_t>(0, size(), 64),
       [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          separable::Vector<float> others{};
+          for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) {
+            const auto* const column =
+                reinterpret_cast<const separable::Vector<float>*>(block_.data() + k * block_size);
+            const double* const from = x.data() + 5 * column_[k];
+            for (int c = 0; c < 5; ++c) others += column[c] * float(from[c]);
+          }
           Vector5 sum = diagonal_[i] * x.segment<5>(Eigen::Index(5 * i));
-          for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k)
-            sum.noalias() += block_[k].cast<double>() * x.segment<5>(Eigen::Index(5 * column_[k]));
+          for (int row = 0; row < 5; ++row) sum[row] += double(others[row]);
           y.segment<5>(Eigen::Index(5 * i)) = sum;
         }
       },

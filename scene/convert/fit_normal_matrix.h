@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "scene/convert/separable_gaussians.h"
 #include "scene/media/gaussian_sum.h"
 
 namespace airlight::scene {
@@ -31,7 +32,7 @@ class NormalMatrix {
   std::vector<Matrix5> diagonal_;
   std::vector<std::size_t> begin_;  // of each row among those beside the diagonal
   std::vector<std::uint32_t> column_;
-  std::vector<Eigen::Matrix<float, 5, 5>> block_;
+  separable::Aligned<float> block_;  // column by column, each padded to a vector
 };
 
 }  // namespace airlight::scene

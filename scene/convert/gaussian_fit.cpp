@@ -65,19 +65,32 @@ class Frame {
     next_id_ = previous.next_id;
   }
 
-  // Whoever is teleported once there is a frame before becomes another one.
-  void minimise(bool teleporting, bool renaming = false) {
+  void minimise() {
     double before = objective_.value(gaussians_);
     for (int round = 0; round < options_.rounds; ++round) {
-      const double value = run(options_.iterations);
-      const std::vector<Gaussian> at = renaming ? gaussians_ : std::vector<Gaussian>();
-      const int moved = teleporting && round + 1 < options_.rounds
-                            ? teleport(objective_, bounds_, gaussians_, std::max(1, int(gaussians_.size()) / 20))
-                            : 0;
-      teleported_ += moved;
-      for (std::size_t i = 0; moved > 0 && i < at.size(); ++i)
-        if (gaussians_[i].center != at[i].center) ids_[i] = next_id_++;
+      const double value = run(options_.iterations, options_.tolerance);
+      const int moved = options_.teleport && round + 1 < options_.rounds ? send_least(20) : 0;
       if (!(before - value > options_.tolerance * before) && moved <= int(gaussians_.size()) / 100) break;
+      before = value;
+    }
+  }
+  // From the Gaussians of the frame before; where they do not do, as good as `ratio`, others come, and are sent from place to place.
+  void minimise_later(double ratio) {
+    const double wanted = ratio * objective_.sum_of_squares();
+    double before = objective_.value(gaussians_);
+    for (int round = 0; round < options_.later_rounds; ++round) {
+      const double value = run(options_.iterations, options_.later_tolerance);
+      int moved = 0;
+      if (value > wanted && round + 1 < options_.later_rounds) {
+        if (inserted_ == 0) insert(options_.inserted);
+        // Whoever is sent away becomes another one.
+        const std::vector<Gaussian> at = gaussians_;
+        if (options_.resent) moved = send_least(10);
+        for (std::size_t i = 0; moved > 0 && i < at.size(); ++i)
+          if (gaussians_[i].center != at[i].center) ids_[i] = next_id_++;
+      }
+      if (!(before - value > options_.later_tolerance * before) && inserted_ + moved <= int(gaussians_.size()) / 100)
+        break;
       before = value;
     }
   }
@@ -114,7 +127,6 @@ class Frame {
     iterations_ +=
         minimize_gauss_newton(objective_, bounds_, gaussians_, {iterations, 1e-6, options_.check}, true).iterations;
   }
-  double ratio() { return objective_.value(gaussians_) / objective_.sum_of_squares(); }
 
   GaussianFit result() {
     GaussianFit fit;
@@ -135,8 +147,14 @@ class Frame {
   }
 
  private:
-  double run(int iterations) {
-    const MinimizerOptions options{iterations, 0.1 * options_.tolerance, options_.check};
+  // At most one of `share`.
+  int send_least(int share) {
+    const int moved = teleport(objective_, bounds_, gaussians_, std::max(1, int(gaussians_.size()) / share));
+    teleported_ += moved;
+    return moved;
+  }
+  double run(int iterations, double tolerance) {
+    const MinimizerOptions options{iterations, 0.1 * tolerance, options_.check};
     const auto minimise = [&] {
       switch (options_.method) {
         case FitMethod::lbfgs:
@@ -189,7 +207,7 @@ void check_fit_options(const FitOptions& o) {
           "widths are empty, expected 0 < least < greatest");
   require(o.amplitudes.lo > 0 && o.amplitudes.hi > o.amplitudes.lo && std::isfinite(o.amplitudes.hi),
           "amplitudes are empty, expected 0 < least < greatest");
-  require(o.rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0,
+  require(o.rounds >= 0 && o.later_rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0 && o.later_tolerance >= 0,
           "rounds, iterations or tolerance are out of range, expected at least 0, 1 and 0");
   require(o.deleted >= 0 && o.inserted >= 0 && o.allowed >= 1,
           "deleted, inserted or allowed are out of range, expected at least 0, 0 and 1");
@@ -206,7 +224,7 @@ GaussianFit fit_gaussians(const VoxelGrid& grid, const FitOptions& options) {
   if (greatest > 0) {
     Frame frame(grid, greatest, options);
     frame.place();
-    frame.minimise(options.teleport);
+    frame.minimise();
     if (options.polish) frame.amplitudes(10);
     fit = frame.result();
     fit.first_ratio = fit.errors.squared_ratio;
@@ -227,11 +245,7 @@ GaussianFit next_fit(const VoxelGrid& grid, const GaussianFit& previous, const F
     Frame frame(grid, greatest, options);
     frame.take(previous);
     frame.delete_least(options.deleted);
-    frame.minimise(false);
-    if (frame.ratio() > options.allowed * previous.first_ratio) {
-      frame.insert(options.inserted);
-      frame.minimise(options.resent, true);
-    }
+    frame.minimise_later(options.allowed * previous.first_ratio);
     if (options.polish) frame.amplitudes(10);
     fit = frame.result();
   }

@@ -35,6 +35,9 @@ struct FitOptions {
   // Rounds of `iterations`, each followed by teleportation, until one lowers the objective by less than `tolerance` of it.
   int rounds = 12, iterations = 5;
   double tolerance = 2e-3;
+  // The same of later frames, which begin near where they end.
+  int later_rounds = 6;
+  double later_tolerance = 1e-2;
   bool teleport = true;
   bool polish = true;  // amplitudes alone at the end, by bounded linear least squares
   // A sequence: how many of the least significant go; and, where the squared ratio is above `allowed` times that of the first frame, how

@@ -14,6 +14,7 @@ namespace airlight::scene {
 namespace {
 
 constexpr double most_levels = 127;
+constexpr double cancelled = 1e-12;  // of D~: what rounding leaves where the residual takes all of it away
 
 std::string place(const Eigen::Vector3i& size, std::size_t i) {
   const std::size_t x = std::size_t(size[0]), y = std::size_t(size[1]);
@@ -75,7 +76,14 @@ Residual residual_of(const VoxelGrid& grid, const GaussianSum& sum, const Quanti
   const std::vector<float> approximation = gaussian_samples(sum, without_values(grid));
   std::vector<double> residual(grid.values.size());
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = double(grid.values[i]) - supported(approximation[i]);
-  const ResidualLevels levels = quantised(grid.size, residual, options);
+  ResidualLevels levels = quantised(grid.size, residual, options);
+  if (options.keep_empty && levels.step > 0)
+    for (std::size_t i = 0; i < residual.size(); ++i)
+      if (grid.values[i] == 0 && residual[i] < 0) {
+        double level = std::max(std::floor(residual[i] / levels.step), -most_levels);
+        if (levels.step * level > residual[i] && level > -most_levels) --level;  // rounding
+        levels.values[i] = std::int8_t(level);
+      }
   Residual result;
   result.layout = without_values(grid);
   result.cutoff = sum.cutoff;
@@ -90,8 +98,9 @@ VoxelGrid decoded(const VoxelGrid& layout, const GaussianSum& sum, const Residua
   VoxelGrid grid = without_values(layout);
   grid.values = gaussian_samples(sum, grid);
   for (std::size_t i = 0; i < grid.values.size(); ++i) {
-    const double level = levels.values.empty() ? 0 : levels.values[i];
-    grid.values[i] = float(std::max(0.0, supported(grid.values[i]) + levels.step * level));
+    const double sum = supported(grid.values[i]), level = levels.values.empty() ? 0 : levels.values[i];
+    const double density = sum + levels.step * level;
+    grid.values[i] = density > cancelled * sum ? float(density) : 0.0f;
   }
   return grid;
 }

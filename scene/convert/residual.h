@@ -16,6 +16,9 @@ struct QuantisationOptions {
   int threshold = 0;  // levels of this size or less become 0; 0 to 126
   // Density of one level [-], > 0; what passes 127 of them is cut off. By default the largest |R| is 127 levels.
   std::optional<double> step;
+  // Of residual_of(): samples without density stay without, whatever the threshold: there the level is rounded down. Otherwise Gaussians
+  // leave up to half a level, or the threshold, in empty space.
+  bool keep_empty = false;
 };
 
 // Samples as levels, x fastest, as those of a VoxelGrid.

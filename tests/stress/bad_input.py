@@ -219,6 +219,21 @@ def queue_files():
     case('compare, missing', ['compare', 'no.exr', 'good.exr'], says='no.exr')
     case('convert, missing', ['convert', 'no.exr', 'never.png'], says='no.exr')
     case('convert, a folder', ['convert', '.', 'never.png'])
+    fit = ['fit', '-n', '20', '--out', 'never fitted']
+    for what, content, others in damaged(vdb):
+        case(f'fit, {what}', [*fit, write(f'fit {what}.vdb', content)], other_codes=others)
+    sound = write('sound fit.vdb', vdb)
+    case('fit, missing', [*fit, 'no.vdb'], says='no.vdb')
+    case('fit, the second of two is missing', [*fit, sound, 'no.vdb'], says='no.vdb')
+    case('fit, the same twice', [*fit, sound, sound], says='expected another name')
+    case('fit, a folder', [*fit, '.'])
+    case('fit, no grid', [*fit, write('fit.toml', scene_with('csv', write('fit.csv', CSV)))], says='expected a grid')
+    case('fit, no Gaussians', ['fit', sound, '-n', '0', '--out', 'never fitted'], says='expected 1 to 65536')
+    case('fit, a million Gaussians', ['fit', sound, '-n', '1000000', '--out', 'never fitted'], says='expected 1 to 65536')
+    case('fit, no method', ['fit', sound, '--method', 'lbgfs', '--out', 'never fitted'], says='lbfgs')
+    case('fit into a file', ['fit', sound, '-n', '20', '--out', 'sound fit.vdb'])
+    case('fit, no folder', ['fit', sound], says='--out')
+    case('fit, sound', ['fit', sound, '-n', '20', '--out', 'fitted'], 0, other_codes=(0,))
     oracles = '{"vectors": [{"id": "a", "kind": "od", "input": {}, "expected": {}}]}'
     for what, content, _ in damaged(oracles):
         case(f'verify, {what}', ['verify', write(f'oracle {what}.json', content)])

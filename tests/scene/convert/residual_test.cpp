@@ -160,6 +160,29 @@ TEST_CASE("negative sums are clamped, denormal Gaussians count as none", "[resid
   CHECK(*std::max_element(tiny.values.begin(), tiny.values.end()) == 0);
 }
 
+TEST_CASE("empty samples can be kept empty, whatever the threshold", "[residual]") {
+  const VoxelGrid grid = smoke({20, 20, 20});
+  for (const double width : {3.0, 6.0, 12.0}) {
+    const GaussianSum sum = one_for(grid, width);
+    for (const int threshold : {0, 2, 20}) {
+      const Residual plain = residual_of(grid, sum, {threshold, {}, false});
+      const Residual kept = residual_of(grid, sum, {threshold, {}, true});
+      CHECK(kept.step == plain.step);
+      const VoxelGrid a = decoded(sum, plain), b = decoded(sum, kept);
+      int empty = 0, left = 0, filled = 0, differ = 0;
+      for (std::size_t i = 0; i < grid.values.size(); ++i)
+        if (grid.values[i] == 0)
+          empty += b.values[i] == 0, left += a.values[i] > 0, filled += b.values[i] > 0;
+        else
+          differ += a.values[i] != b.values[i];
+      CHECK(empty > 1000);
+      CHECK(left > 10);
+      CHECK(filled == 0);
+      CHECK(differ == 0);
+    }
+  }
+}
+
 TEST_CASE("what cannot be quantised is refused with its place", "[residual]") {
   std::vector<double> values(24, 0.5);
   values[1 + 2 * (2 + 3 * 3)] = std::nan("");
