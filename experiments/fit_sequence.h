@@ -20,7 +20,7 @@ struct FitSequence {
   std::string grid = "density";    // of an OpenVDB file
   std::string medium = "0";        // of a scene: its name or number
   scene::FitOptions options;       // unit 0: the cube root of the volume of the box that all frames fill together
-  int threshold = 1;               // of the residual: levels of this size or less are dropped
+  int threshold = 0;               // of the residual: levels of this size or less are dropped
   std::filesystem::path folder;
 };
 

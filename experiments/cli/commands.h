@@ -60,7 +60,7 @@ int convert(const ConvertOptions&);
 struct FitCommand {
   std::vector<std::string> files;
   std::string out, grid = "density", medium = "0", method = "gauss_newton";
-  int gaussians = 1000, deleted = 3, inserted = 8, threshold = 1, threads = 0;
+  int gaussians = 1000, deleted = 3, inserted = 8, threshold = 0, threads = 0;
   double unit = 0, allowed = 1.1;
   bool keep = false;
 };

@@ -245,7 +245,7 @@ int dispatch(int argc, char** argv) {
                 "a later frame needs more where its squared error is this many times that of the first (1.1)");
   c->add_flag("--keep", fit_options.keep,
               "send none to another place in later frames, as the publication: fewer new ones, greater errors");
-  c->add_option("--threshold", fit_options.threshold, "residual: levels of this size or less are dropped (1)")
+  c->add_option("--threshold", fit_options.threshold, "residual: levels of this size or less are dropped (0)")
       ->check(CLI::Range(0, 126));
   c->add_option("--method,-m", fit_options.method,
                 fmt::format("one of {}", fmt::join(scene::fit_method_names(), ", ")));
