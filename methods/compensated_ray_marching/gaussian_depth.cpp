@@ -9,7 +9,7 @@ namespace airlight::compensated_ray_marching {
 namespace {
 
 constexpr double root_pi_half = 0.88622692545275801365;  // sqrt(pi) / 2
-constexpr double cut_at = 3;
+constexpr double nothing_beyond = 7;                     // widths: what lies there is below rounding
 
 }  // namespace
 
@@ -47,19 +47,19 @@ double angle_of_distance(double d) { return d >= 1 ? std::asin(1 / d) : pi - std
 
 double distance_of_angle(double theta) { return theta <= 0.5 * pi ? 1 / std::sin(theta) : std::sin(theta); }
 
-DepthTable::DepthTable(int order, Spacing spacing, int samples) : order_(order), spacing_(spacing) {
+DepthTable::DepthTable(int order, Spacing spacing, int samples, double cut) : order_(order), spacing_(spacing) {
+  const double end = std::min(cut, nothing_beyond);
   for (int i = 0; i < samples; ++i) {
     const double share = double(i) / (samples - 1);
     std::vector<double> depth(std::size_t(order), 0.0);
     if (spacing == Spacing::paper) {
-      if (i > 0) depth = zonal_depth(order, i == samples - 1 ? 0 : distance_of_angle(share * pi));
+      if (i > 0) depth = zonal_depth(order, i == samples - 1 ? 0 : distance_of_angle(share * pi), cut);
     } else if (i < samples - 1) {
       const double d = share / (1 - share);
-      depth = zonal_depth(order, d);
+      depth = zonal_depth(order, d, cut);
       for (double& value : depth) value *= 1 + d * d;
     } else {  // pi^1.5 / d^2 of a direction, but for what the cut takes off
-      const double far =
-          4 * pi * root_pi_half * (0.5 * std::erf(cut_at) - cut_at * std::exp(-cut_at * cut_at) / (2 * root_pi_half));
+      const double far = 4 * pi * (0.5 * root_pi_half * std::erf(end) - 0.5 * end * std::exp(-end * end));
       for (int l = 0; l < order; ++l) depth[std::size_t(l)] = far * std::sqrt((2 * l + 1) / (4 * pi));
     }
     samples_.insert(samples_.end(), depth.begin(), depth.end());

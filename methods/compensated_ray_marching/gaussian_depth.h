@@ -23,7 +23,7 @@ double distance_of_angle(double theta);
 class DepthTable {
  public:
   enum class Spacing { paper, even };
-  DepthTable(int order, Spacing, int samples = 256);
+  DepthTable(int order, Spacing, int samples = 256, double cut = 3);
   // Writes `order` numbers.
   void zonal(double distance, double* depth) const;
   int order() const { return order_; }

@@ -1,0 +1,55 @@
+// The march along a view ray: density from Gaussians and residual, source radiance interpolated from the Gaussians' centres and multiplied by
+// that density. Zhou et al. 2008, Eq. 14 to 16, sections 5.5 and 5.6.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "scene/media/gaussian_sum.h"
+#include "scene/media/voxel_grid.h"
+
+namespace airlight::compensated_ray_marching {
+
+// What is marched through.
+struct MarchedSmoke {
+  scene::GaussianSum gaussians;
+  std::vector<std::vector<Rgb>> source;              // at each centre, order^2 coefficients of propagation directions
+  std::shared_ptr<const scene::VoxelGrid> residual;  // of either sign, trilinear; null: none
+  Rgb extinction;                                    // sigma_t [1/m]
+};
+
+// How much of a slice's source is seen: times depth / cos printed without the cos (E6 of the specification), with it, or 1 - exp(-depth), what
+// the slice itself absorbs of its own light counted.
+enum class SliceWeight { printed, paper, exact };
+
+struct Slices {
+  Vec3 axis;         // unit, across the slices
+  double thickness;  // [m]
+  int count;         // from the ray's origin on
+};
+
+struct Marched {
+  Rgb radiance = Rgb::Zero();  // without what is behind
+  Rgb transmittance = Rgb::Ones();
+};
+
+// Density max(0, D~ + R), and 0 where D~ is below 1e-10, which only places beyond all Gaussians are; source radiance towards the viewer, at
+// least 0: the mean of the centres' weighted with the Gaussians.
+class CompensatedMarch {
+ public:
+  // Throws Error where sources and Gaussians differ in number.
+  explicit CompensatedMarch(MarchedSmoke);
+  // One sample in the middle of each slice.
+  Marched slices(const Ray&, const Slices&, SliceWeight) const;
+
+ private:
+  struct Sample {
+    double density;
+    Rgb source;
+  };
+  Sample at(const Point3&, const std::vector<Rgb>& towards_viewer) const;
+  std::vector<Rgb> sources_towards(const Vec3& viewer) const;
+
+  MarchedSmoke smoke_;
+};
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,99 @@
+#include "methods/compensated_ray_marching/diffusion_system.h"
+
+#include <cmath>
+
+#include "scene/error.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+// A function, its gradient and its Laplacian at a point.
+struct Derivatives {
+  double value = 0, laplacian = 0;
+  Vec3 gradient = Vec3::Zero();
+};
+
+Derivatives at(const scene::Gaussian& g, const Point3& x) {
+  const Vec3 offset = x - g.center;
+  const double square = g.width * g.width, value = g.amplitude * std::exp(-offset.squaredNorm() / square);
+  return {value, value * (4 * offset.squaredNorm() / square - 6) / square, -2 / square * value * offset};
+}
+
+}  // namespace
+
+LinearSource linear_source(const double* f) {
+  const double c = std::sqrt(3 / (4 * pi));
+  return {f[0] / std::sqrt(4 * pi), c * Vec3(-f[3], -f[1], f[2])};
+}
+
+DiffusionSystem diffusion_system(const std::vector<scene::Gaussian>& gaussians,
+                                 const std::vector<LinearSource>& sources, double sigma_t, double albedo, double g,
+                                 DiffusionForm form) {
+  const bool printed = form == DiffusionForm::as_printed;
+  if (printed && !(albedo > 0)) throw Error("the printed diffusion equation divides by the albedo, found 0");
+  const auto n = Eigen::Index(gaussians.size());
+  const double sigma_tr = (1 - albedo * g) * sigma_t;
+  DiffusionSystem system{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
+  std::vector<Derivatives> parts(gaussians.size());
+  for (Eigen::Index h = 0; h < n; ++h) {
+    const Point3& x = gaussians[std::size_t(h)].center;
+    Derivatives all;
+    for (std::size_t l = 0; l < gaussians.size(); ++l) {
+      parts[l] = at(gaussians[l], x);
+      all.value += parts[l].value;
+      all.gradient += parts[l].gradient;
+      all.laplacian += parts[l].laplacian;
+    }
+    const double D = all.value, kappa = 1 / (3 * sigma_tr * D);
+    double mean = 0, divergence = 0;
+    for (Eigen::Index l = 0; l < n; ++l) {
+      // The share of Gaussian l in all of them.
+      const Derivatives& q = parts[std::size_t(l)];
+      const double share = q.value / D;
+      const Vec3 gradient = (q.gradient - share * all.gradient) / D;
+      const double laplacian = (q.laplacian - share * all.laplacian - 2 * gradient.dot(all.gradient)) / D;
+      // grad kappa = -kappa grad D / D.
+      system.matrix(h, l) = kappa * (laplacian - gradient.dot(all.gradient) / D) - (1 - albedo) * sigma_t * D * share;
+      mean += share * sources[std::size_t(l)].mean;
+      divergence += gradient.dot(sources[std::size_t(l)].direction);
+    }
+    system.right[h] = printed ? -sigma_t / albedo * D * mean + sigma_t / sigma_tr * divergence
+                              : -sigma_t * D * mean + sigma_t / (3 * sigma_tr) * divergence;
+  }
+  return system;
+}
+
+LeastSquares solve_least_squares(const DiffusionSystem& system, const Eigen::VectorXd& start, int iterations,
+                                 double tolerance, bool scale_rows) {
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(system.right.size());
+  if (scale_rows)
+    for (Eigen::Index h = 0; h < scale.size(); ++h)
+      if (const double length = system.matrix.row(h).norm(); length > 0) scale[h] = 1 / length;
+  const auto times = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(scale.cwiseProduct(system.matrix * x)); };
+  const auto transposed = [&](const Eigen::VectorXd& y) {
+    return Eigen::VectorXd(system.matrix.transpose() * scale.cwiseProduct(y));
+  };
+  const Eigen::VectorXd right = scale.cwiseProduct(system.right);
+  LeastSquares result{start};
+  Eigen::VectorXd missed = right - times(start), slope = transposed(missed), direction = slope;
+  const double whole = transposed(right).norm();
+  double square = slope.squaredNorm();
+  const auto residual = [&] { return whole > 0 ? std::sqrt(square) / whole : std::sqrt(square); };
+  while (result.iterations < iterations && residual() > tolerance) {
+    const Eigen::VectorXd along = times(direction);
+    const double length = along.squaredNorm();
+    if (!(length > 0)) break;
+    const double step = square / length;
+    result.x += step * direction;
+    missed -= step * along;
+    slope = transposed(missed);
+    const double next = slope.squaredNorm();
+    direction = slope + next / square * direction;
+    square = next;
+    ++result.iterations;
+  }
+  result.residual = residual();
+  return result;
+}
+
+}  // namespace airlight::compensated_ray_marching

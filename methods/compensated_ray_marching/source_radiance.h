@@ -1,0 +1,61 @@
+// Source radiance of single scattering at points of a sum of Gaussians under light from all around: J_ss(w) = albedo times the integral of
+// phase, light and transmittance over the sphere. Zhou et al. 2008, section 5.3.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "methods/compensated_ray_marching/gaussian_depth.h"
+#include "methods/compensated_ray_marching/harmonic_exponential.h"
+#include "methods/compensated_ray_marching/ordinate_directions.h"
+#include "scene/media/gaussian_sum.h"
+
+namespace airlight::compensated_ray_marching {
+
+// What an environment sends: in harmonics of lookup directions, or as radiance from a direction (towards the light).
+struct SourceLight {
+  std::vector<Rgb> harmonics;
+  std::function<Rgb(const Vec3&)> radiance;
+};
+
+// How what is left of the light in every direction is found.
+//   paper_linear, paper_squared, series: the depths of all Gaussians added in harmonics, exponentiated by OL, HYB or the product series,
+//     times the light by the triple product; as the publication does
+//   directional: exact depths in fixed directions, whose transmittances times the light are projected once; nothing rings
+enum class Transmittance { paper_linear, paper_squared, series, directional };
+
+class SourceRadiance {
+ public:
+  // extinction: sigma_t of each channel [1/m]. phase: mean of P_l over the phase function, g^l for Henyey-Greenstein; its size is the order.
+  // The constant of the sum is left out. directions: of `directional`, which alone asks the light for its radiance. Throws Error where light
+  // and phase function are not of one order.
+  SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, const Rgb& albedo, std::vector<double> phase,
+                 SourceLight light, Transmittance,
+                 std::vector<Ordinate> directions = ordinate_directions(8, 16, false));
+
+  // order^2 coefficients of J_ss, of propagation directions.
+  std::vector<Rgb> at(const Point3&) const;
+
+  // The parts, of lookup directions. Minus the depth for an extinction of 1; transmittance; what is left of the light.
+  Harmonics minus_depth(const Point3&) const;
+  std::vector<Rgb> attenuated_light(const Point3&) const;
+
+ private:
+  int order() const { return int(phase_.size()); }
+  std::vector<Rgb> by_directions(const Point3&) const;
+
+  scene::GaussianSum smoke_;
+  Rgb extinction_, albedo_;
+  std::vector<double> phase_;
+  SourceLight light_;
+  Transmittance kind_;
+  DepthTable depths_;
+  const LinearExponential* linear_;  // null where it is not needed
+  std::vector<Ordinate> directions_;
+  std::vector<Harmonics> harmonics_;  // of the directions
+  std::vector<Rgb> from_;             // radiance from each, times its weight
+};
+
+// From what is left of the light, in lookup directions, to source radiance in propagation directions: albedo (-1)^l phase_l.
+std::vector<Rgb> scattered(std::vector<Rgb> light, const Rgb& albedo, const std::vector<double>& phase);
+
+}  // namespace airlight::compensated_ray_marching
