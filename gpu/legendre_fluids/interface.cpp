@@ -25,6 +25,11 @@ const std::vector<Binding> bindings = {{"START", at::start},
                                        {"MEAN", at::mean},
                                        {"SEEN", at::seen},
                                        {"TARGETS", at::targets},
+                                       {"TABLES", at::tables},
+                                       {"WORK", at::work},
+                                       {"POINTS", at::values},
+                                       {"DIRECT", at::direct},
+                                       {"FACES", at::faces},
                                        {"DENSITIES", at::densities},
                                        {"RULE", at::rule}};
 

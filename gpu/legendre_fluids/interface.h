@@ -30,6 +30,12 @@ enum Binding {
   mean = 0,
   seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
+  // paper_*.comp
+  tables = 0,
+  work = 3,
+  values = 4,
+  direct = 7,
+  faces = 2,
   // uniform blocks
   matrices = 0,
   densities = 0,

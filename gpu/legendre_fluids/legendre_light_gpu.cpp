@@ -8,6 +8,7 @@
 #include "gpu/frame.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/light_media_on_device.h"
+#include "gpu/legendre_fluids/paper_light_gpu.h"
 #include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
 #include "gpu/wavelet_fog/surface_light.h"
@@ -38,14 +39,14 @@ double widest_panel(const RayOptions& options) {
   return 4 * std::exp((std::log(0.5 * std::max(options.tolerance, least_tolerance)) + std::lgamma(order + 1)) / order);
 }
 
-class PreparedLightGpu final : public scene::Prepared {
+class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
  public:
   PreparedLightGpu(std::shared_ptr<const Scene>, const RayOptions&, std::string settings);
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
-  bool take(const DensityOnDevice& d) {
+  bool take(const DensityOnDevice& d) override {
     const Use use(context_);
     return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
   }
@@ -226,7 +227,7 @@ scene::Rendering PreparedLightGpu::render(const View& view, const Execution& exe
 }  // namespace
 
 bool draw_flow(scene::Prepared& picture, const scene::Flow& flow) {
-  auto* prepared = dynamic_cast<PreparedLightGpu*>(&picture);
+  auto* prepared = dynamic_cast<TakesDensity*>(&picture);
   const std::optional<DensityOnDevice> density = density_on_device(flow);
   return prepared && density && prepared->take(*density);
 }
@@ -243,9 +244,9 @@ std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const sc
   std::vector<std::string> reasons = legendre_fluids::LegendreLight().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
-  if (options.variant != legendre_fluids::LightOptions::Variant::ray)
-    reasons.push_back("variant = " + settings.text("variant") + " is for the CPU: shaders know ray");
-  if (!reasons.empty()) return reasons;
+  if (options.variant == legendre_fluids::LightOptions::Variant::paper)
+    for (const std::string& reason : legendre::reasons_against_paper(options.paper)) reasons.push_back(reason);
+  if (!reasons.empty() || options.variant == legendre_fluids::LightOptions::Variant::paper) return reasons;
   const LightRays rays(scene, options.ray);
   for (const std::string& reason : legendre::reasons_against(rays.media())) reasons.push_back(reason);
   if (rays.shadowed())
@@ -256,8 +257,10 @@ std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const sc
 std::unique_ptr<scene::Prepared> LegendreLightGpu::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                      const scene::Settings& settings,
                                                                      const Execution&) const {
-  return std::make_unique<PreparedLightGpu>(std::move(scene), legendre_fluids::read_light_options(settings).ray,
-                                            settings.canonical());
+  const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
+  if (options.variant == legendre_fluids::LightOptions::Variant::paper)
+    return legendre::prepare_paper(std::move(scene), options.paper, settings.canonical());
+  return std::make_unique<PreparedLightGpu>(std::move(scene), options.ray, settings.canonical());
 }
 
 }  // namespace airlight::gpu

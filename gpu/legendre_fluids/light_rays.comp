@@ -48,7 +48,7 @@ double next_cut(dvec3 origin, dvec3 direction, double end, double last) {
   return next;
 }
 
-bool inside(int medium, dvec3 at) { return all(lessThan(abs((at - box_middle[medium]) * per_half[medium]), dvec3(1))); }
+bool inside(int medium, dvec3 at) { return all(lessThanEqual(abs((at - box_middle[medium]) * per_half[medium]), dvec3(1))); }
 
 // Fills the series of a medium over a stretch; `before` is its column up to there. Gives that behind it.
 float expand(int m, dvec3 middle, dvec3 direction, float half_length, bool within, float before) {
