@@ -49,6 +49,7 @@ FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& mat
   number("SCALARS", carried_.size());
   number("SOURCES", regions.sources.size());
   number("PUSHES", regions.pushes.size());
+  definitions_ = definitions;
   const int n = space_.n();
   slab_group_ = (space_.points_shape()[0] + 7) / 8 * 8;  // a lane for every row and column
   expand_ = &program(context_, "expand", slab_group_, 1, definitions);

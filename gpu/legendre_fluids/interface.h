@@ -30,6 +30,7 @@ enum Binding {
   mean = 0,
   seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
+  particles = 4,
   // paper_*.comp
   tables = 0,
   work = 3,
