@@ -69,6 +69,10 @@ FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& mat
   gathered_ = floats("lines of the fluid", all * std::size_t(n) * lines_);
   status_ = std::make_unique<Buffer>(context_, "status of the fluid", 2 * sizeof(unsigned));
   upload(fluid);
+  // A step that nobody keeps: drivers that compile what is used first do so now.
+  bind();
+  run(1e-9, {}, false);
+  look();
 }
 
 void FluidOnDevice::upload(Fluid& fluid) {
