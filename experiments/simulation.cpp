@@ -204,6 +204,7 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
       });
     folder.keep(frame, *flow, carried.particles, plan.dt);
+    if (s.look) s.look(frame, *flow);
   }
   report.frames = plan.frames;
   report.times = flow->times();
