@@ -144,19 +144,24 @@ class Folder {
   std::string key_, history_;
 };
 
-// Particles, and the flow as it was a step before, between which and now they move.
+// Particles, and unless they lie where the flow does, the flow as it was a step before, between which and now they move.
 class Carried {
  public:
-  Carried(const Simulation& s, const scene::Execution& execution) : particles(*s.problem), execution_(execution) {
-    if (!particles.empty()) before_ = s.solver.start(s.problem, s.settings, execution);
+  Carried(const Simulation& s, const scene::Flow& flow, const scene::Execution& execution)
+      : particles(*s.problem), execution_(execution) {
+    rides_ = particles.ride(flow);
+    if (!particles.empty() && !rides_) before_ = s.solver.start(s.problem, s.settings, execution);
   }
   void from(const scene::Flow& now) {
     if (before_) before_->restore(now.state());
   }
   void move(const scene::Flow& now, double dt) {
-    if (!before_) return;
+    if (particles.empty()) return;
     scene::Stopwatch watch;
-    particles.step(*before_, now, dt, execution_);
+    if (rides_)
+      particles.step(dt);
+    else
+      particles.step(*before_, now, dt, execution_);
     seconds += watch.lap();
     from(now);
   }
@@ -166,6 +171,7 @@ class Carried {
 
  private:
   const scene::Execution& execution_;
+  bool rides_ = false;
   std::unique_ptr<scene::Flow> before_;
 };
 
@@ -183,7 +189,7 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
     throw Error(fmt::format("{} s of {} frames a second are less than half a frame, expected one or more",
                             s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
-  Carried carried(s, execution);
+  Carried carried(s, *flow, execution);
   Folder folder(s);
   SimulationReport report;
   const int last = folder.resume(*flow, carried.particles);
@@ -198,6 +204,7 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
           throw scene::Interrupted(fmt::format("interrupted; the same command goes on after frame {}", frame - 1));
       });
     folder.keep(frame, *flow, carried.particles, plan.dt);
+    if (s.look) s.look(frame, *flow);
   }
   report.frames = plan.frames;
   report.times = flow->times();

@@ -10,6 +10,7 @@
 // bit.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "scene/flow.h"
@@ -21,6 +22,7 @@ struct Simulation {
   const scene::Solver& solver;
   scene::Settings settings;
   std::filesystem::path folder;
+  std::function<void(int frame, const scene::Flow&)> look = {};  // at each frame of this run, once its files are there
 };
 
 struct SimulationReport {

@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/flow_problem.h"
 #include "scene/media/medium.h"
+#include "scene/particle_mover.h"
 #include "scene/renderer.h"
 
 namespace airlight::scene {
@@ -65,6 +66,9 @@ class Flow {
   // All that the next step depends on, bit for bit, and back into a flow that was started alike. Throws Error.
   virtual std::string state() const = 0;
   virtual void restore(const std::string& state) = 0;
+  // Moves the problem's particles, which begin in these places, where the flow itself lies; null: on the processor, FlowParticles does.
+  // The flow outlives it.
+  virtual std::unique_ptr<ParticleMover> particle_mover(const ParticlePlaces&) const { return nullptr; }
 };
 
 // Grids `density`, `temperature`, those named (fog volumes) and `velocity` (staggered) of one OpenVDB file, atomically, with `notes`

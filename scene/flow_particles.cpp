@@ -28,11 +28,11 @@ FlowParticles::FlowParticles(const FlowProblem& problem)
   for (const ParticleSet& set : sets_) {
     const Box part = intersect(bounding_box(set.region), box_);
     try {
-      positions_.push_back(random_points(set.region, part, std::size_t(set.count), set.seed));
+      here_.positions.push_back(random_points(set.region, part, std::size_t(set.count), set.seed));
     } catch (const Error& e) {
       throw Error(fmt::format("{}: {}", problem.file, e.what()));
     }
-    times_.emplace_back(set.count, 0.0);
+    here_.times.emplace_back(set.count, 0.0);
   }
 }
 
@@ -42,7 +42,7 @@ void FlowParticles::step(const Flow& before, const Flow& after, double dt, const
   tbb::task_arena arena(threads_for(execution.threads));
   for (std::size_t s = 0; s < sets_.size(); ++s)
     arena.execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions_[s].size(), least_together),
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, here_.positions[s].size(), least_together),
                         [&](const auto& range) { move(before, after, dt, s, range.begin(), range.end()); });
     });
 }
@@ -51,7 +51,7 @@ void FlowParticles::step(const Flow& before, const Flow& after, double dt, const
 void FlowParticles::move(const Flow& before, const Flow& after, double dt, std::size_t s, std::size_t begin,
                          std::size_t end) {
   const ParticleSet& set = sets_[s];
-  const auto at = [&](std::size_t i) -> Point3& { return positions_[s][begin + i]; };
+  const auto at = [&](std::size_t i) -> Point3& { return here_.positions[s][begin + i]; };
   const std::size_t count = end - begin;
   const std::vector<Vec3> still(count, Vec3::Zero());
   // Velocities `ahead` seconds along `u`, from `share` of the way between the two flows.
@@ -66,7 +66,7 @@ void FlowParticles::move(const Flow& before, const Flow& after, double dt, std::
   const auto a = slope(still, 0, 0), b = slope(a, 0.5 * dt, 0.5), c = slope(b, 0.5 * dt, 0.5), d = slope(c, dt, 1);
   for (std::size_t i = 0; i < count; ++i) {
     at(i) += dt / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
-    let_leave(set, begin + i, at(i), times_[s][begin + i]);
+    let_leave(set, begin + i, at(i), here_.times[s][begin + i]);
   }
 }
 
@@ -89,10 +89,32 @@ void FlowParticles::let_leave(const ParticleSet& set, std::size_t i, Point3& x, 
   }
 }
 
+bool FlowParticles::ride(const Flow& flow) {
+  if (empty()) return false;
+  mover_ = flow.particle_mover(now());
+  return mover_ != nullptr;
+}
+
+void FlowParticles::step(double dt) {
+  mover_->step(dt);
+  moved_ = true;
+}
+
+const ParticlePlaces& FlowParticles::now() const {
+  if (!moved_) return here_;
+  mover_->read(here_);
+  for (const auto& set : here_.positions)
+    for (const Point3& x : set)
+      if (!x.allFinite()) throw Error("the place of a particle is no longer a number");
+  moved_ = false;
+  return here_;
+}
+
 std::string FlowParticles::csv() const {
   std::string text = std::string(particle_header) + "\n";
-  for (std::size_t s = 0; s < positions_.size(); ++s)
-    for (const Point3& x : positions_[s]) text += fmt::format("{},{},{},{}\n", s, x[0], x[1], x[2]);
+  const auto& positions = this->positions();
+  for (std::size_t s = 0; s < positions.size(); ++s)
+    for (const Point3& x : positions[s]) text += fmt::format("{},{},{},{}\n", s, x[0], x[1], x[2]);
   return text;
 }
 
@@ -101,26 +123,29 @@ std::string FlowParticles::state() const {
   const auto add = [&](const double* from, std::size_t count) {
     bytes.append(reinterpret_cast<const char*>(from), count * sizeof(double));
   };
-  for (std::size_t s = 0; s < positions_.size(); ++s) {
-    for (const Point3& x : positions_[s]) add(x.data(), 3);
-    add(times_[s].data(), times_[s].size());
+  const ParticlePlaces& places = now();
+  for (std::size_t s = 0; s < places.positions.size(); ++s) {
+    for (const Point3& x : places.positions[s]) add(x.data(), 3);
+    add(places.times[s].data(), places.times[s].size());
   }
   return bytes;
 }
 
 void FlowParticles::restore(const std::string& state) {
   std::size_t at = 0, expected = 0;
-  for (const auto& set : positions_) expected += 4 * set.size() * sizeof(double);
+  for (const auto& set : here_.positions) expected += 4 * set.size() * sizeof(double);
   if (state.size() != expected)
     throw Error(fmt::format("a state of {} bytes of particles, expected {}", state.size(), expected));
   const auto take = [&](double* to, std::size_t count) {
     std::memcpy(to, state.data() + at, count * sizeof(double));
     at += count * sizeof(double);
   };
-  for (std::size_t s = 0; s < positions_.size(); ++s) {
-    for (Point3& x : positions_[s]) take(x.data(), 3);
-    take(times_[s].data(), times_[s].size());
+  for (std::size_t s = 0; s < here_.positions.size(); ++s) {
+    for (Point3& x : here_.positions[s]) take(x.data(), 3);
+    take(here_.times[s].data(), here_.times[s].size());
   }
+  moved_ = false;
+  if (mover_) mover_->write(here_);
 }
 
 }  // namespace airlight::scene

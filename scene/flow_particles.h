@@ -14,12 +14,16 @@ class FlowParticles {
   // At their first places. Throws Error (the problem's file) where a region has no room for them.
   explicit FlowParticles(const FlowProblem&);
 
-  bool empty() const { return positions_.empty(); }
+  bool empty() const { return here_.positions.empty(); }
   // Over the step of dt [s] between two states of one flow.
   void step(const Flow& before, const Flow& after, double dt, const Execution&);
 
+  // True: from now on they lie where the flow does, and step(dt) moves them over its last step; what is asked of them comes down once.
+  bool ride(const Flow&);
+  void step(double dt);
+
   // By set, as in the problem.
-  const std::vector<std::vector<Point3>>& positions() const { return positions_; }
+  const std::vector<std::vector<Point3>>& positions() const { return now().positions; }
   // As scenes read them: a row of set and place for each, exact.
   std::string csv() const;
 
@@ -29,13 +33,15 @@ class FlowParticles {
 
  private:
   void move(const Flow& before, const Flow& after, double dt, std::size_t set, std::size_t begin, std::size_t end);
+  const ParticlePlaces& now() const;
   void let_leave(const ParticleSet&, std::size_t i, Point3&, double& times) const;
 
   Box box_;
   int dimensions_;
   std::vector<ParticleSet> sets_;
-  std::vector<std::vector<Point3>> positions_;
-  std::vector<std::vector<double>> times_;  // how often each has been drawn anew
+  mutable ParticlePlaces here_;
+  std::unique_ptr<ParticleMover> mover_;  // null: they are moved here
+  mutable bool moved_ = false;            // it has moved them, and here_ is of before
 };
 
 }  // namespace airlight::scene

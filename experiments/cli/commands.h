@@ -76,10 +76,14 @@ int explain(const ExplainOptions&);
 struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
-  std::string sequence, profile = "quick";  // in place of a problem and a folder
+  std::string sequence, profile = "quick";              // in place of a problem and a folder
+  std::string scene, renderer = "legendre_fluids_gpu";  // of pictures of each frame; empty: none
+  Pairs renderer_settings;
+  double exposure = 0;
   int threads = 0;
 };
-// Writes the frames of a flow problem into the folder `out` (experiments/simulation.h), or goes on with them.
+// Writes the frames of a flow problem into the folder `out` (experiments/simulation.h), or goes on with them; and pictures of them,
+// NAME.0000.png, ..., of a scene.
 int simulate(const SimulateOptions&);
 
 struct AuthorOptions {

@@ -269,6 +269,12 @@ int dispatch(int argc, char** argv) {
   c->add_option(
       "--sequence", simulate_options.sequence,
       "instead of PROBLEM and --out: one of experiments/sequences.toml, where it is not there; prints its files");
+  c->add_option("--scene", simulate_options.scene,
+                "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
+  c->add_option("--renderer", simulate_options.renderer,
+                "of --scene: legendre_fluids_gpu (default), which draws flows of that name where they lie");
+  add_pairs(c, "--renderer-set", simulate_options.renderer_settings, "a setting of the renderer");
+  c->add_option("--exposure", simulate_options.exposure, "of the pictures, in powers of two");
   c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");
   c->add_option("--threads", simulate_options.threads, "0: all")->check(CLI::Range(0, 4096));
   data_option(c);
@@ -280,6 +286,9 @@ int dispatch(int argc, char** argv) {
       } else if (!simulate_options.problem.empty() || !simulate_options.out.empty()) {
         throw Error("--sequence has its own problem and folder: expected neither PROBLEM nor --out");
       }
+      check_exposure(simulate_options.exposure);
+      if (!simulate_options.sequence.empty() && !simulate_options.scene.empty())
+        throw Error("--sequence has no pictures: expected no --scene");
       return simulate(simulate_options);
     };
   });

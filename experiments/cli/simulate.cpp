@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "experiments/cli/commands.h"
 #include "experiments/driver/sequences.h"
+#include "experiments/flow_pictures.h"
 #include "experiments/folders.h"
 #include "experiments/progress.h"
+#include "experiments/renderers.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
 #include "scene/error.h"
+#include "scene/scene.h"
 
 namespace airlight::experiments::cli {
 
@@ -22,6 +27,20 @@ int simulate_sequence(const SimulateOptions& options) {
   return 0;
 }
 
+// With what the pictures are made of, if there are any.
+struct Pictured {
+  explicit Pictured(const SimulateOptions& options) {
+    if (options.scene.empty()) return;
+    const scene::Renderer& renderer = find_renderer(options.renderer, "--renderer");
+    settings.emplace(renderer.settings(), options.renderer_settings, options.renderer);
+    scene.emplace(scene::load_scene(options.scene));
+    pictures.emplace(*scene, renderer, *settings, options.exposure, options.threads);
+  }
+  std::optional<scene::Settings> settings;
+  std::optional<scene::Scene> scene;
+  std::optional<FlowPictures> pictures;
+};
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
@@ -29,15 +48,25 @@ int simulate(const SimulateOptions& options) {
   const scene::Solver& solver = find_solver(options.method, "--method");
   const scene::Settings settings(solver.settings(), options.settings, options.method);
   const auto problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(options.problem, options.overrides));
+  Pictured pictured(options);
+  Simulation simulation{problem, solver, settings, options.out};
+  if (pictured.pictures)
+    simulation.look = [&](int frame, const scene::Flow& flow) {
+      pictured.pictures->draw(flow, fmt::format("{}/{}.{:04d}.png", options.out, problem->name, frame));
+    };
   const SimulationReport report = [&] {
     Progress progress(fmt::format("{} {}", options.method, problem->name));
-    return experiments::simulate({problem, solver, settings, options.out}, progress.execution(options.threads));
+    return experiments::simulate(simulation, progress.execution(options.threads));
   }();
   fmt::print("{}: {} frames, {} of them from an earlier run\n", options.out, report.frames, report.resumed);
   fmt::print("energy {:.4g}, mass {:.4g}, greatest speed {:.4g} m/s, CFL {:.3g}, divergence {:.2g}\n",
              report.totals.energy, report.totals.mass, report.totals.greatest_speed, report.totals.cfl,
              report.totals.divergence);
   for (const auto& [stage, seconds] : report.times) fmt::print("{:32} {:10.3f} s\n", stage, seconds);
+  if (pictured.pictures) {
+    fmt::print("{:32} {:10.3f} s\n", "pictures", pictured.pictures->seconds());
+    fmt::print("{:32} {:10}\n", "pictures drawn where it flows", pictured.pictures->on_device());
+  }
   for (const auto& [name, value] : report.counters) fmt::print("{:32} {:10.6g}\n", name, value);
   return 0;
 }

@@ -68,15 +68,19 @@ struct Solve {
   scene::Settings settings;
 };
 
-// [s] of the steps alone, start included; `at_frame` is not timed.
-double run_to(int last, const Solve& solve, const ProblemPointer& problem, const scene::Execution& execution,
+// [s]; what looks at frames is not timed.
+struct RunTime {
+  double start, steps;
+};
+RunTime run_to(int last, const Solve& solve, const ProblemPointer& problem, const scene::Execution& execution,
               std::unique_ptr<scene::Flow>& flow, const std::function<void(int, const scene::Flow&)>& at_frame) {
   const FrameSteps plan = frame_steps(*problem, solve.solver, solve.settings);
-  double start = steady_seconds(), seconds = 0;
+  double since = steady_seconds();
+  RunTime time{0, 0};
   const auto pause = [&](int frame) {
-    seconds += steady_seconds() - start;
+    (frame == 0 ? time.start : time.steps) += steady_seconds() - since;
     at_frame(frame, *flow);
-    start = steady_seconds();
+    since = steady_seconds();
   };
   flow = solve.solver.start(problem, solve.settings, execution);
   pause(0);
@@ -88,7 +92,7 @@ double run_to(int last, const Solve& solve, const ProblemPointer& problem, const
     check_interrupted();
     pause(frame);
   }
-  return seconds;
+  return time;
 }
 
 void put(std::string& bytes, const std::vector<double>& values) {
@@ -122,7 +126,7 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
   } else {
     Progress progress(fmt::format("{}: reference of {}", e.id, c.name));
     std::unique_ptr<scene::Flow> flow;
-    double seconds = run_to(frames.empty() ? 0 : frames.back(), solve, judged.problem,
+    const RunTime time = run_to(frames.empty() ? 0 : frames.back(), solve, judged.problem,
                             progress.execution(e.timing.threads), flow, [&](int frame, const scene::Flow& now) {
                               if (!std::binary_search(frames.begin(), frames.end(), frame)) return;
                               const FlowSample s = sample(now, judged.points);
@@ -130,7 +134,7 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
                               put(bytes, s.density);
                               put(bytes, s.temperature);
                             });
-    put(bytes, {seconds});
+    put(bytes, {time.start + time.steps});
     info.cached = false;
     keeper.store().keep(name, [&](const auto& path) { scene::write_file_atomically(path.string(), bytes); });
   }
@@ -204,7 +208,7 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const Judged> judged, cons
   const int last = int(std::lround(judged->problem->duration * judged->problem->frame_rate));
   std::unique_ptr<scene::Flow> flow;
   const double before = resident_gib();
-  double first = 0;
+  RunTime first{0, 0};
   try {
     first = run_to(last, solve, judged->problem, execution, flow,
                    [&](int frame, const scene::Flow& now) { witness.at_frame(frame, now); });
@@ -217,7 +221,9 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const Judged> judged, cons
   if (!row.note.empty()) return {row, 0, {}};
   row.counters["simulated seconds"] = judged->problem->duration;
   row.counters["MiB"] = std::max(0.0, 1024 * (resident_gib() - before));
-  return {row, first, flow->times(), {}, [judged, solve, last](const scene::Execution& quiet) {
+  // What starts for the first time may compile shaders: that is no step.
+  row.prepare_seconds = first.start;
+  return {row, first.steps, flow->times(), {}, [judged, solve, last](const scene::Execution& quiet) {
             std::unique_ptr<scene::Flow> again;
             run_to(last, solve, judged->problem, quiet, again, [](int, const scene::Flow&) {});
             return again->times();

@@ -49,6 +49,7 @@ FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& mat
   number("SCALARS", carried_.size());
   number("SOURCES", regions.sources.size());
   number("PUSHES", regions.pushes.size());
+  definitions_ = definitions;
   const int n = space_.n();
   slab_group_ = (space_.points_shape()[0] + 7) / 8 * 8;  // a lane for every row and column
   expand_ = &program(context_, "expand", slab_group_, 1, definitions);
@@ -68,6 +69,10 @@ FluidOnDevice::FluidOnDevice(Context& context, Fluid& fluid, const Material& mat
   gathered_ = floats("lines of the fluid", all * std::size_t(n) * lines_);
   status_ = std::make_unique<Buffer>(context_, "status of the fluid", 2 * sizeof(unsigned));
   upload(fluid);
+  // A step that nobody keeps: drivers that compile what is used first do so now.
+  bind();
+  run(1e-9, {}, false);
+  look();
 }
 
 void FluidOnDevice::upload(Fluid& fluid) {

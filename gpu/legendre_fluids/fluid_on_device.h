@@ -50,6 +50,10 @@ class FluidOnDevice {
 
   // Coefficients of now: fields as fields.glsl has them. Another buffer after every step.
   const Buffer& state() const { return *states_[current_]; }
+  // Those before the last step.
+  const Buffer& before() const { return *states_[1 - current_]; }
+  // What shaders that read them are compiled with.
+  const Definitions& definitions() const { return definitions_; }
   // Those of Fluid::carried() that are fields, behind the velocity's components.
   const std::vector<std::size_t>& carried() const { return carried_; }
 
@@ -93,6 +97,7 @@ class FluidOnDevice {
   double substeps_ = 0;
   std::unique_ptr<Buffer> tables_, regions_, states_[2], rates_, pressure_, spread_, gathered_, status_;
   int current_ = 0;  // of the states
+  Definitions definitions_;
   Program *expand_, *points_, *collect_, *columns_;
 };
 

@@ -28,8 +28,18 @@ enum Binding {
   ambient = 6,
   surface = 7,
   mean = 0,
+  stretches = 5,  // light_cut.comp and what follows it
+  ways = 6,
+  undone = 7,
   seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
+  particles = 4,
+  // paper_*.comp
+  tables = 0,
+  work = 3,
+  values = 4,
+  direct = 7,
+  faces = 2,
   // uniform blocks
   matrices = 0,
   densities = 0,

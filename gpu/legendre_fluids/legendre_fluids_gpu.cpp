@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gpu/legendre_fluids/fluid_on_device.h"
+#include "gpu/legendre_fluids/particles_on_device.h"
 #include "methods/legendre_fluids/legendre_flow.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 
@@ -38,6 +39,10 @@ class LegendreFlowGpu final : public LegendreFlow {
     LegendreFlow::restore(state);
     device_.upload(*fluid_);
     here_ = true;
+  }
+
+  std::unique_ptr<scene::ParticleMover> particle_mover(const scene::ParticlePlaces& places) const override {
+    return std::make_unique<legendre::ParticlesOnDevice>(Context::get(), device_, *p_, places);
   }
 
   std::optional<legendre::DensityOnDevice> density_on_device(int density) const {

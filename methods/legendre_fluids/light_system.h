@@ -27,9 +27,16 @@ class DensityProduct {
   const scene::TensorShape& shape() const { return n_; }
   Eigen::VectorXd operator()(const Eigen::VectorXd& field) const;
 
+  // What it is made of, along each axis: values of a field, and of the density, at the points; coefficients of values there.
+  struct Matrices {
+    std::array<Eigen::MatrixXd, 3> values, of_density, analysis;
+  };
+  const Matrices& matrices() const { return matrices_; }
+  const scene::TensorShape& points() const { return points_; }
+
  private:
   scene::TensorShape n_, points_;
-  std::array<Eigen::MatrixXd, 3> values_, analysis_;
+  Matrices matrices_;
   Eigen::VectorXd density_;  // at the points
 };
 
@@ -38,6 +45,14 @@ struct LightSolver {
   double weight = 3;         // of least_squares: of the inflow, for a box with half sizes 1
   bool dense = true;         // else GMRES, of upwind alone
   double tolerance = 1e-10;  // of GMRES: residual over right side
+};
+
+// What a system is made of along each axis, beside the density.
+struct LightAxes {
+  LightAxes(const scene::TensorShape& n, const Vec3& rate, const LightSolver&);
+  std::array<Eigen::MatrixXd, 3> along;  // of the derivative, of upwind with its inflow
+  std::array<Eigen::VectorXd, 3> end;    // the basis at the inflow end; empty along an axis that has none
+  Vec3 weight;                           // of the square of what is missing on an inflow face
 };
 
 class LightSystem {
@@ -53,14 +68,12 @@ class LightSystem {
 
  private:
   Eigen::VectorXd inflow_side(double inflow) const;
-  double inflow_weight(int axis) const;
 
   const DensityProduct& product_;
   Vec3 rate_;
   double sigma_;
   LightSolver solver_;
-  std::array<Eigen::MatrixXd, 3> along_;  // of the derivative, and of the inflow
-  std::array<Eigen::VectorXd, 3> end_;    // the basis at the inflow end; empty along an axis that has none
+  LightAxes axes_;
   // Where it is dense: the factors of upwind; the equation and the factors of the normal equations of least_squares.
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd equation_;

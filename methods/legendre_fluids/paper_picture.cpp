@@ -42,26 +42,12 @@ class PreparedPaper final : public scene::Prepared {
   scene::LegendrePointer field_;  // null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::optional<PaperLight> light_;
-  std::array<bool, 3> moving_{};
+  std::array<bool, 3> moving_;
   std::vector<Coefficients> direct_;  // E_d of each light, 1 where it comes in
   int iterations_ = 0;
   double negative_direct_ = 0;
   std::vector<scene::StageTime> times_;
 };
-
-// Axes along which light or view move.
-std::array<bool, 3> moving_axes(const scene::Scene& scene) {
-  std::array<bool, 3> moving;
-  for (int a = 0; a < 3; ++a) {
-    const auto along = [&](const scene::Light& light) {
-      const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-      return sun && sun->irradiance.maxCoeff() > 0 && sun->to_light[a] != 0;
-    };
-    moving[std::size_t(a)] =
-        scene.camera.forward[a] != 0 || std::any_of(scene.lights.begin(), scene.lights.end(), along);
-  }
-  return moving;
-}
 
 // Of channels with the same extinction only the first is solved.
 template <class F>
@@ -75,7 +61,7 @@ void for_extinctions(const Rgb& sigma_t, Coefficients& all, const F& solve) {
 
 PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const PaperOptions& options,
                              std::string settings)
-    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)) {
+    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), moving_(moving_axes(*scene_)) {
   scene::Stopwatch watch;
   for (const scene::Light& light : scene_->lights)
     if (const auto& sun = std::get<scene::DirectionalLight>(light); sun.irradiance.maxCoeff() > 0)
@@ -84,7 +70,6 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     if (extinguishes(medium)) medium_ = &medium;
   if (medium_) field_ = field_within_region(*medium_);
   if (!field_) return;
-  moving_ = moving_axes(*scene_);
   light_.emplace(*field_, options_, moving_);
   for (const scene::DirectionalLight& light : lights_) {
     direct_.emplace_back();
@@ -110,9 +95,6 @@ std::vector<scene::Stage> PreparedPaper::stages() const {
 
 Scattered PreparedPaper::scattered(const Vec3& direction) const {
   Scattered all;
-  for (int a = 0; a < 3; ++a)
-    if (direction[a] != 0 && !moving_[std::size_t(a)])
-      throw Error("variant = paper: a view along an axis on which the scene's own does not move; prepare it anew");
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     const double omega = phase_value(medium_->phase, std::clamp(direction.dot(-lights_[l].to_light), -1.0, 1.0));
     int channel = 0;
@@ -153,7 +135,7 @@ bool PreparedPaper::radiance(const Scattered& scattered, const Ray& ray, Rgb& ra
 }
 
 scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Execution& execution) const {
-  if (view.camera.kind != scene::Camera::Kind::orthographic) throw Error("variant = paper is for orthographic cameras");
+  require_view(view, moving_);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   float *mean = film.add("mean").data(), *airlight = film.add("airlight").data();
@@ -192,6 +174,26 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
 }
 
 }  // namespace
+
+std::array<bool, 3> moving_axes(const scene::Scene& scene) {
+  std::array<bool, 3> moving;
+  for (int a = 0; a < 3; ++a) {
+    const auto along = [&](const scene::Light& light) {
+      const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+      return sun && sun->irradiance.maxCoeff() > 0 && sun->to_light[a] != 0;
+    };
+    moving[std::size_t(a)] =
+        scene.camera.forward[a] != 0 || std::any_of(scene.lights.begin(), scene.lights.end(), along);
+  }
+  return moving;
+}
+
+void require_view(const scene::View& view, const std::array<bool, 3>& moving) {
+  if (view.camera.kind != scene::Camera::Kind::orthographic) throw Error("variant = paper is for orthographic cameras");
+  for (int a = 0; a < 3; ++a)
+    if (view.camera.forward[a] != 0 && !moving[std::size_t(a)])
+      throw Error("variant = paper: a view along an axis on which the scene's own does not move; prepare it anew");
+}
 
 std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const PaperOptions& options) {
   std::vector<std::string> reasons;

@@ -8,6 +8,12 @@ namespace airlight::legendre_fluids {
 // Why the paper's systems cannot do that scene; one line each.
 std::vector<std::string> reasons_against_paper(const scene::Scene&, const PaperOptions&);
 
+// Along which axes the scene's lights or its camera's view move.
+std::array<bool, 3> moving_axes(const scene::Scene&);
+
+// Throws Error for a view that is not orthographic, or along an axis that does not move.
+void require_view(const scene::View&, const std::array<bool, 3>& moving);
+
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const scene::Scene>, const PaperOptions&,
                                                const std::string& settings);
 

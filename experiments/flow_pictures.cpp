@@ -1,0 +1,43 @@
+#include "experiments/flow_pictures.h"
+
+#include <algorithm>
+
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "scene/error.h"
+#include "scene/scene.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::experiments {
+namespace {
+
+const auto is_smoke = [](const scene::Medium& m) { return scene::extinguishes(m); };
+
+}  // namespace
+
+FlowPictures::FlowPictures(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings,
+                           double exposure, int threads)
+    : scene_(scene), renderer_(renderer), settings_(settings), exposure_(exposure) {
+  execution_.threads = threads;
+  execution_.layers = {"mean"};
+  if (std::none_of(scene.media.begin(), scene.media.end(), is_smoke))
+    throw Error(scene.name + ": has no medium that extinguishes, expected one that is to be the flow's");
+}
+
+std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::Flow& flow) const {
+  const auto scene = std::make_shared<scene::Scene>(scene_);
+  std::find_if(scene->media.begin(), scene->media.end(), is_smoke)->field = flow.medium();
+  return renderer_.prepare(scene, settings_, execution_);
+}
+
+void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
+  scene::Stopwatch watch;
+  if (prepared_ && gpu::draw_flow(*prepared_, flow))
+    ++on_device_;
+  else
+    prepared_ = prepared_with(flow);
+  const scene::Rendering rendering = prepared_->render(scene::view_of(scene_), execution_);
+  scene::write_png(png, rendering.film, "mean", exposure_);
+  seconds_ += watch.lap();
+}
+
+}  // namespace airlight::experiments

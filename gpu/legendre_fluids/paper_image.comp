@@ -1,0 +1,94 @@
+// Radiance that leaves the medium towards the camera: the series of the face where a ray enters, eq. 24; of a camera within, that of all.
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "raster/view.glsl"
+layout(std430, binding = AT_FACES) readonly buffer Faces { float faces[]; };  // of paper_kept.comp
+layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_MEAN) writeonly buffer Mean { float mean_layer[]; };
+layout(std430, binding = AT_STATUS) buffer Status { uint counts[]; };  // rays that meet the box, those below 0
+uniform dvec3 box_low, box_high;                                       // [m]
+uniform int system_of[3];                                               // of each channel
+uniform vec3 scale;                                                    // of its solution
+shared uint met, below;
+
+float series(int first, ivec3 shape, vec3 at) {
+  float px[N.x], py[N.y], before = 0, p = 1, sum = 0;
+  for (int i = 0; i < N.x; ++i) {
+    px[i] = p;
+    float next = (float(2 * i + 1) * at.x * p - float(i) * before) / float(i + 1);
+    before = p, p = next;
+  }
+  before = 0, p = 1;
+  for (int j = 0; j < N.y; ++j) {
+    py[j] = p;
+    float next = (float(2 * j + 1) * at.y * p - float(j) * before) / float(j + 1);
+    before = p, p = next;
+  }
+  before = 0, p = 1;
+  for (int k = 0; k < shape.z; ++k) {
+    float plane = 0;
+    for (int i = 0; i < shape.x; ++i) {
+      float line = 0;
+      for (int j = 0; j < shape.y; ++j) line += faces[first + (i * shape.y + j) * shape.z + k] * py[j];
+      plane += px[i] * line;
+    }
+    sum += p * plane;
+    float next = (float(2 * k + 1) * at.z * p - float(k) * before) / float(k + 1);
+    before = p, p = next;
+  }
+  return sum;
+}
+
+// False where the ray misses the box.
+bool radiance(dvec3 origin, dvec3 direction, out vec3 value) {
+  double enters = 0, leaves = 1e300LF;
+  value = vec3(0);
+  for (int a = 0; a < 3; ++a) {
+    if (direction[a] == 0) {
+      if (origin[a] < box_low[a] || origin[a] > box_high[a]) return false;
+      continue;
+    }
+    double s = (box_low[a] - origin[a]) / direction[a], t = (box_high[a] - origin[a]) / direction[a];
+    enters = max(enters, min(s, t));
+    leaves = min(leaves, max(s, t));
+  }
+  if (enters >= leaves) return false;
+  vec3 at = vec3((2 * (origin + enters * direction) - box_low - box_high) / (box_high - box_low));
+  int first = 0;
+  ivec3 shape = N;
+  if (enters > 0) {
+    vec3 far = abs(at);
+    int axis = far.x >= far.y && far.x >= far.z ? 0 : far.y >= far.z ? 1 : 2;
+    first = UNKNOWNS;
+    for (int a = 0; a < 3; ++a) {
+      if (a < axis) first += UNKNOWNS / N[a];
+      if (a == axis) shape[a] = 1;
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    bool same = c > 0 && system_of[c] == system_of[0];
+    value[c] = same ? value[0] : series(system_of[c] * SERIES_STRIDE + first, shape, at);
+  }
+  value *= scale;
+  return true;
+}
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) met = below = 0u;
+  barrier();
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (pixel.x < view_width && pixel.y < view_height) {
+    dvec3 origin, direction;
+    view_ray(dvec2(pixel) + 0.5LF, origin, direction);
+    vec3 value;
+    if (radiance(origin, direction, value)) {
+      atomicAdd(met, 1u);
+      if (min(value.x, min(value.y, value.z)) < 0) atomicAdd(below, 1u);
+    }
+    int place = 3 * (pixel.y * view_width + pixel.x);
+    for (int c = 0; c < 3; ++c) airlight[place + c] = mean_layer[place + c] = max(value[c], 0);
+  }
+  barrier();
+  if (gl_LocalInvocationIndex > 0u) return;
+  atomicAdd(counts[0], met);
+  atomicAdd(counts[1], below);
+}

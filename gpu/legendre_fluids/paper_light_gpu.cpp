@@ -1,0 +1,183 @@
+#include "gpu/legendre_fluids/paper_light_gpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gpu/frame.h"
+#include "gpu/legendre_fluids/paper_systems.h"
+#include "gpu/view_uniforms.h"
+#include "methods/legendre_fluids/lit_media.h"
+#include "methods/legendre_fluids/paper_picture.h"
+#include "scene/error.h"
+
+namespace airlight::gpu::legendre {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+constexpr int tile = 8;  // of pixels, both ways
+
+class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
+ public:
+  PreparedPaperGpu(std::shared_ptr<const Scene>, const legendre_fluids::PaperOptions&, std::string settings);
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+  bool take(const DensityOnDevice&) override;
+
+ private:
+  void draw(const View&) const;
+  std::map<std::string, double> counters() const;
+
+  std::shared_ptr<const Scene> scene_;
+  legendre_fluids::PaperOptions options_;
+  std::string settings_;
+  Context& context_;
+  const scene::Medium* medium_ = nullptr;
+  scene::LegendrePointer field_;  // null where nothing extinguishes
+  std::vector<scene::DirectionalLight> lights_;
+  std::array<bool, 3> moving_;
+  std::unique_ptr<PaperSystems> systems_;  // null: no light scatters
+  Program* image_ = nullptr;
+  double negative_direct_ = 0;
+  bool flows_ = false;          // the density is a flow's
+  mutable bool stale_ = false;  // E_d is of another density
+  mutable Frame frame_;
+  std::vector<scene::StageTime> times_;
+};
+
+PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const legendre_fluids::PaperOptions& options,
+                                   std::string settings)
+    : scene_(std::move(scene)),
+      options_(options),
+      settings_(std::move(settings)),
+      context_(Context::get()),
+      moving_(legendre_fluids::moving_axes(*scene_)),
+      frame_(context_) {
+  for (const scene::Light& light : scene_->lights)
+    if (const auto& sun = std::get<scene::DirectionalLight>(light); sun.irradiance.maxCoeff() > 0)
+      lights_.push_back(sun);
+  for (const scene::Medium& medium : scene_->media)
+    if (extinguishes(medium)) medium_ = &medium;
+  if (medium_) field_ = legendre_fluids::field_within_region(*medium_);
+  if (!field_ || lights_.empty()) return;
+  const Use use(context_);
+  StageTimer timer(context_);
+  timer.begin("upload");
+  systems_ = std::make_unique<PaperSystems>(context_, *field_, *medium_, lights_, options_, moving_);
+  image_ = &program(context_, "paper_image", tile, tile, systems_->definitions());
+  timer.begin("direct systems");
+  systems_->begin();
+  times_ = timer.times();
+  for (const Eigen::VectorXd& e : systems_->direct())
+    negative_direct_ = std::max(negative_direct_, legendre_fluids::negative_share(systems_->shape(), e));
+}
+
+std::vector<scene::Stage> PreparedPaperGpu::stages() const {
+  const bool kept = bool(systems_);
+  const std::string why = !field_ ? "no medium extinguishes" : "no directional light shines";
+  const std::string how =
+      !kept ? ""
+            : fmt::format("{} of {} unknowns",
+                          options_.solver.closure == legendre_fluids::Closure::upwind ? "GMRES" : "conjugate gradients",
+                          scene::tensor_size(systems_->shape()));
+  return {{"direct systems", kept, kept ? how : why},
+          {"scattered systems", kept, kept ? how : why},
+          {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
+          {"clamping", kept, kept ? "negative radiance is taken as 0" : why}};
+}
+
+bool PreparedPaperGpu::take(const DensityOnDevice& density) {
+  const Use use(context_);
+  if (!systems_ || !systems_->take(density)) return false;
+  flows_ = stale_ = true;
+  return true;
+}
+
+void PreparedPaperGpu::draw(const View& view) const {
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  Program& p = *image_;
+  for (const auto& [name, binding] : {std::pair("mean", at::mean), std::pair("airlight", at::airlight)})
+    frame_.buffers.get(name, 12 * pixels).bind(binding);
+  Buffer& counts = frame_.buffers.get("counts", 8);
+  counts.clear();
+  counts.bind(at::status);
+  frame_.download.add_values("counts", counts, 8);
+  systems_->faces().bind(at::faces);
+  set_view(p, view);
+  p.set_double("box_low", field_->box().lo);
+  p.set_double("box_high", field_->box().hi);
+  p.set("scale", systems_->scale());
+  for (std::size_t c = 0; c < 3; ++c) p.set(fmt::format("system_of[{}]", c), systems_->system_of()[c]);
+  p.dispatch(view.width, view.height);
+}
+
+std::map<std::string, double> PreparedPaperGpu::counters() const {
+  const auto counts = frame_.download.values<unsigned>("counts");
+  if (counts.empty()) return {};
+  std::map<std::string, double> all{{"unknowns", double(scene::tensor_size(systems_->shape()))},
+                                    {"iterations", double(systems_->iterations())},
+                                    {"negative_share", counts[0] > 0 ? double(counts[1]) / counts[0] : 0}};
+  if (flows_) return all;
+  all["negative_direct_share"] = negative_direct_;
+  all["negative_density_share"] = legendre_fluids::negative_share(field_->shape(), field_->coefficients());
+  return all;
+}
+
+scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& execution) const {
+  legendre_fluids::require_view(view, moving_);
+  const Use use(context_);
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  for (;;) {
+    scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+    frame_.begin(execution);
+    if (systems_) {
+      if (stale_) {
+        frame_.timer.begin("direct systems");
+        systems_->solve_direct(frame_);
+      }
+      frame_.timer.begin("scattered systems");
+      systems_->solve_scattered(frame_, -view.camera.forward);
+      frame_.timer.begin("image");
+      draw(view);
+    } else {
+      for (const char* layer : {"mean", "airlight"}) frame_.buffers.get(layer, 12 * pixels).clear();
+    }
+    for (const char* layer : {"mean", "airlight"})
+      frame_.download.add(layer, frame_.buffers.get(layer, 12 * pixels), 12 * pixels);
+    frame_.finish(result);
+    // Systems that were not solved to the end are solved anew, with more steps.
+    if (systems_ && !systems_->keep_up(frame_)) continue;
+    if (frame_.download.wants_any()) stale_ = false;
+    result.counters["rays"] = double(pixels);
+    if (systems_) result.counters.merge(counters());
+    result.film.metadata = {
+        {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+    return result;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_against_paper(const legendre_fluids::PaperOptions& options) {
+  std::vector<std::string> reasons;
+  if (options.n > most_intensities)
+    reasons.push_back(fmt::format("variant = paper with n = {}: shaders take up to {} coefficients along an axis",
+                                  options.n, most_intensities));
+  const legendre_fluids::LightSolver& solver = options.solver;
+  if (solver.closure == legendre_fluids::Closure::least_squares && solver.weight > most_weight)
+    reasons.push_back(fmt::format("boundary_weight = {:g}: shaders' normal equations keep their digits up to {:g}",
+                                  solver.weight, most_weight));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const Scene> scene,
+                                               const legendre_fluids::PaperOptions& options,
+                                               const std::string& settings) {
+  return std::make_unique<PreparedPaperGpu>(std::move(scene), options, settings);
+}
+
+}  // namespace airlight::gpu::legendre
