@@ -196,7 +196,7 @@ class Folder {
   void keep(const Frame& of, const VoxelGrid& grid, const GaussianFit& fit, FittedFrame& frame) {
     const std::string csv = at(frame.name + ".csv"), residual = at(frame.name + ".residual");
     scene::write_gaussians_csv(csv, fit);
-    scene::write_residual(residual, scene::residual_of(grid, fit.sum, {s_.threshold, {}}));
+    scene::write_residual(residual, scene::residual_of(grid, fit.sum, {s_.threshold, {}, true}));
     frame.residual_bytes = fs::file_size(residual);
     json entry = as_json(frame, of);
     entry["csv"] = content_key(scene::read_whole_file(csv, most_bytes));

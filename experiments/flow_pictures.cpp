@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "scene/error.h"
 #include "scene/scene.h"
@@ -10,6 +11,7 @@
 namespace airlight::experiments {
 namespace {
 
+const std::string drawn_there = gpu::LegendreLightGpu().name();
 const auto is_smoke = [](const scene::Medium& m) { return scene::extinguishes(m); };
 
 }  // namespace
@@ -23,18 +25,25 @@ FlowPictures::FlowPictures(const scene::Scene& scene, const scene::Renderer& ren
     throw Error(scene.name + ": has no medium that extinguishes, expected one that is to be the flow's");
 }
 
-std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::Flow& flow) const {
+std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::DensityField& field) const {
   const auto scene = std::make_shared<scene::Scene>(scene_);
-  std::find_if(scene->media.begin(), scene->media.end(), is_smoke)->field = flow.medium();
+  std::find_if(scene->media.begin(), scene->media.end(), is_smoke)->field = field;
   return renderer_.prepare(scene, settings_, execution_);
 }
 
 void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
   scene::Stopwatch watch;
+  // What lies on a device is drawn from there into a picture that was prepared for something: a flow may begin empty.
+  if (const auto there = gpu::legendre::density_on_device(flow);
+      there && !prepared_ && renderer_.name() == drawn_there) {
+    const int n = there->coefficients;
+    prepared_ = prepared_with(std::make_shared<const scene::LegendreBox>(there->box, scene::TensorShape{n, n, n},
+                                                                         Eigen::VectorXd::Unit(n * n * n, 0)));
+  }
   if (prepared_ && gpu::draw_flow(*prepared_, flow))
     ++on_device_;
   else
-    prepared_ = prepared_with(flow);
+    prepared_ = prepared_with(flow.medium());
   const scene::Rendering rendering = prepared_->render(scene::view_of(scene_), execution_);
   scene::write_png(png, rendering.film, "mean", exposure_);
   seconds_ += watch.lap();

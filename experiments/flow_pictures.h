@@ -22,7 +22,7 @@ class FlowPictures {
   double seconds() const { return seconds_; }   // of all
 
  private:
-  std::unique_ptr<scene::Prepared> prepared_with(const scene::Flow&) const;
+  std::unique_ptr<scene::Prepared> prepared_with(const scene::DensityField&) const;
 
   const scene::Scene& scene_;
   const scene::Renderer& renderer_;

@@ -20,7 +20,7 @@ class LegendreLightGpu final : public scene::Renderer {
 };
 
 // The density of the first of the scene's media that extinguish becomes that of a flow of LegendreFluidsGpu in three dimensions: from step
-// to picture nothing leaves the device. What is below 0 is taken as 0 by `ray`, and as it is by `paper`. False, and nothing is done,
+// to picture nothing leaves the device. A density below 0 anywhere is drawn towards its mean until it is not. False, and nothing is done,
 // where the picture was not prepared by LegendreLightGpu, or its medium is no Legendre box of the flow's box and coefficients.
 bool draw_flow(scene::Prepared&, const scene::Flow&);
 

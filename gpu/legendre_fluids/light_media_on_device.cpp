@@ -88,6 +88,11 @@ std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{
 
 std::vector<std::string> reasons_against(const LitMedia& media) {
   std::vector<std::string> reasons;
+  for (const LitMedium& m : media.media)
+    if (m.field->negative())
+      reasons.push_back(
+          fmt::format("medium '{}' is below 0 in places: shaders know densities that are polynomials, not cut off at 0",
+                      m.medium->name));
   const TensorShape shape = shape_of(media);
   if (const std::size_t count = media.media.size() * std::size_t(shape[0] * shape[1] * 4 * fours(shape[2]));
       count > std::size_t(most_densities))
@@ -100,11 +105,8 @@ LightMediaOnDevice::LightMediaOnDevice(Context& context, const LitMedia& media,
     : context_(context),
       media_(media),
       densities_(context, "coefficients of densities", coefficients_of(media)),
-      rule_(context, "points along rays", Rule(media, options, definitions_).values),
-      negative_(
-          std::any_of(media.media.begin(), media.media.end(), [](const LitMedium& m) { return m.field->negative(); })) {
+      rule_(context, "points along rays", Rule(media, options, definitions_).values) {
   const TensorShape shape = shape_of(media);
-  definitions_["NEGATIVE"] = std::to_string(int(negative_));
   definitions_["MEDIA"] = std::to_string(media.media.size());
   definitions_["NX"] = std::to_string(shape[0]);
   definitions_["NY"] = std::to_string(shape[1]);
@@ -132,16 +134,22 @@ bool LightMediaOnDevice::take(std::size_t medium, const Buffer& state, std::size
   if (medium >= media_.media.size()) return false;
   const scene::LegendreBox& held = *media_.media[medium].field;
   if (held.shape() != TensorShape{n, n, n} || held.box().lo != box.lo || held.box().hi != box.hi) return false;
-  if (!taking_) taking_ = &program(context_, "light_density", 64, 1, definitions_);
-  negative_ = true;
-  definitions_["NEGATIVE"] = "1";
+  if (!taking_) {
+    taking_ = &program(context_, "light_density", 64, 1, definitions_);
+    least_ = std::make_unique<Buffer>(context_, "least density", 4);
+  }
   Program& p = *taking_;
+  bind(p, Vec3::Zero());
   state.bind(at::state);
   densities_.bind(at::targets);
+  least_->bind(at::status);
   p.set("medium", int(medium));
   p.set("field", int(field));
   p.set("n", n);
-  p.dispatch(n * n * n);
+  for (int part = 0; part < 3; ++part) {
+    p.set("part", part);
+    p.dispatch(part == 1 ? 8 * n * n * n : n * n * n);
+  }
   return true;
 }
 

@@ -21,13 +21,10 @@ class LightMediaOnDevice {
   LightMediaOnDevice(Context&, const legendre_fluids::LitMedia&, const legendre_fluids::RayOptions&);
 
   int count() const { return int(media_.media.size()); }
-  // Is a density below 0 in places, or may it become so: a flow's.
-  bool negative() const { return negative_; }
-  int series() const { return media_.coefficients; }  // of a stretch
   // Of a program that includes light_media.glsl.
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&, const Vec3& to_light) const;
-  // The density of a medium of n^3 coefficients becomes a field of a fluid's state, negative() from then on; nothing leaves the device.
+  // The density of a medium of n^3 coefficients becomes a field of a fluid's state, made positive where it is not; nothing leaves the device.
   // False, and nothing is done, where the medium has another shape or box.
   bool take(std::size_t medium, const Buffer& state, std::size_t field, int n, const Box&);
   // Dispatches after which every ray has left all boxes.
@@ -38,8 +35,8 @@ class LightMediaOnDevice {
   const legendre_fluids::LitMedia& media_;
   Definitions definitions_;
   Buffer densities_, rule_;
-  bool negative_;
-  Program* taking_ = nullptr;  // of take()
+  std::unique_ptr<Buffer> least_;  // of take(), and its program
+  Program* taking_ = nullptr;
 };
 
 }  // namespace airlight::gpu::legendre

@@ -1,5 +1,5 @@
-// GMRES without restart, as methods/legendre_fluids/gmres.cpp: a number of steps of every system that is not done, or the solutions of those
-// that are.
+// GMRES without restart, as methods/legendre_fluids/gmres.cpp: a number of steps of every system that is not done, or the solutions of
+// those that are.
 #include "legendre_fluids/paper.glsl"
 uniform int steps, ends;
 uniform double tolerance;
