@@ -11,7 +11,7 @@ namespace airlight::experiments {
 
 class FlowPictures {
  public:
-  // Throws Error where no medium of the scene extinguishes.
+  // Keeps scene, renderer and settings by reference. Throws Error where no medium of the scene extinguishes.
   FlowPictures(const scene::Scene&, const scene::Renderer&, const scene::Settings&, double exposure, int threads);
 
   // As a PNG. From where flow and picture lie on a device if both are legendre_fluids_gpu, else prepared anew. Throws NotSupported

@@ -77,7 +77,7 @@ struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
   std::string sequence, profile = "quick";              // in place of a problem and a folder
-  std::string scene, renderer = "legendre_fluids_gpu";  // of pictures of each frame; empty: none
+  std::string scene, renderer = "legendre_fluids";  // of pictures of each frame; scene empty: none
   Pairs renderer_settings;
   double exposure = 0;
   int threads = 0;

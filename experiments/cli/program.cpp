@@ -269,10 +269,13 @@ int dispatch(int argc, char** argv) {
   c->add_option(
       "--sequence", simulate_options.sequence,
       "instead of PROBLEM and --out: one of experiments/sequences.toml, where it is not there; prints its files");
-  c->add_option("--scene", simulate_options.scene,
-                "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
-  c->add_option("--renderer", simulate_options.renderer,
-                "of --scene: legendre_fluids_gpu (default), which draws flows of that name where they lie");
+  c->add_option(
+      "--scene", simulate_options.scene,
+      "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
+  c->add_option(
+      "--renderer", simulate_options.renderer,
+      "of --scene (default: legendre_fluids); legendre_fluids_gpu draws flows of that name where they lie, what is "
+      "below 0 towards the mean");
   add_pairs(c, "--renderer-set", simulate_options.renderer_settings, "a setting of the renderer");
   c->add_option("--exposure", simulate_options.exposure, "of the pictures, in powers of two");
   c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");

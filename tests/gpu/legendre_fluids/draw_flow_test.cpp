@@ -1,12 +1,15 @@
 // A flow that is moved and drawn on the device: nothing comes down between step and picture.
 #include <catch2/catch.hpp>
 
+#include "experiments/flow_pictures.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "methods/legendre_fluids/light.h"
+#include "scene/color_image.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace legendre_fluids::testing;
@@ -145,4 +148,35 @@ TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its
   for (const char* layer : {"transmittance", "airlight"}) CHECK(test::relative_l2(drawn, expected, layer) < 0.01);
   CHECK_FALSE(gpu::draw_flow(
       *method.prepare(scene_with(random_density({4, 4, 4}, 1)), {method.settings(), {}}, {1, {}}), *flow));
+}
+
+TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const TemporaryFolder folder;
+  const auto flow = rising_blob(0.5);
+  const auto scene = scene_with(box_of(*flow, 1));
+  const gpu::LegendreLightGpu on_device;
+  const legendre_fluids::LegendreLight on_processor;
+  const scene::Settings settings(on_processor.settings(), {});  // the same for both
+  experiments::FlowPictures there(*scene, on_device, settings, 3, 1), here(*scene, on_processor, settings, 3, 1);
+  for (int frame = 0; frame < 2; ++frame) {
+    there.draw(*flow, folder.file("there.png"));
+    here.draw(*flow, folder.file("here.png"));
+    const scene::ColorImage a = scene::read_color_image(folder.file("there.png")),
+                            b = scene::read_color_image(folder.file("here.png"));
+    REQUIRE(a.rgb.size() == b.rgb.size());
+    double worst = 0, greatest = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+      worst = std::max(worst, double(std::abs(a.rgb[i] - b.rgb[i])));
+      greatest = std::max(greatest, double(b.rgb[i]));
+    }
+    CHECK(worst < 0.01);  // a level of 8 bits
+    CHECK(greatest > 0.1);
+    flow->step(0.05);
+  }
+  CHECK(there.on_device() == 2);
+  CHECK(here.on_device() == 0);
+  scene::Scene empty = *scene;
+  empty.media.clear();
+  CHECK_THROWS_AS(experiments::FlowPictures(empty, on_device, settings, 0, 1), Error);
 }
