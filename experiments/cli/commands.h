@@ -76,7 +76,7 @@ int explain(const ExplainOptions&);
 struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
-  std::string sequence, profile = "quick";              // in place of a problem and a folder
+  std::string sequence, profile = "quick";          // in place of a problem and a folder
   std::string scene, renderer = "legendre_fluids";  // of pictures of each frame; scene empty: none
   Pairs renderer_settings;
   double exposure = 0;

@@ -73,7 +73,7 @@ struct RunTime {
   double start, steps;
 };
 RunTime run_to(int last, const Solve& solve, const ProblemPointer& problem, const scene::Execution& execution,
-              std::unique_ptr<scene::Flow>& flow, const std::function<void(int, const scene::Flow&)>& at_frame) {
+               std::unique_ptr<scene::Flow>& flow, const std::function<void(int, const scene::Flow&)>& at_frame) {
   const FrameSteps plan = frame_steps(*problem, solve.solver, solve.settings);
   double since = steady_seconds();
   RunTime time{0, 0};
@@ -127,13 +127,13 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
     Progress progress(fmt::format("{}: reference of {}", e.id, c.name));
     std::unique_ptr<scene::Flow> flow;
     const RunTime time = run_to(frames.empty() ? 0 : frames.back(), solve, judged.problem,
-                            progress.execution(e.timing.threads), flow, [&](int frame, const scene::Flow& now) {
-                              if (!std::binary_search(frames.begin(), frames.end(), frame)) return;
-                              const FlowSample s = sample(now, judged.points);
-                              put(bytes, s.velocity);
-                              put(bytes, s.density);
-                              put(bytes, s.temperature);
-                            });
+                                progress.execution(e.timing.threads), flow, [&](int frame, const scene::Flow& now) {
+                                  if (!std::binary_search(frames.begin(), frames.end(), frame)) return;
+                                  const FlowSample s = sample(now, judged.points);
+                                  put(bytes, s.velocity);
+                                  put(bytes, s.density);
+                                  put(bytes, s.temperature);
+                                });
     put(bytes, {time.start + time.steps});
     info.cached = false;
     keeper.store().keep(name, [&](const auto& path) { scene::write_file_atomically(path.string(), bytes); });

@@ -17,7 +17,7 @@ class CsvTable {
   CsvTable& operator=(const CsvTable&) = delete;
 
   std::string_view header() const { return header_; }  // the one that the file has
-  bool next();  // to the next row; false after the last one
+  bool next();                                         // to the next row; false after the last one
   // All values of this row, each in its range; as many as the header names. Throws Error.
   std::vector<double> values(const std::vector<Range>&) const;
   // "file:line:column: message", the column that of a value of this row, the first one being 0.
