@@ -49,26 +49,24 @@ std::shared_ptr<scene::Scene> scene_with(scene::LegendrePointer field) {
   return lit_scene(smoke(std::move(field), 1.5), oblique_light, oblique_view, 24, 20);
 }
 
-}  // namespace
-
-TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
-  const auto flow = rising_blob(0.5);
+// Steps and pictures by turns: warm ones send nothing, and bring down the status of a step alone. The last picture, with all layers.
+scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given& given) {
   Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
   constant[0] = 1;
   const auto scene =
       scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
   const gpu::LegendreLightGpu method;
-  const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+  const auto picture = method.prepare(scene, {method.settings(), given}, {1, {}});
   const scene::View view = view_of(*scene);
   scene::Execution none{1, {}};
   none.layers.emplace();
   gpu::Traffic& traffic = gpu::Context::get().traffic();
   const auto frame = [&](const scene::Execution& execution) {
-    flow->step(0.05);
-    REQUIRE(gpu::draw_flow(*picture, *flow));
+    flow.step(0.05);
+    REQUIRE(gpu::draw_flow(*picture, flow));
     return picture->render(view, execution).film;
   };
+  frame({1, {}});  // how many steps the paper's systems take
   frame(none);
   const gpu::Traffic before = traffic;
   for (int i = 0; i < 4; ++i) frame(none);
@@ -77,7 +75,15 @@ TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendr
   CHECK(warm.bytes_up == 0);
   CHECK(warm.allocations == 0);
   CHECK(warm.look_ups == 0);
-  const scene::Film drawn = frame({1, {}});
+  return frame({1, {}});
+}
+
+}  // namespace
+
+TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0.5);
+  const scene::Film drawn = drawn_while_nothing_comes_down(*flow, {});
   const scene::LegendrePointer field = box_of(*flow, 1);
   REQUIRE(!field->negative());
   const scene::Film expected = test::render(legendre_fluids::LegendreLight(), scene_with(field)).film;
@@ -90,35 +96,12 @@ TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendr
 TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems", "[gpu][legendre_fluids]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0.5);
-  Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
-  constant[0] = 1;
-  const auto scene =
-      scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
-  const gpu::LegendreLightGpu method;
   for (const char* closure : {"upwind", "least_squares"}) {
+    CAPTURE(closure);
     const test::Given given{{"variant", "paper"}, {"closure", closure}};
-    const auto picture = method.prepare(scene, {method.settings(), given}, {1, {}});
-    const scene::View view = view_of(*scene);
-    scene::Execution none{1, {}};
-    none.layers.emplace();
-    gpu::Traffic& traffic = gpu::Context::get().traffic();
-    const auto frame = [&](const scene::Execution& execution) {
-      flow->step(0.05);
-      REQUIRE(gpu::draw_flow(*picture, *flow));
-      return picture->render(view, execution).film;
-    };
-    frame({1, {}});
-    const gpu::Traffic before = traffic;
-    for (int i = 0; i < 4; ++i) frame(none);
-    const gpu::Traffic warm = traffic - before;
-    CHECK(warm.bytes_down == 4 * 8);  // the status of a step
-    CHECK(warm.bytes_up == 0);
-    CHECK(warm.allocations == 0);
-    CHECK(warm.look_ups == 0);
-    const scene::Film drawn = frame({1, {}});
+    const scene::Film drawn = drawn_while_nothing_comes_down(*flow, given);
     const scene::Film expected =
         test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, 1)), given).film;
-    CAPTURE(closure);
     CHECK(gpu::test::quantile(expected, drawn, "airlight", 1) < 2e-5);
   }
 }
