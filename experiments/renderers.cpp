@@ -6,6 +6,7 @@
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
 #include "gpu/shadow_planes/shadow_planes_gpu.h"
 #include "gpu/wavelet_fog/wavelet_fog_gpu.h"
+#include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/legendre_fluids/light.h"
 #include "methods/shadow_planes/shadow_planes.h"
@@ -31,6 +32,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<gpu::WaveletFogGpu>());
     list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
     list.push_back(std::make_unique<gpu::LegendreLightGpu>());
+    list.push_back(std::make_unique<compensated_ray_marching::CompensatedRayMarching>());
     return list;
   }();
   return renderers;

@@ -14,6 +14,11 @@ constexpr double least_density = 1e-10;  // of the Gaussians: below it no one kn
 
 }  // namespace
 
+Rgb seen(const Rgb& depth, double cosine, SliceWeight weight) {
+  if (weight == SliceWeight::exact) return depth * depth.unaryExpr(&mean_exp_minus);
+  return weight == SliceWeight::paper ? depth : Rgb(depth * cosine);
+}
+
 CompensatedMarch::CompensatedMarch(MarchedSmoke smoke) : smoke_(std::move(smoke)) {
   if (smoke_.source.size() != smoke_.gaussians.gaussians.size())
     throw Error("a march with other numbers of sources and of Gaussians");
@@ -44,16 +49,13 @@ CompensatedMarch::Sample CompensatedMarch::at(const Point3& x, const std::vector
 
 Marched CompensatedMarch::slices(const Ray& ray, const Slices& slices, SliceWeight weight) const {
   const std::vector<Rgb> sources = sources_towards(-ray.direction);
-  const double step = slices.thickness / std::abs(ray.direction.dot(slices.axis));
+  const double cosine = std::abs(ray.direction.dot(slices.axis)), step = slices.thickness / cosine;
   Marched marched;
   for (int i = 0; i < slices.count; ++i) {
     const Sample sample = at(ray.at((i + 0.5) * step), sources);
     if (!(sample.density > 0)) continue;
     const Rgb depth = smoke_.extinction * sample.density * step;
-    const Rgb seen = weight == SliceWeight::exact   ? Rgb(depth * depth.unaryExpr(&mean_exp_minus))
-                     : weight == SliceWeight::paper ? depth
-                                                    : Rgb(smoke_.extinction * sample.density * slices.thickness);
-    marched.radiance += marched.transmittance * sample.source * seen;
+    marched.radiance += marched.transmittance * sample.source * seen(depth, cosine, weight);
     marched.transmittance *= (-depth).exp();
   }
   return marched;

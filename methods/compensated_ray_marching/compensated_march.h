@@ -20,6 +20,8 @@ struct MarchedSmoke {
 // How much of a slice's source is seen: times depth / cos printed without the cos (E6 of the specification), with it, or 1 - exp(-depth), what
 // the slice itself absorbs of its own light counted.
 enum class SliceWeight { printed, paper, exact };
+// For a slice's depth along the ray; cosine: of the angle between the ray and the axis across the slices.
+Rgb seen(const Rgb& depth, double cosine, SliceWeight);
 
 struct Slices {
   Vec3 axis;         // unit, across the slices

@@ -63,6 +63,29 @@ DiffusionSystem diffusion_system(const std::vector<scene::Gaussian>& gaussians,
   return system;
 }
 
+std::vector<LinearSource> scattered_radiance(const std::vector<scene::Gaussian>& gaussians,
+                                             const std::vector<LinearSource>& sources, const Eigen::VectorXd& mean,
+                                             double sigma_t, double albedo, double g, DiffusionForm form) {
+  const double factor = (form == DiffusionForm::as_printed ? 1 : 3) / (3 * (1 - albedo * g) * sigma_t);
+  std::vector<LinearSource> radiance(gaussians.size());
+  for (std::size_t h = 0; h < gaussians.size(); ++h) {
+    double D = 0;
+    Vec3 gradient = Vec3::Zero(), weighted = Vec3::Zero(), direction = Vec3::Zero();
+    for (std::size_t l = 0; l < gaussians.size(); ++l) {
+      const Derivatives q = at(gaussians[l], gaussians[h].center);
+      D += q.value;
+      gradient += q.gradient;
+      weighted += mean[Eigen::Index(l)] * q.gradient;
+      direction += q.value * sources[l].direction;
+    }
+    double here = 0;
+    for (std::size_t l = 0; l < gaussians.size(); ++l)
+      here += at(gaussians[l], gaussians[h].center).value / D * mean[Eigen::Index(l)];
+    radiance[h] = {mean[Eigen::Index(h)], factor / D * (-(weighted - here * gradient) / D + sigma_t * direction)};
+  }
+  return radiance;
+}
+
 LeastSquares solve_least_squares(const DiffusionSystem& system, const Eigen::VectorXd& start, int iterations,
                                  double tolerance, bool scale_rows) {
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(system.right.size());

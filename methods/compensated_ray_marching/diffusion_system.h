@@ -32,6 +32,12 @@ enum class DiffusionForm { as_printed, corrected };
 DiffusionSystem diffusion_system(const std::vector<scene::Gaussian>&, const std::vector<LinearSource>&, double sigma_t,
                                  double albedo, double g, DiffusionForm);
 
+// The light that has been scattered, as a mean and a direction at the centres, for its mean there:
+// L1 = 3 kappa (-grad L0 + sigma_t D J1); `as_printed`: without the 3.
+std::vector<LinearSource> scattered_radiance(const std::vector<scene::Gaussian>&, const std::vector<LinearSource>&,
+                                             const Eigen::VectorXd& mean, double sigma_t, double albedo, double g,
+                                             DiffusionForm);
+
 struct LeastSquares {
   Eigen::VectorXd x;
   int iterations = 0;

@@ -21,8 +21,6 @@ double size_of(const Harmonics& f) {
   return std::sqrt(sum);
 }
 
-double exp_of_mean(const Harmonics& f) { return std::exp(f[0] / std::sqrt(4 * pi)); }
-
 // Values at directions that integrate products of exponentials well, and their harmonics.
 struct Sphere {
   std::vector<Ordinate> directions;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {
@@ -36,6 +37,21 @@ std::vector<double> henyey_greenstein(int order, double g) {
   double power = 1;
   for (int l = 0; l < order; ++l, power *= g) zonal.push_back(std::sqrt(4 * pi * (2 * l + 1)) * power);
   return zonal;
+}
+
+// All but Henyey-Greenstein's are polynomials, of degree 32 at most.
+std::vector<double> phase_moments(const scene::PhaseFunction& phase, int order) {
+  static const scene::GaussLegendre rule = scene::gauss_legendre(64);
+  std::vector<double> moments(std::size_t(order), 0.0);
+  if (const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase)) {
+    for (int l = 0; l < order; ++l) moments[std::size_t(l)] = std::pow(hg->g, l);
+    return moments;
+  }
+  for (std::size_t i = 0; i < rule.node.size(); ++i)
+    for (int l = 0; l < order; ++l)
+      moments[std::size_t(l)] +=
+          2 * pi * rule.weight[i] * phase_value(phase, rule.node[i]) * std::legendre(unsigned(l), rule.node[i]);
+  return moments;
 }
 
 std::vector<double> turned_back(std::vector<double> f) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/math/types.h"
+#include "scene/phase.h"
 
 namespace airlight::compensated_ray_marching {
 
@@ -15,6 +16,9 @@ std::vector<double> convolved(const std::vector<double>& f, const std::vector<do
 
 // Henyey-Greenstein, normalised to 4 pi: sqrt(4 pi (2l+1)) g^l.
 std::vector<double> henyey_greenstein(int order, double g);
+
+// Mean of P_l over a phase function, l < order: what it leaves of band l.
+std::vector<double> phase_moments(const scene::PhaseFunction&, int order);
 
 // f(-w): band l times (-1)^l. From lookup directions to propagation directions, and back.
 std::vector<double> turned_back(std::vector<double> f);

@@ -118,6 +118,21 @@ void add(ContentHash& hash, const Medium& medium) {
       [](Murky) {});
 }
 
+void add_matter(ContentHash& hash, const Scene& scene) {
+  hash.tag("media");
+  hash.add(std::int64_t(scene.media.size()));
+  for (const Medium& medium : scene.media) add(hash, medium);
+  hash.tag("surfaces");
+  hash.add(std::int64_t(scene.surfaces.size()));
+  for (const Surface& surface : scene.surfaces) load::add(hash, surface);
+}
+
+std::string matter_hash(const Scene& scene) {
+  ContentHash hash;
+  add_matter(hash, scene);
+  return hash.digits();
+}
+
 std::string content_hash(const Scene& scene) {
   ContentHash hash;
   hash.tag("airlight scene 1");  // raised when the meaning of the values changes
@@ -131,12 +146,7 @@ std::string content_hash(const Scene& scene) {
     hash.tag(light_name(light));
     std::visit([&](const auto& kind) { add(hash, kind); }, light);
   }
-  hash.tag("media");
-  hash.add(std::int64_t(scene.media.size()));
-  for (const Medium& medium : scene.media) add(hash, medium);
-  hash.tag("surfaces");
-  hash.add(std::int64_t(scene.surfaces.size()));
-  for (const Surface& surface : scene.surfaces) load::add(hash, surface);
+  add_matter(hash, scene);
   for (const auto& backdrop : scene.backdrops) {
     hash.tag(backdrop->fills ? "backdrop" : "particles");
     hash.add(backdrop->width);
@@ -154,6 +164,7 @@ void finish(Scene& scene) {
   move_camera_off_surfaces(scene);
   move_lights_off_surfaces(scene);
   scene.hash = content_hash(scene);
+  scene.matter_hash = matter_hash(scene);
 }
 
 }  // namespace airlight::scene

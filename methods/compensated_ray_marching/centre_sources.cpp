@@ -1,0 +1,88 @@
+#include "methods/compensated_ray_marching/centre_sources.h"
+
+#include "methods/compensated_ray_marching/diffusion_system.h"
+#include "methods/compensated_ray_marching/to_camera.h"
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/math/spherical_harmonics.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+SourceLight environments(const std::vector<scene::Light>& lights, int order) {
+  SourceLight all{std::vector<Rgb>(std::size_t(order) * std::size_t(order), Rgb::Zero()), {}};
+  for (const scene::Light& light : lights) {
+    const std::vector<Rgb> one = project_environment(std::get<scene::EnvironmentLight>(light), order);
+    for (std::size_t i = 0; i < one.size(); ++i) all.harmonics[i] += one[i];
+  }
+  all.radiance = [harmonics = all.harmonics](const Vec3& w) { return scene::evaluate_sh(harmonics, w); };
+  return all;
+}
+
+}  // namespace
+
+void CentreSources::light(const std::vector<scene::Light>& lights, const scene::Execution& execution) {
+  scene::Stopwatch watch;
+  times_.clear();
+  const SourceRadiance radiance(sum_, medium_.sigma_t, medium_.albedo, phase_moments(medium_.phase, options_.order),
+                                environments(lights, options_.order), options_.paper.transmittance);
+  sources_.resize(sum_.gaussians.size());
+  times_.push_back({"environment", watch.lap()});
+  scene::parallel_rows(int(sources_.size()), execution,
+                       [&](int i) { sources_[std::size_t(i)] = radiance.at(sum_.gaussians[std::size_t(i)].center); });
+  times_.push_back({"single scattering", watch.lap()});
+  iterations_ = 0;
+  residual_ = negative_share_ = 0;
+  if (options_.paper.multiple == Options::Paper::Multiple::none) return;
+  scatter_again();
+  times_.push_back({"multiple scattering", watch.lap()});
+}
+
+void CentreSources::scatter_again() {
+  const DiffusionForm form = options_.paper.multiple == Options::Paper::Multiple::as_printed ? DiffusionForm::as_printed
+                                                                                             : DiffusionForm::corrected;
+  const double g = mean_cosine(medium_.phase), mean = std::sqrt(4 * pi), along = std::sqrt(4 * pi / 3);
+  const auto n = Eigen::Index(sources_.size());
+  before_.resize(3, Eigen::VectorXd::Zero(n));
+  const std::vector<std::vector<Rgb>> single = sources_;
+  Eigen::Index negative = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double albedo = medium_.albedo[c], sigma_t = medium_.sigma_t[c];
+    if (!(albedo > 0) || !(sigma_t > 0)) continue;
+    std::vector<LinearSource> linear;
+    for (const std::vector<Rgb>& source : single) {
+      double bands[4] = {0, 0, 0, 0};
+      for (std::size_t b = 0; b < std::min<std::size_t>(4, source.size()); ++b) bands[b] = source[b][c];
+      linear.push_back(linear_source(bands));
+    }
+    const DiffusionSystem system = diffusion_system(sum_.gaussians, linear, sigma_t, albedo, g, form);
+    LeastSquares solution =
+        solve_least_squares(system, before_[std::size_t(c)], options_.iterations, options_.tolerance, false);
+    iterations_ += solution.iterations;
+    residual_ = std::max(residual_, solution.residual);
+    negative += (solution.x.array() < 0).count();
+    before_[std::size_t(c)] = solution.x;
+    const std::vector<LinearSource> again =
+        scattered_radiance(sum_.gaussians, linear, solution.x.cwiseMax(0), sigma_t, albedo, g, form);
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      std::vector<Rgb>& source = sources_[i];
+      source[0][c] += albedo * again[i].mean * mean;
+      if (source.size() < 4) continue;
+      // J1 = sqrt(3 / 4 pi) (-f3, -f1, f2): linear_source's.
+      const Vec3 direction = albedo * g * along * again[i].direction;
+      source[3][c] -= direction[0];
+      source[1][c] -= direction[1];
+      source[2][c] += direction[2];
+    }
+  }
+  negative_share_ = n > 0 ? double(negative) / double(3 * n) : 0;
+}
+
+std::vector<Rgb> CentreSources::towards(const scene::Camera& camera) const {
+  std::vector<Rgb> values;
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    values.push_back(scene::evaluate_sh(sources_[i], to_camera(camera, sum_.gaussians[i].center)));
+  return values;
+}
+
+}  // namespace airlight::compensated_ray_marching

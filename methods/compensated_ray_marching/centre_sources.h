@@ -1,0 +1,42 @@
+// Source radiance at the centres of the Gaussians, as the publication finds it: single scattering in harmonics, then the diffusion system.
+// Zhou et al. 2008, sections 5.3 and 5.4.
+#pragma once
+#include "methods/compensated_ray_marching/options.h"
+#include "scene/renderer.h"
+
+namespace airlight::compensated_ray_marching {
+
+class CentreSources {
+ public:
+  // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over.
+  CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const Options& options)
+      : sum_(sum), medium_(medium), options_(options) {}
+
+  // A light, or another. Conjugate gradients begin with the radiance before.
+  void light(const std::vector<scene::Light>&, const scene::Execution&);
+
+  // At each centre, towards the camera, at least 0 where it is asked for between centres [W/m^2/sr].
+  std::vector<Rgb> towards(const scene::Camera&) const;
+
+  const std::vector<std::vector<Rgb>>& sources() const {
+    return sources_;
+  }  // order^2 coefficients, propagation directions
+  const std::vector<scene::StageTime>& times() const { return times_; }
+  int iterations() const { return iterations_; }             // of all channels
+  double residual() const { return residual_; }              // the greatest, relative
+  double negative_share() const { return negative_share_; }  // of the centres' scattered radiance, taken as 0
+
+ private:
+  void scatter_again();
+
+  const scene::GaussianSum& sum_;
+  const scene::Medium& medium_;
+  Options options_;
+  std::vector<std::vector<Rgb>> sources_;
+  std::vector<Eigen::VectorXd> before_;  // a channel's mean radiance at the centres
+  std::vector<scene::StageTime> times_;
+  int iterations_ = 0;
+  double residual_ = 0, negative_share_ = 0;
+};
+
+}  // namespace airlight::compensated_ray_marching

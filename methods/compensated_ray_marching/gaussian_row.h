@@ -1,0 +1,31 @@
+// Gaussians along the view rays of one row of pixels, which lie in a plane: only those that meet it are looked at, and only where the ray is
+// within them. What Zhou et al. 2008, section 5.5, draw slice by slice, added ray by ray.
+#pragma once
+#include <vector>
+
+#include "scene/media/gaussian_sum.h"
+
+namespace airlight::compensated_ray_marching {
+
+// Equal slices of a ray; each is sampled in its middle.
+struct RaySlices {
+  double start = 0, step = 0;  // [m] along the ray
+  int count = 0;
+  double middle(int k) const { return start + (k + 0.5) * step; }
+};
+
+class GaussianRow {
+ public:
+  // values: one of each Gaussian, to be interpolated between their centres; null: none. Both outlive this. The plane: a point, a unit normal.
+  GaussianRow(const scene::GaussianSum&, const std::vector<Rgb>* values, const Point3&, const Vec3& normal);
+  // Adds to the densities, count of them, and with values to those times density. Returns how many samples of Gaussians that took.
+  long add(const Ray&, const RaySlices&, double* density, Rgb* weighted) const;
+
+ private:
+  const scene::GaussianSum& sum_;
+  const std::vector<Rgb>* values_;
+  double cut2_;
+  std::vector<std::size_t> near_;
+};
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,63 @@
+#include "methods/compensated_ray_marching/incoming_light.h"
+
+#include <algorithm>
+
+#include "scene/math/spherical_harmonics.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+bool same(const scene::EnvironmentMap& a, const scene::EnvironmentMap& b) {
+  return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
+}
+
+}  // namespace
+
+IncomingLight::IncomingLight(const std::vector<scene::Light>& lights, int levels)
+    : levels_(levels), fixed_(ordinate_directions(levels, 2 * levels, false)) {
+  become(lights);
+}
+
+const std::vector<Rgb>& IncomingLight::projected(const std::shared_ptr<const scene::EnvironmentMap>& map) {
+  for (const Projected& p : known_)
+    if (p.map == map || same(*p.map, *map)) return p.harmonics;
+  const scene::EnvironmentLight upright = make_map_environment(map, Mat3::Identity(), Rgb::Ones(), "");
+  known_.push_back({map, project_environment(upright, levels_)});
+  return known_.back().harmonics;
+}
+
+void IncomingLight::become(const std::vector<scene::Light>& lights) {
+  directions_.clear();
+  for (const Ordinate& d : fixed_) directions_.push_back(d.direction);
+  power_.assign(directions_.size(), Rgb::Zero());
+  for (const scene::Light& light : lights) {
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light)) {
+      if (!(sun->irradiance.maxCoeff() > 0)) continue;
+      directions_.push_back(sun->to_light);
+      power_.push_back(sun->irradiance);
+    } else if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
+      std::vector<Rgb> harmonics;
+      if (environment->map) {
+        harmonics = projected(environment->map);
+      } else if (!environment->sh.empty()) {
+        harmonics = environment->sh;
+        harmonics.resize(std::min(harmonics.size(), std::size_t(levels_) * std::size_t(levels_)));
+      }
+      for (std::size_t k = 0; k < fixed_.size(); ++k) {
+        const Rgb radiance =
+            harmonics.empty() ? Rgb::Ones() : scene::evaluate_sh(harmonics, environment->to_map * fixed_[k].direction);
+        power_[k] += fixed_[k].weight * environment->scale * radiance;
+      }
+    }
+  }
+}
+
+bool IncomingLight::dark() const {
+  return std::all_of(power_.begin(), power_.end(), [](const Rgb& p) { return (p == 0).all(); });
+}
+
+bool IncomingLight::grey() const {
+  return std::all_of(power_.begin(), power_.end(), [](const Rgb& p) { return p[0] == p[1] && p[1] == p[2]; });
+}
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,39 @@
+// The directions that light is gathered from, and what comes from each of them without the smoke.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "methods/compensated_ray_marching/ordinate_directions.h"
+#include "scene/light.h"
+
+namespace airlight::compensated_ray_marching {
+
+// Environments are taken with `levels` bands of spherical harmonics, at levels x 2 levels Gauss directions, whose rule is exact for their
+// products with as many bands of what the smoke leaves of them. Directional lights follow, each a direction of its own.
+class IncomingLight {
+ public:
+  IncomingLight(const std::vector<scene::Light>&, int levels);
+  // Other lights. What costs, a map's projection, is kept where the map is the same, however it is turned.
+  void become(const std::vector<scene::Light>&);
+
+  const std::vector<Vec3>& directions() const { return directions_; }  // towards the light, unit
+  std::size_t fixed() const { return fixed_.size(); }                  // those of environments, which come first
+  const std::vector<Rgb>& power() const { return power_; }  // radiance times solid angle, or irradiance [W/m^2]
+  bool dark() const;
+  bool grey() const;  // the same in all channels
+
+ private:
+  struct Projected {
+    std::shared_ptr<const scene::EnvironmentMap> map;
+    std::vector<Rgb> harmonics;  // of the map's own directions
+  };
+  const std::vector<Rgb>& projected(const std::shared_ptr<const scene::EnvironmentMap>&);
+
+  int levels_;
+  std::vector<Ordinate> fixed_;
+  std::vector<Projected> known_;
+  std::vector<Vec3> directions_;
+  std::vector<Rgb> power_;
+};
+
+}  // namespace airlight::compensated_ray_marching

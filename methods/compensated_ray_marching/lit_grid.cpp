@@ -1,0 +1,204 @@
+#include "methods/compensated_ray_marching/lit_grid.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "methods/compensated_ray_marching/to_camera.h"
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/math/spherical_harmonics.h"
+#include "scene/stopwatch.h"
+#include "scene/threads.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+constexpr int most_cells = 96;        // along a side, for cells that are not too deep
+constexpr double least_share = 1e-6;  // of the greatest mean density: below it a cell counts as empty
+constexpr std::size_t chunk = 64;     // nodes a task
+
+// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr].
+double phase_in_bands(const std::vector<double>& moments, double c) {
+  double before = 0, now = 1, sum = 0;
+  for (std::size_t l = 0; l < moments.size(); ++l) {
+    sum += (2 * double(l) + 1) * moments[l] * now;
+    const double next = ((2 * double(l) + 1) * c * now - double(l) * before) / (double(l) + 1);
+    before = now;
+    now = next;
+  }
+  return sum / (4 * pi);
+}
+
+}  // namespace
+
+LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const Options& options,
+                 const IncomingLight& light, const scene::Execution& execution)
+    : scene_(scene), medium_(medium), options_(options), phase_(phase_moments(medium.phase, options.grid.levels)) {
+  scene::Stopwatch watch;
+  const Box box = smoke_box(medium);
+  Eigen::ArrayXd densities;
+  for (int cells = options.grid.cells;;) {
+    grid_ = node_grid(box, cells);
+    densities = mean_densities(medium, grid_, execution.threads);
+    deepest_ = medium.sigma_t.maxCoeff() * densities.maxCoeff() * grid_.cells.cell[0];
+    if (deepest_ <= options.grid.deepest_cell || options.grid.multiple == Options::Grid::Multiple::none) break;
+    const int needed = int(std::ceil(cells * deepest_ / options.grid.deepest_cell));
+    if (cells >= most_cells)
+      throw scene::NotSupported(
+          fmt::format("compensated_ray_marching: cells of the smoke's {} are {:.3g} deep: light would leak through; "
+                      "settings.deepest_cell = {} allows no more",
+                      cells, deepest_, options.grid.deepest_cell),
+          "cells deeper than deepest_cell");
+    cells = std::min(std::max(cells + 1, needed), most_cells);
+  }
+  nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities, least_share * densities.maxCoeff());
+  times_.push_back({"nodes", watch.lap()});
+  add_depths(light, 0, execution);
+  times_.push_back({"depths", watch.lap()});
+
+  const Rgb &sigma_t = medium.sigma_t, &albedo = medium.albedo;
+  double most = 0;  // of multiple scattering, as a share of the light
+  double deepest = 0;
+  for (const std::vector<float>& column : columns_)
+    for (const float c : column)
+      if (std::isfinite(c)) deepest = std::max(deepest, double(c));
+  for (int c = 0; c < 3; ++c) most = std::max(most, -albedo[c] * std::expm1(-sigma_t[c] * deepest));
+  if (options.grid.multiple == Options::Grid::Multiple::none)
+    single_only_ = "not asked for";
+  else if (most < options.tolerance)
+    single_only_ = fmt::format("at most {:.2g} of the light is scattered again", most);
+  if (!single_only_.empty()) return;
+  OrdinateOptions ordinates;
+  ordinates.levels = options.grid.ordinate_levels;
+  ordinates.azimuths = options.grid.azimuths;
+  ordinates.order = options.order;
+  ordinates.tolerance = options.tolerance;
+  ordinates.iterations = options.iterations;
+  const std::vector<double> moments(phase_moments(medium.phase, options.order));
+  for (int c = 0; c < 3; ++c) {
+    const auto alike = [&](const Channels& group) {
+      return sigma_t[group.which[0]] == sigma_t[c] && albedo[group.which[0]] == albedo[c];
+    };
+    const auto known = std::find_if(channels_.begin(), channels_.end(), alike);
+    if (known != channels_.end())
+      known->which.push_back(c);
+    else
+      channels_.push_back({{c}, {grid_.cells, sigma_t[c] * densities, albedo[c], moments, ordinates}, {}});
+  }
+}
+
+void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const scene::Execution& execution) {
+  toward_ = light.directions();
+  columns_.resize(from);
+  columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
+  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
+  scene::parallel_rows(int(chunks), execution, [&](int row) {
+    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i)
+      for (std::size_t k = from; k < toward_.size(); ++k) {
+        const Ray ray{grid_.node(nodes_[i]), toward_[k]};
+        const bool blocked = scene_.geometry && scene_.geometry->occluded(ray);
+        columns_[k][i] =
+            blocked ? std::numeric_limits<float>::infinity() : float(density_integral(medium_, ray, {0, infinity}));
+      }
+  });
+}
+
+Rgb LitGrid::left(std::size_t node, std::size_t direction) const {
+  const double column = columns_[direction][node];
+  if (column == infinity) return Rgb::Zero();
+  return power_[direction] * (-medium_.sigma_t * column).exp();
+}
+
+void LitGrid::light(const IncomingLight& light, const scene::Execution& execution) {
+  scene::Stopwatch watch;
+  times_.clear();
+  power_ = light.power();
+  if (light.directions().size() != toward_.size() || !std::equal(toward_.begin() + long(light.fixed()), toward_.end(),
+                                                                 light.directions().begin() + long(light.fixed()))) {
+    add_depths(light, light.fixed(), execution);
+    times_.push_back({"depths of directional lights", watch.lap()});
+  }
+  again_.clear();
+  iterations_ = 0;
+  error_ = 0;
+  if (single_only_.empty() && !light.dark()) scatter_again(light, execution);
+}
+
+void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& execution) {
+  scene::Stopwatch watch;
+  const int order = options_.order;
+  const std::size_t bands = std::size_t(order) * std::size_t(order);
+  const std::vector<double> moments = phase_moments(medium_.phase, order);
+  std::vector<std::vector<double>> harmonics;
+  for (const Vec3& d : toward_) harmonics.push_back(scene::evaluate_sh(order, d));
+  std::vector<std::vector<Rgb>> single(nodes_.size());
+  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
+  scene::parallel_rows(int(chunks), execution, [&](int row) {
+    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i) {
+      std::vector<Rgb> sum(bands, Rgb::Zero());
+      for (std::size_t k = 0; k < toward_.size(); ++k) {
+        const Rgb here = left(i, k);
+        for (std::size_t b = 0; b < bands; ++b) sum[b] += harmonics[k][b] * here;
+      }
+      single[i] = scattered(std::move(sum), medium_.albedo, moments);
+    }
+  });
+  times_.push_back({"single scattering", watch.lap()});
+
+  again_.assign(nodes_.size(), std::vector<Rgb>(bands, Rgb::Zero()));
+  tbb::task_arena arena(scene::threads_for(execution.threads));
+  std::atomic<bool> stopped{false};
+  for (Channels& group : channels_) {
+    // Of light without colour one channel stands for all.
+    const std::size_t lights = light.grey() ? 1 : group.which.size();
+    Moments source = Moments::Zero(grid_.cells.nodes(), Eigen::Index(lights * bands));
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      for (std::size_t l = 0; l < lights; ++l)
+        for (std::size_t b = 0; b < bands; ++b)
+          source(nodes_[i], Eigen::Index(l * bands + b)) = single[i][b][group.which[l]];
+    const bool known = group.before && group.before->cols() == source.cols();
+    OrdinateSolution solution;
+    arena.execute([&] {
+      solution = group.ordinates.solve(source, 0, known ? &*group.before : nullptr, [&] {
+        if (execution.progress && !execution.progress(1)) stopped = true;
+        return stopped.load();
+      });
+    });
+    if (stopped) throw scene::Interrupted("interrupted");
+    const double albedo = medium_.albedo[group.which[0]];
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      for (std::size_t l = 0; l < group.which.size(); ++l)
+        for (std::size_t b = 0; b < bands; ++b)
+          again_[i][b][group.which[l]] = albedo * moments[std::size_t(std::sqrt(double(b)))] *
+                                         solution.radiance(nodes_[i], Eigen::Index((lights == 1 ? 0 : l) * bands + b));
+    iterations_ += solution.iterations;
+    error_ = std::max(error_, solution.error);
+    group.before = std::move(solution.source);
+  }
+  times_.push_back({"multiple scattering", watch.lap()});
+}
+
+std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Execution& execution) const {
+  std::vector<Rgb> values(std::size_t(grid_.cells.nodes()), Rgb::Zero());
+  const std::size_t fixed = std::size_t(options_.grid.levels) * 2 * std::size_t(options_.grid.levels);
+  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
+  scene::parallel_rows(int(chunks), execution, [&](int row) {
+    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i) {
+      const Vec3 out = to_camera(camera, grid_.node(nodes_[i]));
+      Rgb sum = Rgb::Zero();
+      for (std::size_t k = 0; k < toward_.size(); ++k) {
+        const double cosine = std::clamp(-toward_[k].dot(out), -1.0, 1.0);
+        sum += left(i, k) * (k < fixed ? phase_in_bands(phase_, cosine) : phase_value(medium_.phase, cosine));
+      }
+      sum *= medium_.albedo;
+      if (!again_.empty()) sum += scene::evaluate_sh(again_[i], out);
+      values[std::size_t(nodes_[i])] = sum.max(0);
+    }
+  });
+  return values;
+}
+
+}  // namespace airlight::compensated_ray_marching

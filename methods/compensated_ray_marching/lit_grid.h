@@ -1,0 +1,64 @@
+// Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): exact depths towards the light, in
+// fixed directions, for single scattering; discrete ordinates for the rest.
+#pragma once
+#include <optional>
+
+#include "methods/compensated_ray_marching/incoming_light.h"
+#include "methods/compensated_ray_marching/node_grid.h"
+#include "methods/compensated_ray_marching/options.h"
+#include "scene/renderer.h"
+
+namespace airlight::compensated_ray_marching {
+
+class LitGrid {
+ public:
+  // What does not depend on the light: nodes, their mean densities, and depths towards the light's fixed directions. A direction that
+  // surfaces block has no light. The scene outlives this. Throws NotSupported where cells are too deep however small.
+  LitGrid(const scene::Scene&, const scene::Medium&, const Options&, const IncomingLight&, const scene::Execution&);
+
+  // A light, or another: single and multiple scattering at the nodes. Iterations begin with the light before.
+  void light(const IncomingLight&, const scene::Execution&);
+
+  // Source radiance [W/m^2/sr/m per extinction] towards the camera at every node, at least 0: of single scattering with as many bands of
+  // the phase function as light has, of the rest with `order`.
+  std::vector<Rgb> towards(const scene::Camera&, const scene::Execution&) const;
+
+  const NodeGrid& grid() const { return grid_; }
+  std::size_t nodes_with_smoke() const { return nodes_.size(); }
+  double deepest_cell() const { return deepest_; }
+  const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something
+  // Why multiple scattering is left out; empty where it is not.
+  const std::string& single_only() const { return single_only_; }
+  int iterations() const { return iterations_; }  // of the last light, over all channels
+  double error() const { return error_; }         // of its solution, as it is estimated
+
+ private:
+  struct Channels {  // that have extinction and albedo in common
+    std::vector<int> which;
+    DiscreteOrdinates ordinates;
+    std::optional<Moments> before;
+  };
+  void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
+  Rgb left(std::size_t node, std::size_t direction) const;
+  void scatter_again(const IncomingLight&, const scene::Execution&);
+
+  const scene::Scene& scene_;
+  const scene::Medium& medium_;
+  Options options_;
+  NodeGrid grid_;
+  double deepest_ = 0;
+  std::vector<Eigen::Index> nodes_;
+  std::vector<double> phase_;  // moments, for light's bands
+  std::vector<std::vector<float>>
+      columns_;               // of each direction, at the nodes with smoke [m]; infinite where a surface is in the way
+  std::vector<Vec3> toward_;  // the directions
+  std::vector<Rgb> power_;
+  std::vector<Channels> channels_;
+  std::vector<std::vector<Rgb>> again_;  // J_ms of each node with smoke, order^2 coefficients; empty without
+  std::string single_only_;
+  int iterations_ = 0;
+  double error_ = 0;
+  std::vector<scene::StageTime> times_;
+};
+
+}  // namespace airlight::compensated_ray_marching

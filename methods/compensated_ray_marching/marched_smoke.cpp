@@ -1,0 +1,39 @@
+#include "methods/compensated_ray_marching/marched_smoke.h"
+
+#include <algorithm>
+
+#include "scene/convert/residual.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+constexpr double least_density = 1e-10;  // of the Gaussians: below it no one knows the source
+
+}  // namespace
+
+SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : given_(&medium) {
+  const bool paper = options.variant == Options::Variant::paper;
+  const auto* fitted = std::get_if<scene::FittedPointer>(&medium.field);
+  if (fitted && (paper || !options.residual)) {
+    own_ = medium;
+    own_->field = (*fitted)->gaussians;
+    own_->region = scene::Unbounded{};
+    if (options.residual && (*fitted)->residual) {
+      const scene::Residual& r = *(*fitted)->residual;
+      residual_ = r.layout;
+      for (const std::int8_t level : levels_of(r.bricks)) residual_->values.push_back(float(r.step * level));
+    }
+  }
+  const auto* sum = std::get_if<scene::GaussianSum>(&this->medium().field);
+  if (sum && std::holds_alternative<scene::Unbounded>(this->medium().region)) gaussians_ = sum;
+}
+
+Interval SmokeField::extent(const Ray& ray, Interval t) const { return scene::extent(medium(), ray, t); }
+
+double SmokeField::density(const Point3& x, double of_gaussians) const {
+  if (!gaussians_) return scene::density(medium(), x);
+  if (!residual_) return std::max(0.0, of_gaussians);
+  return of_gaussians < least_density ? 0 : std::max(0.0, of_gaussians + scene::density(*residual_, x));
+}
+
+}  // namespace airlight::compensated_ray_marching

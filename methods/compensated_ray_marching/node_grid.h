@@ -1,0 +1,31 @@
+// The grid on which source radiance is known: nodes at the centres of equal cubes around the smoke.
+#pragma once
+#include <vector>
+
+#include "methods/compensated_ray_marching/discrete_ordinates.h"
+#include "scene/media/medium.h"
+
+namespace airlight::compensated_ray_marching {
+
+struct NodeGrid {
+  OrdinateGrid cells;
+  Point3 corner = Point3::Zero();  // of the first cell
+  Point3 node(Eigen::Index) const;
+};
+
+// Where a medium has density worth a look: its support; of Gaussians without a cutoff, three widths of each.
+Box smoke_box(const scene::Medium&);
+
+// Cubes, `cells` of them along the longest side of the box, in its middle. The box is finite, and has a volume.
+NodeGrid node_grid(const Box&, int cells);
+
+// Mean density over each cell [-]. threads: 0 is all.
+Eigen::ArrayXd mean_densities(const scene::Medium&, const NodeGrid&, int threads);
+
+// Where any of the 27 cells around has a density above `least`: every place between nodes that has one lies between those.
+std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid&, const Eigen::ArrayXd& densities, double least);
+
+// Trilinear between nodes, the nearest beyond them. values: one a node.
+Rgb between_nodes(const NodeGrid&, const std::vector<Rgb>& values, const Point3&);
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,117 @@
+#include "methods/compensated_ray_marching/options.h"
+
+#include <algorithm>
+
+#include "scene/error.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+constexpr int most_paper_gaussians = 4096;  // the diffusion system is dense
+
+std::vector<std::string> reasons_against_medium(const scene::Scene& scene, std::size_t i, bool paper) {
+  std::vector<std::string> reasons;
+  const scene::Medium& medium = scene.media[i];
+  const std::string name = label(scene.media, i);
+  if (bounding_box(medium).size().maxCoeff() == infinity) reasons.push_back(name + " has no end");
+  if (!paper) return reasons;
+  if (const std::string why = scene::unknown_field<scene::GaussianSum, scene::FittedPointer>(scene.media, i);
+      !why.empty()) {
+    reasons.push_back(why + "; variant = paper");
+    return reasons;
+  }
+  const auto* fitted = std::get_if<scene::FittedPointer>(&medium.field);
+  const scene::GaussianSum& sum = fitted ? (*fitted)->gaussians : std::get<scene::GaussianSum>(medium.field);
+  if (std::any_of(sum.gaussians.begin(), sum.gaussians.end(), [](const scene::Gaussian& g) { return g.amplitude < 0; }))
+    reasons.push_back(name +
+                      " has a Gaussian of negative amplitude; variant = paper interpolates with them as weights");
+  if (sum.constant > 0) reasons.push_back(name + " has a constant density; variant = paper has none");
+  if (sum.gaussians.size() > most_paper_gaussians)
+    reasons.push_back(name + " has more Gaussians than variant = paper solves for");
+  if (!std::holds_alternative<scene::Unbounded>(medium.region) && !fitted)
+    reasons.push_back(name + " is cut off by a region; variant = paper knows none");
+  return reasons;
+}
+
+}  // namespace
+
+std::vector<scene::SettingSpec> option_settings() {
+  using namespace scene;
+  return {
+      choice_setting("variant", "grid", {"grid", "paper"},
+                     "where source radiance is known: at the nodes of a grid, of any medium with an end; at the "
+                     "centres of Gaussians, as published"),
+      integer_setting("order", "4", 1, 6, "bands of spherical harmonics of source radiance"),
+      choice_setting("multiple", "auto", {"auto", "none", "ordinates", "as_printed", "corrected"},
+                     "multiple scattering: by discrete ordinates (grid); by the diffusion system as printed or "
+                     "corrected (paper); auto is ordinates, as_printed"),
+      integer_setting("slices", "256", 1, 65536, "slices along the longest side of the smoke"),
+      choice_setting("slice_weight", "auto", {"auto", "printed", "paper", "exact"},
+                     "how much of a slice's light is seen: depth without the slope of the ray, depth, 1 - exp(-depth); "
+                     "auto is exact, paper"),
+      flag_setting("residual", true, "with what the Gaussians leave of fitted smoke; false: the Gaussians alone"),
+      real_setting("tolerance", "2e-4", 1e-12, 1, "of multiple scattering, relative"),
+      integer_setting("iterations", "200", 1, 100000, "of multiple scattering, at most"),
+      integer_setting("levels", "8", 2, 32,
+                      "of grid: L x 2L directions that light is gathered from, bands of the environment"),
+      integer_setting("cells", "32", 1, 96, "of grid: cells along the longest side of the smoke"),
+      real_setting("deepest_cell", "1.5", 0.01, 1e9,
+                   "of grid: optical depth; where cells are deeper they are made smaller"),
+      integer_setting("ordinate_levels", "2", 1, 16, "of ordinates: levels on either side of the horizontal"),
+      integer_setting("azimuths", "8", 4, 64, "of ordinates: directions on a level"),
+      choice_setting("transmittance", "hyb", {"ol", "hyb", "series", "directional"},
+                     "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions"),
+  };
+}
+
+Options read_options(const scene::Settings& settings) {
+  Options o;
+  o.variant = settings.choice<Options::Variant>("variant");
+  const bool paper = o.variant == Options::Variant::paper;
+  o.order = int(settings.integer("order"));
+  const std::string &multiple = settings.text("multiple"), &weight = settings.text("slice_weight");
+  o.grid.multiple = multiple == "none" ? Options::Grid::Multiple::none : Options::Grid::Multiple::ordinates;
+  o.paper.multiple = multiple == "none"        ? Options::Paper::Multiple::none
+                     : multiple == "corrected" ? Options::Paper::Multiple::corrected
+                                               : Options::Paper::Multiple::as_printed;
+  o.weight = weight == "printed"                                ? SliceWeight::printed
+             : weight == "paper" || (weight == "auto" && paper) ? SliceWeight::paper
+                                                                : SliceWeight::exact;
+  o.slices = int(settings.integer("slices"));
+  o.residual = settings.flag("residual");
+  o.tolerance = settings.real("tolerance");
+  o.iterations = int(settings.integer("iterations"));
+  o.grid.levels = int(settings.integer("levels"));
+  o.grid.cells = int(settings.integer("cells"));
+  o.grid.deepest_cell = settings.real("deepest_cell");
+  o.grid.ordinate_levels = int(settings.integer("ordinate_levels"));
+  o.grid.azimuths = int(settings.integer("azimuths"));
+  o.paper.transmittance = settings.choice<Transmittance>("transmittance");
+  const bool of_grid = multiple == "ordinates", of_paper = multiple == "as_printed" || multiple == "corrected";
+  if (paper ? of_grid : of_paper)
+    throw Error("multiple = " + multiple + " is not for variant = " + settings.text("variant"));
+  return o;
+}
+
+std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& o) {
+  const bool paper = o.variant == Options::Variant::paper;
+  std::vector<std::string> reasons;
+  int media = 0;
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    if (!extinguishes(scene.media[i])) continue;
+    ++media;
+    const std::vector<std::string> some = reasons_against_medium(scene, i, paper);
+    reasons.insert(reasons.end(), some.begin(), some.end());
+  }
+  if (media > 1) reasons.push_back("more than one medium");
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const std::string why =
+        paper ? scene::unknown_light<scene::EnvironmentLight>(scene.lights, i)
+              : scene::unknown_light<scene::EnvironmentLight, scene::DirectionalLight>(scene.lights, i);
+    if (!why.empty()) reasons.push_back(why + (paper ? "; variant = paper" : ""));
+  }
+  if (paper && scene.geometry) reasons.push_back("surfaces; variant = paper");
+  return reasons;
+}
+
+}  // namespace airlight::compensated_ray_marching

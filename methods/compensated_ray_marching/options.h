@@ -1,0 +1,37 @@
+// Settings of the renderer, and what it cannot do.
+#pragma once
+#include "methods/compensated_ray_marching/compensated_march.h"
+#include "methods/compensated_ray_marching/source_radiance.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+
+namespace airlight::compensated_ray_marching {
+
+struct Options {
+  // Where source radiance is known: at the centres of the Gaussians, as in the publication; at the nodes of a grid.
+  enum class Variant { grid, paper } variant = Variant::grid;
+  int order = 4;  // bands of source radiance
+  int slices = 256;
+  SliceWeight weight = SliceWeight::exact;
+  bool residual = true;
+  double tolerance = 2e-4;
+  int iterations = 200;
+  struct Grid {
+    enum class Multiple { ordinates, none } multiple = Multiple::ordinates;
+    int levels = 8;  // of directions that light is gathered from, and bands of the environment
+    int cells = 32;
+    double deepest_cell = 1.5;
+    int ordinate_levels = 2;
+    int azimuths = 8;
+  } grid;
+  struct Paper {
+    enum class Multiple { as_printed, corrected, none } multiple = Multiple::as_printed;
+    Transmittance transmittance = Transmittance::paper_squared;
+  } paper;
+};
+
+std::vector<scene::SettingSpec> option_settings();
+Options read_options(const scene::Settings&);
+std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
+
+}  // namespace airlight::compensated_ray_marching

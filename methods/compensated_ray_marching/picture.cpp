@@ -1,0 +1,269 @@
+#include "methods/compensated_ray_marching/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "methods/compensated_ray_marching/centre_sources.h"
+#include "methods/compensated_ray_marching/lit_grid.h"
+#include "methods/compensated_ray_marching/marched_smoke.h"
+#include "scene/background.h"
+#include "scene/camera_rays.h"
+#include "scene/math/special_functions.h"
+#include "scene/stopwatch.h"
+
+namespace airlight::compensated_ray_marching {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+constexpr double least_source_density = 1e-10;  // of Gaussians: below it no one knows the source
+
+struct Pixel {
+  Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
+  long slices = 0, samples = 0;
+};
+
+class PreparedPicture final : public scene::Prepared {
+ public:
+  PreparedPicture(std::shared_ptr<const Scene>, const Options&, std::string settings, const Execution&);
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
+
+ private:
+  bool paper() const { return options_.variant == Options::Variant::paper; }
+  std::vector<scene::StageTime> light(const Execution&);
+  bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
+  bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
+  bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
+  Pixel pixel(const Ray&, const View&, const GaussianRow*, const std::vector<Rgb>& towards,
+              std::vector<double>& density, std::vector<Rgb>& weighted) const;
+  Rgb behind(const Ray&, const scene::RayEnd&) const;
+
+  std::shared_ptr<const Scene> scene_;
+  std::vector<std::shared_ptr<const Scene>> kept_;  // of the frames before: the one whose smoke is marched through
+  Options options_;
+  std::string settings_;
+  std::optional<SmokeField> smoke_;  // nothing where no medium extinguishes
+  double slice_ = 0;                 // [m] across
+  std::optional<IncomingLight> incoming_;
+  std::optional<LitGrid> grid_;
+  std::optional<CentreSources> centres_;
+  std::vector<scene::StageTime> times_;
+};
+
+PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Options& options, std::string settings,
+                                 const Execution& execution)
+    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)) {
+  for (const scene::Medium& medium : scene_->media)
+    if (extinguishes(medium)) smoke_.emplace(medium, options_);
+  scene::Stopwatch watch;
+  if (!paper()) {
+    incoming_.emplace(scene_->lights, options_.grid.levels);
+    times_.push_back({"environment", watch.lap()});
+  }
+  if (!smoke_) return;
+  slice_ = smoke_box(smoke_->medium()).size().maxCoeff() / options_.slices;
+  if (paper()) {
+    centres_.emplace(*smoke_->gaussians(), smoke_->medium(), options_);
+  } else {
+    grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
+    times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
+  }
+  const std::vector<scene::StageTime> lit = light(execution);
+  times_.insert(times_.end(), lit.begin(), lit.end());
+}
+
+std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution) {
+  if (centres_) {
+    centres_->light(scene_->lights, execution);
+    return centres_->times();
+  }
+  if (!grid_) return {};
+  grid_->light(*incoming_, execution);
+  return grid_->times();
+}
+
+// Lights alone: the smoke, its depths and the last multiple scattering are kept.
+std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_ptr<const Scene> scene,
+                                                                   const Execution& execution) {
+  if (scene->matter_hash != scene_->matter_hash || !reasons_against(*scene, options_).empty()) return std::nullopt;
+  kept_.push_back(std::exchange(scene_, std::move(scene)));
+  kept_.resize(1);  // the first, whose smoke is marched through
+  std::vector<scene::StageTime> times;
+  if (incoming_) {
+    scene::Stopwatch watch;
+    incoming_->become(scene_->lights);
+    times.push_back({"environment", watch.lap()});
+  }
+  const std::vector<scene::StageTime> lit = light(execution);
+  times.insert(times.end(), lit.begin(), lit.end());
+  return times;
+}
+
+std::vector<scene::Stage> PreparedPicture::stages() const {
+  const std::string none = "no medium extinguishes";
+  const bool scatters = smoke_ && (smoke_->medium().albedo * smoke_->medium().sigma_t).maxCoeff() > 0;
+  std::string how, again, march;
+  if (grid_) {
+    const auto& size = grid_->grid().cells.size;
+    how = fmt::format("{} of {} x {} x {} nodes, {} directions", grid_->nodes_with_smoke(), size[0], size[1], size[2],
+                      incoming_->directions().size());
+    again = grid_->single_only();
+    if (again.empty())
+      again = fmt::format("{} bands, deepest cell {:.2g}; {} iterations, error about {:.1g}{}", options_.order,
+                          grid_->deepest_cell(), grid_->iterations(), grid_->error(),
+                          grid_->error() > options_.tolerance ? ": more than the tolerance" : "");
+  } else if (centres_) {
+    how = fmt::format("{} centres, {} bands", centres_->sources().size(), options_.order);
+    again = options_.paper.multiple == Options::Paper::Multiple::none
+                ? "not asked for"
+                : fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
+  }
+  const bool multiple = (grid_ && grid_->single_only().empty()) ||
+                        (centres_ && options_.paper.multiple != Options::Paper::Multiple::none);
+  return {
+      {"single scattering", smoke_ && scatters,
+       !smoke_    ? none
+       : scatters ? how
+                  : "the albedo is 0"},
+      {"multiple scattering", multiple, !smoke_ ? none : again},
+      {"residual", smoke_ && smoke_->with_residual(),
+       !smoke_                   ? none
+       : smoke_->with_residual() ? "added to the Gaussians"
+       : smoke_->gaussians()     ? "the Gaussians are all"
+                                 : "the field itself is marched through"},
+      {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
+      {"surfaces", behind_kept(), behind_kept() ? "what stands behind, through the smoke" : "nothing stands behind"},
+      {"ambient", ambient_kept(),
+       ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
+}
+
+// What the ray ends on sends back, without the smoke in between. Light that the smoke scatters onto surfaces is left out.
+Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
+  if (!end.hit) return scene::background(*scene_, end, ray.direction);
+  const scene::Hit& hit = *end.hit;
+  const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
+  Rgb sum = Rgb::Zero();
+  for (std::size_t k = 0; k < incoming_->directions().size(); ++k) {
+    const Vec3& to_light = incoming_->directions()[k];
+    const double cosine = hit.normal.dot(to_light);
+    if (!(cosine > 0)) continue;
+    const Rgb reflected = scene::brdf(material, hit.normal, to_light, -ray.direction) * incoming_->power()[k] * cosine;
+    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, to_light);
+    if ((reflected == 0).all() || scene_->geometry->occluded({start, to_light})) continue;
+    sum += reflected * transmittance(scene_->media, {hit.position, to_light}, {0, infinity});
+  }
+  return sum.max(0);
+}
+
+Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow* row, const std::vector<Rgb>& towards,
+                             std::vector<double>& density, std::vector<Rgb>& weighted) const {
+  Pixel p;
+  const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
+  const Interval t = smoke_ ? smoke_->extent(ray, {0, end.t}) : Interval{};
+  if (!t.empty()) {
+    const double slope = std::max(ray.direction.dot(view.camera.forward), 1e-3);
+    RaySlices slices{t.lo, 0, std::max(1, int(std::ceil(t.length() * slope / slice_)))};
+    slices.step = t.length() / slices.count;
+    density.assign(std::size_t(slices.count), 0.0);
+    weighted.assign(centres_ ? density.size() : 0, Rgb::Zero());
+    if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
+    for (int k = 0; k < slices.count; ++k) {
+      const Point3 x = ray.at(slices.middle(k));
+      const double of_gaussians = density[std::size_t(k)];
+      const double here = smoke_->density(x, of_gaussians);
+      if (!(here > 0)) continue;
+      ++p.slices;
+      const Rgb depth = smoke_->medium().sigma_t * here * slices.step;
+      Rgb source = Rgb::Zero();
+      if (grid_)
+        source = between_nodes(grid_->grid(), towards, x);
+      else if (of_gaussians >= least_source_density)
+        source = (weighted[std::size_t(k)] / of_gaussians).max(0);
+      p.airlight += p.transmittance * source * seen(depth, slope, options_.weight);
+      p.transmittance *= (-depth).exp();
+    }
+  }
+  if (behind_kept() && p.transmittance.maxCoeff() > 0) p.surface = p.transmittance * behind(ray, end);
+  if (ambient_kept()) p.ambient = scene_->ambient_in_scatter * (1 - p.transmittance);
+  return p;
+}
+
+scene::Rendering PreparedPicture::render(const View& view, const Execution& execution) const {
+  require_own_camera(*scene_, view);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  scene::Film& film = result.film;
+  film.metadata = {
+      {"method", "compensated_ray_marching"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
+  float *airlight = film.add("airlight").data(), *surface = film.add("surface").data();
+  float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
+  scene::Stopwatch watch;
+  std::vector<Rgb> towards;
+  if (grid_) towards = grid_->towards(view.camera, execution);
+  if (centres_) towards = centres_->towards(view.camera);
+  if (smoke_) result.times.push_back({"towards the camera", watch.lap()});
+  const scene::CameraRays rays(view.camera, view.width, view.height);
+  std::mutex mutex;
+  long slices = 0, samples = 0;
+  scene::parallel_rows(view.height, execution, [&](int y) {
+    std::vector<double> density;
+    std::vector<Rgb> weighted;
+    std::optional<GaussianRow> row;
+    if (smoke_ && smoke_->gaussians()) {
+      // The plane of the row's rays.
+      const Ray first = rays(0, y + 0.5), last = rays(view.width, y + 0.5);
+      const Vec3 across = (last.origin + last.direction - first.origin - first.direction);
+      row.emplace(*smoke_->gaussians(), centres_ ? &towards : nullptr, first.origin,
+                  first.direction.cross(across).normalized());
+    }
+    long row_slices = 0, row_samples = 0;
+    for (int x = 0; x < view.width; ++x) {
+      const Pixel p = pixel(rays(x + 0.5, y + 0.5), view, row ? &*row : nullptr, towards, density, weighted);
+      const Rgb sum = p.airlight + p.surface + p.ambient;
+      const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = Eigen::Index(c);
+        mean[at + c] = float(sum[channel]);
+        airlight[at + c] = float(p.airlight[channel]);
+        surface[at + c] = float(p.surface[channel]);
+        transmittance[at + c] = float(p.transmittance[channel]);
+        if (ambient) ambient[at + c] = float(p.ambient[channel]);
+      }
+      row_slices += p.slices;
+      row_samples += p.samples;
+    }
+    const std::lock_guard lock(mutex);
+    slices += row_slices;
+    samples += row_samples;
+  });
+  result.times.push_back({"march", watch.lap()});
+  result.counters = {
+      {"rays", double(film.pixels())}, {"slices", double(slices)}, {"gaussian_samples", double(samples)}};
+  if (grid_) {
+    result.counters["iterations"] = grid_->iterations();
+    result.counters["multiple_error"] = grid_->error();
+    result.counters["deepest_cell"] = grid_->deepest_cell();
+  }
+  if (centres_) {
+    result.counters["iterations"] = centres_->iterations();
+    result.counters["multiple_error"] = centres_->residual();
+    result.counters["negative_share"] = centres_->negative_share();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<scene::Prepared> prepare_picture(std::shared_ptr<const Scene> scene, const Options& options,
+                                                 std::string settings, const Execution& execution) {
+  return std::make_unique<PreparedPicture>(std::move(scene), options, std::move(settings), execution);
+}
+
+}  // namespace airlight::compensated_ray_marching
