@@ -31,14 +31,15 @@ std::array<bool, 3> may_shine(const World& world, const Ray& ray) {
   const scene::RayEnd end = scene::camera_end(world.scene(), ray);
   std::array<bool, 3> may{};
   const Options& options = world.options();
-  if (options.paths != Options::Paths::all && !end.hit) return may;
+  if (options.only_lit_surfaces() && !end.hit) return may;
+  const bool behind = options.paths != Options::Paths::scattered;
   for (int c = 0; c < 3; ++c) {
     const auto& lights = world.scene().lights;
     if (std::none_of(lights.begin(), lights.end(), [&](const scene::Light& light) { return shines(light, c); }))
       continue;
     for (const int i : world.lights().environments())
-      may[c] = may[c] || (end.t == infinity && shines(world.lights().light(i), c));
-    if (end.hit && options.max_events != 0)
+      may[c] = may[c] || (behind && end.t == infinity && shines(world.lights().light(i), c));
+    if (behind && end.hit && options.max_events != 0)
       may[c] = may[c] || reflects(world.scene().surfaces[end.hit->surface].material, c);
     for (const TrackedMedium& tracked : world.media().tracked())
       may[c] = may[c] || (options.max_order != 0 && options.max_events != 0 &&

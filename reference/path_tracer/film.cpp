@@ -44,7 +44,7 @@ std::string unresolved(const World& world, const Accumulation& a) {
   for (int m = 1; m <= layout.orders + 1; ++m) {
     if (world.options().max_order >= 0 && m > world.options().max_order) break;
     if (world.options().max_events >= 0 && m > world.options().max_events) break;
-    if (world.options().paths != Options::Paths::all && m > 1) break;
+    if (world.options().only_lit_surfaces() && m > 1) break;
     double mean = 0, variance = 0;
     for (const auto& nodes : a.tiles) {
       const TallyNode node = fold(layout, nodes);

@@ -29,7 +29,7 @@ Identity identity_of(const scene::Scene& scene, const scene::View& view, const O
   hash.add(view.width);
   hash.add(view.height);
   const char* const connections[] = {"auto", "always", "never"};
-  const char* const paths[] = {"all", "lit_surface", "scattered_to_surface"};
+  const char* const paths[] = {"all", "lit_surface", "scattered_to_surface", "scattered"};
   return {scene.hash,
           hash.digits(),
           fmt::format("pixel={} orders={} max_order={} max_events={} roulette_order={} roulette_cap={} supergrid={} "

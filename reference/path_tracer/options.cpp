@@ -30,9 +30,10 @@ std::vector<scene::SettingSpec> setting_specs() {
           "connection", "auto", {"auto", "always", "never"},
           "bounded connection to point lights: where the light is close to a medium, always, or never"),
       scene::choice_setting(
-          "paths", "all", {"all", "lit_surface", "scattered_to_surface"},
+          "paths", "all", {"all", "lit_surface", "scattered_to_surface", "scattered"},
           "all; lit_surface: a surface's light seen through the medium, which scatters it at most once, on "
-          "its way to the surface; scattered_to_surface: exactly once"),
+          "its way to the surface; scattered_to_surface: exactly once; scattered: what a medium sends to the eye, "
+          "without what is seen through it"),
   };
 }
 

@@ -25,8 +25,9 @@ struct Options {
   bool forced = true;                // collisions are forced where they are rare; see forcing.h
   enum class Connection { automatic, always, never } connection = Connection::automatic;
   // Which paths count: all; those from the light to a surface to the eye, scattered at most once on the way to the
-  // surface and not behind it; of these the scattered ones alone.
-  enum class Paths { all, lit_surface, scattered_to_surface } paths = Paths::all;
+  // surface and not behind it; of these the scattered ones alone; those whose last event before the eye is in a medium.
+  enum class Paths { all, lit_surface, scattered_to_surface, scattered } paths = Paths::all;
+  bool only_lit_surfaces() const { return paths == Paths::lit_surface || paths == Paths::scattered_to_surface; }
 };
 
 std::vector<scene::SettingSpec> setting_specs();

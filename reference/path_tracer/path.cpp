@@ -197,10 +197,10 @@ void trace(const World& world, const CameraRay& camera, const SampleRandom& rand
            Counters& counters) {
   ++counters.paths;
   Walk walk(world, random, sample, counters);
-  if (world.options().paths == Options::Paths::all)
-    walk.run(camera);
-  else
+  if (world.options().only_lit_surfaces())
     walk.run_to_surface(camera);
+  else
+    walk.run(camera);
 }
 
 }  // namespace airlight::path_tracer

@@ -129,7 +129,7 @@ bool white_room_with_light(const scene::Scene& scene) {
 
 std::vector<std::string> refusals(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
-  const bool all_paths = options.paths == Options::Paths::all;  // else they end after one scattering
+  const bool all_paths = !options.only_lit_surfaces();  // else they end after one scattering
   if (options.max_events >= 0 && !all_paths)
     reasons.push_back("max_events caps all paths, found paths of a lit surface alone, which have two events at most");
   if (options.max_order < 0 && options.max_events < 0 && all_paths)

@@ -81,7 +81,7 @@ bool Walk::collide(const Collision& collision) {
 
 // What is at the end of the segment: nothing, or a surface.
 bool Walk::reflect(const scene::RayEnd& end) {
-  if (end.on_ball) return false;
+  if (end.on_ball || (m_ == 0 && world_.options().paths == Options::Paths::scattered)) return false;
   if (!end.hit) {
     escape(ray_);
     return false;
@@ -99,7 +99,7 @@ bool Walk::reflect(const scene::RayEnd& end) {
 Flight Walk::flight_on(const Ray& ray, const scene::RayEnd& end, Interval hull) const {
   const Options& options = world_.options();
   if (hull.empty() || !may_scatter() || !options.forced || !exact()) return {};
-  if (options.paths != Options::Paths::all) return force(media_, ray, end.t, infinity, counters_);
+  if (options.only_lit_surfaces()) return force(media_, ray, end.t, infinity, counters_);
   if (world_.boost() == 1 || (m_ > 0 && end.hit)) return {};
   return force(media_, ray, end.t, world_.boost(), counters_);
 }
@@ -178,7 +178,7 @@ void Walk::run(const CameraRay& camera) {
   ray_ = camera.ray;
   hull_ = camera.hull;
   flight_ = &camera.flight;
-  if (!camera.end.hit) sample_.add(0, 0, camera.background);
+  if (!camera.end.hit && world_.options().paths == Options::Paths::all) sample_.add(0, 0, camera.background);
   if (lights_.any_connected() && !hull_.empty() && may_scatter()) {
     const Pick pick = lights_.pick_for_ray(ray_, hull_, first.coarse(1));
     if (pick.light >= 0)

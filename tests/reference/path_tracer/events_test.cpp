@@ -63,6 +63,26 @@ TEST_CASE("two events: one reflection of what is scattered once", "[path_tracer]
   CHECK(twice.orders[3].mean[0] == 0);
 }
 
+TEST_CASE("paths = scattered: all light but what is seen through the medium", "[path_tracer]") {
+  const auto scene = scene_with(0.6);
+  const Ray ray = ray_of({0.2, 1.3, 2.5}, {0, -0.6, -2.5}), beyond{ray.at(3.6), ray.direction};
+  REQUIRE(scene::density(scene->media[0], beyond.origin) == 0);
+  Options options;
+  const RadianceEstimate all = radiance(World(scene, options), ray, samples, {}, 21);
+  const RadianceEstimate behind = radiance(World(scene, options), beyond, samples, {}, 22);
+  options.paths = Options::Paths::scattered;
+  const RadianceEstimate scattered = radiance(World(scene, options), ray, samples, {}, 23);
+  const double passed = scene::transmittance(scene->media, ray, {0, 3.6})[0];
+  const double expected = all.total.mean[0] - passed * behind.total.mean[0];
+  const double error = std::hypot(all.total.error[0], passed * behind.total.error[0], scattered.total.error[0]);
+  CAPTURE(scattered.total.mean[0], expected, error, passed);
+  CHECK(agree(scattered.total.mean[0], expected, error, threshold(1e-6, 1)));
+  CHECK(error < 0.01 * expected);
+  CHECK(passed * behind.total.mean[0] > 20 * error);
+  CHECK(scattered.orders[0].mean[0] == 0);
+  CHECK(radiance(World(scene, options), beyond, 64).total.mean[0] == 0);
+}
+
 TEST_CASE("a cap on events and paths of a lit surface exclude one another", "[path_tracer]") {
   Options options;
   options.max_events = 1;
