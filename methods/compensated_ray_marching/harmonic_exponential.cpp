@@ -92,7 +92,8 @@ LinearExponential::LinearExponential(const std::vector<Harmonics>& family, doubl
   for (int k = 1; k <= steps; ++k) {
     const double s = longest * k / steps, members = double(family.size());
     log_a_[std::size_t(k)] = std::log(a[std::size_t(k)] / (4 * pi * members));
-    log_b_[std::size_t(k)] = std::log(b[std::size_t(k)] / (s * members));
+    // One band alone has no slope.
+    if (b[std::size_t(k)] > 0) log_b_[std::size_t(k)] = std::log(b[std::size_t(k)] / (s * members));
   }
 }
 
@@ -123,7 +124,8 @@ std::vector<Harmonics> depth_family(int order, const std::vector<int>& counts, i
         for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += one[k];
       }
       sum[0] = 0;
-      family.push_back(scaled(sum, 1 / size_of(sum)));
+      if (const double size = size_of(sum); size > 0) sum = scaled(sum, 1 / size);
+      family.push_back(std::move(sum));
     }
   return family;
 }

@@ -16,9 +16,10 @@
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr int most_cells = 96;        // along a side, for cells that are not too deep
-constexpr double least_share = 1e-6;  // of the greatest mean density: below it a cell counts as empty
-constexpr std::size_t chunk = 64;     // nodes a task
+constexpr int most_cells = 96;           // along a side, for cells that are not too deep
+constexpr double least_share = 1e-6;     // of the greatest mean density: below it a cell counts as empty
+constexpr double least_radiance = 1e-6;  // of the greatest
+constexpr std::size_t chunk = 64;        // nodes a task
 
 // Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr].
 double phase_in_bands(const std::vector<double>& moments, double c) {
@@ -198,6 +199,10 @@ std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Exec
       values[std::size_t(nodes_[i])] = sum.max(0);
     }
   });
+  Rgb most = Rgb::Zero();
+  for (const Rgb& value : values) most = most.max(value);
+  const double least = std::max(least_radiance * most.maxCoeff(), std::numeric_limits<double>::min());
+  for (Rgb& value : values) value = value.max(least).log();
   return values;
 }
 

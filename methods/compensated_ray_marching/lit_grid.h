@@ -19,8 +19,9 @@ class LitGrid {
   // A light, or another: single and multiple scattering at the nodes. Iterations begin with the light before.
   void light(const IncomingLight&, const scene::Execution&);
 
-  // Source radiance [W/m^2/sr/m per extinction] towards the camera at every node, at least 0: of single scattering with as many bands of
-  // the phase function as light has, of the rest with `order`.
+  // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node: of single scattering with as many bands of the phase
+  // function as light has, of the rest with `order`. What is below 1e-6 of the greatest counts as that. Light dies away exponentially in
+  // smoke, so that logarithms are what is interpolated: errors between nodes are 1.2 times (cells 0.4 deep) to 1.6 times smaller (1.6).
   std::vector<Rgb> towards(const scene::Camera&, const scene::Execution&) const;
 
   const NodeGrid& grid() const { return grid_; }

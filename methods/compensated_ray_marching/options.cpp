@@ -57,8 +57,11 @@ std::vector<scene::SettingSpec> option_settings() {
       integer_setting("cells", "32", 1, 96, "of grid: cells along the longest side of the smoke"),
       real_setting("deepest_cell", "1.5", 0.01, 1e9,
                    "of grid: optical depth; where cells are deeper they are made smaller"),
-      integer_setting("ordinate_levels", "2", 1, 16, "of ordinates: levels on either side of the horizontal"),
-      integer_setting("azimuths", "8", 4, 64, "of ordinates: directions on a level"),
+      integer_setting(
+          "ordinate_levels", "0", 0, 16,
+          "of ordinates: levels on either side of the horizontal; 0: as many as the order needs, half of it"),
+      integer_setting("azimuths", "0", 0, 64,
+                      "of ordinates: directions on a level; 0: as many as the order needs, twice of it"),
       choice_setting("transmittance", "hyb", {"ol", "hyb", "series", "directional"},
                      "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions"),
   };
@@ -84,8 +87,9 @@ Options read_options(const scene::Settings& settings) {
   o.grid.levels = int(settings.integer("levels"));
   o.grid.cells = int(settings.integer("cells"));
   o.grid.deepest_cell = settings.real("deepest_cell");
-  o.grid.ordinate_levels = int(settings.integer("ordinate_levels"));
-  o.grid.azimuths = int(settings.integer("azimuths"));
+  const long long levels = settings.integer("ordinate_levels"), azimuths = settings.integer("azimuths");
+  o.grid.ordinate_levels = levels > 0 ? int(levels) : std::max(2, (o.order + 1) / 2);
+  o.grid.azimuths = azimuths > 0 ? int(azimuths) : std::max(8, 2 * o.order);
   o.paper.transmittance = settings.choice<Transmittance>("transmittance");
   const bool of_grid = multiple == "ordinates", of_paper = multiple == "as_printed" || multiple == "corrected";
   if (paper ? of_grid : of_paper)

@@ -183,7 +183,7 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       const Rgb depth = smoke_->medium().sigma_t * here * slices.step;
       Rgb source = Rgb::Zero();
       if (grid_)
-        source = between_nodes(grid_->grid(), towards, x);
+        source = between_nodes(grid_->grid(), towards, x).exp();
       else if (of_gaussians >= least_source_density)
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
       p.airlight += p.transmittance * source * seen(depth, slope, options_.weight);
