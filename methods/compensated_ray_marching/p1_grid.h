@@ -25,7 +25,7 @@ struct P1Solution {
 
 class P1Grid {
  public:
-  // extinction: of each node [1/m], >= 0. In a vacuum kappa would have no end: there it is that of a depth of 1/100 over the longest side of
+  // extinction: of each node [1/m], >= 0. In a vacuum kappa would have no end: there it is that of a depth of 0.03 over the longest side of
   // the box. albedo in [0, 1]; g: mean cosine of the phase function. Throws Error for what does not fit or is out of range.
   P1Grid(const OrdinateGrid&, const Eigen::ArrayXd& extinction, double albedo, double g, const P1Options&);
 
