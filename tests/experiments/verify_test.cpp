@@ -62,7 +62,8 @@ TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify]") 
   for (const auto& [file, vectors_in_it] : {std::pair{"fogshop.json", 80},
                                             {"shadow_planes.json", 66},
                                             {"wavelet_fog.json", 76},
-                                            {"legendre_fluids.json", 39}}) {
+                                            {"legendre_fluids.json", 39},
+                                            {"compensated_ray_marching.json", 96}}) {
     std::ostringstream out;
     std::vector<experiments::VerifyKind> kinds;
     CHECK(verify({vectors + file}, "", VerifyProfile::quick, out, &kinds) == 0);
