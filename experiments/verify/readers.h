@@ -64,13 +64,15 @@ Check read_rbf_zh_optical_depth(const Value&);
 Check read_sh_exponential(const Value&);
 Check read_ol_table(const Value&);
 
-// march_kinds.cpp: its source radiance, its march, its diffusion system
+// source_kinds.cpp: its source radiance, its diffusion system
 Check read_single_scattering_source(const Value&);
 Check read_transmittance_environment(const Value&);
+Check read_collocation_matrix(const Value&);
+
+// march_kinds.cpp: its march
 Check read_march_single_scattering(const Value&);
 Check read_march_compensated(const Value&);
 Check read_ray_march_homogeneous(const Value&);
-Check read_collocation_matrix(const Value&);
 
 // transport_kinds.cpp: multiple scattering that it is compared with
 Check read_diffusion_point_source(const Value&);

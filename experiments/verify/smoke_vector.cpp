@@ -52,6 +52,14 @@ crm::Harmonics minus_depth(const scene::GaussianSum& smoke, const Point3& x, dou
   return sum;
 }
 
+std::vector<double> evaluated(const std::vector<Rgb>& harmonics, const std::vector<Vec3>& directions) {
+  std::vector<double> values;
+  for (const Vec3& w : directions) values.push_back(scene::evaluate_sh(harmonics, w)[0]);
+  return values;
+}
+
+std::vector<double> powers_of(double g) { return {1, g, g * g, g * g * g}; }
+
 std::vector<LeftOfLight> light_left(const scene::GaussianSum& smoke, double sigma_t,
                                     const std::vector<Rgb>& environment, const Point3& x, int levels) {
   std::vector<LeftOfLight> all;

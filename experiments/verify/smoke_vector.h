@@ -21,6 +21,13 @@ compensated_ray_marching::SourceLight environment_of(const Value& input);
 // The depth around x in four bands, exact, with its sign turned.
 compensated_ray_marching::Harmonics minus_depth(const scene::GaussianSum&, const Point3& x, double sigma_t);
 
+// Harmonics in directions, a value each; 1, g, g^2, g^3.
+std::vector<double> evaluated(const std::vector<Rgb>& harmonics, const std::vector<Vec3>& directions);
+std::vector<double> powers_of(double g);
+
+// Of directions that light is gathered from at a point: transmittances have roots at the Gaussians' cuts.
+inline constexpr int levels_at_a_point = 256;
+
 // Light from all around x, attenuated: of each direction its weight, what comes from it and what is left of that.
 struct LeftOfLight {
   Vec3 toward;
