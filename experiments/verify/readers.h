@@ -51,6 +51,39 @@ Check read_hash_round_trip(const Value&);
 Check read_gaussian_optical_depth(const Value&);
 Check read_trilinear_border(const Value&);
 
+// harmonic_kinds.cpp: compensated ray marching in spherical harmonics
+Check read_sh_basis(const Value&);
+Check read_sh_triple_entry(const Value&);
+Check read_sh_triple_counts(const Value&);
+Check read_sh_triple_product(const Value&);
+Check read_hg_zh(const Value&);
+Check read_sh_convolution(const Value&);
+Check read_zh_rotation(const Value&);
+Check read_theta_of_d(const Value&);
+Check read_rbf_zh_optical_depth(const Value&);
+Check read_sh_exponential(const Value&);
+Check read_ol_table(const Value&);
+
+// source_kinds.cpp: its source radiance, its diffusion system
+Check read_single_scattering_source(const Value&);
+Check read_transmittance_environment(const Value&);
+Check read_collocation_matrix(const Value&);
+
+// march_kinds.cpp: its march
+Check read_march_single_scattering(const Value&);
+Check read_march_compensated(const Value&);
+Check read_ray_march_homogeneous(const Value&);
+
+// transport_kinds.cpp: multiple scattering that it is compared with
+Check read_diffusion_point_source(const Value&);
+Check read_diffusion_uniform_source(const Value&);
+Check read_diffusion_slab_marshak(const Value&);
+Check read_halfspace_albedo_isotropic(const Value&);
+Check read_slab_albedo(const Value&);
+Check read_sn_slab(const Value&);
+Check read_multiple_scattering_slab(const Value&);
+Check read_multiple_scattering_ball(const Value&);
+
 // legendre_kinds.cpp: the basis
 Check read_legendre_derivative(const Value&);
 Check read_legendre_integral(const Value&);

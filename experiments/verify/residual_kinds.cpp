@@ -1,10 +1,9 @@
 // Zhou et al. 2008: the residual and its hash, the line integral of a Gaussian, the border of a voxel grid.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "experiments/json_value.h"
+#include "experiments/verify/own_tolerance.h"
 #include "experiments/verify/readers.h"
 #include "scene/convert/perfect_hash.h"
 #include "scene/convert/residual.h"
@@ -19,15 +18,6 @@ using Eigen::Vector3i;
 Vector3i integers(const Value& v, int least, int greatest) {
   if (v.size() != 3) v.complain("three integers");
   return {v[0].integer_in(least, greatest), v[1].integer_in(least, greatest), v[2].integer_in(least, greatest)};
-}
-
-struct Tolerance {
-  double relative, absolute;
-};
-Tolerance tolerance_of(const Value& v) { return {v["rtol"].number_in(0, 1), v["atol"].number_in(0, 1)}; }
-
-Comparison compare(std::string what, double expected, double got, Tolerance t) {
-  return relative(std::move(what), expected, got, t.relative, t.absolute);
 }
 
 std::vector<Comparison> compare(const std::string& what, const Vector3i& expected, const Vector3i& got) {
@@ -82,7 +72,7 @@ Check read_hash_round_trip(const Value& v) {
       in["positions"][i].complain("a position within the domain");
   const double step = expected["q"].number(), worst = expected["max_abs_error"].number();
   const int count = expected["count"].integer_in(0, 1 << 27);
-  const Tolerance t = tolerance_of(v);
+  const OwnTolerance t = tolerance_of(v);
   return {"", [=](VerifyProfile) {
             std::vector<double> dense(std::size_t(domain.prod()), 0.0);
             for (std::size_t i = 0; i < stored.size(); ++i)
@@ -116,7 +106,7 @@ Check read_gaussian_optical_depth(const Value& v) {
   const double d = in["d"].number(), mu = in["mu"].number_in(-1, 1), radius = in["radius"].number();
   const double cut = in["cut"].json().is_null() ? infinity : in["cut"].number();
   const double expected = v["expected"].number();
-  const Tolerance t = tolerance_of(v);
+  const OwnTolerance t = tolerance_of(v);
   return {
       "", [=](VerifyProfile) {
         scene::GaussianSum sum;
@@ -147,7 +137,7 @@ Check read_trilinear_border(const Value& v) {
                       Vec3::Constant(0.5));
   const std::vector<double> clamped = v["expected"]["clamp"].numbers(), zero = v["expected"]["zero"].numbers();
   if (clamped.size() != samples.size() || zero.size() != samples.size()) v.complain("as many values as points");
-  const Tolerance t = tolerance_of(v);
+  const OwnTolerance t = tolerance_of(v);
   return {"", [=, grid = std::move(grid)](VerifyProfile) mutable {
             Outcome out;
             for (const bool clamp : {true, false}) {

@@ -56,8 +56,8 @@ void CentreSources::scatter_again() {
       linear.push_back(linear_source(bands));
     }
     const DiffusionSystem system = diffusion_system(sum_.gaussians, linear, sigma_t, albedo, g, form);
-    LeastSquares solution =
-        solve_least_squares(system, before_[std::size_t(c)], options_.iterations, options_.tolerance, false);
+    LeastSquares solution = solve_least_squares(system, before_[std::size_t(c)], options_.iterations,
+                                                options_.tolerance, options_.paper.solver);
     iterations_ += solution.iterations;
     residual_ = std::max(residual_, solution.residual);
     negative += (solution.x.array() < 0).count();

@@ -86,37 +86,81 @@ std::vector<LinearSource> scattered_radiance(const std::vector<scene::Gaussian>&
   return radiance;
 }
 
-LeastSquares solve_least_squares(const DiffusionSystem& system, const Eigen::VectorXd& start, int iterations,
-                                 double tolerance, bool scale_rows) {
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(system.right.size());
-  if (scale_rows)
-    for (Eigen::Index h = 0; h < scale.size(); ++h)
-      if (const double length = system.matrix.row(h).norm(); length > 0) scale[h] = 1 / length;
-  const auto times = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(scale.cwiseProduct(system.matrix * x)); };
-  const auto transposed = [&](const Eigen::VectorXd& y) {
-    return Eigen::VectorXd(system.matrix.transpose() * scale.cwiseProduct(y));
-  };
-  const Eigen::VectorXd right = scale.cwiseProduct(system.right);
-  LeastSquares result{start};
-  Eigen::VectorXd missed = right - times(start), slope = transposed(missed), direction = slope;
-  const double whole = transposed(right).norm();
+namespace {
+
+struct Matrix {
+  const Eigen::MatrixXd& rows;
+  Eigen::VectorXd scale;
+  Eigen::VectorXd times(const Eigen::VectorXd& x) const { return scale.cwiseProduct(rows * x); }
+  Eigen::VectorXd transposed(const Eigen::VectorXd& y) const { return rows.transpose() * scale.cwiseProduct(y); }
+};
+
+// `missed`: what the start leaves of the right side. `whole`: what a residual is relative to.
+LeastSquares conjugate_gradients(const Matrix& a, Eigen::VectorXd missed, LeastSquares result, int iterations,
+                                 double tolerance, double whole) {
+  Eigen::VectorXd slope = a.transposed(missed), direction = slope;
   double square = slope.squaredNorm();
-  const auto residual = [&] { return whole > 0 ? std::sqrt(square) / whole : std::sqrt(square); };
-  while (result.iterations < iterations && residual() > tolerance) {
-    const Eigen::VectorXd along = times(direction);
+  while (result.iterations < iterations && std::sqrt(square) > tolerance * whole) {
+    const Eigen::VectorXd along = a.times(direction);
     const double length = along.squaredNorm();
     if (!(length > 0)) break;
     const double step = square / length;
     result.x += step * direction;
     missed -= step * along;
-    slope = transposed(missed);
+    slope = a.transposed(missed);
     const double next = slope.squaredNorm();
     direction = slope + next / square * direction;
     square = next;
     ++result.iterations;
   }
-  result.residual = residual();
+  result.residual = std::sqrt(square) / whole;
   return result;
+}
+
+// The length of y, which is made to be 1 unless it is 0.
+double taken_length(Eigen::VectorXd& y) {
+  const double length = y.norm();
+  if (length > 0) y /= length;
+  return length;
+}
+
+// A V = U B with B lower bidiagonal (diagonal alpha, below it beta); its rotations to an upper one give x step by step.
+LeastSquares lsqr(const Matrix& a, Eigen::VectorXd missed, LeastSquares result, int iterations, double tolerance,
+                  double whole) {
+  Eigen::VectorXd& u = missed;
+  double left = taken_length(u);
+  Eigen::VectorXd v = a.transposed(u);
+  double alpha = taken_length(v), diagonal = alpha, slope = alpha * left;
+  Eigen::VectorXd direction = v;
+  while (result.iterations < iterations && slope > tolerance * whole) {
+    u = a.times(v) - alpha * u;
+    const double beta = taken_length(u);
+    v = a.transposed(u) - beta * v;
+    alpha = taken_length(v);
+    const double length = std::hypot(diagonal, beta), cosine = diagonal / length, sine = beta / length;
+    result.x += cosine * left / length * direction;
+    direction = v - sine * alpha / length * direction;
+    left *= sine;
+    diagonal = -cosine * alpha;
+    slope = left * alpha * std::abs(cosine);
+    ++result.iterations;
+  }
+  result.residual = slope / whole;
+  return result;
+}
+
+}  // namespace
+
+LeastSquares solve_least_squares(const DiffusionSystem& system, const Eigen::VectorXd& start, int iterations,
+                                 double tolerance, LeastSquaresSolver solver) {
+  Matrix a{system.matrix, Eigen::VectorXd::Ones(system.right.size())};
+  if (solver == LeastSquaresSolver::cg_scaled || solver == LeastSquaresSolver::lsqr_scaled)
+    for (Eigen::Index h = 0; h < a.scale.size(); ++h)
+      if (const double length = system.matrix.row(h).norm(); length > 0) a.scale[h] = 1 / length;
+  const Eigen::VectorXd right = a.scale.cwiseProduct(system.right);
+  const double all = a.transposed(right).norm(), whole = all > 0 ? all : 1;
+  const bool is_lsqr = solver == LeastSquaresSolver::lsqr || solver == LeastSquaresSolver::lsqr_scaled;
+  return (is_lsqr ? lsqr : conjugate_gradients)(a, right - a.times(start), {start}, iterations, tolerance, whole);
 }
 
 }  // namespace airlight::compensated_ray_marching

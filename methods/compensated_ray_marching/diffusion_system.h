@@ -44,9 +44,13 @@ struct LeastSquares {
   double residual = 0;  // |A^T (b - A x)| relative to |A^T b|
 };
 
-// Conjugate gradients on A^T A x = A^T b, from `start`, until the residual is `tolerance` or `iterations` are done; as the publication, which
-// takes 20 to 40 from the frame before. scale_rows: each row divided by its length first, which takes the condition of A down by up to 10.
+// cg: conjugate gradients on A^T A x = A^T b, as the publication, which takes 20 to 40 from the frame before. lsqr: the same steps from the
+// bidiagonalisation of A, which rounding spoils less (Paige and Saunders 1982). scaled: each row divided by its length first, which takes the
+// condition of A down by up to 10; the residual is then that of the scaled rows.
+enum class LeastSquaresSolver { cg, cg_scaled, lsqr, lsqr_scaled };
+
+// From `start`, until the residual is `tolerance` or `iterations` are done.
 LeastSquares solve_least_squares(const DiffusionSystem&, const Eigen::VectorXd& start, int iterations, double tolerance,
-                                 bool scale_rows);
+                                 LeastSquaresSolver);
 
 }  // namespace airlight::compensated_ray_marching

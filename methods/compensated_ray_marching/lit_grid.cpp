@@ -86,8 +86,15 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
     const auto known = std::find_if(channels_.begin(), channels_.end(), alike);
     if (known != channels_.end())
       known->which.push_back(c);
+    else if (options.grid.multiple == Options::Grid::Multiple::p1)
+      channels_.push_back({{c},
+                           {},
+                           P1Grid(grid_.cells, sigma_t[c] * densities, albedo[c], mean_cosine(medium.phase),
+                                  {options.tolerance, options.iterations}),
+                           {}});
     else
-      channels_.push_back({{c}, {grid_.cells, sigma_t[c] * densities, albedo[c], moments, ordinates}, {}});
+      channels_.push_back(
+          {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities, albedo[c], moments, ordinates), {}, {}});
   }
 }
 
@@ -161,13 +168,18 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
         for (std::size_t b = 0; b < bands; ++b)
           source(nodes_[i], Eigen::Index(l * bands + b)) = single[i][b][group.which[l]];
     const bool known = group.before && group.before->cols() == source.cols();
+    const Moments* before = known ? &*group.before : nullptr;
+    const auto interrupted = [&] {
+      if (execution.progress && !execution.progress(1)) stopped = true;
+      return stopped.load();
+    };
     OrdinateSolution solution;
-    arena.execute([&] {
-      solution = group.ordinates.solve(source, 0, known ? &*group.before : nullptr, [&] {
-        if (execution.progress && !execution.progress(1)) stopped = true;
-        return stopped.load();
-      });
-    });
+    if (group.ordinates) {
+      arena.execute([&] { solution = group.ordinates->solve(source, 0, before, interrupted); });
+    } else if (!interrupted()) {
+      P1Solution p1 = group.diffusion->solve(source, order, before);
+      solution = {p1.radiance, std::move(p1.radiance), p1.iterations, p1.error};
+    }
     if (stopped) throw scene::Interrupted("interrupted");
     const double albedo = medium_.albedo[group.which[0]];
     for (std::size_t i = 0; i < nodes_.size(); ++i)

@@ -1,11 +1,12 @@
 // Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): exact depths towards the light, in
-// fixed directions, for single scattering; discrete ordinates for the rest.
+// fixed directions, for single scattering; discrete ordinates or diffusion for the rest.
 #pragma once
 #include <optional>
 
 #include "methods/compensated_ray_marching/incoming_light.h"
 #include "methods/compensated_ray_marching/node_grid.h"
 #include "methods/compensated_ray_marching/options.h"
+#include "methods/compensated_ray_marching/p1_grid.h"
 #include "scene/renderer.h"
 
 namespace airlight::compensated_ray_marching {
@@ -36,8 +37,9 @@ class LitGrid {
  private:
   struct Channels {  // that have extinction and albedo in common
     std::vector<int> which;
-    DiscreteOrdinates ordinates;
-    std::optional<Moments> before;
+    std::optional<DiscreteOrdinates> ordinates;
+    std::optional<P1Grid> diffusion;  // one of the two
+    std::optional<Moments> before;    // where to start from: a source, or radiance
   };
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
   Rgb left(std::size_t node, std::size_t direction) const;

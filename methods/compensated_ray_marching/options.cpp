@@ -42,9 +42,10 @@ std::vector<scene::SettingSpec> option_settings() {
                      "where source radiance is known: at the nodes of a grid, of any medium with an end; at the "
                      "centres of Gaussians, as published"),
       integer_setting("order", "4", 1, 6, "bands of spherical harmonics of source radiance"),
-      choice_setting("multiple", "auto", {"auto", "none", "ordinates", "as_printed", "corrected"},
-                     "multiple scattering: by discrete ordinates (grid); by the diffusion system as printed or "
-                     "corrected (paper); auto is ordinates, as_printed"),
+      choice_setting(
+          "multiple", "auto", {"auto", "none", "ordinates", "p1", "as_printed", "corrected"},
+          "multiple scattering: by discrete ordinates or diffusion (grid); by the diffusion system as printed or "
+          "corrected (paper); auto is ordinates, as_printed"),
       integer_setting("slices", "256", 1, 65536, "slices along the longest side of the smoke"),
       choice_setting("slice_weight", "auto", {"auto", "printed", "paper", "exact"},
                      "how much of a slice's light is seen: depth without the slope of the ray, depth, 1 - exp(-depth); "
@@ -64,6 +65,9 @@ std::vector<scene::SettingSpec> option_settings() {
                       "of ordinates: directions on a level; 0: as many as the order needs, twice of it"),
       choice_setting("transmittance", "hyb", {"ol", "hyb", "series", "directional"},
                      "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions"),
+      choice_setting("solver", "cg", {"cg", "cg_scaled", "lsqr", "lsqr_scaled"},
+                     "of paper's diffusion system: conjugate gradients on the normal equations, or LSQR; scaled: of "
+                     "rows of length 1"),
   };
 }
 
@@ -73,7 +77,9 @@ Options read_options(const scene::Settings& settings) {
   const bool paper = o.variant == Options::Variant::paper;
   o.order = int(settings.integer("order"));
   const std::string &multiple = settings.text("multiple"), &weight = settings.text("slice_weight");
-  o.grid.multiple = multiple == "none" ? Options::Grid::Multiple::none : Options::Grid::Multiple::ordinates;
+  o.grid.multiple = multiple == "none" ? Options::Grid::Multiple::none
+                    : multiple == "p1" ? Options::Grid::Multiple::p1
+                                       : Options::Grid::Multiple::ordinates;
   o.paper.multiple = multiple == "none"        ? Options::Paper::Multiple::none
                      : multiple == "corrected" ? Options::Paper::Multiple::corrected
                                                : Options::Paper::Multiple::as_printed;
@@ -91,7 +97,9 @@ Options read_options(const scene::Settings& settings) {
   o.grid.ordinate_levels = levels > 0 ? int(levels) : std::max(2, (o.order + 1) / 2);
   o.grid.azimuths = azimuths > 0 ? int(azimuths) : std::max(8, 2 * o.order);
   o.paper.transmittance = settings.choice<Transmittance>("transmittance");
-  const bool of_grid = multiple == "ordinates", of_paper = multiple == "as_printed" || multiple == "corrected";
+  o.paper.solver = settings.choice<LeastSquaresSolver>("solver");
+  const bool of_grid = multiple == "ordinates" || multiple == "p1",
+             of_paper = multiple == "as_printed" || multiple == "corrected";
   if (paper ? of_grid : of_paper)
     throw Error("multiple = " + multiple + " is not for variant = " + settings.text("variant"));
   return o;

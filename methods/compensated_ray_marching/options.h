@@ -1,6 +1,7 @@
 // Settings of the renderer, and what it cannot do.
 #pragma once
 #include "methods/compensated_ray_marching/compensated_march.h"
+#include "methods/compensated_ray_marching/diffusion_system.h"
 #include "methods/compensated_ray_marching/source_radiance.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
@@ -17,7 +18,7 @@ struct Options {
   double tolerance = 2e-4;
   int iterations = 200;
   struct Grid {
-    enum class Multiple { ordinates, none } multiple = Multiple::ordinates;
+    enum class Multiple { ordinates, p1, none } multiple = Multiple::ordinates;
     int levels = 8;  // of directions that light is gathered from, and bands of the environment
     int cells = 32;
     double deepest_cell = 1.5;
@@ -27,6 +28,7 @@ struct Options {
   struct Paper {
     enum class Multiple { as_printed, corrected, none } multiple = Multiple::as_printed;
     Transmittance transmittance = Transmittance::paper_squared;
+    LeastSquaresSolver solver = LeastSquaresSolver::cg;
   } paper;
 };
 

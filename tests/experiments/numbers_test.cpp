@@ -171,7 +171,8 @@ TEST_CASE("the experiment of oracle vectors forgets no kind", "[driver]") {
   }
   const TemporaryFolder folder;
   folder.write("vectors.json",
-               R"({"paper": "compensated_ray_marching_2008", "vectors": [{"id": "a", "kind": "sh_basis", "input": {},)"
+               R"({"paper": "compensated_ray_marching_2008", "vectors": [{"id": "a", "kind": "diffusion_slab_marshak",)"
+               R"( "input": {"albedo": 0.9, "g": 0, "sigma_t": 1, "D": 1, "thickness": 10, "J0": 0.3, "J1": 0.1},)"
                R"( "expected": {}, "rtol": 0, "atol": 0}]})");
   folder.write("experiments/g/e.toml", R"(kind = "numbers"
 title = "Nothing"
@@ -180,7 +181,7 @@ metrics = ["worst_share"]
 file = "../vectors.json"
 [[method]]
 probe = "oracle_vectors"
-settings = { kind = "sh_basis" }
+settings = { kind = "diffusion_slab_marshak" }
 [[gate]]
 metric = "worst_share"
 at_most = 1

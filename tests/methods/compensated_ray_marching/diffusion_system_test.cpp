@@ -68,22 +68,38 @@ TEST_CASE("diffusion at the centres: rows add up to the absorption", "[compensat
           Approx(number(v.at("expected"))));
 }
 
-TEST_CASE("diffusion at the centres: conjugate gradients", "[compensated_ray_marching]") {
+TEST_CASE("diffusion at the centres: conjugate gradients and LSQR", "[compensated_ray_marching]") {
   const std::vector<scene::Gaussian> gaussians = chain(60);
   std::vector<LinearSource> sources;
   for (int i = 0; i < 60; ++i) sources.push_back({1 + 0.5 * std::sin(0.4 * i), Vec3(0.1, 0.2 * std::cos(i), 0.3)});
   const DiffusionSystem system = diffusion_system(gaussians, sources, 12.6, 0.9, 0, DiffusionForm::corrected);
   const Eigen::VectorXd exact = system.matrix.partialPivLu().solve(system.right), zero = Eigen::VectorXd::Zero(60);
-  for (const bool scaled : {false, true}) {
-    const LeastSquares found = solve_least_squares(system, zero, 10000, 1e-12, scaled);
-    CAPTURE(scaled, found.iterations, found.residual);
+  for (const LeastSquaresSolver solver : {LeastSquaresSolver::cg, LeastSquaresSolver::cg_scaled,
+                                          LeastSquaresSolver::lsqr, LeastSquaresSolver::lsqr_scaled}) {
+    const LeastSquares found = solve_least_squares(system, zero, 10000, 1e-12, solver);
+    CAPTURE(int(solver), found.iterations, found.residual);
     CHECK(found.residual <= 1e-12);
     CHECK((found.x - exact).norm() < 1e-5 * exact.norm());
-    const LeastSquares warm = solve_least_squares(system, exact, 100, 1e-6, scaled);
+    const LeastSquares warm = solve_least_squares(system, exact, 100, 1e-6, solver);
     CHECK(warm.iterations <= 1);
   }
+  // The same steps but for rounding, of which four have little; what LSQR says that is left is left.
+  for (const auto& [cg, lsqr] : {std::pair(LeastSquaresSolver::cg, LeastSquaresSolver::lsqr),
+                                 std::pair(LeastSquaresSolver::cg_scaled, LeastSquaresSolver::lsqr_scaled)}) {
+    const LeastSquares a = solve_least_squares(system, zero, 4, 0, cg),
+                       b = solve_least_squares(system, zero, 4, 0, lsqr);
+    CHECK(b.iterations == 4);
+    CHECK((a.x - b.x).norm() < 1e-9 * a.x.norm());
+    CHECK(a.residual == Approx(b.residual).epsilon(1e-6));
+  }
+  const LeastSquares some = solve_least_squares(system, zero, 30, 0, LeastSquaresSolver::lsqr);
+  const Eigen::VectorXd slope = system.matrix.transpose() * (system.right - system.matrix * some.x);
+  CHECK(some.residual == Approx(slope.norm() / (system.matrix.transpose() * system.right).norm()).epsilon(1e-6));
+  // Rows of length 1 take fewer iterations.
+  CHECK(solve_least_squares(system, zero, 10000, 1e-8, LeastSquaresSolver::lsqr_scaled).iterations <
+        0.8 * solve_least_squares(system, zero, 10000, 1e-8, LeastSquaresSolver::lsqr).iterations);
   // Forty from nothing are far from the answer: the publication's count holds for warm starts.
-  const LeastSquares cold = solve_least_squares(system, zero, 40, 0, false);
+  const LeastSquares cold = solve_least_squares(system, zero, 40, 0, LeastSquaresSolver::cg);
   CHECK(cold.iterations == 40);
   CHECK((cold.x - exact).norm() > 0.05 * exact.norm());
 }
@@ -93,14 +109,27 @@ TEST_CASE("diffusion at the centres: extremes", "[compensated_ray_marching]") {
   SECTION("one Gaussian") {
     const DiffusionSystem s = diffusion_system({{Point3::Zero(), 0.1, 0.7}}, one, 5, 0.8, 0, DiffusionForm::corrected);
     CHECK(s.matrix(0, 0) == Approx(-0.2 * 5 * 0.7));
-    CHECK(solve_least_squares(s, Eigen::VectorXd::Zero(1), 10, 1e-12, true).x[0] == Approx(0.3 / 0.2));
+    CHECK(solve_least_squares(s, Eigen::VectorXd::Zero(1), 10, 1e-12, LeastSquaresSolver::lsqr_scaled).x[0] ==
+          Approx(0.3 / 0.2));
   }
   SECTION("two at one place: the shortest answer") {
     const scene::Gaussian g{Point3::Zero(), 0.1, 0.7};
-    const LeastSquares found = solve_least_squares(diffusion_system({g, g}, two, 5, 0.8, 0, DiffusionForm::corrected),
-                                                   Eigen::VectorXd::Zero(2), 50, 1e-12, false);
-    CHECK(found.x[0] == Approx(1.5));
-    CHECK(found.x[1] == Approx(1.5));
+    for (const LeastSquaresSolver solver : {LeastSquaresSolver::cg, LeastSquaresSolver::lsqr}) {
+      const LeastSquares found = solve_least_squares(diffusion_system({g, g}, two, 5, 0.8, 0, DiffusionForm::corrected),
+                                                     Eigen::VectorXd::Zero(2), 50, 1e-12, solver);
+      CHECK(found.x[0] == Approx(1.5));
+      CHECK(found.x[1] == Approx(1.5));
+    }
+  }
+  SECTION("no light") {
+    const std::vector<LinearSource> dark(1);
+    for (const LeastSquaresSolver solver : {LeastSquaresSolver::cg, LeastSquaresSolver::lsqr}) {
+      const LeastSquares found =
+          solve_least_squares(diffusion_system({{Point3::Zero(), 0.1, 0.7}}, dark, 5, 0.8, 0, DiffusionForm::corrected),
+                              Eigen::VectorXd::Zero(1), 50, 1e-12, solver);
+      CHECK(found.x[0] == 0);
+      CHECK(found.iterations == 0);
+    }
   }
   SECTION("no albedo") {
     const std::vector<scene::Gaussian> g{{Point3::Zero(), 0.1, 0.7}};
@@ -111,7 +140,7 @@ TEST_CASE("diffusion at the centres: extremes", "[compensated_ray_marching]") {
     const LeastSquares found =
         solve_least_squares(diffusion_system(chain(10), std::vector<LinearSource>(10, {0.3, Vec3::Zero()}), 5, 1, 0,
                                              DiffusionForm::corrected),
-                            Eigen::VectorXd::Zero(10), 200, 1e-10, true);
+                            Eigen::VectorXd::Zero(10), 200, 1e-10, LeastSquaresSolver::lsqr_scaled);
     CHECK(found.x.allFinite());
   }
 }

@@ -1,0 +1,118 @@
+#include "experiments/verify/ball_transport.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "scene/math/gauss_legendre.h"
+#include "scene/math/types.h"
+
+namespace airlight::experiments::verification {
+namespace {
+
+constexpr int shells = 10, points = 10, angles = 40, points_on_a_chord = 12;
+
+double legendre(int l, double x) { return std::legendre(unsigned(l), std::abs(x)) * (x < 0 && l % 2 ? -1 : 1); }
+
+}  // namespace
+
+BallTransport::BallTransport(const BallLight& light) : light_(light), bands_(int(light.phase.size())) {
+  const scene::GaussLegendre rule = scene::gauss_legendre(points);
+  for (int s = 0; s <= shells; ++s) edges_.push_back(light.cut * s / shells);
+  for (int s = 0; s < shells; ++s)
+    for (const double x : rule.node)
+      node_.push_back(edges_[std::size_t(s)] + 0.5 * (1 + x) * (edges_[std::size_t(s) + 1] - edges_[std::size_t(s)]));
+  Eigen::MatrixXd values(points, points);
+  for (int i = 0; i < points; ++i)
+    for (int k = 0; k < points; ++k) values(i, k) = legendre(k, rule.node[std::size_t(i)]);
+  interpolation_ = values.inverse();
+  const auto n = Eigen::Index(node_.size()) * bands_;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd right(n);
+  for (std::size_t i = 0; i < node_.size(); ++i)
+    for (int l = 0; l < bands_; ++l) {
+      const Eigen::Index row = Eigen::Index(i) * bands_ + l;
+      system.row(row) -= moment_row(l, node_[i], right[row]);
+    }
+  moments_ = system.partialPivLu().solve(right);
+}
+
+double BallTransport::depth_from_face(double impact, double along) const {
+  const double half = std::sqrt(std::max(0.0, light_.cut * light_.cut - impact * impact));
+  return light_.extinction * std::exp(-impact * impact) * 0.5 * std::sqrt(pi) * (std::erf(along) + std::erf(half));
+}
+
+void BallTransport::gather(double impact, double along, double factor, Eigen::RowVectorXd& row) const {
+  static const scene::GaussLegendre rule = scene::gauss_legendre(points_on_a_chord);
+  const double half = std::sqrt(std::max(0.0, light_.cut * light_.cut - impact * impact));
+  std::vector<double> ends{-half, along, 0};
+  for (const double edge : edges_)
+    if (edge > impact)
+      ends.insert(ends.end(), {-std::sqrt(edge * edge - impact * impact), std::sqrt(edge * edge - impact * impact)});
+  std::erase_if(ends, [&](double x) { return x < -half || x > along; });
+  std::sort(ends.begin(), ends.end());
+  const double here = depth_from_face(impact, along);
+  double p[16], polynomials[points];
+  for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+    const double length = ends[e + 1] - ends[e];
+    if (!(length > 0)) continue;
+    for (int q = 0; q < points_on_a_chord; ++q) {
+      const double x = ends[e] + 0.5 * (1 + rule.node[std::size_t(q)]) * length;
+      const double radius = std::hypot(impact, x), mu = x / radius;
+      const double weight = factor * 0.5 * rule.weight[std::size_t(q)] * length * light_.extinction *
+                            std::exp(-radius * radius) * std::exp(depth_from_face(impact, x) - here);
+      const int shell = std::clamp(int(radius / light_.cut * shells), 0, shells - 1);
+      const double lo = edges_[std::size_t(shell)], hi = edges_[std::size_t(shell) + 1];
+      const double place = 2 * (radius - lo) / (hi - lo) - 1;
+      polynomials[0] = 1, polynomials[1] = place;
+      for (int k = 1; k + 1 < points; ++k)
+        polynomials[k + 1] = ((2 * k + 1) * place * polynomials[k] - k * polynomials[k - 1]) / (k + 1);
+      for (int l = 0; l < bands_; ++l)
+        p[l] = weight * light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * legendre(l, mu);
+      const Eigen::Map<const Eigen::RowVectorXd> all(polynomials, points);
+      const Eigen::RowVectorXd shares = all * interpolation_;
+      for (int i = 0; i < points; ++i)
+        for (int l = 0; l < bands_; ++l) row[(shell * points + i) * bands_ + l] += shares[i] * p[l];
+    }
+  }
+}
+
+Eigen::RowVectorXd BallTransport::moment_row(int l, double radius, double& reduced) const {
+  static const scene::GaussLegendre rule = scene::gauss_legendre(angles);
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(Eigen::Index(node_.size()) * bands_);
+  reduced = 0;
+  for (const double side : {-1.0, 1.0})
+    for (std::size_t k = 0; k < rule.node.size(); ++k) {
+      // Dense where the ray touches the sphere.
+      const double u = 0.5 + 0.5 * rule.node[k], mu = side * u * u;
+      const double factor = 0.5 * rule.weight[k] * u * legendre(l, mu);
+      const double impact = radius * std::sqrt(1 - mu * mu), along = radius * mu;
+      reduced += factor * light_.environment * std::exp(-depth_from_face(impact, along));
+      gather(impact, along, factor, row);
+    }
+  return row;
+}
+
+double BallTransport::moment(int l, double radius) const {
+  double reduced = 0;
+  const double scattered = moment_row(l, radius, reduced).dot(moments_);
+  return reduced + scattered;
+}
+
+double BallTransport::reduced_moment(int l, double radius) const {
+  double reduced = 0;
+  moment_row(l, radius, reduced);
+  return reduced;
+}
+
+double BallTransport::exit_transmittance(double impact) const {
+  return std::exp(-depth_from_face(impact, std::sqrt(light_.cut * light_.cut - impact * impact)));
+}
+
+double BallTransport::exit_radiance(double impact) const {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(moments_.size());
+  gather(impact, std::sqrt(light_.cut * light_.cut - impact * impact), 1, row);
+  return light_.environment * exit_transmittance(impact) + row.dot(moments_);
+}
+
+}  // namespace airlight::experiments::verification

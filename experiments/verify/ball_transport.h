@@ -1,0 +1,41 @@
+// A Gaussian ball of smoke in an even environment, to 1e-7: moments of the light on spheres, polynomials of the radius in shells, and the
+// transport equation integrated along chords between them (Nystroem's method). Lengths are in widths of the Gaussian.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace airlight::experiments::verification {
+
+struct BallLight {
+  double extinction = 1;  // at the centre, times the width
+  double cut = 3;         // radius of the ball
+  double albedo = 0.9;
+  std::vector<double> phase{1};  // mean of P_l over the phase function
+  double environment = 1;        // radiance
+};
+
+class BallTransport {
+ public:
+  explicit BallTransport(const BallLight&);
+  // At that distance from the centre: half the integral over the cosine to the radius of P_l times radiance.
+  double moment(int l, double radius) const;
+  double reduced_moment(int l, double radius) const;  // of light that nothing has scattered
+  // Of a ray that passes the centre at a distance, where it leaves the ball.
+  double exit_radiance(double impact) const;
+  double exit_transmittance(double impact) const;
+
+ private:
+  // A place on a chord: distance of the chord from the centre, and the way from its middle, in the direction of the light.
+  double depth_from_face(double impact, double along) const;
+  // What each unknown (moment l at node i) adds to the radiance there.
+  void gather(double impact, double along, double factor, Eigen::RowVectorXd& row) const;
+  Eigen::RowVectorXd moment_row(int l, double radius, double& reduced) const;
+
+  BallLight light_;
+  int bands_;
+  std::vector<double> edges_, node_;  // of shells; radii
+  Eigen::MatrixXd interpolation_;     // in a shell, from values at its nodes to Legendre coefficients
+  Eigen::VectorXd moments_;           // by node, then by band
+};
+
+}  // namespace airlight::experiments::verification

@@ -1,0 +1,222 @@
+// Zhou et al. 2008: the march along rays, and the integral that it tends to.
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/json_value.h"
+#include "experiments/verify/own_tolerance.h"
+#include "experiments/verify/ray_quadrature.h"
+#include "experiments/verify/readers.h"
+#include "experiments/verify/smoke_vector.h"
+#include "methods/compensated_ray_marching/compensated_march.h"
+#include "scene/math/spherical_harmonics.h"
+#include "scene/phase.h"
+
+namespace airlight::experiments::verification {
+namespace {
+
+namespace crm = compensated_ray_marching;
+
+constexpr int levels_on_a_ray = 64;
+
+// Where a ray goes in and out of Gaussians, between two ends.
+std::vector<double> crossings(const scene::GaussianSum& smoke, const Ray& ray, double from, double to) {
+  std::vector<double> ends{from, to};
+  for (const scene::Gaussian& g : smoke.gaussians) {
+    const Vec3 way = g.center - ray.origin;
+    const double along = way.dot(ray.direction), reach = smoke.cutoff * g.width;
+    const double square = reach * reach - (way.squaredNorm() - along * along);
+    ends.push_back(along);
+    if (square > 0) ends.insert(ends.end(), {along - std::sqrt(square), along + std::sqrt(square)});
+  }
+  std::erase_if(ends, [&](double t) { return t < from || t > to; });
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+std::vector<Ray> rays_of(const Value& list) {
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    rays.push_back({list[i]["origin"].vector(), list[i]["direction"].vector().normalized()});
+  return rays;
+}
+
+// The mean of sources weighted with the Gaussians, at least 0; nothing where the Gaussians are below 1e-10.
+RaySample interpolated(const scene::GaussianSum& smoke, const std::vector<double>& sources, const Point3& x) {
+  double sum = 0, weighted = 0;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const scene::Gaussian& g = smoke.gaussians[i];
+    const double square = (x - g.center).squaredNorm() / (g.width * g.width);
+    if (square > smoke.cutoff * smoke.cutoff) continue;
+    const double weight = g.amplitude * std::exp(-square);
+    sum += weight;
+    weighted += weight * sources[i];
+  }
+  return sum < 1e-10 ? RaySample{0, 0} : RaySample{sum, std::max(0.0, weighted / sum)};
+}
+
+}  // namespace
+
+Check read_march_single_scattering(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  const scene::GaussianSum smoke = gaussians_of(in);
+  const double sigma_t = in["sigma_t"].number(), albedo = in["albedo"].number_in(0, 1), g = in["g"].number_in(-1, 1),
+               end = in["t_max"].number_in(0, 1e6);
+  const crm::SourceLight light = environment_of(in);
+  const std::vector<Ray> rays = rays_of(in["rays"]);
+  const bool behind = in["background"].text() == "environment radiance in the ray direction";
+  if (!behind && in["background"].text() != "none") in["background"].complain("none, or the environment");
+  const std::vector<double> passed = expected["transmittance"].numbers(), radiance = expected["radiance"].numbers(),
+                            between = expected["radiance_interpolated"].numbers();
+  const OwnTolerance t = tolerance_of(v);
+  return {"", [=](VerifyProfile) {
+            const crm::SourceRadiance exact(smoke, Rgb::Constant(sigma_t), Rgb::Constant(albedo), powers_of(g), light,
+                                            crm::Transmittance::directional,
+                                            crm::ordinate_directions(levels_at_a_point, 2 * levels_at_a_point, false));
+            std::vector<std::vector<Rgb>> centres;
+            for (const scene::Gaussian& one : smoke.gaussians) centres.push_back(exact.at(one.center));
+            const scene::PhaseFunction phase = scene::HenyeyGreenstein{g};
+            std::vector<double> transmittances, direct, interpolation;
+            for (const Ray& ray : rays) {
+              const std::vector<double> ends = crossings(smoke, ray, 0, end);
+              const RayIntegral full = integrate_ray(
+                  [&](double at) {
+                    const Point3 x = ray.at(at);
+                    const double density = scene::density(smoke, x);
+                    if (!(density > 0)) return RaySample{0, 0};
+                    double sent = 0;
+                    for (const LeftOfLight& l : light_left(smoke, sigma_t, light.harmonics, x, levels_on_a_ray))
+                      sent += albedo * l.weight * l.radiance * l.transmittance *
+                              phase_value(phase, l.toward.dot(ray.direction));
+                    return RaySample{sigma_t * density, sent};
+                  },
+                  ends, 1e-6);
+              const std::vector<Vec3> out{-ray.direction};
+              std::vector<double> sources;
+              for (const std::vector<Rgb>& c : centres) sources.push_back(evaluated(c, out)[0]);
+              const RayIntegral coarse = integrate_ray(
+                  [&](double at) {
+                    RaySample s = interpolated(smoke, sources, ray.at(at));
+                    s.extinction *= sigma_t;
+                    return s;
+                  },
+                  ends, 1e-11);
+              const double left = std::exp(-sigma_t * density_integral(smoke, ray, {0, end}));
+              const double beyond = behind ? left * scene::evaluate_sh(light.harmonics, ray.direction)[0] : 0;
+              transmittances.push_back(left);
+              direct.push_back(full.radiance + beyond);
+              interpolation.push_back(coarse.radiance + beyond);
+            }
+            Outcome o;
+            compare_all(o, "transmittance", passed, transmittances, t);
+            compare_all(o, "radiance", radiance, direct, t);
+            compare_all(o, "interpolated", between, interpolation, t);
+            return o;
+          }};
+}
+
+Check read_march_compensated(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  crm::MarchedSmoke smoke;
+  smoke.gaussians = gaussians_of(in);
+  // Densities in thousandths of ten: residuals of four decimals are then integers, which single precision keeps.
+  constexpr double unit = 1e4;
+  smoke.extinction = Rgb::Constant(in["sigma_t"].number() / unit);
+  for (scene::Gaussian& g : smoke.gaussians.gaussians) g.amplitude *= unit;
+  const Value sources = in["source_sh_propagation"];
+  for (std::size_t i = 0; i < sources.size(); ++i) smoke.source.push_back(grey_harmonics(sources[i]));
+  int voxels = 0;
+  if (in.has("residual")) {
+    const Value values = in["residual"]["values_x_y_z"];
+    voxels = int(values.size());
+    auto grid = std::make_shared<scene::VoxelGrid>();
+    grid->size = Eigen::Vector3i::Constant(voxels);
+    grid->voxel_size = 1.0 / voxels;
+    grid->translation = Vec3::Constant(0.5 / voxels);
+    grid->clamp_border = true;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      for (std::size_t j = 0; j < values.size(); ++j)
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          const double integer = unit * values[i][j][k].number_in(-100, 100);
+          if (std::abs(integer - std::round(integer)) > 1e-8) values[i][j][k].complain("a decimal of four places");
+          grid->values.push_back(float(std::round(integer)));
+        }
+    smoke.residual = grid;
+  }
+  const std::vector<Ray> rays = rays_of(in["rays"]);
+  const crm::Slices slices{in["slice_axis"].vector().normalized(), in["slice_thickness"].number_in(1e-6, 1e6),
+                           in["slices"].integer_in(1, 1 << 20)};
+  const double background = in["background"].number();
+  const std::vector<std::string> names{"transmittance", "radiance",    "slice_transmittance",
+                                       "slice_printed", "slice_paper", "slice_exact_weight"};
+  std::vector<std::vector<double>> numbers;
+  for (const std::string& name : names) {
+    numbers.push_back(expected[name].numbers());
+    if (numbers.back().size() != rays.size()) expected[name].complain("one for every ray");
+  }
+  const OwnTolerance t = tolerance_of(v);
+  return {"", [=](VerifyProfile) {
+            const crm::CompensatedMarch march(smoke);
+            std::vector<std::vector<double>> got(names.size());
+            for (const Ray& ray : rays) {
+              std::vector<double> towards;
+              for (const std::vector<Rgb>& one : smoke.source)
+                towards.push_back(scene::evaluate_sh(one, -ray.direction)[0]);
+              const double length = slices.count * slices.thickness / std::abs(ray.direction.dot(slices.axis));
+              std::vector<double> ends = crossings(smoke.gaussians, ray, 0, length);
+              // A residual has kinks where the ray crosses the planes through voxels' centres, and those of the box.
+              for (int a = 0; a < 3 && voxels > 0; ++a)
+                for (int i = -1; i <= voxels; ++i) {
+                  const double plane = std::clamp((i + 0.5) / voxels, 0.0, 1.0);
+                  const double at = (plane - ray.origin[a]) / ray.direction[a];
+                  if (at > 0 && at < length) ends.push_back(at);
+                }
+              std::sort(ends.begin(), ends.end());
+              const RayIntegral exact = integrate_ray(
+                  [&](double at) {
+                    const Point3 x = ray.at(at);
+                    RaySample s = interpolated(smoke.gaussians, towards, x);
+                    if (s.extinction > 0 && smoke.residual) s.extinction += scene::density(*smoke.residual, x);
+                    s.extinction = smoke.extinction[0] * std::max(0.0, s.extinction);
+                    return s;
+                  },
+                  ends, 1e-13);
+              got[0].push_back(std::exp(-exact.depth));
+              got[1].push_back(exact.radiance + background * got[0].back());
+              const crm::SliceWeight weights[]{crm::SliceWeight::exact, crm::SliceWeight::printed,
+                                               crm::SliceWeight::paper, crm::SliceWeight::exact};
+              for (std::size_t w = 0; w < 4; ++w) {
+                const crm::Marched m = march.slices(ray, slices, weights[w]);
+                got[w + 2].push_back(m.transmittance[0] * (w == 0 ? 1 : background) + (w == 0 ? 0 : m.radiance[0]));
+              }
+            }
+            Outcome o;
+            for (std::size_t i = 0; i < names.size(); ++i) compare_all(o, names[i], numbers[i], got[i], t);
+            return o;
+          }};
+}
+
+Check read_ray_march_homogeneous(const Value& v) {
+  const Value in = v["input"], expected = v["expected"];
+  crm::MarchedSmoke smoke;
+  smoke.extinction = Rgb::Constant(in["sigma_t"].number());
+  // A Gaussian so wide that it is even over the ray.
+  smoke.gaussians.gaussians = {{Point3::Zero(), 1e9, in["D"].number()}};
+  smoke.source = {{Rgb::Constant(in["J"].number() * std::sqrt(4 * pi))}};
+  const crm::Slices slices{Vec3::UnitZ(), in["step"].number_in(1e-6, 1e6), in["slices"].integer_in(1, 1 << 20)};
+  const double passed = expected["transmittance"].number(), paper = expected["paper_sum_without_background"].number(),
+               exact = expected["exact_without_background"].number();
+  const OwnTolerance t = tolerance_of(v);
+  return {"", [=](VerifyProfile) {
+            const crm::CompensatedMarch march(smoke);
+            const Ray ray{Point3::Zero(), Vec3::UnitZ()};
+            const crm::Marched m = march.slices(ray, slices, crm::SliceWeight::exact);
+            Outcome o;
+            o.comparisons.push_back(compare("transmittance", passed, m.transmittance[0], t));
+            o.comparisons.push_back(
+                compare("paper", paper, march.slices(ray, slices, crm::SliceWeight::paper).radiance[0], t));
+            o.comparisons.push_back(compare("exact", exact, m.radiance[0], t));
+            return o;
+          }};
+}
+
+}  // namespace airlight::experiments::verification

@@ -1,0 +1,39 @@
+// Smoke and light from the inputs of Zhou et al. 2008's vectors.
+#pragma once
+#include "experiments/verify/entry.h"
+#include "methods/compensated_ray_marching/source_radiance.h"
+#include "scene/media/gaussian_sum.h"
+
+namespace airlight::experiments::verification {
+
+// "cut", in widths; null: none.
+double cut_of(const Value& input);
+
+// A list of x, y, z, width and amplitude.
+scene::GaussianSum gaussians_of(const Value& input, const std::string& field = "rbf_x_y_z_r_w");
+
+// Lists of real spherical harmonics, each a colour's.
+std::vector<Rgb> grey_harmonics(const Value& list);
+
+// An environment that its harmonics say completely.
+compensated_ray_marching::SourceLight environment_of(const Value& input);
+
+// The depth around x in four bands, exact, with its sign turned.
+compensated_ray_marching::Harmonics minus_depth(const scene::GaussianSum&, const Point3& x, double sigma_t);
+
+// Harmonics in directions, a value each; 1, g, g^2, g^3.
+std::vector<double> evaluated(const std::vector<Rgb>& harmonics, const std::vector<Vec3>& directions);
+std::vector<double> powers_of(double g);
+
+// Of directions that light is gathered from at a point: transmittances have roots at the Gaussians' cuts.
+inline constexpr int levels_at_a_point = 256;
+
+// Light from all around x, attenuated: of each direction its weight, what comes from it and what is left of that.
+struct LeftOfLight {
+  Vec3 toward;
+  double weight, radiance, transmittance;
+};
+std::vector<LeftOfLight> light_left(const scene::GaussianSum&, double sigma_t, const std::vector<Rgb>& environment,
+                                    const Point3& x, int levels);
+
+}  // namespace airlight::experiments::verification
