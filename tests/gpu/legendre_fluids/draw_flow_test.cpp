@@ -163,3 +163,30 @@ TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time",
   empty.media.clear();
   CHECK_THROWS_AS(experiments::FlowPictures(empty, on_device, settings, 0, 1), Error);
 }
+
+// What rings below 0 around a blob is taken as 0, as the processor does, in a few stretches of each ray.
+TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0);
+  for (int frame = 0; frame < 3; ++frame) {
+    const scene::LegendrePointer field = box_of(*flow, 1);
+    REQUIRE(field->negative());
+    const auto scene = scene_with(field);
+    const scene::Film a = test::render(legendre_fluids::LegendreLight(), scene).film;
+    const gpu::LegendreLightGpu method;
+    const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+    const scene::Rendering b = picture->render(view_of(*scene), {1, {}});
+    CAPTURE(frame, b.counters.at("rounds"));
+    for (const auto& [layer, values] : a.layers) CHECK(gpu::test::quantile(a, b.film, layer, 1) < 8e-6);
+    CHECK(b.counters.at("rounds") <= 24);
+    CHECK(b.counters.at("stretches_at_limit") == 0);
+    CHECK(b.counters.at("negative_share") > 1e-3);
+    scene::Execution none{1, {}};  // whether all rays are done is looked at even where nobody sees them
+    none.layers.emplace();
+    const auto unseen = method.prepare(scene, {method.settings(), {}}, {1, {}});
+    const scene::Rendering nothing = unseen->render(view_of(*scene), none);
+    CHECK(nothing.counters.at("rounds") == b.counters.at("rounds"));
+    CHECK(nothing.counters.at("bytes_down") == 12);
+    flow->step(0.05);
+  }
+}
