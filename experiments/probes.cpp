@@ -6,6 +6,7 @@
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
 #include "experiments/legendre_fluids/fluid_probes.h"
+#include "experiments/legendre_fluids/frame_probe.h"
 #include "experiments/legendre_fluids/rendering_probe.h"
 #include "experiments/shadow_planes/evaluator_probes.h"
 #include "experiments/stable_fluids/probes.h"
@@ -41,6 +42,8 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<LegendreSpeed>());
     list.push_back(std::make_unique<LegendreStability>());
     list.push_back(std::make_unique<LegendreSmoke>());
+    list.push_back(std::make_unique<LegendreFrame>());
+    list.push_back(std::make_unique<LegendreFrameGpu>());
     list.push_back(std::make_unique<ResidualStores>());
     list.push_back(std::make_unique<GaussianFitProbe>());
     list.push_back(std::make_unique<FittedPicture>());

@@ -37,6 +37,10 @@ void Download::add_values(const std::string& name, const Buffer& buffer, std::si
   if (wants_any() && bytes > 0) parts_.push_back({name, &buffer, bytes, false});
 }
 
+void Download::add_status(const std::string& name, const Buffer& buffer, std::size_t bytes) {
+  parts_.push_back({name, &buffer, bytes, false});
+}
+
 void Download::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   const Gl& gl = context_.gl();
@@ -95,7 +99,8 @@ void Frame::begin(const scene::Execution& execution) {
 
 void Frame::finish(scene::Rendering& rendering) {
   const Use use(context_);
-  if (download.wants_any()) {
+  const bool downloads = download.wants_any() || !download.empty();
+  if (downloads) {
     timer.begin("download");
     download.copy();
   }
@@ -103,7 +108,7 @@ void Frame::finish(scene::Rendering& rendering) {
   host_times_of_last_frame() = timer.host_times();
   const auto start = std::chrono::steady_clock::now();
   download.fetch(rendering.film);
-  if (download.wants_any())  // what the host adds to the device's copies
+  if (downloads)  // what the host adds to the device's copies
     rendering.times.back().seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   context_.check("a frame");
   for (const auto& [name, value] : (context_.traffic() - before_).counters()) rendering.counters[name] = value;

@@ -43,13 +43,16 @@ class Download {
   // Forgets what was added; `layers` as in scene::Execution.
   void begin(const std::optional<std::set<std::string>>& layers);
   bool wants(const std::string& layer) const { return !layers_ || layers_->count(layer) != 0; }
-  // False: no layer is wanted, and nothing comes down.
+  // False: no layer is wanted, and nothing but a status comes down.
   bool wants_any() const { return !layers_ || !layers_->empty(); }
+  bool empty() const { return parts_.empty(); }
 
   // The first `bytes` of a buffer, which must live until fetch(): a layer, if it is wanted.
   void add(const std::string& layer, const Buffer&, std::size_t bytes);
   // What is no layer (counters, marks): values() gives it after finish(), nothing where no layer is wanted.
   void add_values(const std::string& name, const Buffer&, std::size_t bytes);
+  // What says whether a frame is right: comes down even where no layer is wanted.
+  void add_status(const std::string& name, const Buffer&, std::size_t bytes);
 
   // Frame::finish: the copies are told to the device; after a wait they are taken to the film.
   void copy();

@@ -28,6 +28,9 @@ enum Binding {
   ambient = 6,
   surface = 7,
   mean = 0,
+  stretches = 5,  // light_cut.comp and what follows it
+  ways = 6,
+  walked = 7,
   seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
   particles = 4,

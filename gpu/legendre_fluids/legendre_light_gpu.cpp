@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "gpu/frame.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
@@ -31,6 +32,9 @@ using scene::View;
 
 constexpr int tile = 4;                   // of rays, both ways
 constexpr double least_tolerance = 1e-6;  // that single precision can keep
+constexpr double bent_share = 0.1;        // of it, that may be missed where light has kinks
+constexpr int walked_words = 3;           // of light_rays.comp
+constexpr int first_rounds = 16, most_rounds = 8192;
 
 // The range of the depth over a panel, up to which that many points miss no more than the tolerance: coefficients of exp(-r z) are at most
 // 2 (r/2)^k / k!.
@@ -46,12 +50,15 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  scene::Rendering render_once(const View&, const Execution&) const;
   bool take(const DensityOnDevice& d) override {
     const Use use(context_);
     return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
   }
 
  private:
+  void follow_round(const View&, int round) const;
+  bool negative() const { return media_ && media_->negative(); }
   bool any_medium() const { return !lit_.media.empty(); }
   bool scatters() const;
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
@@ -68,7 +75,9 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   std::unique_ptr<FirstHits> first_hits_;      // null: no surface ends a ray
   std::unique_ptr<Backdrops> backdrops_;       // null: there are none
   std::unique_ptr<fogmaps::SurfaceLight> surfaces_;
-  Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr;
+  Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr, *cut_ = nullptr, *columns_ = nullptr;
+  mutable int rounds_ = first_rounds;  // of stretches, where a density may be below 0
+  double negative_share_ = 0;
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
 };
@@ -92,6 +101,14 @@ PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const Ray
     definitions = media_->definitions();
     rays_ = &program(context_, "light_rays", tile, tile, definitions);
     if (fogmaps::lamps_light_surfaces(*scene_)) dim_ = &program(context_, "light_dim", tile, tile, definitions);
+    for (const LitMedium& m : lit_.media)
+      if (m.field->negative())
+        negative_share_ =
+            std::max(negative_share_, legendre_fluids::negative_share(m.field->shape(), m.field->coefficients()));
+    if (negative()) {
+      cut_ = &program(context_, "light_cut", tile, tile, definitions);
+      columns_ = &program(context_, "light_columns", 32, 1, definitions);
+    }
   }
   composition_ = &program(context_, "light_composition", 64, 1, definitions);
   times_ = timer.times();
@@ -110,9 +127,13 @@ std::vector<scene::Stage> PreparedLightGpu::stages() const {
   return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
           {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
           {"rays", any_medium(),
-           scatters() ? fmt::format("{} dispatches for each light, a stretch of every ray each", media_->stretches())
+           negative()   ? "a stretch of every ray in each round, until all are done"
+           : scatters() ? fmt::format("{} dispatches for each light, a stretch of every ray each", media_->stretches())
            : any_medium() ? "columns alone: " + why
                           : why},
+          {"clamping", negative(),
+           negative() ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_share_)
+                      : "no density is below 0"},
           {"surfaces", lit, lit ? "lights through the media, background" : "no surface is lit, no background"},
           {"composition", true, "layers of the film"}};
 }
@@ -138,16 +159,47 @@ void PreparedLightGpu::follow(const View& view, const Buffer* distances, std::si
     p.set(fmt::format("phase_g[{}]", m), hg ? hg->g : 0.0);
   }
   const std::size_t lights = scatters() ? lit_.lights.size() : 0;
+  if (negative()) {
+    frame_.buffers.get("stretches", 16 * pixels).bind(at::stretches);
+    frame_.buffers.get("ways", 4 * pixels * lit_.media.size() * std::size_t(media_->series())).bind(at::ways);
+    Buffer& walked = frame_.buffers.get("walked", 4 * std::size_t(walked_words));
+    walked.clear();
+    walked.bind(at::walked);
+    frame_.download.add_status("walked", walked, walked.bytes());
+    p.set("bent", bent_share * std::max(options_.tolerance, least_tolerance));
+    set_view(*cut_, view);
+    set_view(*columns_, view);
+    columns_->set("loop_count", 3);
+    cut_->set("has_distances", distances != nullptr);
+  }
   for (std::size_t l = 0; l < std::max<std::size_t>(1, lights); ++l) {
     media_->bind(p, lights > 0 ? lit_.lights[l].to_light : Vec3(Vec3::Zero()));
+    if (negative()) {
+      for (Program* each : {cut_, columns_})
+        media_->bind(*each, lights > 0 ? lit_.lights[l].to_light : Vec3(Vec3::Zero()));
+      cut_->set("first_light", l == 0);
+    }
     p.set("has_light", lights > 0);
     p.set("first_light", l == 0);
     p.set("irradiance", lights > 0 ? lit_.lights[l].irradiance : Rgb(Rgb::Zero()));
-    for (int stretch = 0; stretch < media_->stretches(); ++stretch) {
-      p.set("begins", stretch == 0);
-      p.dispatch(view.width, view.height);
-    }
+    const int rounds = negative() ? rounds_ : media_->stretches();
+    for (int round = 0; round < rounds; ++round)
+      if (negative()) {
+        follow_round(view, round);
+      } else {
+        p.set("begins", round == 0);
+        p.dispatch(view.width, view.height);
+      }
   }
+}
+
+// Where a density may be below 0: the next stretch of each ray, light at its points, what it sends.
+void PreparedLightGpu::follow_round(const View& view, int round) const {
+  cut_->set("begins", round == 0);
+  cut_->dispatch(view.width, view.height);
+  if (scatters()) columns_->dispatch(int(lit_.media.size()) * media_->series() * view.width, view.height);
+  rays_->set("round", round);
+  rays_->dispatch(view.width, view.height);
 }
 
 void PreparedLightGpu::dim(const View& view, const scene::Light& light) const {
@@ -187,6 +239,26 @@ void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit, const Buff
 
 scene::Rendering PreparedLightGpu::render(const View& view, const Execution& execution) const {
   const Use use(context_);
+  for (;;) {
+    scene::Rendering result = render_once(view, execution);
+    const auto walked = frame_.download.values<unsigned>("walked");
+    if (walked.empty()) return result;
+    const int needed = int(walked[0]) + 1;
+    if (needed <= rounds_) {
+      float missed = 0;
+      std::memcpy(&missed, &walked[2], sizeof missed);
+      result.counters["rounds"] = needed;
+      result.counters["stretches_at_limit"] = walked[1];
+      result.counters["missed_depth"] = missed;
+      rounds_ = std::min(rounds_, needed + needed / 4);  // other views may take more
+      return result;
+    }
+    if (rounds_ >= most_rounds) throw Error(fmt::format("rays are not done after {} stretches", rounds_));
+    rounds_ = std::min(most_rounds, 2 * rounds_);  // and all rays anew
+  }
+}
+
+scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution& execution) const {
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   frame_.begin(execution);
@@ -219,6 +291,7 @@ scene::Rendering PreparedLightGpu::render(const View& view, const Execution& exe
   compose(pixels, lit, seen);
   frame_.finish(result);
   result.counters["rays"] = double(pixels);
+  result.counters["negative_share"] = negative_share_;
   result.film.metadata = {
       {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
   return result;

@@ -1,11 +1,12 @@
-// Media as polynomials in boxes, MEDIA of them, none below 0: densities, and columns towards a directional light. Coefficients are those of
-// Legendre polynomials P without a norm, [x][y][z], NX x NY x 4 FOURS_Z for every medium.
+// Media as polynomials in boxes, MEDIA of them: densities, and columns towards a directional light. Coefficients are those of Legendre
+// polynomials P without a norm, [x][y][z], NX x NY x 4 FOURS_Z for every medium. With NEGATIVE a density below 0 is taken as 0.
 layout(std140, binding = AT_DENSITIES) uniform Densities { vec4 densities[MEDIA * NX * NY * FOURS_Z]; };
 layout(std140, binding = AT_RULE) uniform Rule { vec4 rule[RULE]; };  // light_rule.h
 uniform dvec3 box_middle[MEDIA], per_half[MEDIA];                    // [m], [1/m]
 uniform vec3 sigma_t[MEDIA], scattering[MEDIA];                      // [1/m]
 uniform dvec3 to_light;
 const double nowhere = 1e37LF;
+#define SERIES_FOURS ((SERIES + 3) / 4)
 
 // P_0 to P_{3 + 4 FOURS_Z} and so on at a place of [-1, 1]^3, and the density there.
 float density_at(int medium, vec3 at) {
@@ -39,6 +40,22 @@ float density_at(int medium, vec3 at) {
   }
   return sum;
 }
+
+const float rounding = 2e-7;  // of sums in single precision, of the size of their terms
+
+// What rounding leaves of densities: they are sums of terms that cancel.
+float density_noise(int medium) {
+  float squares = 0;
+  for (int i = 0; i < NX * NY * FOURS_Z; ++i) {
+    vec4 c = densities[medium * NX * NY * FOURS_Z + i];
+    squares += dot(c, c);
+  }
+  return rounding * sqrt(squares);
+}
+
+#if NEGATIVE
+#include "legendre_fluids/sign_changes.glsl"
+#endif
 
 // A ray in a medium's own coordinates.
 struct Local {
@@ -90,9 +107,15 @@ float column_from(int medium, vec3 at, vec3 rate, Way way) {
   float length_ = 0, sum = 0;
   for (int a = 0; a < 3; ++a)
     if (way.out_axis == a) length_ = max(((rate[a] > 0 ? 1 : -1) - at[a]) / rate[a], 0);
+#if NEGATIVE
+  vec4 c[SERIES_FOURS];
+  series_of(medium, at + 0.5 * length_ * rate, 0.5 * length_ * rate, c);
+  return 0.5 * length_ * positive_part(c);
+#else
   for (int g = 0; g < WAY_POINTS; ++g) {
     vec4 point = rule[RULE_WAY + g];  // on [0, 1]; weight
     sum += point.y * density_at(medium, at + point.x * length_ * rate);
   }
   return max(sum * length_, 0);
+#endif
 }

@@ -88,11 +88,6 @@ std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{
 
 std::vector<std::string> reasons_against(const LitMedia& media) {
   std::vector<std::string> reasons;
-  for (const LitMedium& m : media.media)
-    if (m.field->negative())
-      reasons.push_back(
-          fmt::format("medium '{}' is below 0 in places: shaders know densities that are polynomials, not cut off at 0",
-                      m.medium->name));
   const TensorShape shape = shape_of(media);
   if (const std::size_t count = media.media.size() * std::size_t(shape[0] * shape[1] * 4 * fours(shape[2]));
       count > std::size_t(most_densities))
@@ -107,10 +102,15 @@ LightMediaOnDevice::LightMediaOnDevice(Context& context, const LitMedia& media,
       densities_(context, "coefficients of densities", coefficients_of(media)),
       rule_(context, "points along rays", Rule(media, options, definitions_).values) {
   const TensorShape shape = shape_of(media);
+  definitions_["NEGATIVE"] = std::to_string(int(negative()));
   definitions_["MEDIA"] = std::to_string(media.media.size());
   definitions_["NX"] = std::to_string(shape[0]);
   definitions_["NY"] = std::to_string(shape[1]);
   definitions_["FOURS_Z"] = std::to_string(fours(shape[2]));
+}
+
+bool LightMediaOnDevice::negative() const {
+  return std::any_of(media_.media.begin(), media_.media.end(), [](const LitMedium& m) { return m.field->negative(); });
 }
 
 // One medium has two ends and three planes where light changes its face; of several each has twelve, and all count in each.

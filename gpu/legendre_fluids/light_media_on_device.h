@@ -24,11 +24,14 @@ class LightMediaOnDevice {
   // Of a program that includes light_media.glsl.
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&, const Vec3& to_light) const;
+  // Is a density below 0 in places: rays take it as 0 there, by programs with NEGATIVE.
+  bool negative() const;
   // The density of a medium of n^3 coefficients becomes a field of a fluid's state, made positive where it is not; nothing leaves the device.
   // False, and nothing is done, where the medium has another shape or box.
   bool take(std::size_t medium, const Buffer& state, std::size_t field, int n, const Box&);
-  // Dispatches after which every ray has left all boxes.
+  // Dispatches after which every ray has left all boxes, where no density is below 0.
   int stretches() const;
+  int series() const { return media_.coefficients; }  // coefficients of a density's integral along a ray
 
  private:
   Context& context_;

@@ -1,57 +1,53 @@
-// Light that a camera ray collects by one scattering under one light, a ray per invocation: methods/legendre_fluids/light_rays.cpp for
-// densities that are nowhere below 0. A dispatch takes each ray on by one stretch, between two cuts, in which density and depths are
-// polynomials; what it leaves for the next lies in buffers by pixel.
+// Light that a camera ray collects by one scattering under one light, a ray per invocation: methods/legendre_fluids/light_rays.cpp. A
+// dispatch takes each ray on by one stretch, between two cuts, in which density and depths are polynomials; what it leaves for the next
+// lies in buffers by pixel. With NEGATIVE, light_cut.comp says where the stretch ends and light_columns.comp what light reaches it; where
+// its kinks are no polynomial, the next round tries half of it.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "common/loops_cut.glsl"
 #include "common/phase.glsl"
 #include "legendre_fluids/light_media.glsl"
+#include "legendre_fluids/light_stretch.glsl"
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_REACHED) buffer Reached { double reached[]; };                // how far a ray is done [m]
 layout(std430, binding = AT_COLUMNS) buffer Columns { float columns[]; };                 // of each medium up to there [m]
 layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
+#if NEGATIVE
+layout(std430, binding = AT_STRETCHES) buffer Stretches { dvec2 stretches[]; };  // of light_cut.comp
+layout(std430, binding = AT_WAYS) readonly buffer Ways { float ways[]; };        // of light_columns.comp
+layout(std430, binding = AT_WALKED) buffer Walked {
+  uint rounds;            // in which a ray still had a stretch
+  uint at_limit;          // stretches that were not halved any more, though light has kinks in them
+  uint most_missed_bits;  // greatest depth that the last orders of one of those had: a float
+};
+uniform int round;
+uniform float bent;                   // depth that may be missed where it has kinks
+const float least_stretch = 1. / 4096;  // of half a box
+float missed, missed_share;           // depth towards the light, of the medium where it is the most; over what may be
+#endif
 uniform int has_distances, begins, has_light, first_light;
 uniform int phase_kind[MEDIA];
 uniform float phase_g[MEDIA];
 uniform vec3 irradiance;
 uniform float tolerance, widest;  // widest: range of the depth over a panel
-#define SERIES_FOURS ((SERIES + 3) / 4)
 const int most_halvings = 22;
-const double least_share = 1e-14LF;
 
 // Series over the stretch: of each medium the depth towards eye and light [m], the density.
 vec4 depth_series[MEDIA * SERIES_FOURS], density_series[MEDIA * SERIES_FOURS];
-vec3 source_of[MEDIA];
+vec3 source_of[MEDIA], source_noise;
 
-// The next cut after `last`; `nowhere` where there is none.
-double next_cut(dvec3 origin, dvec3 direction, double end, double last) {
-  double next = nowhere, after = last + least_share * last;
-  for (int m = 0; m < MEDIA; ++m) {
-    Local ray = local_ray(m, origin, direction);
-    dvec2 part = chord(ray, end);
-    bool meets = part.x < part.y;
-    if (meets && part.x > after) next = min(next, part.x);
-    if (meets && part.y > after) next = min(next, part.y);
-    dvec3 rate = to_light * per_half[m];
-    for (int a = 0; a < 3; ++a) {
-      int b = (a + 1) % 3;
-      double turn = ray.slope[a] * rate[b] - ray.slope[b] * rate[a];
-      if (turn == 0) continue;
-      double side_a = rate[a] > 0 ? 1 : -1, side_b = rate[b] > 0 ? 1 : -1;
-      for (int edge = MEDIA > 1 ? 0 : 3; edge < 4; ++edge) {
-        double at_a = (edge & 1) != 0 ? side_a : -side_a, at_b = (edge & 2) != 0 ? side_b : -side_b;
-        double t = ((at_a - ray.origin[a]) * rate[b] - (at_b - ray.origin[b]) * rate[a]) / turn;
-        if (t > after && t < (MEDIA > 1 ? end : part.y) && (MEDIA > 1 || t > part.x)) next = min(next, t);
-      }
-    }
-  }
-  return next;
+#if NEGATIVE
+// What rounding leaves of a column towards the light [m].
+float noise_of(int m, vec3 rate) {
+  float longest = 1e37;
+  for (int a = 0; a < 3; ++a)
+    if (rate[a] != 0) longest = min(longest, 2 / abs(rate[a]));
+  return density_noise(m) * longest;
 }
-
-bool inside(int medium, dvec3 at) { return all(lessThanEqual(abs((at - box_middle[medium]) * per_half[medium]), dvec3(1))); }
+#endif
 
 // Fills the series of a medium over a stretch; `before` is its column up to there. Gives that behind it.
-float expand(int m, dvec3 middle, dvec3 direction, float half_length, bool within, float before) {
+float expand(int m, dvec3 middle, dvec3 direction, float half_length, bool within, float before, int at_way) {
   vec3 rate = vec3(to_light * per_half[m]), slope = vec3(direction * per_half[m]) * half_length;
   dvec3 local = (middle - box_middle[m]) * per_half[m];
   vec3 at = vec3(local);
@@ -61,13 +57,25 @@ float expand(int m, dvec3 middle, dvec3 direction, float half_length, bool withi
   for (int b = 0; b < SERIES_FOURS; ++b) d[b] = c[b] = vec4(0);
   for (int q = 0; q < SERIES; ++q) {
     vec3 place = at + rule[RULE_NODES + q / 4][q % 4] * slope;
-    float density = within ? max(density_at(m, place), 0) : 0, column = column_from(m, place, rate, way);
+    float density = within ? max(density_at(m, place), 0) : 0;
+#if NEGATIVE
+    float column = has_light != 0 ? ways[at_way + q] : 0;
+#else
+    float column = column_from(m, place, rate, way);
+#endif
     for (int b = 0; b < SERIES_FOURS; ++b) {
       vec4 analysis = rule[RULE_ANALYSIS + q * SERIES_FOURS + b];
       d[b] += analysis * density;
       c[b] += analysis * column;
     }
   }
+#if NEGATIVE
+  float last_ones = 0, extinction = max(sigma_t[m].x, max(sigma_t[m].y, sigma_t[m].z));
+  for (int k = SERIES > 3 ? SERIES - 3 : 0; k < SERIES; ++k) last_ones += abs(c[k / 4][k % 4]) / sqrt(float(k) + 0.5);
+  float may_be = max(bent, extinction * noise_of(m, rate));
+  missed = max(missed, extinction * last_ones);
+  missed_share = max(missed_share, extinction * last_ones / may_be);
+#endif
   c[0].x += before;
   // The integral from the stretch's begin: of P_k it is (P_{k+1} - P_{k-1}) / (2k + 1).
   for (int k = 0; k < SERIES; ++k) {
@@ -130,7 +138,7 @@ vec3 integral(vec3 so_far) {
     }
     vec3 range = greatest - least;
     bool black = all(greaterThan(least - range, vec3(100))), fine = all(lessThanEqual(range, vec3(widest)));
-    bvec3 close = lessThanEqual(abs(whole - halves), tolerance * (so_far + sum + halves));
+    bvec3 close = lessThanEqual(abs(whole - halves), tolerance * (so_far + sum + halves) + half_width * source_noise);
     if (!(black || (fine && all(close))) && level < most_halvings) {
       ++level, index *= 2;
       continue;
@@ -143,36 +151,54 @@ vec3 integral(vec3 so_far) {
   return sum;
 }
 
+#if !NEGATIVE
+void begin(int place) {
+  for (int m = 0; m < MEDIA; ++m) columns[place * MEDIA + m] = 0;
+  for (int c = 0; c < 3 && first_light != 0; ++c) airlight[3 * place + c] = 0;
+}
+#endif
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= view_width || pixel.y >= view_height) return;
   int place = pixel.y * view_width + pixel.x;
-  double last = begins != 0 ? 0 : reached[place];
-  if (begins != 0) {
-    for (int m = 0; m < MEDIA; ++m) columns[place * MEDIA + m] = 0;
-    for (int c = 0; c < 3 && first_light != 0; ++c) airlight[3 * place + c] = 0;
-  }
-  if (last >= nowhere) return;
   dvec3 origin, direction;
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
-  double end = has_distances != 0 ? double(distances[place]) : nowhere, next = 0;
-  bool any = false;
-  while (!any) {
-    next = next_cut(origin, direction, end, last);
-    if (next >= nowhere) break;
-    dvec3 middle = origin + 0.5LF * (last + next) * direction;
-    for (int m = 0; m < MEDIA; ++m) any = any || inside(m, middle);
-    if (!any) last = next;
-  }
+#if NEGATIVE
+  double last = reached[place], next = stretches[place].x;
+  bool any = next < nowhere;
+#else
+  double last = begins != 0 ? 0 : reached[place], next = nowhere;
+  if (begins != 0) begin(place);
+  if (last >= nowhere) return;
+  double end = has_distances != 0 ? double(distances[place]) : nowhere;
+  bool any = next_stretch(origin, direction, end, last, next);
+#endif
   if (any) {
     dvec3 middle = origin + 0.5LF * (last + next) * direction;
-    float half_length = float(0.5LF * (next - last));
+    float half_length = float(0.5LF * (next - last)), after[MEDIA];
     double cosine = dot(to_light, direction);
+#if NEGATIVE
+    missed = missed_share = 0;
+    if (rounds <= uint(round)) atomicMax(rounds, uint(round) + 1u);
+#endif
+    source_noise = vec3(0);
     for (int m = 0; m < MEDIA; ++m) {
-      int at = place * MEDIA + m;
-      columns[at] = expand(m, middle, direction, half_length, inside(m, middle), columns[at]);
+      after[m] = expand(m, middle, direction, half_length, inside(m, middle), columns[place * MEDIA + m], (place * MEDIA + m) * SERIES);
       source_of[m] = scattering[m] * phase_value(phase_kind[m], phase_g[m], float(1 - cosine), float(1 + cosine));
+      source_noise += source_of[m] * density_noise(m);
     }
+#if NEGATIVE
+    bool again = missed_share > 1;
+    stretches[place].y = again ? 0.5LF * (next - last) : 2 * stretches[place].y;
+    for (int m = 0; m < MEDIA; ++m) again = again && float(next - last) * length(vec3(direction * per_half[m])) > least_stretch;
+    if (again) return;  // by halves, in the next round
+    if (missed_share > 1) {
+      atomicAdd(at_limit, 1u);
+      atomicMax(most_missed_bits, floatBitsToUint(missed));
+    }
+#endif
+    for (int m = 0; m < MEDIA; ++m) columns[place * MEDIA + m] = after[m];
     vec3 before = vec3(airlight[3 * place], airlight[3 * place + 1], airlight[3 * place + 2]);
     if (has_light != 0) {
       vec3 sum = before + irradiance * half_length * integral(before / max(irradiance * half_length, vec3(1e-30)));

@@ -15,8 +15,10 @@ uniform int directions[SYSTEMS];  // of the light that a system is about
 // Scalars of a system.
 #define SIZE_OF_RIGHT SCALARS_OF(0)
 #define STEPS_DONE SCALARS_OF(1)
-#define RESIDUAL SCALARS_OF(2)  // over the right side
+#define RESIDUAL SCALARS_OF(2)  // over the right side; `lost` where something is no number
 #define DONE SCALARS_OF(3)
+const double lost = 1e300LF;
+bool is_number(double size) { return size >= 0 && size < lost; }  // of what is no less than 0
 shared double partial[LOCAL_SIZE_X];
 
 void together() {

@@ -63,10 +63,10 @@ void step_on() {
   for (int e = lane; e < UNKNOWNS && left > 0; e += LOCAL_SIZE_X) work[next + e] /= left;
   if (lane == 0) {
     rotate(k, column, left);
-    double residual = left > 0 ? abs(work[rest + k + 1]) / SIZE_OF_RIGHT : 0;
+    double residual = !is_number(left) ? lost : left > 0 ? abs(work[rest + k + 1]) / SIZE_OF_RIGHT : 0;
     RESIDUAL = residual;
     STEPS_DONE = k + 1;
-    DONE = residual <= tolerance || k + 1 >= ROOM ? 1 : 0;
+    DONE = residual <= tolerance || residual >= lost || k + 1 >= ROOM ? 1 : 0;
   }
   together();
 }

@@ -116,11 +116,11 @@ void PreparedPaperGpu::draw(const View& view) const {
 }
 
 std::map<std::string, double> PreparedPaperGpu::counters() const {
-  const auto counts = frame_.download.values<unsigned>("counts");
-  if (counts.empty()) return {};
   std::map<std::string, double> all{{"unknowns", double(scene::tensor_size(systems_->shape()))},
-                                    {"iterations", double(systems_->iterations())},
-                                    {"negative_share", counts[0] > 0 ? double(counts[1]) / counts[0] : 0}};
+                                    {"iterations", double(systems_->iterations())}};
+  const auto counts = frame_.download.values<unsigned>("counts");
+  if (counts.empty()) return all;
+  all["negative_share"] = counts[0] > 0 ? double(counts[1]) / counts[0] : 0;
   if (flows_) return all;
   all["negative_direct_share"] = negative_direct_;
   all["negative_density_share"] = legendre_fluids::negative_share(field_->shape(), field_->coefficients());
@@ -151,7 +151,7 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
     frame_.finish(result);
     // Systems that were not solved to the end are solved anew, with more steps.
     if (systems_ && !systems_->keep_up(frame_)) continue;
-    if (frame_.download.wants_any()) stale_ = false;
+    stale_ = false;
     result.counters["rays"] = double(pixels);
     if (systems_) result.counters.merge(counters());
     result.film.metadata = {

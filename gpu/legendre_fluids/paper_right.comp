@@ -48,7 +48,7 @@ void main() {
   if (lane > 0) return;
   SIZE_OF_RIGHT = size;
   STEPS_DONE = 0;
-  RESIDUAL = size > 0 ? 1 : 0;
-  DONE = size > 0 ? 0 : 1;
+  RESIDUAL = !is_number(size) ? lost : size > 0 ? 1 : 0;
+  DONE = is_number(size) && size > 0 ? 0 : 1;
   if (UPWIND != 0) work[base + REST_AT] = size;
 }

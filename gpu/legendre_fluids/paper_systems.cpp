@@ -289,7 +289,7 @@ void PaperSystems::solve(Kind& kind, Frame& frame) {
   start(kind);
   run(kind, kind.rounds);
   keep(kind);
-  frame.download.add_values(kind.name, *kind.status, kind.status->bytes());
+  frame.download.add_status(kind.name, *kind.status, kind.status->bytes());
 }
 
 void PaperSystems::solve_scattered(Frame& frame, const Vec3& direction) {

@@ -34,8 +34,7 @@ class PaperSystems {
   // As many steps as the last of each kind took, and what frame.download says of them goes to keep_up().
   void solve_direct(Frame& frame) { solve(direct_, frame); }
   void solve_scattered(Frame&, const Vec3& direction);
-  // True: all that was solved in this frame has converged, or nobody knows. False: later ones take more steps. Throws Error where
-  // none would do.
+  // True: all that was solved in this frame has converged. False: later ones take more steps. Throws Error where none would do.
   bool keep_up(const Frame&);
   int iterations() const { return direct_.iterations + scattered_.iterations; }  // of the frame that was looked at last
 

@@ -7,6 +7,9 @@
 namespace airlight::legendre_fluids {
 namespace {
 
+constexpr int least_beside_kinks =
+    12;  // coefficients: with fewer, stretches are cut into many where what is positive is no polynomial
+
 // The density along a ray [m]: by as many Gauss points as are exact, or what is positive of it.
 double column(const scene::LegendreBox& field, const Ray& ray, Interval t) {
   if (field.negative()) return scene::density_integral(field, ray, t);
@@ -95,6 +98,8 @@ LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
     grey = grey && (medium.sigma_t == medium.sigma_t[0]).all();
     media.push_back({&medium, std::move(field), {}});
   }
+  const auto negative = [](const LitMedium& m) { return m.field->negative(); };
+  if (std::any_of(media.begin(), media.end(), negative)) coefficients = std::max(coefficients, least_beside_kinks);
   for (LitMedium& medium : media)
     for (const scene::DirectionalLight& light : lights)
       medium.columns.emplace_back(*medium.field, light.to_light, rounding / medium.medium->sigma_t.maxCoeff());

@@ -16,7 +16,7 @@ struct LitMedia {
   LitMedia(const scene::Scene&, double rounding);
   std::vector<scene::DirectionalLight> lights;  // those that shine
   std::vector<LitMedium> media;                 // those that extinguish
-  int coefficients = 2;                         // of any density's integral along a ray, at most
+  int coefficients = 2;                         // enough for any density's integral along a ray
   bool grey = true;                             // are all extinctions the same in the three channels
 
   // From a place towards a light, and along a ray [-], per channel.

@@ -18,14 +18,14 @@ namespace {
 
 constexpr int n = 6;
 
-std::unique_ptr<scene::Flow> rising_blob(double background) {
+std::unique_ptr<scene::Flow> rising_blob(double background, double density = 1) {
   scene::FlowProblem problem;
   problem.box = unit_box;
   problem.velocity = scene::Swirl{0.5};
   problem.gravity = Vec3(0, -9.81, 0);
   problem.expansion = 1.0 / 300;
   problem.density = background;
-  problem.blobs.push_back({Point3(0.2, -0.3, 0.1), 0.6, 1, 30});
+  problem.blobs.push_back({Point3(0.2, -0.3, 0.1), 0.6, density, 30});
   const gpu::LegendreFluidsGpu solver;
   return solver.start(std::make_shared<const scene::FlowProblem>(problem),
                       scene::Settings(solver.settings(), {{"n", std::to_string(n)}}), {});
@@ -49,8 +49,9 @@ std::shared_ptr<scene::Scene> scene_with(scene::LegendrePointer field) {
   return lit_scene(smoke(std::move(field), 1.5), oblique_light, oblique_view, 24, 20);
 }
 
-// Steps and pictures by turns: warm ones send nothing, and bring down the status of a step alone. The last picture, with all layers.
-scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given& given) {
+// Steps and pictures by turns: warm ones send nothing, and bring down the status of a step alone, and of `systems`. The last picture, with
+// all layers.
+scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given& given, int systems = 0) {
   Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
   constant[0] = 1;
   const auto scene =
@@ -71,7 +72,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
   const gpu::Traffic before = traffic;
   for (int i = 0; i < 4; ++i) frame(none);
   const gpu::Traffic warm = traffic - before;
-  CHECK(warm.bytes_down == 4 * 8);  // the status of a step
+  CHECK(warm.bytes_down == 4 * 8 * (1 + systems));
   CHECK(warm.bytes_up == 0);
   CHECK(warm.allocations == 0);
   CHECK(warm.look_ups == 0);
@@ -99,10 +100,39 @@ TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's s
   for (const char* closure : {"upwind", "least_squares"}) {
     CAPTURE(closure);
     const test::Given given{{"variant", "paper"}, {"closure", closure}};
-    const scene::Film drawn = drawn_while_nothing_comes_down(*flow, given);
+    const scene::Film drawn = drawn_while_nothing_comes_down(*flow, given, 2);
     const scene::Film expected =
         test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, 1)), given).film;
     CHECK(gpu::test::quantile(expected, drawn, "airlight", 1) < 2e-5);
+  }
+}
+
+// Whether the systems were solved to the end is looked at where no layer is asked for, too.
+TEST_CASE("legendre fluids on the device: systems of frames that nobody sees", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0.01), dark = rising_blob(0, 1e300);
+  Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
+  constant[0] = 10;
+  const auto scene =
+      scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
+  scene->media[0].sigma_t = Rgb::Constant(20);
+  const gpu::LegendreLightGpu method;
+  for (const char* closure : {"upwind", "least_squares"}) {
+    CAPTURE(closure);
+    const test::Given given{{"variant", "paper"}, {"closure", closure}, {"n", "8"}};
+    const auto picture = method.prepare(scene, {method.settings(), given}, {1, {}});
+    const scene::View view = view_of(*scene);
+    scene::Execution none{1, {}};
+    none.layers.emplace();
+    const double before = picture->render(view, none).counters.at("iterations");
+    REQUIRE(gpu::draw_flow(*picture, *flow));
+    const double unseen = picture->render(view, none).counters.at("iterations");
+    CHECK(unseen > 1.25 * before);  // more than the first try takes
+    REQUIRE(gpu::draw_flow(*picture, *flow));
+    CHECK(picture->render(view, {1, {}}).counters.at("iterations") == unseen);
+    // What is no number in single precision has no solution.
+    REQUIRE(gpu::draw_flow(*picture, *dark));
+    CHECK_THROWS_WITH(picture->render(view, none), Catch::Contains("left a residual of"));
   }
 }
 
@@ -162,4 +192,31 @@ TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time",
   scene::Scene empty = *scene;
   empty.media.clear();
   CHECK_THROWS_AS(experiments::FlowPictures(empty, on_device, settings, 0, 1), Error);
+}
+
+// What rings below 0 around a blob is taken as 0, as the processor does, in a few stretches of each ray.
+TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto flow = rising_blob(0);
+  for (int frame = 0; frame < 3; ++frame) {
+    const scene::LegendrePointer field = box_of(*flow, 1);
+    REQUIRE(field->negative());
+    const auto scene = scene_with(field);
+    const scene::Film a = test::render(legendre_fluids::LegendreLight(), scene).film;
+    const gpu::LegendreLightGpu method;
+    const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+    const scene::Rendering b = picture->render(view_of(*scene), {1, {}});
+    CAPTURE(frame, b.counters.at("rounds"));
+    for (const auto& [layer, values] : a.layers) CHECK(gpu::test::quantile(a, b.film, layer, 1) < 8e-6);
+    CHECK(b.counters.at("rounds") <= 24);
+    CHECK(b.counters.at("stretches_at_limit") == 0);
+    CHECK(b.counters.at("negative_share") > 1e-3);
+    scene::Execution none{1, {}};  // whether all rays are done is looked at even where nobody sees them
+    none.layers.emplace();
+    const auto unseen = method.prepare(scene, {method.settings(), {}}, {1, {}});
+    const scene::Rendering nothing = unseen->render(view_of(*scene), none);
+    CHECK(nothing.counters.at("rounds") == b.counters.at("rounds"));
+    CHECK(nothing.counters.at("bytes_down") == 12);
+    flow->step(0.05);
+  }
 }
