@@ -61,7 +61,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
                                  const Execution& execution)
     : scene_(std::move(scene)), options_(options), settings_(std::move(settings)) {
   for (const scene::Medium& medium : scene_->media)
-    if (extinguishes(medium)) smoke_.emplace(medium, options_);
+    if (extinguishes(medium) && !smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   scene::Stopwatch watch;
   if (!paper()) {
     incoming_.emplace(scene_->lights, options_.grid.levels);

@@ -183,8 +183,9 @@ TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous"
 }
 
 TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]") {
-  const std::vector<std::string> know = {"ray_marcher", "ray_marcher_gpu", "path_tracer",     "deterministic",
-                                         "fogshop",     "wavelet_fog",     "legendre_fluids", "legendre_fluids_gpu"};
+  const std::vector<std::string> know = {
+      "ray_marcher", "ray_marcher_gpu", "path_tracer",         "deterministic",           "fogshop",
+      "wavelet_fog", "legendre_fluids", "legendre_fluids_gpu", "compensated_ray_marching"};
   for (const std::string& name : experiments::renderer_names()) {
     CAPTURE(name);
     const scene::Renderer& renderer = experiments::find_renderer(name, "test");
@@ -197,8 +198,8 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
 }
 
 TEST_CASE("a view through another camera than the scene's is refused where there is a backdrop", "[backdrop]") {
-  const std::string name =
-      GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog", "legendre_fluids");
+  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog",
+                                    "legendre_fluids", "compensated_ray_marching");
   const auto scene = before_picture(text_for(name));
   const scene::Renderer& renderer = experiments::find_renderer(name, "test");
   scene::View view = view_of(*scene);

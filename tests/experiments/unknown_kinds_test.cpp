@@ -61,7 +61,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 4);
+  CHECK(others == 5);
 }
 
 TEST_CASE(
@@ -79,6 +79,7 @@ TEST_CASE(
       {"path_tracer", ""},
       {"legendre_fluids", ""},
       {"legendre_fluids_gpu", ""},
+      {"compensated_ray_marching", ""},
       {"deterministic", ""},
       {"ray_marcher", ""},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
