@@ -43,15 +43,15 @@ scene::Film render(const std::string& name, const std::shared_ptr<const scene::S
       .film;
 }
 
-const std::string gaussians = perspective + R"([[light]]
-type = "point"
-position = [1, 3, 2]
-intensity = [30, 25, 20]
-[[medium]]
+const std::string puffs = R"([[medium]]
 type = "gaussians"
 sigma_t = [0.3, 0.4, 0.6]
 gaussians = [{ center = [0, 0, -1], width = 2, amplitude = 1 }, { center = [1, 1, -4], width = 1.5, amplitude = 0.8 }]
 )";
+const std::string gaussians =
+    perspective + "[[light]]\ntype = 'point'\nposition = [1, 3, 2]\nintensity = [30, 25, 20]\n" + puffs;
+const std::string sunlit =
+    perspective + "[[light]]\ntype = 'directional'\nto_light = [1, 3, 2]\nirradiance = 3\n" + puffs;
 const std::string map = perspective + R"([[light]]
 type = "directional"
 to_light = [1, 3, 2]
@@ -83,14 +83,17 @@ coefficients = [2, 0.3, 0.2, 0.4, -0.1, 0.1]
 
 // With the media and lights that a renderer knows.
 const std::string& text_for(const std::string& renderer) {
-  return renderer == "wavelet_fog" ? map : renderer.rfind("legendre_fluids", 0) == 0 ? series : gaussians;
+  return renderer == "wavelet_fog"                          ? map
+         : renderer.starts_with("legendre_fluids")          ? series
+         : renderer.starts_with("compensated_ray_marching") ? sunlit
+                                                            : gaussians;
 }
 
 }  // namespace
 
 TEST_CASE("renderers see a picture with depth through the medium before it", "[backdrop]") {
-  const std::string name =
-      GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog", "legendre_fluids");
+  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog",
+                                    "legendre_fluids", "compensated_ray_marching");
   CAPTURE(name);
   const auto scene = before_picture(text_for(name));
   const std::map<std::string, std::string> settings =
@@ -105,8 +108,10 @@ TEST_CASE("renderers see a picture with depth through the medium before it", "[b
       const Ray ray = camera_ray(scene->camera, x + 0.5, y + 0.5, width, height);
       const double t = i + 1 < width * height ? (1 + 0.5 * i) / ray.direction.dot(scene->camera.forward) : infinity;
       const Rgb clear = transmittance(scene->media, ray, {0, t});
-      // The marcher's steps are midpoints of a density that varies; Fogshop leaves out Gaussians where they are thin.
-      const double tolerance = name == "ray_marcher" ? 0.02 : name == "fogshop" ? 1e-4 : 1e-5;
+      // Steps and slices are midpoints of a density that varies; Fogshop leaves out Gaussians where they are thin.
+      const double tolerance = name == "ray_marcher"                                     ? 0.02
+                               : name == "fogshop" || name == "compensated_ray_marching" ? 1e-4
+                                                                                         : 1e-5;
       for (int c = 0; c < 3; ++c) {
         CHECK(seen.get("transmittance", x, y)[c] == Approx(clear[c]).epsilon(tolerance));
         CHECK(seen.get("surface", x, y)[c] ==
