@@ -1,6 +1,7 @@
 #include "experiments/renderers.h"
 
 #include "experiments/find_component.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
@@ -33,6 +34,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
     list.push_back(std::make_unique<gpu::LegendreLightGpu>());
     list.push_back(std::make_unique<compensated_ray_marching::CompensatedRayMarching>());
+    list.push_back(std::make_unique<gpu::CompensatedRayMarchingGpu>());
     return list;
   }();
   return renderers;

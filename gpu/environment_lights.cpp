@@ -19,7 +19,7 @@ EnvironmentLights::EnvironmentLights(Context& context, const scene::Scene& scene
   for (const scene::Light& light : scene.lights) {
     const auto* e = std::get_if<scene::EnvironmentLight>(&light);
     if (!e) continue;
-    Light l{constant, 1, 0, 0, e->scale, e->to_map, nullptr};
+    Light l{constant, 1, 0, 0, e->scale, e->to_map, nullptr, e->map};
     if (e->map) {
       l.kind = map;
       l.width = e->map->width;
@@ -32,6 +32,25 @@ EnvironmentLights::EnvironmentLights(Context& context, const scene::Scene& scene
     }
     lights_.push_back(std::move(l));
   }
+}
+
+bool EnvironmentLights::become(const scene::Scene& scene) {
+  std::vector<const scene::EnvironmentLight*> others;
+  for (const scene::Light& light : scene.lights)
+    if (const auto* e = std::get_if<scene::EnvironmentLight>(&light)) others.push_back(e);
+  const auto same = [](const Light& l, const scene::EnvironmentLight* e) {
+    const bool map_too = l.from == e->map || (l.from && e->map && l.width == e->map->width &&
+                                              l.height == e->map->height && l.from->rgb == e->map->rgb);
+    return map_too && (l.kind == harmonics) == !e->sh.empty() &&
+           (l.kind != harmonics || std::size_t(l.order * l.order) == e->sh.size());
+  };
+  if (!std::equal(lights_.begin(), lights_.end(), others.begin(), others.end(), same)) return false;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    lights_[i].scale = others[i]->scale;
+    lights_[i].to_map = others[i]->to_map;
+    if (lights_[i].kind == harmonics) lights_[i].values->upload(coefficients(others[i]->sh));
+  }
+  return true;
 }
 
 std::map<std::string, std::string> EnvironmentLights::definitions(int light) const {

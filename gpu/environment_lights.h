@@ -16,6 +16,9 @@ class EnvironmentLights {
   // Uploads maps and coefficients. Throws Unavailable for a map above the device's limit of a storage block.
   EnvironmentLights(Context&, const scene::Scene&);
 
+  // Other turns, brightness and coefficients; false, and nothing is done: other maps, or lights of another kind.
+  bool become(const scene::Scene&);
+
   int count() const { return int(lights_.size()); }
   // KIND and SH_ORDER, which a program that includes environment.glsl needs for one of them.
   std::map<std::string, std::string> definitions(int light) const;
@@ -28,6 +31,7 @@ class EnvironmentLights {
     Rgb scale;
     Mat3 to_map;
     std::unique_ptr<Buffer> values;
+    std::shared_ptr<const scene::EnvironmentMap> from;
   };
   std::vector<Light> lights_;
 };

@@ -40,11 +40,10 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
     : scene_(scene), medium_(medium), options_(options), phase_(phase_moments(medium.phase, options.grid.levels)) {
   scene::Stopwatch watch;
   const Box box = smoke_box(medium);
-  Eigen::ArrayXd densities;
   for (int cells = options.grid.cells;;) {
     grid_ = node_grid(box, cells);
-    densities = mean_densities(medium, grid_, execution.threads);
-    deepest_ = medium.sigma_t.maxCoeff() * densities.maxCoeff() * grid_.cells.cell[0];
+    densities_ = mean_densities(medium, grid_, execution.threads);
+    deepest_ = medium.sigma_t.maxCoeff() * densities_.maxCoeff() * grid_.cells.cell[0];
     if (deepest_ <= options.grid.deepest_cell || options.grid.multiple == Options::Grid::Multiple::none) break;
     const int needed = int(std::ceil(cells * deepest_ / options.grid.deepest_cell));
     if (cells >= most_cells)
@@ -55,7 +54,7 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
           "cells deeper than deepest_cell");
     cells = std::min(std::max(cells + 1, needed), most_cells);
   }
-  nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities, least_share * densities.maxCoeff());
+  nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities_, least_share * densities_.maxCoeff());
   times_.push_back({"nodes", watch.lap()});
   add_depths(light, 0, execution);
   times_.push_back({"depths", watch.lap()});
@@ -89,12 +88,12 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
     else if (options.grid.multiple == Options::Grid::Multiple::p1)
       channels_.push_back({{c},
                            {},
-                           P1Grid(grid_.cells, sigma_t[c] * densities, albedo[c], mean_cosine(medium.phase),
+                           P1Grid(grid_.cells, sigma_t[c] * densities_, albedo[c], mean_cosine(medium.phase),
                                   {options.tolerance, options.iterations}),
                            {}});
     else
       channels_.push_back(
-          {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities, albedo[c], moments, ordinates), {}, {}});
+          {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates), {}, {}});
   }
 }
 
@@ -120,15 +119,20 @@ Rgb LitGrid::left(std::size_t node, std::size_t direction) const {
   return power_[direction] * (-medium_.sigma_t * column).exp();
 }
 
-void LitGrid::light(const IncomingLight& light, const scene::Execution& execution) {
+bool LitGrid::aim(const IncomingLight& light, const scene::Execution& execution) {
   scene::Stopwatch watch;
   times_.clear();
   power_ = light.power();
-  if (light.directions().size() != toward_.size() || !std::equal(toward_.begin() + long(light.fixed()), toward_.end(),
-                                                                 light.directions().begin() + long(light.fixed()))) {
-    add_depths(light, light.fixed(), execution);
-    times_.push_back({"depths of directional lights", watch.lap()});
-  }
+  if (light.directions().size() == toward_.size() && std::equal(toward_.begin() + long(light.fixed()), toward_.end(),
+                                                                light.directions().begin() + long(light.fixed())))
+    return false;
+  add_depths(light, light.fixed(), execution);
+  times_.push_back({"depths of directional lights", watch.lap()});
+  return true;
+}
+
+void LitGrid::light(const IncomingLight& light, const scene::Execution& execution) {
+  aim(light, execution);
   again_.clear();
   iterations_ = 0;
   error_ = 0;

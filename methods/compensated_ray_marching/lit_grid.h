@@ -17,7 +17,9 @@ class LitGrid {
   // surfaces block has no light. The scene outlives this. Throws NotSupported where cells are too deep however small.
   LitGrid(const scene::Scene&, const scene::Medium&, const Options&, const IncomingLight&, const scene::Execution&);
 
-  // A light, or another: single and multiple scattering at the nodes. Iterations begin with the light before.
+  // Where light comes from, now: depths towards directional lights that were not there before. Whether there were such.
+  bool aim(const IncomingLight&, const scene::Execution&);
+  // The same; single and multiple scattering at the nodes. Iterations begin with the light before.
   void light(const IncomingLight&, const scene::Execution&);
 
   // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node: of single scattering with as many bands of the phase
@@ -27,6 +29,10 @@ class LitGrid {
 
   const NodeGrid& grid() const { return grid_; }
   std::size_t nodes_with_smoke() const { return nodes_.size(); }
+  // For those who light it elsewhere: the nodes, mean densities of all cells, columns [m] of each direction at the nodes.
+  const std::vector<Eigen::Index>& nodes() const { return nodes_; }
+  const Eigen::ArrayXd& densities() const { return densities_; }
+  const std::vector<std::vector<float>>& columns() const { return columns_; }
   double deepest_cell() const { return deepest_; }
   const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something
   // Why multiple scattering is left out; empty where it is not.
@@ -49,6 +55,7 @@ class LitGrid {
   const scene::Medium& medium_;
   Options options_;
   NodeGrid grid_;
+  Eigen::ArrayXd densities_;
   double deepest_ = 0;
   std::vector<Eigen::Index> nodes_;
   std::vector<double> phase_;  // moments, for light's bands

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00250594:997.631]
 set logscale y
 set format y "%g"
-set yrange [0.00380742:6.079]
+set yrange [0.00380743:6.079]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_thickness.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \

@@ -1,0 +1,38 @@
+// Radiance to moments, and J_ss plus what they scatter: an iteration's result, what it missed, and the differences to the last.
+layout(local_size_x = LOCAL_SIZE_X) in;
+#include "compensated_ray_marching/smoke_state.glsl"
+#include "compensated_ray_marching/scatterer.glsl"
+layout(std430, binding = AT_LIGHT) readonly buffer Light { float light[]; };             // [direction][light of the solve][cell]
+layout(std430, binding = AT_WEIGHTED) readonly buffer Weighted { float weighted[]; };    // [direction][BANDS]
+layout(std430, binding = AT_SINGLE) readonly buffer Single { float single_source[]; };   // [light][band][cell]
+layout(std430, binding = AT_SOURCE) readonly buffer Source { float source[]; };
+layout(std430, binding = AT_RESULT) buffer Result { float result[]; };
+layout(std430, binding = AT_STEPS) writeonly buffer Steps { float steps[]; };            // [slot][light of the solve][band][cell]
+layout(std430, binding = AT_MEANS) buffer Means { float means[]; };  // of band 0: [at, missed, moved, misses by slot][light of the solve][cell]
+uniform int directions, cells;
+
+void main() {
+  int cell = int(gl_GlobalInvocationID.x), l = int(gl_GlobalInvocationID.y);
+  if (done != 0 || cell >= cells) return;
+  float sum[BANDS];
+  for (int b = 0; b < BANDS; ++b) sum[b] = 0;
+  for (int d = 0; d < directions; ++d) {
+    float here = light[(d * lights + l) * cells + cell];
+    for (int b = 0; b < BANDS; ++b) sum[b] += weighted[d * BANDS + b] * here;
+  }
+  int slot = (iteration - 2) % KEPT, first = (first_light + l) * BANDS;
+  for (int b = 0; b < BANDS; ++b) {
+    int at = (first + b) * cells + cell;
+    float now = single_source[at] + albedo[channel[l]] * moment[b] * sum[b];
+    if (iteration > 1) steps[((slot * lights + l) * BANDS + b) * cells + cell] = now - result[at];
+    result[at] = now;
+  }
+  int plane = lights * cells, mean = l * cells + cell;
+  float at = source[first * cells + cell], missed = result[first * cells + cell] - at;
+  if (iteration > 1) {
+    means[2 * plane + mean] = at - means[mean];
+    means[(3 + slot) * plane + mean] = missed - means[plane + mean];
+  }
+  means[mean] = at;
+  means[plane + mean] = missed;
+}

@@ -1,0 +1,13 @@
+// Of the source radiance of all cells: what is interpolated between them.
+layout(local_size_x = LOCAL_SIZE_X) in;
+layout(std430, binding = AT_RADIANCE) readonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = AT_LOGARITHMS) writeonly buffer Logarithms { vec4 logarithms[]; };
+layout(std430, binding = AT_GREATEST) readonly buffer Greatest { uint greatest; };
+uniform int cells;
+
+void main() {
+  int cell = int(gl_GlobalInvocationID.x);
+  if (cell >= cells) return;
+  float least = max(1e-6 * uintBitsToFloat(greatest), 1.2e-38);  // LitGrid::towards
+  logarithms[cell] = log(max(radiance[cell], vec4(least)));
+}

@@ -1,0 +1,66 @@
+// Some slices of every camera ray: density, source radiance between nodes, composition (Zhou et al. 2008, Eq. 14, 15).
+layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
+#include "common/camera.glsl"
+#include "common/opacity.glsl"
+#include "compensated_ray_marching/smoke_density.glsl"
+layout(std430, binding = AT_RANGES) readonly buffer Ranges { vec4 ranges[]; };  // start, length of a slice [m], slices, slope
+layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_COLUMN) buffer Column { float column[]; };  // so far [m]
+layout(std430, binding = AT_LOGARITHMS) readonly buffer Logarithms { vec4 logarithms[]; };  // of source radiance, by cell
+uniform int first_slice, weight;  // as SliceWeight
+uniform vec3 sigma_t, corner;
+uniform float cell_edge;
+uniform vec3 cells_along;  // each axis
+
+vec3 source_at(vec3 x) {
+  ivec3 size = ivec3(cells_along);
+  vec3 place = clamp((x - corner) / cell_edge - 0.5, vec3(0), vec3(size - 1));
+  ivec3 low = min(ivec3(place), max(size - 2, ivec3(0)));
+  vec3 share = place - vec3(low);
+  ivec3 on = ivec3(size.x > 1 ? 1 : 0, size.y > 1 ? size.x : 0, size.z > 1 ? size.x * size.y : 0);
+  int at = low.x + size.x * (low.y + size.y * low.z);
+  vec4 a = mix(logarithms[at], logarithms[at + on.x], share.x), b = mix(logarithms[at + on.y], logarithms[at + on.y + on.x], share.x);
+  at += on.z;
+  vec4 c = mix(logarithms[at], logarithms[at + on.x], share.x), d = mix(logarithms[at + on.y], logarithms[at + on.y + on.x], share.x);
+  return exp(mix(mix(a, b, share.y), mix(c, d, share.y), share.z).rgb);
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= width || at.y >= height) return;
+  int place = at.y * width + at.x;
+  vec4 range = ranges[place];
+  int count = int(range.z);
+  if (first_slice >= count) return;
+  vec3 origin, direction;
+  camera_ray(vec2(at) + 0.5, origin, direction);
+  float density[SLICES];
+  for (int k = 0; k < SLICES; ++k) density[k] = 0;
+#if GAUSSIANS
+  float from = range.x + (float(first_slice) + 0.5) * range.y, to = from + float(SLICES - 1) * range.y;
+  for (int i = 0; i < gaussian_count; ++i) {
+    float nearest, aside;
+    vec2 part = within(gaussians[i], farthest, origin, direction, nearest, aside);
+    if (!(part.x <= to && part.y >= from)) continue;
+    float step = range.y / gaussians[i].width, start = (from - nearest) / gaussians[i].width;
+    for (int k = 0; k < SLICES; ++k) {
+      float along = start + float(k) * step, square = aside + along * along;
+      density[k] += square < farthest ? gaussians[i].amplitude * exp(-square) : 0;
+    }
+  }
+#else
+  for (int k = 0; k < SLICES; ++k)
+    density[k] = density_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction);
+#endif
+  vec3 light = vec3(0);
+  float passed = column[place];
+  for (int k = 0; k < SLICES; ++k) {
+    if (first_slice + k >= count || !(density[k] > 0)) continue;
+    vec3 depth = sigma_t * (density[k] * range.y), seen;
+    for (int c = 0; c < 3; ++c) seen[c] = weight == WEIGHT_EXACT ? opacity(min(depth[c], 200.0)) : weight == WEIGHT_PAPER ? depth[c] : depth[c] * range.w;
+    light += exp(-min(sigma_t * passed, vec3(200))) * source_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction) * seen;
+    passed += density[k] * range.y;
+  }
+  column[place] = passed;
+  for (int c = 0; c < 3; ++c) airlight[3 * place + c] += light[c];
+}

@@ -1,0 +1,77 @@
+#include "gpu/compensated_ray_marching/smoke_density.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airlight::gpu::smoke {
+namespace {
+
+using compensated_ray_marching::Options;
+using compensated_ray_marching::SmokeField;
+
+constexpr double negligible_widths = 6.257, nothing_beyond = 6;  // scene/media/gaussian_sum.cpp, gaussian_row.cpp
+
+struct GaussianData {
+  float center[3], width, amplitude, unused[3] = {0, 0, 0};
+};
+
+}  // namespace
+
+SmokeDensity::SmokeDensity(Context& context, const SmokeField& smoke, const Point3& middle) {
+  longest_ = bounding_box(smoke.medium()).size().norm();
+  if (const scene::GaussianSum* sum = smoke.gaussians()) {
+    std::vector<GaussianData> data;
+    for (const scene::Gaussian& g : sum->gaussians) {
+      const Vec3 center = g.center - middle;
+      if (g.amplitude != 0)
+        data.push_back({{float(center[0]), float(center[1]), float(center[2])}, float(g.width), float(g.amplitude)});
+    }
+    count_ = int(data.size());
+    widths2_ = std::pow(std::min(negligible_widths, sum->cutoff), 2);
+    farthest_ = std::pow(std::min(nothing_beyond, sum->cutoff), 2);
+    values_ = std::make_unique<Buffer>(context, "gaussians of the smoke", data);
+    definitions_ = {{"GAUSSIANS", "1"}, {"SLICES", std::to_string(slices())}};
+    return;
+  }
+  const scene::VoxelGrid& grid = *grid_of(smoke.medium().field);
+  samples_ = grid.size.cast<double>();
+  to_samples_ = grid.rotation.transpose() / grid.voxel_size;
+  middle_sample_ = world_to_sample(grid, middle);
+  border_ = -sample_support(grid).lo[0];
+  values_ = std::make_unique<Buffer>(context, "voxels of the smoke", grid.values);
+  definitions_ = {{"GAUSSIANS", "0"}, {"SLICES", std::to_string(slices())}, {"CLAMPED", grid.clamp_border ? "1" : "0"}};
+}
+
+void SmokeDensity::bind(Program& p) const {
+  values_->bind(at::density);
+  if (definitions_.at("GAUSSIANS") == "1") {
+    p.set("gaussian_count", count_);
+    p.set("farthest", farthest_);
+    return;
+  }
+  p.set("samples_along", samples_);
+  p.set("to_samples", to_samples_);
+  p.set("middle_sample", middle_sample_);
+  p.set("border", border_);
+}
+
+std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
+  std::vector<std::string> reasons;
+  if (options.variant == Options::Variant::paper) reasons.push_back("variant = paper; shaders know grid");
+  if (options.grid.multiple == Options::Grid::Multiple::p1) reasons.push_back("multiple = p1; shaders know ordinates");
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    const scene::Medium& medium = scene.media[i];
+    if (!extinguishes(medium)) continue;
+    const std::string why =
+        scene::unknown_field<scene::GaussianSum, scene::GridPointer, scene::FittedPointer>(scene.media, i);
+    if (!why.empty())
+      reasons.push_back(why);
+    else if (!std::holds_alternative<scene::Unbounded>(medium.region))
+      reasons.push_back(label(scene.media, i) + " is cut off by a region; shaders know none");
+  }
+  if (scene.geometry) reasons.push_back("surfaces; shaders know none");
+  if (!scene.backdrops.empty()) reasons.push_back("a backdrop; shaders know none");
+  return reasons;
+}
+
+}  // namespace airlight::gpu::smoke

@@ -1,0 +1,34 @@
+// The density that camera rays march through, on the device: a sum of Gaussians or a voxel grid.
+#pragma once
+#include <memory>
+
+#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "methods/compensated_ray_marching/marched_smoke.h"
+
+namespace airlight::gpu::smoke {
+
+class SmokeDensity {
+ public:
+  // Of a field that `reasons_against` has nothing against; places on the device are relative to `middle` [m].
+  SmokeDensity(Context&, const compensated_ray_marching::SmokeField&, const Point3& middle);
+
+  const Definitions& definitions() const { return definitions_; }
+  void bind(Program&) const;
+  // Length of the longest way through it [m].
+  double longest() const { return longest_; }
+  double widths2() const { return widths2_; }  // of a Gaussian: where it ends, squared
+  int slices() const { return 32; }            // of a ray in one dispatch
+
+ private:
+  std::unique_ptr<Buffer> values_;
+  Definitions definitions_;
+  double longest_ = 0, widths2_ = 0, farthest_ = 0, border_ = 0;
+  int count_ = 0;
+  Vec3 samples_ = Vec3::Zero(), middle_sample_ = Vec3::Zero();
+  Mat3 to_samples_ = Mat3::Identity();
+};
+
+// Why the device does not march through a medium; empty: it does.
+std::vector<std::string> reasons_against(const scene::Scene&, const compensated_ray_marching::Options&);
+
+}  // namespace airlight::gpu::smoke

@@ -1,0 +1,52 @@
+#include "gpu/compensated_ray_marching/smoke_interface.h"
+
+#include "gpu/interface.h"
+#include "methods/compensated_ray_marching/compensated_march.h"
+
+namespace airlight::gpu::smoke {
+namespace {
+
+const std::vector<Binding> bindings = {{"COLUMNS", at::columns},
+                                       {"POWERS", at::powers},
+                                       {"HARMONICS", at::harmonics},
+                                       {"NODES", at::nodes},
+                                       {"SINGLE", at::single},
+                                       {"RESULT", at::result},
+                                       {"SOURCE", at::source},
+                                       {"STATE", at::state},
+                                       {"EMITTED", at::emitted},
+                                       {"LIGHT", at::light},
+                                       {"WAYS", at::ways},
+                                       {"DENSITIES", at::densities},
+                                       {"WEIGHTED", at::weighted},
+                                       {"STEPS", at::steps},
+                                       {"MEANS", at::means},
+                                       {"PARTS", at::parts},
+                                       {"TOWARDS_LIGHT", at::towards_light},
+                                       {"RADIANCE", at::radiance},
+                                       {"GREATEST", at::greatest},
+                                       {"LOGARITHMS", at::logarithms},
+                                       {"DENSITY", at::density},
+                                       {"RANGES", at::ranges},
+                                       {"AIRLIGHT", at::airlight},
+                                       {"TRANSMITTANCE", at::transmittance},
+                                       {"SURFACE", at::surface},
+                                       {"AMBIENT", at::ambient},
+                                       {"MEAN", at::mean},
+                                       {"COLUMN", at::column}};
+
+}  // namespace
+
+Program& program(Context& context, const std::string& file, int x, int y, Definitions definitions) {
+  using compensated_ray_marching::SliceWeight;
+  define(bindings, definitions);
+  const auto number = [&](const char* name, auto value) { definitions[name] = std::to_string(int(value)); };
+  number("KEPT", kept);
+  number("WEIGHT_EXACT", SliceWeight::exact);
+  number("WEIGHT_PAPER", SliceWeight::paper);
+  number("LOCAL_SIZE_X", x);
+  number("LOCAL_SIZE_Y", y);
+  return context.program("compensated_ray_marching/" + file + ".comp", definitions);
+}
+
+}  // namespace airlight::gpu::smoke

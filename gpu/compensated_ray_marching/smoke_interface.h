@@ -1,0 +1,53 @@
+// What host and shaders of the renderer must agree about, said once.
+#pragma once
+#include <map>
+#include <string>
+
+#include "gpu/program.h"
+
+namespace airlight::gpu::smoke {
+
+// Storage blocks, AT_... in shaders. What no shader has at the same time shares a number; 9 is that of environments.
+namespace at {
+enum Binding {
+  // sources
+  columns = 0,
+  powers = 1,
+  harmonics = 2,
+  nodes = 3,
+  single = 4,
+  result = 5,
+  source = 6,
+  state = 7,
+  emitted = 1,
+  light = 0,
+  ways = 3,
+  densities = 2,
+  weighted = 2,
+  steps = 3,
+  means = 1,
+  parts = 3,
+  towards_light = 2,
+  radiance = 6,
+  greatest = 7,
+  logarithms = 5,
+  // camera rays
+  density = 0,
+  ranges = 1,
+  airlight = 2,
+  transmittance = 3,
+  surface = 4,
+  ambient = 5,
+  mean = 6,
+  column = 7,
+};
+}  // namespace at
+
+constexpr int kept = 5;  // iterations that are combined: methods/compensated_ray_marching/discrete_ordinates.cpp
+
+using Definitions = std::map<std::string, std::string>;
+
+// A program of this folder: `file` without folder and .comp, a work group of x times y invocations.
+Program& program(Context&, const std::string& file, int x, int y, Definitions definitions);
+
+}  // namespace airlight::gpu::smoke

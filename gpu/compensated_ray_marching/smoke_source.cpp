@@ -1,0 +1,351 @@
+#include "gpu/compensated_ray_marching/smoke_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/view_uniforms.h"
+#include "methods/compensated_ray_marching/ordinate_directions.h"
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/error.h"
+#include "scene/math/spherical_harmonics.h"
+
+namespace airlight::gpu::smoke {
+namespace {
+
+using compensated_ray_marching::IncomingLight;
+using compensated_ray_marching::LitGrid;
+using compensated_ray_marching::Options;
+using compensated_ray_marching::Ordinate;
+
+constexpr int line = 64, tile = 8;  // invocations of a work group: along a list, and both ways in a plane
+constexpr int groups_of_sums = 64, summing = 128;
+constexpr double least_tolerance = 3e-6;  // that single precision can keep
+constexpr int first_iterations = 8;       // told to the device before any is looked at
+constexpr float blocked = 1e37F;          // [m]
+
+struct WayData {
+  int axis, forward;
+  float step, down, along, unused[3] = {0, 0, 0};
+};
+struct StateData {
+  double error, least, gram[kept * kept], shares[kept];
+  int done, iterations;
+};
+
+// As DiscreteOrdinates::sweep has them.
+WayData way_of(const Ordinate& d, double edge) {
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (std::abs(d.direction[a]) > std::abs(d.direction[axis])) axis = a;
+  const double speed = std::abs(d.direction[axis]);
+  const int rows = axis == 2 ? 1 : 2, along = axis == 0 ? 1 : 0;
+  return {axis, d.direction[axis] > 0, float(edge / speed), float(-d.direction[rows] / speed),
+          float(-d.direction[along] / speed)};
+}
+
+std::vector<float> floats(const std::vector<std::vector<double>>& rows) {
+  std::vector<float> values;
+  for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
+  return values;
+}
+
+}  // namespace
+
+SmokeSource::SmokeSource(Context& context, const scene::Medium& medium, const Options& options, const LitGrid& grid,
+                         const IncomingLight& light)
+    : context_(context),
+      medium_(medium),
+      options_(options),
+      multiple_(grid.single_only().empty()),
+      cells_(int(grid.grid().cells.nodes())),
+      node_count_(int(grid.nodes().size())),
+      fixed_(int(light.fixed())),
+      corner_(grid.grid().corner),
+      cell_edge_(grid.grid().cells.cell[0]),
+      moments_(compensated_ray_marching::phase_moments(medium.phase, options.order)),
+      band_moments_(compensated_ray_marching::phase_moments(medium.phase, options.grid.levels)) {
+  for (std::size_t a = 0; a < 3; ++a) cells_along_[Eigen::Index(a)] = grid.grid().cells.size[a];
+  nodes_ = std::make_unique<Buffer>(context_, "nodes", std::vector<int>(grid.nodes().begin(), grid.nodes().end()));
+  densities_ = std::make_unique<Buffer>(context_, "densities",
+                                        std::vector<float>(grid.densities().data(), grid.densities().data() + cells_));
+  radiance_ = std::make_unique<Buffer>(context_, "source radiance", 16 * std::size_t(cells_));
+  logarithms_ = std::make_unique<Buffer>(context_, "logarithms of it", 16 * std::size_t(cells_));
+  greatest_ = std::make_unique<Buffer>(context_, "greatest", 4);
+  const Definitions definitions{{"BANDS", std::to_string(options.order * options.order)},
+                                {"LEVELS", std::to_string(options.grid.levels)},
+                                {"SH_ORDER", std::to_string(options.order)}};
+  const auto program_of = [&](const char* file, int x, int y = 1) {
+    return &program(context_, file, x, y, definitions);
+  };
+  towards_program_ = program_of("towards", line);
+  logarithms_program_ = program_of("logarithms", line);
+  if (!multiple_) return;
+  single_program_ = program_of("single", line);
+  emit_program_ = program_of("emit", line);
+  sweep_program_ = program_of("sweep", tile, tile);
+  collect_program_ = program_of("collect", line);
+  products_program_ = program_of("products", summing);
+  decide_program_ = program_of("decide", 1);
+  combine_program_ = program_of("combine", line);
+  const auto ordinates =
+      compensated_ray_marching::ordinate_directions(options.grid.ordinate_levels, options.grid.azimuths, true);
+  ordinates_ = int(ordinates.size());
+  std::vector<WayData> ways;
+  std::vector<std::vector<double>> harmonics, weighted;
+  for (const Ordinate& d : ordinates) {
+    ways.push_back(way_of(d, cell_edge_));
+    harmonics.push_back(scene::evaluate_sh(options.order, d.direction));
+    weighted.push_back(harmonics.back());
+    for (double& value : weighted.back()) value *= d.weight;
+  }
+  ways_ = std::make_unique<Buffer>(context_, "ways", ways);
+  ordinate_harmonics_ = std::make_unique<Buffer>(context_, "harmonics of ordinates", floats(harmonics));
+  weighted_ = std::make_unique<Buffer>(context_, "weighted harmonics", floats(weighted));
+  parts_ = std::make_unique<Buffer>(context_, "parts of sums", 8 * std::size_t(groups_of_sums * (3 + 2 * kept)));
+  state_ = std::make_unique<Buffer>(context_, "state", sizeof(StateData));
+}
+
+Buffer& SmokeSource::buffer(std::unique_ptr<Buffer>& of, const char* name, std::size_t bytes) {
+  if (!of || of->bytes() != bytes) of = std::make_unique<Buffer>(context_, name, bytes);
+  return *of;
+}
+
+// Lights of the buffers: channels by extinction and albedo; of light without colour one stands for all of a group.
+void SmokeSource::arrange(bool grey) {
+  groups_.clear();
+  const Rgb &sigma_t = medium_.sigma_t, &albedo = medium_.albedo;
+  for (int c = 0; c < 3; ++c) {
+    const auto alike = [&](const Group& g) {
+      return sigma_t[g.channels[0]] == sigma_t[c] && albedo[g.channels[0]] == albedo[c];
+    };
+    const auto known = std::find_if(groups_.begin(), groups_.end(), alike);
+    if (known != groups_.end())
+      known->channels.push_back(c);
+    else
+      groups_.push_back({{c}});
+  }
+  lights_ = 0;
+  std::size_t most = 0;
+  for (Group& g : groups_) {
+    g.first = lights_;
+    g.lights = grey ? 1 : int(g.channels.size());
+    lights_ += g.lights;
+    most = std::max(most, std::size_t(g.lights));
+    for (std::size_t i = 0; i < g.channels.size(); ++i)
+      light_of_[std::size_t(g.channels[i])] = g.first + (grey ? 0 : int(i));
+  }
+  const std::size_t cells = 4 * std::size_t(cells_), bands = std::size_t(options_.order * options_.order);
+  // Beyond the nodes with smoke nothing is ever written, so that zeros stay.
+  single_ = std::make_unique<Buffer>(context_, "single scattering", cells * bands * std::size_t(lights_));
+  source_ = std::make_unique<Buffer>(context_, "source", cells * bands * std::size_t(lights_));
+  result_ = std::make_unique<Buffer>(context_, "result", cells * bands * std::size_t(lights_));
+  buffer(emitted_, "emitted", cells * most * std::size_t(ordinates_));
+  buffer(radiance_of_ways_, "radiance of ordinates", cells * most * std::size_t(ordinates_));
+  buffer(steps_, "steps", cells * most * bands * kept);
+  buffer(means_, "means", cells * most * (3 + kept));
+}
+
+void SmokeSource::upload_columns(const LitGrid& grid) {
+  directions_ = int(grid.columns().size());
+  std::vector<float> values;
+  for (const auto& column : grid.columns())
+    for (const float c : column) values.push_back(std::min(c, blocked));
+  columns_ = std::make_unique<Buffer>(context_, "columns", values);
+}
+
+void SmokeSource::upload_directions(const IncomingLight& light) {
+  std::vector<float> towards;
+  std::vector<std::vector<double>> harmonics;
+  for (const Vec3& d : light.directions()) {
+    for (int a = 0; a < 3; ++a) towards.push_back(float(d[a]));
+    towards.push_back(0);
+    harmonics.push_back(scene::evaluate_sh(options_.order, d));
+  }
+  towards_light_ = std::make_unique<Buffer>(context_, "directions", towards);
+  harmonics_ = std::make_unique<Buffer>(context_, "harmonics", floats(harmonics));
+}
+
+void SmokeSource::set_scatterer(Program& p, const Group& g) const {
+  p.set("first_light", g.first);
+  p.set("lights", g.lights);
+  p.set("sigma_t", medium_.sigma_t);
+  for (int l = 0; l < g.lights; ++l) p.set(fmt::format("channel[{}]", l), g.channels[std::size_t(l)]);
+}
+
+void SmokeSource::scatter_once(const Group& g) {
+  Program& p = *single_program_;
+  columns_->bind(at::columns);
+  powers_->bind(at::powers);
+  harmonics_->bind(at::harmonics);
+  nodes_->bind(at::nodes);
+  single_->bind(at::single);
+  set_scatterer(p, g);
+  p.set("albedo", medium_.albedo);
+  for (int b = 0; b < options_.order * options_.order; ++b) {
+    const auto band = std::size_t(std::sqrt(double(b)));  // from towards the light to along it
+    p.set(fmt::format("moment[{}]", b), (band % 2 ? -1 : 1) * moments_[band]);
+  }
+  p.set("node_count", node_count_);
+  p.set("directions", directions_);
+  p.set("cells", cells_);
+  p.dispatch(node_count_, g.lights);
+}
+
+void SmokeSource::iterate(const Group& g, int iteration) {
+  state_->bind(at::state);
+  Program& emit = *emit_program_;
+  source_->bind(at::source);
+  ordinate_harmonics_->bind(at::harmonics);
+  emitted_->bind(at::emitted);
+  emit.set("first_light", g.first);
+  emit.set("lights", g.lights);
+  emit.set("cells", cells_);
+  emit.dispatch(cells_, ordinates_ * g.lights);
+
+  Program& sweep = *sweep_program_;
+  densities_->bind(at::densities);
+  radiance_of_ways_->bind(at::light);
+  ways_->bind(at::ways);
+  set_scatterer(sweep, g);
+  sweep.set("cells_along", cells_along_);
+  const int x = int(std::max(cells_along_[0], cells_along_[1])), y = int(std::max(cells_along_[1], cells_along_[2]));
+  for (int plane = 0; plane < int(cells_along_.maxCoeff()); ++plane) {
+    sweep.set("plane", plane);
+    sweep.dispatch(x, y, ordinates_ * g.lights);
+  }
+
+  Program& collect = *collect_program_;
+  radiance_of_ways_->bind(at::light);
+  weighted_->bind(at::weighted);
+  single_->bind(at::single);
+  source_->bind(at::source);
+  result_->bind(at::result);
+  steps_->bind(at::steps);
+  means_->bind(at::means);
+  set_scatterer(collect, g);
+  collect.set("albedo", medium_.albedo);
+  for (int b = 0; b < options_.order * options_.order; ++b)
+    collect.set(fmt::format("moment[{}]", b), moments_[std::size_t(std::sqrt(double(b)))]);
+  collect.set("iteration", iteration);
+  collect.set("directions", ordinates_);
+  collect.set("cells", cells_);
+  collect.dispatch(cells_, g.lights);
+
+  Program& products = *products_program_;
+  densities_->bind(at::densities);
+  parts_->bind(at::parts);
+  set_scatterer(products, g);
+  products.set("iteration", iteration);
+  products.set("cells", cells_);
+  products.dispatch(groups_of_sums * summing);
+  Program& decide = *decide_program_;
+  decide.set("iteration", iteration);
+  decide.set("groups", groups_of_sums);
+  decide.set("tolerance", std::max(options_.tolerance, least_tolerance));
+  decide.dispatch(1);
+
+  Program& combine = *combine_program_;
+  steps_->bind(at::steps);
+  combine.set("iteration", iteration);
+  combine.set("first_light", g.first);
+  combine.set("lights", g.lights);
+  combine.set("cells", cells_);
+  combine.dispatch(options_.order * options_.order * g.lights * cells_);
+}
+
+void SmokeSource::scatter_again(Group& g, bool cold, const scene::Execution& execution) {
+  state_->clear();
+  if (cold) {  // J_ss itself, as a result without steps
+    Program& combine = *combine_program_;
+    state_->bind(at::state);
+    single_->bind(at::result);
+    source_->bind(at::source);
+    steps_->bind(at::steps);
+    combine.set("iteration", 1);
+    combine.set("first_light", g.first);
+    combine.set("lights", g.lights);
+    combine.set("cells", cells_);
+    combine.dispatch(options_.order * options_.order * g.lights * cells_);
+  }
+  int told = 0, next = std::min(g.last > 0 ? g.last : first_iterations, options_.iterations);
+  for (;;) {
+    for (; told < next; ++told) iterate(g, told + 1);
+    const StateData state = state_->download<StateData>().front();
+    g.last = state.iterations;
+    if (state.done || told >= options_.iterations) {
+      iterations_ += state.iterations;
+      error_ = std::max(error_, state.error);
+      return;
+    }
+    if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
+    next = std::min(told + std::max(2, told / 2), options_.iterations);
+  }
+}
+
+void SmokeSource::light(const LitGrid& grid, const IncomingLight& light, bool aimed, StageTimer& timer,
+                        const scene::Execution& execution) {
+  timer.begin("upload");
+  if (aimed || !columns_) {
+    upload_columns(grid);
+    upload_directions(light);
+  }
+  std::vector<float> powers;
+  for (const Rgb& p : light.power()) {
+    for (int c = 0; c < 3; ++c) powers.push_back(float(p[c]));
+    powers.push_back(0);
+  }
+  buffer(powers_, "powers", 4 * powers.size()).upload(powers);
+  iterations_ = 0;
+  error_ = 0;
+  if (!multiple_) return;
+  const bool cold = !single_ || grey_ != light.grey();
+  if (cold) arrange(grey_ = light.grey());
+  timer.begin("single scattering");
+  for (const Group& g : groups_) scatter_once(g);
+  timer.begin("multiple scattering");
+  for (Group& g : groups_) scatter_again(g, cold, execution);
+}
+
+void SmokeSource::set_grid(Program& p, const Point3& middle) const {
+  p.set("corner", Vec3(corner_ - middle));
+  p.set("cell_edge", cell_edge_);
+  p.set("cells_along", cells_along_);
+}
+
+void SmokeSource::towards(const scene::View& view, const Point3& middle) {
+  greatest_->clear();
+  Program& p = *towards_program_;
+  columns_->bind(at::columns);
+  powers_->bind(at::powers);
+  towards_light_->bind(at::towards_light);
+  nodes_->bind(at::nodes);
+  (multiple_ ? *single_ : *nodes_).bind(at::single);
+  (multiple_ ? *result_ : *nodes_).bind(at::result);
+  radiance_->bind(at::radiance);
+  greatest_->bind(at::greatest);
+  set_camera(p, view, middle);
+  set_grid(p, middle);
+  p.set("node_count", node_count_);
+  p.set("directions", directions_);
+  p.set("fixed_directions", fixed_);
+  p.set("cells", cells_);
+  p.set("levels", options_.grid.levels);
+  p.set("sh_order", options_.order);
+  p.set("has_again", multiple_);
+  const auto* hg = std::get_if<scene::HenyeyGreenstein>(&medium_.phase);
+  p.set("phase_kind", int(medium_.phase.index()));
+  p.set("phase_g", hg ? hg->g : 0.0);
+  for (std::size_t l = 0; l < band_moments_.size(); ++l) p.set(fmt::format("band_moment[{}]", l), band_moments_[l]);
+  for (std::size_t c = 0; c < 3; ++c) p.set(fmt::format("light_of[{}]", c), light_of_[c]);
+  p.set("sigma_t", medium_.sigma_t);
+  p.set("albedo", medium_.albedo);
+  p.dispatch(node_count_);
+  Program& logarithms = *logarithms_program_;
+  logarithms_->bind(at::logarithms);
+  logarithms.set("cells", cells_);
+  logarithms.dispatch(cells_);
+}
+
+}  // namespace airlight::gpu::smoke

@@ -1,0 +1,70 @@
+// Source radiance at the nodes of a grid, on the device: single scattering, discrete ordinates for the rest, and what of both goes towards
+// the camera. Depths come from the processor, once; a new light changes what 128 directions (of 8 levels) bring.
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/timer.h"
+#include "methods/compensated_ray_marching/lit_grid.h"
+#include "scene/renderer.h"
+
+namespace airlight::gpu::smoke {
+
+class SmokeSource {
+ public:
+  // Uploads nodes, densities, depths and directions. Throws Unavailable where the device has no room.
+  SmokeSource(Context&, const scene::Medium&, const compensated_ray_marching::Options&,
+              const compensated_ray_marching::LitGrid&, const compensated_ray_marching::IncomingLight&);
+
+  // A light, or another: stages of the timer. Iterations begin with the light before, as many as it took are told to the device before
+  // they are looked at; `again`: whether the columns changed.
+  void light(const compensated_ray_marching::LitGrid&, const compensated_ray_marching::IncomingLight&, bool aimed,
+             StageTimer&, const scene::Execution&);
+
+  // Logarithms of the source radiance by cell, in logarithms().
+  void towards(const scene::View&, const Point3& middle);
+  const Buffer& logarithms() const { return *logarithms_; }
+  // corner, cell_edge, cells_along: of the nodes, relative to `middle`.
+  void set_grid(Program&, const Point3& middle) const;
+
+  int iterations() const { return iterations_; }
+  double error() const { return error_; }
+
+ private:
+  struct Group {  // channels that have extinction and albedo in common
+    std::vector<int> channels;
+    int first = 0, lights = 0;  // in buffers of all lights
+    int last = 0;               // iterations
+  };
+  void arrange(bool grey);
+  void upload_columns(const compensated_ray_marching::LitGrid&);
+  void upload_directions(const compensated_ray_marching::IncomingLight&);
+  void scatter_once(const Group&);
+  void scatter_again(Group&, bool cold, const scene::Execution&);
+  void iterate(const Group&, int iteration);
+  void set_scatterer(Program&, const Group&) const;
+  Buffer& buffer(std::unique_ptr<Buffer>&, const char* name, std::size_t bytes);
+
+  Context& context_;
+  Program *single_program_ = nullptr, *emit_program_ = nullptr, *sweep_program_ = nullptr, *collect_program_ = nullptr,
+          *products_program_ = nullptr, *decide_program_ = nullptr, *combine_program_ = nullptr,
+          *towards_program_ = nullptr, *logarithms_program_ = nullptr;
+  const scene::Medium& medium_;
+  compensated_ray_marching::Options options_;
+  bool multiple_ = false, grey_ = false;
+  int cells_ = 0, node_count_ = 0, directions_ = 0, fixed_ = 0, ordinates_ = 0, lights_ = 0;
+  Vec3 cells_along_, corner_;
+  double cell_edge_ = 0;
+  std::vector<double> moments_, band_moments_;
+  std::vector<Group> groups_;
+  std::array<int, 3> light_of_{0, 0, 0};
+  int iterations_ = 0;
+  double error_ = 0;
+  std::unique_ptr<Buffer> nodes_, densities_, columns_, powers_, towards_light_, harmonics_, ordinate_harmonics_,
+      weighted_, ways_, single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_,
+      radiance_, greatest_, logarithms_;
+};
+
+}  // namespace airlight::gpu::smoke

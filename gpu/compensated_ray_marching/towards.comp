@@ -1,0 +1,65 @@
+// Source radiance of the nodes with smoke towards the camera: LitGrid::towards.
+layout(local_size_x = LOCAL_SIZE_X) in;
+#include "common/camera.glsl"
+#include "common/phase.glsl"
+#include "common/spherical_harmonics.glsl"
+layout(std430, binding = AT_COLUMNS) readonly buffer Columns { float columns[]; };      // [direction][node, m]
+layout(std430, binding = AT_POWERS) readonly buffer Powers { vec4 powers[]; };
+layout(std430, binding = AT_TOWARDS_LIGHT) readonly buffer TowardsLight { vec4 towards_light[]; };
+layout(std430, binding = AT_NODES) readonly buffer Nodes { int nodes[]; };
+layout(std430, binding = AT_SINGLE) readonly buffer Single { float single_source[]; };  // [light][band][cell]
+layout(std430, binding = AT_RESULT) readonly buffer Result { float result[]; };
+layout(std430, binding = AT_RADIANCE) writeonly buffer Radiance { vec4 radiance[]; };   // by cell
+layout(std430, binding = AT_GREATEST) buffer Greatest { uint greatest; };               // bits
+uniform int node_count, directions, fixed_directions, cells, levels, phase_kind, has_again;
+uniform float phase_g, band_moment[LEVELS];  // of the phase function
+uniform int light_of[3];                     // of each channel
+uniform vec3 sigma_t, albedo, corner;
+uniform float cell_edge;
+uniform vec3 cells_along;  // each axis
+
+// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr].
+float phase_in_bands(float c) {
+  float before = 0, now = 1, sum = 0;
+  for (int l = 0; l < levels; ++l) {
+    sum += float(2 * l + 1) * band_moment[l] * now;
+    float next = (float(2 * l + 1) * c * now - float(l) * before) / float(l + 1);
+    before = now;
+    now = next;
+  }
+  return sum * per_sphere;
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= node_count) return;
+  int cell = nodes[i];
+  ivec3 size = ivec3(cells_along);
+  vec3 place = corner + cell_edge * (vec3(cell % size.x, cell / size.x % size.y, cell / (size.x * size.y)) + 0.5);
+  vec3 way = camera_position - place;
+  float far = length(way);
+  vec3 outwards = perspective == 0 || !(far > 0) ? -camera_forward : way / far;
+  vec3 sum = vec3(0);
+  for (int k = 0; k < directions; ++k) {
+    vec3 light = towards_light[k].xyz;
+    float phase;
+    if (k < fixed_directions) {
+      phase = phase_in_bands(clamp(-dot(light, outwards), -1.0, 1.0));
+    } else {
+      vec3 a = light + outwards, b = light - outwards;  // 1 - c and 1 + c for c = -dot, each with its own digits
+      phase = phase_value(phase_kind, phase_g, 0.5 * dot(a, a), 0.5 * dot(b, b));
+    }
+    sum += powers[k].rgb * exp(-min(sigma_t * columns[k * node_count + i], vec3(200))) * phase;
+  }
+  sum *= albedo;
+  if (has_again != 0)
+    for (ShPair y = first_pair(outwards); y.m < sh_order; next_pair(y, outwards))
+      for (int c = 0; c < 3; ++c) {
+        int above = (light_of[c] * BANDS + y.l * (y.l + 1) + y.m) * cells + cell;
+        int below = above - 2 * y.m * cells;
+        sum[c] += y.plus * (result[above] - single_source[above]) + y.minus * (result[below] - single_source[below]);
+      }
+  sum = max(sum, vec3(0));
+  radiance[cell] = vec4(sum, 0);
+  atomicMax(greatest, floatBitsToUint(max(sum.r, max(sum.g, sum.b))));  // positive floats are in the order of their bits
+}
