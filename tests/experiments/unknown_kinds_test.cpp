@@ -61,7 +61,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 5);
+  CHECK(others == 6);
 }
 
 TEST_CASE(
@@ -80,6 +80,7 @@ TEST_CASE(
       {"legendre_fluids", ""},
       {"legendre_fluids_gpu", ""},
       {"compensated_ray_marching", ""},
+      {"compensated_ray_marching_gpu", "gaussians or grid or fitted"},
       {"deterministic", ""},
       {"ray_marcher", ""},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},

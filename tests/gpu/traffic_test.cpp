@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/frame.h"
 #include "gpu/ray_marcher/ray_marcher_gpu.h"
@@ -35,6 +36,7 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
   const gpu::ShadowPlanesGpu planes;
   const gpu::RayMarcherGpu marcher;
   const gpu::WaveletFogGpu fogmaps;
+  const gpu::CompensatedRayMarchingGpu smoke;
   const Given printed{
       {"evaluator", "polynomial"}, {"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}};
   const std::vector<Case> cases{
@@ -49,6 +51,7 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
       {fogmaps, "wavelet_fog/valley", {{"variant", "polar"}}, true},
       {fogmaps, "wavelet_fog/patchy", {{"variant", "paper"}}},
       {fogmaps, "wavelet_fog/valley", {{"sun", "true"}}, true},
+      {smoke, "compensated_ray_marching/gaussians_lobe", {{"cells", "12"}}, true},
   };
   for (const Case& c : cases) {
     CAPTURE(c.method.name(), c.scene, c.given);
