@@ -65,7 +65,7 @@ struct LightBall {
 };
 std::optional<LightBall> ball(const Light&);
 
-// A point or spot light somewhere else; the others as they are.
+// A point or spot light somewhere else, an environment turned about `by` by its length in radians, a sun as it is.
 Light moved(const Light&, const Vec3& by);
 
 // Intensity of a point or spot light towards a unit direction from it [W/sr].
