@@ -8,7 +8,8 @@ layout(std430, binding = AT_SINGLE) readonly buffer Single { float single_source
 layout(std430, binding = AT_SOURCE) readonly buffer Source { float source[]; };
 layout(std430, binding = AT_RESULT) buffer Result { float result[]; };
 layout(std430, binding = AT_STEPS) writeonly buffer Steps { float steps[]; };            // [slot][light of the solve][band][cell]
-layout(std430, binding = AT_MEANS) buffer Means { float means[]; };  // of band 0: [at, missed, moved, misses by slot][light of the solve][cell]
+// Of band 0: [at, missed, moved, misses by slot][light of the solve][cell].
+layout(std430, binding = AT_MEANS) buffer Means { float means[]; };
 uniform int directions, cells;
 
 void main() {

@@ -57,8 +57,10 @@ void main() {
   for (int k = 0; k < SLICES; ++k) {
     if (first_slice + k >= count || !(density[k] > 0)) continue;
     vec3 depth = sigma_t * (density[k] * range.y), seen;
-    for (int c = 0; c < 3; ++c) seen[c] = weight == WEIGHT_EXACT ? opacity(min(depth[c], 200.0)) : weight == WEIGHT_PAPER ? depth[c] : depth[c] * range.w;
-    light += exp(-min(sigma_t * passed, vec3(200))) * source_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction) * seen;
+    for (int c = 0; c < 3; ++c)
+      seen[c] = weight == WEIGHT_EXACT ? opacity(min(depth[c], 200.0)) : weight == WEIGHT_PAPER ? depth[c] : depth[c] * range.w;
+    vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
+    light += exp(-min(sigma_t * passed, vec3(200))) * source_at(middle) * seen;
     passed += density[k] * range.y;
   }
   column[place] = passed;

@@ -64,7 +64,8 @@ void main() {
   if (plane >= planes || place.x >= extent.x || place.y >= extent.y) return;
   bool first = plane == 0, last = plane + 1 == planes;
   int cells = size.x * size.y * size.z, from = which * cells;
-  int start = (way.forward != 0 ? plane : planes - 1 - plane) * of_axis[way.axis], on = way.forward != 0 ? of_axis[way.axis] : -of_axis[way.axis];
+  int start = (way.forward != 0 ? plane : planes - 1 - plane) * of_axis[way.axis];
+  int on = way.forward != 0 ? of_axis[way.axis] : -of_axis[way.axis];
   int at = start + place.x * stride.x + place.y * stride.y;
   vec2 offset = vec2(way.down, way.along);
   float sigma = sigma_t[channel[l]], here = emitted[from + at], extinct = densities[at], up = here, down = here, before = 0;

@@ -21,6 +21,7 @@ import tomllib
 SQUARES = {"rel_l2_squared", "rel_mse"}
 # Not errors: a method twice as wrong has other counters, times and objections, in no known proportion.
 NO_ERRORS = {"seconds", "prepare_seconds", "objections", "largest_z", "detectable_bias"}
+TIMES = ("ms_", "frames_per_second")  # of probes that measure nothing else: their rows have no error to double
 
 
 def base(metric):
@@ -105,6 +106,8 @@ def main():
             quick = os.path.join(folder, group, file[:-5] + ".bounds.csv")
             gates = gates_of(experiment, quick if a.profile == "quick" else "")
             for row in rows:
+                if row["errors"] and all(m["metric"].startswith(TIMES) for m in row["errors"]):
+                    continue
                 entry = found.setdefault(variant(row), {"rows": 0, "gated": 0, "objects": [], "nearest": None})
                 entry["rows"] += 1
                 results = [(doubled(row, g), g) for g in gates if belongs(g, row)]
