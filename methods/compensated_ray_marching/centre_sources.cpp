@@ -21,15 +21,30 @@ SourceLight environments(const std::vector<scene::Light>& lights, int order) {
 
 }  // namespace
 
+CentreSources::CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium,
+                             const std::vector<scene::Surface>& surfaces, const Options& options)
+    : sum_(sum), medium_(medium), options_(options) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape)) {
+      objects_.push_back(*sphere);
+      surface_of_.push_back(int(i));
+    }
+}
+
+Rgb CentreSources::irradiance(const Point3& x, const Vec3& normal, int surface) const {
+  return radiance_->irradiance(x, normal, [&](std::size_t object) { return surface_of_[object] != surface; });
+}
+
 void CentreSources::light(const std::vector<scene::Light>& lights, const scene::Execution& execution) {
   scene::Stopwatch watch;
   times_.clear();
-  const SourceRadiance radiance(sum_, medium_.sigma_t, medium_.albedo, phase_moments(medium_.phase, options_.order),
-                                environments(lights, options_.order), options_.paper.transmittance);
+  radiance_.emplace(sum_, medium_.sigma_t, medium_.albedo, phase_moments(medium_.phase, options_.order),
+                    environments(lights, options_.order), options_.paper.transmittance,
+                    ordinate_directions(8, 16, false), objects_);
   sources_.resize(sum_.gaussians.size());
   times_.push_back({"environment", watch.lap()});
   scene::parallel_rows(int(sources_.size()), execution,
-                       [&](int i) { sources_[std::size_t(i)] = radiance.at(sum_.gaussians[std::size_t(i)].center); });
+                       [&](int i) { sources_[std::size_t(i)] = radiance_->at(sum_.gaussians[std::size_t(i)].center); });
   times_.push_back({"single scattering", watch.lap()});
   iterations_ = 0;
   residual_ = negative_share_ = 0;

@@ -1,6 +1,8 @@
 // Source radiance at the centres of the Gaussians, as the publication finds it: single scattering in harmonics, then the diffusion system.
-// Zhou et al. 2008, sections 5.3 and 5.4.
+// Zhou et al. 2008, sections 5.3 and 5.4; shadows of objects, as spheres, on smoke and of both on surfaces.
 #pragma once
+#include <optional>
+
 #include "methods/compensated_ray_marching/options.h"
 #include "scene/renderer.h"
 
@@ -8,15 +10,20 @@ namespace airlight::compensated_ray_marching {
 
 class CentreSources {
  public:
-  // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over.
-  CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const Options& options)
-      : sum_(sum), medium_(medium), options_(options) {}
+  // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over. Of the surfaces spheres cast
+  // shadows, planes none.
+  CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const std::vector<scene::Surface>&,
+                const Options&);
 
   // A light, or another. Conjugate gradients begin with the radiance before.
   void light(const std::vector<scene::Light>&, const scene::Execution&);
 
   // At each centre, towards the camera, at least 0 where it is asked for between centres [W/m^2/sr].
   std::vector<Rgb> towards(const scene::Camera&) const;
+
+  // Irradiance at a point of a surface [W/m^2]: past the smoke and the other objects.
+  Rgb irradiance(const Point3&, const Vec3& normal, int surface) const;
+  std::size_t objects() const { return objects_.size(); }
 
   const std::vector<std::vector<Rgb>>& sources() const {
     return sources_;
@@ -32,6 +39,9 @@ class CentreSources {
   const scene::GaussianSum& sum_;
   const scene::Medium& medium_;
   Options options_;
+  std::vector<scene::Sphere> objects_;
+  std::vector<int> surface_of_;             // of each object
+  std::optional<SourceRadiance> radiance_;  // of the light now
   std::vector<std::vector<Rgb>> sources_;
   std::vector<Eigen::VectorXd> before_;  // a channel's mean radiance at the centres
   std::vector<scene::StageTime> times_;

@@ -86,11 +86,32 @@ void source_integrals(const Row& t, const Row& passed, Row& i0, Row& i1, Row& i2
 struct DiscreteOrdinates::Group {
   int axis;
   bool forward;  // along the axis
-  std::vector<Ordinate> directions;
+  std::vector<std::size_t> directions;
 };
 
+int fastest_axis(const OrdinateGrid& grid, const Vec3& direction) {
+  int axis = -1;
+  double fastest = -1;
+  for (int a = 0; a < 3; ++a)
+    if (const double speed = std::abs(direction[a]) / grid.cell[a]; !grid.endless[std::size_t(a)] && speed > fastest)
+      fastest = speed, axis = a;
+  return axis;
+}
+
+std::vector<std::vector<float>> open_ways(const OrdinateGrid& grid, const std::vector<Ordinate>& directions,
+                                          const Between& objects) {
+  std::vector<std::vector<float>> open(directions.size(), std::vector<float>(std::size_t(grid.nodes()), 1.0f));
+  tbb::parallel_for(std::size_t(0), directions.size(), [&](std::size_t d) {
+    const int axis = fastest_axis(grid, directions[d].direction);
+    const Vec3 back = -directions[d].direction * (grid.cell[axis] / std::abs(directions[d].direction[axis]));
+    for (Eigen::Index node = 0; node < grid.nodes(); ++node)
+      if (objects(node, back)) open[d][std::size_t(node)] = 0;
+  });
+  return open;
+}
+
 DiscreteOrdinates::DiscreteOrdinates(const OrdinateGrid& grid, Eigen::ArrayXd extinction, double albedo,
-                                     std::vector<double> phase, const OrdinateOptions& options)
+                                     std::vector<double> phase, const OrdinateOptions& options, const Between& objects)
     : grid_(grid),
       extinction_(std::move(extinction)),
       albedo_(albedo),
@@ -110,6 +131,7 @@ DiscreteOrdinates::DiscreteOrdinates(const OrdinateGrid& grid, Eigen::ArrayXd ex
   if (!(albedo >= 0 && albedo <= 1)) throw Error(fmt::format("discrete ordinates: albedo {}, expected 0 to 1", albedo));
   if (options.order < 1 || options.order > 6 || int(phase_.size()) < options.order)
     throw Error("discrete ordinates: expected an order of 1 to 6, and a moment of the phase function for each band");
+  if (objects) open_ = open_ways(grid_, directions_, objects);
 }
 
 double DiscreteOrdinates::deepest_cell() const {
@@ -130,7 +152,8 @@ void DiscreteOrdinates::sweep(const Group& group, const Moments& source, double 
     Meeting row, along, row_after, along_after;
   };
   std::vector<Way> ways;
-  for (const Ordinate& d : group.directions) {
+  for (const std::size_t which : group.directions) {
+    const Ordinate& d = directions_[which];
     const double step = grid_.cell[group.axis] / std::abs(d.direction[group.axis]);
     const auto offset = [&](int axis) {
       return grid_.endless[std::size_t(axis)] ? 0 : -d.direction[axis] * step / grid_.cell[axis];
@@ -222,6 +245,10 @@ void DiscreteOrdinates::sweep(const Group& group, const Moments& source, double 
             up = (1.5 * here - 0.5 * down).max(here.min(0));
           } else {
             neighbour(light[1 - k % 2][which], outside, true, up);
+            if (!open_.empty()) {
+              const float* open = open_[group.directions[d]].data() + planes.in_grid(place(k), r);
+              for (int i = 0; i < across; ++i) up[i] *= double(open[i * planes.stride[2]]);
+            }
             out = up * passed;
             neighbour(emitted[before][which], clamped, true, up);
           }
@@ -239,15 +266,10 @@ void DiscreteOrdinates::sweep(const Group& group, const Moments& source, double 
 }
 
 Moments DiscreteOrdinates::sweep(const Moments& source, double inflow) const {
-  std::array<std::vector<Ordinate>, 6> sides;
-  for (const Ordinate& d : directions_) {
-    int axis = -1;
-    double fastest = -1;
-    for (int a = 0; a < 3; ++a)
-      if (const double speed = std::abs(d.direction[a]) / grid_.cell[a];
-          !grid_.endless[std::size_t(a)] && speed > fastest)
-        fastest = speed, axis = a;
-    sides[std::size_t(2 * axis + (d.direction[axis] > 0))].push_back(d);
+  std::array<std::vector<std::size_t>, 6> sides;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    const int axis = fastest_axis(grid_, directions_[d].direction);
+    sides[std::size_t(2 * axis + (directions_[d].direction[axis] > 0))].push_back(d);
   }
   Moments total = Moments::Zero(source.rows(), source.cols());
   Moments from(source.rows(), source.cols()), to(source.rows(), source.cols());

@@ -4,7 +4,7 @@
 //   w.grad L = extinction (J - L),   J = J_ss + J_ms,   J_ms,lm = albedo p_l M_lm,   M_lm = integral of L y_lm over the sphere
 //
 // Propagation directions throughout. Each direction is swept plane by plane along the axis that it crosses fastest; between two planes the
-// source is linear in the optical depth. What enters by the faces is 0 (the reduced light is in J_ss), or the same everywhere.
+// source is a parabola in the optical depth. What enters by the faces is 0 (the reduced light is in J_ss), or the same everywhere.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -42,12 +42,16 @@ struct OrdinateSolution {
   double error = 0;  // estimated, relative; above the tolerance where iterations ran out
 };
 
+// Whether an object stands between a node and a place `back` from it [m]. It takes the light that meets it: what it reflects is left out.
+// Rays that run along a wall are interpolated across it: 0.06 of the light leaks behind it.
+using Between = std::function<bool(Eigen::Index node, const Vec3& back)>;
+
 class DiscreteOrdinates {
  public:
   // extinction: of each node [1/m], >= 0. phase[l], l < order: mean of P_l(cos) over the phase function, g^l for Henyey-Greenstein.
-  // albedo in [0, 1]. Throws Error for sizes that do not fit and for values out of range.
+  // albedo in [0, 1]. Objects are asked for once, from several threads. Throws Error for sizes that do not fit and for values out of range.
   DiscreteOrdinates(const OrdinateGrid&, Eigen::ArrayXd extinction, double albedo, std::vector<double> phase,
-                    const OrdinateOptions&);
+                    const OrdinateOptions&, const Between& objects = {});
 
   // source: J_ss. inflow: radiance at all faces that are not endless. before: where to start from, a solution's source, or null.
   // interrupted: asked once an iteration; true ends the solve with what it has.
@@ -70,6 +74,14 @@ class DiscreteOrdinates {
   std::vector<double> phase_;
   OrdinateOptions options_;
   std::vector<Ordinate> directions_;
+  std::vector<std::vector<float>>
+      open_;  // of each direction, by node: 0 where an object is met before the plane before; empty without
 };
+
+// The axis whose planes a direction crosses fastest.
+int fastest_axis(const OrdinateGrid&, const Vec3& direction);
+
+// Of every direction, by node: 0 where an object stands between it and the plane before it, else 1.
+std::vector<std::vector<float>> open_ways(const OrdinateGrid&, const std::vector<Ordinate>&, const Between& objects);
 
 }  // namespace airlight::compensated_ray_marching

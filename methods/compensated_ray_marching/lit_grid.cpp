@@ -78,6 +78,8 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
   ordinates.tolerance = options.tolerance;
   ordinates.iterations = options.iterations;
   const std::vector<double> moments(phase_moments(medium.phase, options.order));
+  const Between objects = objects_between();
+  tbb::task_arena arena(scene::threads_for(execution.threads));
   for (int c = 0; c < 3; ++c) {
     const auto alike = [&](const Channels& group) {
       return sigma_t[group.which[0]] == sigma_t[c] && albedo[group.which[0]] == albedo[c];
@@ -92,9 +94,21 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
                                   {options.tolerance, options.iterations}),
                            {}});
     else
-      channels_.push_back(
-          {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates), {}, {}});
+      arena.execute([&] {
+        channels_.push_back(
+            {{c},
+             DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates, objects),
+             {},
+             {}});
+      });
   }
+}
+
+Between LitGrid::objects_between() const {
+  if (!scene_.geometry) return {};
+  return [this](Eigen::Index node, const Vec3& back) {
+    return scene_.geometry->occluded({grid_.node(node), back.normalized()}, back.norm());
+  };
 }
 
 void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const scene::Execution& execution) {

@@ -34,6 +34,7 @@ class LitGrid {
   const Eigen::ArrayXd& densities() const { return densities_; }
   const std::vector<std::vector<float>>& columns() const { return columns_; }
   double deepest_cell() const { return deepest_; }
+  Between objects_between() const;                                       // nothing where there are no surfaces
   const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something
   // Why multiple scattering is left out; empty where it is not.
   const std::string& single_only() const { return single_only_; }

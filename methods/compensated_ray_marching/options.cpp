@@ -1,5 +1,7 @@
 #include "methods/compensated_ray_marching/options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/error.h"
@@ -122,7 +124,16 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
               : scene::unknown_light<scene::EnvironmentLight, scene::DirectionalLight>(scene.lights, i);
     if (!why.empty()) reasons.push_back(why + (paper ? "; variant = paper" : ""));
   }
-  if (paper && scene.geometry) reasons.push_back("surfaces; variant = paper");
+  if (o.variant == Options::Variant::grid && o.grid.multiple == Options::Grid::Multiple::p1 && scene.geometry)
+    reasons.push_back("surfaces; multiple = p1 diffuses light through them");
+  for (std::size_t i = 0; paper && i < scene.surfaces.size(); ++i) {
+    const scene::Surface& surface = scene.surfaces[i];
+    const std::string name = surface.name.empty() ? fmt::format("{}", i) : "'" + surface.name + "'";
+    if (std::holds_alternative<scene::TriangleMesh>(surface.shape))
+      reasons.push_back("surface " + name + " is a mesh, expected sphere or plane; variant = paper");
+    if (!std::holds_alternative<scene::Lambert>(surface.material))
+      reasons.push_back("surface " + name + " does not reflect as Lambert's; variant = paper");
+  }
   return reasons;
 }
 

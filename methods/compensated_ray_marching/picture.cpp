@@ -67,10 +67,16 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
     incoming_.emplace(scene_->lights, options_.grid.levels);
     times_.push_back({"environment", watch.lap()});
   }
-  if (!smoke_) return;
+  static const scene::GaussianSum no_smoke;
+  static const scene::Medium clear;
+  if (paper() && !smoke_) centres_.emplace(no_smoke, clear, scene_->surfaces, options_);
+  if (!smoke_) {
+    light(execution);
+    return;
+  }
   slice_ = smoke_box(smoke_->medium()).size().maxCoeff() / options_.slices;
   if (paper()) {
-    centres_.emplace(*smoke_->gaussians(), smoke_->medium(), options_);
+    centres_.emplace(*smoke_->gaussians(), smoke_->medium(), scene_->surfaces, options_);
   } else {
     grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
     times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
@@ -127,21 +133,25 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
   }
   const bool multiple = (grid_ && grid_->single_only().empty()) ||
                         (centres_ && options_.paper.multiple != Options::Paper::Multiple::none);
-  return {
-      {"single scattering", smoke_ && scatters,
-       !smoke_    ? none
-       : scatters ? how
-                  : "the albedo is 0"},
-      {"multiple scattering", multiple, !smoke_ ? none : again},
-      {"residual", smoke_ && smoke_->with_residual(),
-       !smoke_                   ? none
-       : smoke_->with_residual() ? "added to the Gaussians"
-       : smoke_->gaussians()     ? "the Gaussians are all"
-                                 : "the field itself is marched through"},
-      {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
-      {"surfaces", behind_kept(), behind_kept() ? "what stands behind, through the smoke" : "nothing stands behind"},
-      {"ambient", ambient_kept(),
-       ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
+  return {{"single scattering", smoke_ && scatters,
+           !smoke_    ? none
+           : scatters ? how
+                      : "the albedo is 0"},
+          {"multiple scattering", multiple, !smoke_ ? none : again},
+          {"residual", smoke_ && smoke_->with_residual(),
+           !smoke_                   ? none
+           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->gaussians()     ? "the Gaussians are all"
+                                     : "the field itself is marched through"},
+          {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
+          {"surfaces", behind_kept(),
+           !behind_kept() ? "nothing stands behind"
+           : paper() && scene_->geometry
+               ? fmt::format("what stands behind, through the smoke; {} spheres cast shadows, planes none",
+                             centres_->objects())
+               : "what stands behind, through the smoke"},
+          {"ambient", ambient_kept(),
+           ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
 }
 
 // What the ray ends on sends back, without the smoke in between. Light that the smoke scatters onto surfaces is left out.
@@ -149,6 +159,9 @@ Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
   if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
   const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
+  if (centres_)  // of Lambert's
+    return scene::brdf(material, hit.normal, hit.normal, hit.normal) *
+           centres_->irradiance(hit.position, hit.normal, hit.surface);
   Rgb sum = Rgb::Zero();
   for (std::size_t k = 0; k < incoming_->directions().size(); ++k) {
     const Vec3& to_light = incoming_->directions()[k];

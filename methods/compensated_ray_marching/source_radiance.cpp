@@ -25,6 +25,23 @@ const LinearExponential& linear_exponential(int order) {
   return kept.emplace(order, LinearExponential(depth_family(order, family_counts, family_members))).first->second;
 }
 
+HarmonicExponential exponential_of(Transmittance kind, const LinearExponential* linear) {
+  if (kind == Transmittance::paper_linear) return [linear](const Harmonics& f) { return (*linear)(f); };
+  if (kind == Transmittance::paper_squared)
+    return [linear](const Harmonics& f) { return squared_exponential(f, *linear, squaring_threshold); };
+  return [](const Harmonics& f) { return series_exponential(f); };
+}
+
+// That of an order and an exponential, likewise kept.
+const ShadowTable& shadow_table(int order, Transmittance kind, const LinearExponential* linear) {
+  static std::mutex mutex;
+  static std::map<std::pair<int, Transmittance>, ShadowTable> kept;
+  const std::lock_guard lock(mutex);
+  const auto found = kept.find({order, kind});
+  if (found != kept.end()) return found->second;
+  return kept.emplace(std::pair(order, kind), ShadowTable(order, exponential_of(kind, linear))).first->second;
+}
+
 scene::GaussianSum without_constant(scene::GaussianSum sum) {
   sum.constant = 0;
   return sum;
@@ -34,7 +51,7 @@ scene::GaussianSum without_constant(scene::GaussianSum sum) {
 
 SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, const Rgb& albedo,
                                std::vector<double> phase, SourceLight light, Transmittance kind,
-                               std::vector<Ordinate> directions)
+                               std::vector<Ordinate> directions, std::vector<scene::Sphere> objects)
     : smoke_(without_constant(std::move(smoke))),
       extinction_(extinction),
       albedo_(albedo),
@@ -42,6 +59,7 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
       light_(std::move(light)),
       kind_(kind),
       depths_(int(phase_.size()), DepthTable::Spacing::even, 256, smoke_.cutoff),
+      objects_(std::move(objects)),
       linear_(kind == Transmittance::paper_linear || kind == Transmittance::paper_squared
                   ? &linear_exponential(int(phase_.size()))
                   : nullptr) {
@@ -53,6 +71,8 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
     }
   } else if (light_.harmonics.size() != phase_.size() * phase_.size()) {
     throw Error("source radiance: light and phase function of different orders");
+  } else if (!objects_.empty()) {
+    shadows_ = &shadow_table(order(), kind, linear_);
   }
 }
 
@@ -72,30 +92,67 @@ Harmonics SourceRadiance::minus_depth(const Point3& x) const {
 std::vector<Rgb> SourceRadiance::by_directions(const Point3& x) const {
   std::vector<Rgb> sum(phase_.size() * phase_.size(), Rgb::Zero());
   for (std::size_t k = 0; k < directions_.size(); ++k) {
-    const double column = density_integral(smoke_, Ray{x, directions_[k].direction}, {0, infinity});
-    const Rgb left = from_[k] * (-extinction_ * column).exp();
+    const Rgb left = left_of(k, x, objects_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += harmonics_[k][i] * left;
   }
   return sum;
 }
 
+// Of the light from a direction, times its weight.
+Rgb SourceRadiance::left_of(std::size_t k, const Point3& x, const std::vector<scene::Sphere>& objects) const {
+  const Vec3& toward = directions_[k].direction;
+  const double spacing = std::sqrt(4 * pi / double(directions_.size()));
+  const double share = objects.empty() ? 1 : visible_share(objects, x, toward, spacing);
+  if (share == 0) return Rgb::Zero();
+  return share * from_[k] * (-extinction_ * density_integral(smoke_, Ray{x, toward}, {0, infinity})).exp();
+}
+
+// What gets through smoke and past objects: of each channel, of the first alone where all are alike. Nothing within an object.
+std::vector<Harmonics> SourceRadiance::passed(const Point3& x, const std::vector<scene::Sphere>& objects) const {
+  std::optional<Harmonics> hidden;
+  if (!objects.empty() && !(hidden = log_visibility(objects, x, *shadows_))) return {};
+  const Harmonics depth = minus_depth(x);
+  const HarmonicExponential exponential = exponential_of(kind_, linear_);
+  const bool grey = extinction_[0] == extinction_[1] && extinction_[1] == extinction_[2];
+  std::vector<Harmonics> channels;
+  for (int c = 0; c < (grey ? 1 : 3); ++c) {
+    Harmonics sum = depth;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] * extinction_[c] + (hidden ? (*hidden)[i] : 0);
+    channels.push_back(exponential(sum));
+  }
+  return channels;
+}
+
 std::vector<Rgb> SourceRadiance::attenuated_light(const Point3& x) const {
   if (kind_ == Transmittance::directional) return by_directions(x);
-  const Harmonics depth = minus_depth(x);
-  const bool grey = extinction_[0] == extinction_[1] && extinction_[1] == extinction_[2];
-  std::vector<Rgb> left(depth.size(), Rgb::Zero());
-  for (int c = 0; c < (grey ? 1 : 3); ++c) {
-    Harmonics scaled = depth;
-    for (double& value : scaled) value *= extinction_[c];
-    const Harmonics passed = kind_ == Transmittance::paper_linear ? (*linear_)(scaled)
-                             : kind_ == Transmittance::paper_squared
-                                 ? squared_exponential(scaled, *linear_, squaring_threshold)
-                                 : series_exponential(scaled);
-    const std::vector<Rgb> product = scene::triple_product(order())(light_.harmonics, passed);
-    if (grey) return product;
-    for (std::size_t i = 0; i < left.size(); ++i) left[i][c] = product[i][c];
+  std::vector<Rgb> left(light_.harmonics.size(), Rgb::Zero());
+  const std::vector<Harmonics> channels = passed(x, objects_);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::vector<Rgb> product = scene::triple_product(order())(light_.harmonics, channels[c]);
+    if (channels.size() == 1) return product;
+    for (std::size_t i = 0; i < left.size(); ++i) left[i][Eigen::Index(c)] = product[i][Eigen::Index(c)];
   }
   return left;
+}
+
+Rgb SourceRadiance::irradiance(const Point3& x, const Vec3& normal,
+                               const std::function<bool(std::size_t)>& casts) const {
+  std::vector<scene::Sphere> others;
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    if (casts(i)) others.push_back(objects_[i]);
+  Rgb sum = Rgb::Zero();
+  if (kind_ == Transmittance::directional) {
+    for (std::size_t k = 0; k < directions_.size(); ++k)
+      if (const double cosine = normal.dot(directions_[k].direction); cosine > 0) sum += cosine * left_of(k, x, others);
+    return sum.max(0);
+  }
+  const std::vector<Harmonics> channels = passed(x, others);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Rgb one = compensated_ray_marching::irradiance(normal, channels[c], light_.harmonics);
+    if (channels.size() == 1) return one;
+    sum[Eigen::Index(c)] = one[Eigen::Index(c)];
+  }
+  return sum;
 }
 
 std::vector<Rgb> SourceRadiance::at(const Point3& x) const { return scattered(attenuated_light(x), albedo_, phase_); }

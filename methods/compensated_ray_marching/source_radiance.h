@@ -7,6 +7,7 @@
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
+#include "methods/compensated_ray_marching/sphere_shadow.h"
 #include "scene/media/gaussian_sum.h"
 
 namespace airlight::compensated_ray_marching {
@@ -26,11 +27,12 @@ enum class Transmittance { paper_linear, paper_squared, series, directional };
 class SourceRadiance {
  public:
   // extinction: sigma_t of each channel [1/m]. phase: mean of P_l over the phase function, g^l for Henyey-Greenstein; its size is the order.
-  // The constant of the sum is left out. directions: of `directional`, which alone asks the light for its radiance. Throws Error where light
-  // and phase function are not of one order.
+  // The constant of the sum is left out. objects: they hide the light, by logarithms of visibility, of `directional` by shares of directions.
+  // directions: of `directional`, which alone asks the light for its radiance. Throws Error where light and phase function are not of one
+  // order.
   SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, const Rgb& albedo, std::vector<double> phase,
-                 SourceLight light, Transmittance,
-                 std::vector<Ordinate> directions = ordinate_directions(8, 16, false));
+                 SourceLight light, Transmittance, std::vector<Ordinate> directions = ordinate_directions(8, 16, false),
+                 std::vector<scene::Sphere> objects = {});
 
   // order^2 coefficients of J_ss, of propagation directions.
   std::vector<Rgb> at(const Point3&) const;
@@ -39,9 +41,14 @@ class SourceRadiance {
   Harmonics minus_depth(const Point3&) const;
   std::vector<Rgb> attenuated_light(const Point3&) const;
 
+  // Irradiance on a surface: past the smoke and all objects but those of which `casts` is false.
+  Rgb irradiance(const Point3&, const Vec3& normal, const std::function<bool(std::size_t object)>& casts) const;
+
  private:
   int order() const { return int(phase_.size()); }
   std::vector<Rgb> by_directions(const Point3&) const;
+  Rgb left_of(std::size_t direction, const Point3&, const std::vector<scene::Sphere>& objects) const;
+  std::vector<Harmonics> passed(const Point3&, const std::vector<scene::Sphere>& objects) const;
 
   scene::GaussianSum smoke_;
   Rgb extinction_, albedo_;
@@ -49,7 +56,9 @@ class SourceRadiance {
   SourceLight light_;
   Transmittance kind_;
   DepthTable depths_;
-  const LinearExponential* linear_;  // null where it is not needed
+  std::vector<scene::Sphere> objects_;
+  const LinearExponential* linear_;       // null where it is not needed
+  const ShadowTable* shadows_ = nullptr;  // where there are objects
   std::vector<Ordinate> directions_;
   std::vector<Harmonics> harmonics_;  // of the directions
   std::vector<Rgb> from_;             // radiance from each, times its weight

@@ -4,6 +4,7 @@
 
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "methods/compensated_ray_marching/gaussian_row.h"
+#include "scene/geometry/shapes.h"
 #include "tests/pictures.h"
 
 using namespace airlight;
@@ -181,6 +182,63 @@ TEST_CASE("compensated march: the same bits for any number of threads", "[compen
   }
 }
 
+TEST_CASE("compensated march: a ball's shadow on the ground in an even light, in closed form",
+          "[compensated_ray_marching]") {
+  // What a ball takes of the irradiance on a plane that sees all of it at a distance d, at an angle from the normal: (R/d)^2 cos.
+  const double radius = 0.6, height = 1.5;
+  auto scene = in_white(puffs(), 0);
+  const bool smoke = GENERATE(false, true);
+  if (smoke) scene->media[0].sigma_t = Rgb::Constant(1e-6);
+  scene->camera = scene::look_at({0, 3, 3}, {0, -1, 0}, Vec3::UnitY());
+  scene->camera.vertical_fov = 0.9;
+  scene->surfaces = {{"ground", scene::Plane{{0, -1, 0}, Vec3::UnitY()}, scene::Lambert{Rgb::Constant(0.7)}},
+                     {"ball", scene::Sphere{{0, height - 1, 0}, radius}, scene::Lambert{Rgb::Constant(0.2)}}};
+  finish(*scene);
+  // Directions: an edge falls between them; harmonics of 4 bands.
+  const std::vector<std::tuple<Given, double, double>> kinds{
+      {{{"levels", "24"}}, 0.03, 0.006},
+      {{{"variant", "paper"}}, 0.03, 0.012},
+      {{{"variant", "paper"}, {"transmittance", "ol"}}, 0.06, 0.03},
+      {{{"variant", "paper"}, {"transmittance", "directional"}}, 0.05, 0.015}};
+  for (const auto& [given, worst, root_mean] : kinds) {
+    CAPTURE(given, smoke);
+    const scene::Film film = picture(method, scene, given);
+    double most = 0, sum = 0;
+    int count = 0, in_shadow = 0;
+    for (int y = 0; y < film.height; ++y)
+      for (int x = 0; x < film.width; ++x) {
+        const Ray ray = camera_ray(scene->camera, x + 0.5, y + 0.5, film.width, film.height);
+        const auto hit = scene->geometry->first_hit(ray);
+        if (!hit || hit->surface != 0) continue;
+        const Vec3 way = Point3(0, height - 1, 0) - hit->position;
+        const double hidden = std::pow(radius / way.norm(), 2) * way.normalized().y();
+        const double off = film.get("surface", x, y)[0] / 0.7 - (1 - hidden);
+        most = std::max(most, std::abs(off));
+        sum += off * off;
+        ++count;
+        in_shadow += hidden > 0.1;
+      }
+    REQUIRE(count > 60);
+    REQUIRE(in_shadow > 5);
+    CHECK(most < worst);
+    CHECK(std::sqrt(sum / count) < root_mean);
+  }
+}
+
+TEST_CASE("compensated march: no light within a ball, none through a closed room", "[compensated_ray_marching]") {
+  auto scene = in_white(puffs(), 3);
+  scene->surfaces = {{"room", scene::Sphere{{0, 0, 0}, 3}, scene::Lambert{Rgb::Constant(0.5)}}};
+  scene->camera = scene::look_at({0, 0, 2}, {0, 0, 0}, Vec3::UnitY());
+  finish(*scene);
+  for (const Given& given : {Given{}, paper, Given{{"variant", "paper"}, {"transmittance", "directional"}}}) {
+    CAPTURE(given);
+    const scene::Film film = picture(method, scene, given);
+    const std::vector<float>& airlight = film.layer("airlight");
+    CHECK(*std::max_element(airlight.begin(), airlight.end()) < 1e-5);
+    CHECK(*std::min_element(film.layer("transmittance").begin(), film.layer("transmittance").end()) < 0.3);
+  }
+}
+
 TEST_CASE("compensated march: refusals name the reason", "[compensated_ray_marching]") {
   const auto reason = [](const scene::Scene& scene, const Given& given = {}) {
     const auto reasons = method.supports(scene, {method.settings(), given});
@@ -207,6 +265,17 @@ TEST_CASE("compensated march: refusals name the reason", "[compensated_ray_march
   CHECK(reason(*scene).empty());
   CHECK_THAT(reason(*scene, paper), Contains("homogeneous"));
   CHECK_THROWS_WITH(reason(*scene, {{"multiple", "as_printed"}}), Contains("not for variant = grid"));
+  scene->media[0].field = puffs();
+  scene->media[0].region = scene::Unbounded{};
+  scene->surfaces = {{"ball", scene::Sphere{}, scene::Lambert{}}};
+  finish(*scene);
+  CHECK(reason(*scene, paper).empty());
+  CHECK_THAT(reason(*scene, {{"multiple", "p1"}}), Contains("p1 diffuses light through them"));
+  scene->surfaces[0].material = scene::Phong{};
+  CHECK(reason(*scene).empty());
+  CHECK_THAT(reason(*scene, paper), Contains("surface 'ball' does not reflect as Lambert's"));
+  scene->surfaces[0] = {"box", scene::make_box({Point3(-1, -1, -1), Point3(1, 1, 1)}), scene::Lambert{}};
+  CHECK_THAT(reason(*scene, paper), Contains("surface 'box' is a mesh, expected sphere or plane"));
   // Cells that stay too deep however small they are.
   CHECK_THROWS_AS(picture(method, in_white(puffs(), 1e4)), scene::NotSupported);
 }
