@@ -99,7 +99,7 @@ int fastest_axis(const OrdinateGrid& grid, const Vec3& direction) {
 }
 
 std::vector<std::vector<float>> open_ways(const OrdinateGrid& grid, const std::vector<Ordinate>& directions,
-                                          const Between& objects) {
+                                          const std::function<bool(Eigen::Index, const Vec3&)>& objects) {
   std::vector<std::vector<float>> open(directions.size(), std::vector<float>(std::size_t(grid.nodes()), 1.0f));
   tbb::parallel_for(std::size_t(0), directions.size(), [&](std::size_t d) {
     const int axis = fastest_axis(grid, directions[d].direction);
@@ -111,13 +111,15 @@ std::vector<std::vector<float>> open_ways(const OrdinateGrid& grid, const std::v
 }
 
 DiscreteOrdinates::DiscreteOrdinates(const OrdinateGrid& grid, Eigen::ArrayXd extinction, double albedo,
-                                     std::vector<double> phase, const OrdinateOptions& options, const Between& objects)
+                                     std::vector<double> phase, const OrdinateOptions& options,
+                                     std::vector<std::vector<float>> open)
     : grid_(grid),
       extinction_(std::move(extinction)),
       albedo_(albedo),
       phase_(std::move(phase)),
       options_(options),
-      directions_(ordinate_directions(options.levels, options.azimuths, options.hemispheres)) {
+      directions_(ordinate_directions(options.levels, options.azimuths, options.hemispheres)),
+      open_(std::move(open)) {
   int ends = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     if (grid.size[a] < 1 || !(grid.cell[Eigen::Index(a)] > 0) || (grid.endless[a] && grid.size[a] != 1))
@@ -131,7 +133,9 @@ DiscreteOrdinates::DiscreteOrdinates(const OrdinateGrid& grid, Eigen::ArrayXd ex
   if (!(albedo >= 0 && albedo <= 1)) throw Error(fmt::format("discrete ordinates: albedo {}, expected 0 to 1", albedo));
   if (options.order < 1 || options.order > 6 || int(phase_.size()) < options.order)
     throw Error("discrete ordinates: expected an order of 1 to 6, and a moment of the phase function for each band");
-  if (objects) open_ = open_ways(grid_, directions_, objects);
+  for (const std::vector<float>& one : open_)
+    if (open_.size() != directions_.size() || one.size() != std::size_t(grid.nodes()))
+      throw Error("discrete ordinates: expected open ways for every direction and node, or none");
 }
 
 double DiscreteOrdinates::deepest_cell() const {

@@ -42,16 +42,13 @@ struct OrdinateSolution {
   double error = 0;  // estimated, relative; above the tolerance where iterations ran out
 };
 
-// Whether an object stands between a node and a place `back` from it [m]. It takes the light that meets it: what it reflects is left out.
-// Rays that run along a wall are interpolated across it: 0.06 of the light leaks behind it.
-using Between = std::function<bool(Eigen::Index node, const Vec3& back)>;
-
 class DiscreteOrdinates {
  public:
   // extinction: of each node [1/m], >= 0. phase[l], l < order: mean of P_l(cos) over the phase function, g^l for Henyey-Greenstein.
-  // albedo in [0, 1]. Objects are asked for once, from several threads. Throws Error for sizes that do not fit and for values out of range.
+  // albedo in [0, 1]. open: of each direction of the options, by node, as open_ways has it; empty: no objects. Throws Error for sizes that do
+  // not fit and for values out of range.
   DiscreteOrdinates(const OrdinateGrid&, Eigen::ArrayXd extinction, double albedo, std::vector<double> phase,
-                    const OrdinateOptions&, const Between& objects = {});
+                    const OrdinateOptions&, std::vector<std::vector<float>> open = {});
 
   // source: J_ss. inflow: radiance at all faces that are not endless. before: where to start from, a solution's source, or null.
   // interrupted: asked once an iteration; true ends the solve with what it has.
@@ -81,7 +78,10 @@ class DiscreteOrdinates {
 // The axis whose planes a direction crosses fastest.
 int fastest_axis(const OrdinateGrid&, const Vec3& direction);
 
-// Of every direction, by node: 0 where an object stands between it and the plane before it, else 1.
-std::vector<std::vector<float>> open_ways(const OrdinateGrid&, const std::vector<Ordinate>&, const Between& objects);
+// Of every direction, by node: 0 where an object stands between the node and the plane before it, else 1. `objects`: whether one stands
+// between a node and a place `back` from it [m]; asked from several threads. Objects take the light that meets them: what they reflect is
+// left out. Rays that run along a wall are interpolated across it: 0.06 of the light leaks behind it.
+std::vector<std::vector<float>> open_ways(const OrdinateGrid&, const std::vector<Ordinate>&,
+                                          const std::function<bool(Eigen::Index node, const Vec3& back)>& objects);
 
 }  // namespace airlight::compensated_ray_marching

@@ -78,8 +78,7 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
   ordinates.tolerance = options.tolerance;
   ordinates.iterations = options.iterations;
   const std::vector<double> moments(phase_moments(medium.phase, options.order));
-  const Between objects = objects_between();
-  tbb::task_arena arena(scene::threads_for(execution.threads));
+  if (scene.geometry) find_open_ways(ordinates, execution);
   for (int c = 0; c < 3; ++c) {
     const auto alike = [&](const Channels& group) {
       return sigma_t[group.which[0]] == sigma_t[c] && albedo[group.which[0]] == albedo[c];
@@ -94,21 +93,19 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
                                   {options.tolerance, options.iterations}),
                            {}});
     else
-      arena.execute([&] {
-        channels_.push_back(
-            {{c},
-             DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates, objects),
-             {},
-             {}});
-      });
+      channels_.push_back(
+          {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates, open_), {}, {}});
   }
 }
 
-Between LitGrid::objects_between() const {
-  if (!scene_.geometry) return {};
-  return [this](Eigen::Index node, const Vec3& back) {
-    return scene_.geometry->occluded({grid_.node(node), back.normalized()}, back.norm());
-  };
+void LitGrid::find_open_ways(const OrdinateOptions& options, const scene::Execution& execution) {
+  tbb::task_arena arena(scene::threads_for(execution.threads));
+  arena.execute([&] {
+    open_ = open_ways(grid_.cells, ordinate_directions(options.levels, options.azimuths, options.hemispheres),
+                      [&](Eigen::Index node, const Vec3& back) {
+                        return scene_.geometry->occluded({grid_.node(node), back.normalized()}, back.norm());
+                      });
+  });
 }
 
 void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const scene::Execution& execution) {

@@ -33,8 +33,9 @@ class LitGrid {
   const std::vector<Eigen::Index>& nodes() const { return nodes_; }
   const Eigen::ArrayXd& densities() const { return densities_; }
   const std::vector<std::vector<float>>& columns() const { return columns_; }
+  // Of the ordinates, past surfaces (open_ways); empty without surfaces or multiple scattering.
+  const std::vector<std::vector<float>>& open() const { return open_; }
   double deepest_cell() const { return deepest_; }
-  Between objects_between() const;                                       // nothing where there are no surfaces
   const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something
   // Why multiple scattering is left out; empty where it is not.
   const std::string& single_only() const { return single_only_; }
@@ -49,6 +50,7 @@ class LitGrid {
     std::optional<Moments> before;    // where to start from: a source, or radiance
   };
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
+  void find_open_ways(const OrdinateOptions&, const scene::Execution&);
   Rgb left(std::size_t node, std::size_t direction) const;
   void scatter_again(const IncomingLight&, const scene::Execution&);
 
@@ -64,6 +66,7 @@ class LitGrid {
       columns_;               // of each direction, at the nodes with smoke [m]; infinite where a surface is in the way
   std::vector<Vec3> toward_;  // the directions
   std::vector<Rgb> power_;
+  std::vector<std::vector<float>> open_;
   std::vector<Channels> channels_;
   std::vector<std::vector<Rgb>> again_;  // J_ms of each node with smoke, order^2 coefficients; empty without
   std::string single_only_;

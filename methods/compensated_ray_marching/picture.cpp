@@ -170,7 +170,8 @@ Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
     const Rgb reflected = scene::brdf(material, hit.normal, to_light, -ray.direction) * incoming_->power()[k] * cosine;
     const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, to_light);
     if ((reflected == 0).all() || scene_->geometry->occluded({start, to_light})) continue;
-    sum += reflected * transmittance(scene_->media, {hit.position, to_light}, {0, infinity});
+    const double column = smoke_ ? density_integral(smoke_->medium(), {hit.position, to_light}, {0, infinity}) : 0;
+    sum += smoke_ ? Rgb(reflected * (-smoke_->medium().sigma_t * column).exp()) : reflected;
   }
   return sum.max(0);
 }

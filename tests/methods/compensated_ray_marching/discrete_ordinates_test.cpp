@@ -275,7 +275,7 @@ TEST_CASE("discrete ordinates: a wall takes what meets it", "[compensated_ray_ma
     };
     const double wall = 3.1 * grid.cell[axis];
     int asked = 0;
-    const crm::Between objects = [&](Eigen::Index node, const Vec3& back) {
+    const auto objects = [&](Eigen::Index node, const Vec3& back) {
       const double here = place(node);
       return (here < wall) != (here + back[axis] < wall);
     };
@@ -287,7 +287,10 @@ TEST_CASE("discrete ordinates: a wall takes what meets it", "[compensated_ray_ma
       asked += objects(i, Vec3(0.3, 0.3, 0.3));
     }
     REQUIRE(asked > 0);
-    const crm::DiscreteOrdinates walled(grid, extinction, 0, {1, 0.3, 0.09, 0.027}, {}, objects);
+    const crm::OrdinateOptions options;
+    const auto ways =
+        crm::open_ways(grid, crm::ordinate_directions(options.levels, options.azimuths, options.hemispheres), objects);
+    const crm::DiscreteOrdinates walled(grid, extinction, 0, {1, 0.3, 0.09, 0.027}, options, ways);
     const auto lit = walled.solve(source);
     const auto open = crm::DiscreteOrdinates(grid, extinction, 0, {1, 0.3, 0.09, 0.027}, {}).solve(source);
     double behind = 0, behind_open = 0, before = 0;
@@ -304,7 +307,7 @@ TEST_CASE("discrete ordinates: a wall takes what meets it", "[compensated_ray_ma
     CHECK(behind_open > 0.01);
     CHECK(before == 0);
     const auto scattered =
-        crm::DiscreteOrdinates(grid, extinction, 0.9, {1, 0.3, 0.09, 0.027}, {}, objects).solve(source);
+        crm::DiscreteOrdinates(grid, extinction, 0.9, {1, 0.3, 0.09, 0.027}, options, ways).solve(source);
     double least = 1e9;
     for (Eigen::Index i = 0; i < grid.nodes(); ++i)
       if (place(i) < wall) least = std::min(least, scattered.radiance(i, 0) - lit.radiance(i, 0));
