@@ -34,8 +34,13 @@ Light moved(const Light& light, const Vec3& by) {
   Light result = light;
   if (auto* point = std::get_if<PointLight>(&result)) point->position += by;
   if (auto* spot = std::get_if<SpotLight>(&result)) spot->position += by;
-  if (auto* environment = std::get_if<EnvironmentLight>(&result); environment && by.norm() > 0)
-    environment->to_map = environment->to_map * Eigen::AngleAxisd(-by.norm(), by.normalized()).toRotationMatrix();
+  return result;
+}
+
+Light turned(const Light& light, double angle) {
+  Light result = light;
+  if (auto* environment = std::get_if<EnvironmentLight>(&result))
+    environment->to_map = environment->to_map * Eigen::AngleAxisd(-angle, Vec3::UnitY()).toRotationMatrix();
   return result;
 }
 

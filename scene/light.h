@@ -65,8 +65,11 @@ struct LightBall {
 };
 std::optional<LightBall> ball(const Light&);
 
-// A point or spot light somewhere else, an environment turned about `by` by its length in radians, a sun as it is.
+// A point or spot light somewhere else; the others as they are.
 Light moved(const Light&, const Vec3& by);
+
+// An environment turned about the y axis [rad]; the others as they are.
+Light turned(const Light&, double angle);
 
 // Intensity of a point or spot light towards a unit direction from it [W/sr].
 Rgb intensity_towards(const Light&, const Vec3& from_light);

@@ -11,7 +11,7 @@ using scene::Fogmap;
 using scene::Scene;
 
 bool move_lights(Scene& scene) {
-  for (scene::Light& light : scene.lights) light = scene::moved(light, {1e-3, 0, 0});
+  for (scene::Light& light : scene.lights) light = scene::turned(scene::moved(light, {1e-3, 0, 0}), 1e-3);
   return !scene.lights.empty();
 }
 

@@ -8,7 +8,9 @@
 #include "gpu/compensated_ray_marching/smoke_source.h"
 #include "gpu/environment_lights.h"
 #include "gpu/frame.h"
+#include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
+#include "gpu/wavelet_fog/surface_light.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/single_precision.h"
 #include "scene/stopwatch.h"
@@ -40,9 +42,16 @@ class PreparedSmokeGpu final : public scene::Prepared {
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
   bool behind() const { return environments_->count() > 0; }
   void set_environments();
+  void set_lamps();
+  void find_ends(const View&) const;
   void march(const View&) const;
   void look_behind(const View&) const;
+  void light_surfaces(const View&) const;
+  void dim(const View&, const scene::Light&) const;
   void compose(std::size_t pixels) const;
+  Buffer& of_pixels(const char* name, const View& view, std::size_t bytes) const {
+    return frame_.buffers.get(name, bytes * std::size_t(view.width) * std::size_t(view.height));
+  }
 
   std::shared_ptr<const Scene> first_, scene_;  // the first has the smoke
   Options options_;
@@ -56,7 +65,11 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::unique_ptr<SmokeDensity> density_;
   std::unique_ptr<SmokeSource> source_;
   std::unique_ptr<EnvironmentLights> environments_;
-  Program *ranges_ = nullptr, *march_ = nullptr, *composition_ = nullptr;
+  std::unique_ptr<FirstHits> first_hits_;            // null: there are no surfaces
+  std::unique_ptr<Backdrops> backdrops_;             // null: there are none
+  std::unique_ptr<fogmaps::SurfaceLight> surfaces_;  // null: there are no surfaces
+  Scene lamps_;  // the surfaces, lit from the directions that light is gathered from
+  Program *ranges_ = nullptr, *march_ = nullptr, *composition_ = nullptr, *dim_ = nullptr;
   std::vector<Program*> behind_;  // for each environment
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
@@ -83,6 +96,15 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
   StageTimer timer(context_);
   timer.begin("upload");
   set_environments();
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+  if (scene_->geometry) {
+    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+    lamps_ = *scene_;
+    set_lamps();
+    Scene any = lamps_;  // its programs are wanted even when no direction has light yet
+    any.lights = {scene::DirectionalLight{}};
+    surfaces_ = std::make_unique<fogmaps::SurfaceLight>(context_, any, first_hits_.get());
+  }
   composition_ = &program(context_, "smoke_composition", 64, 1, {});
   if (smoke_) {
     const Box box = compensated_ray_marching::smoke_box(smoke_->medium());
@@ -92,6 +114,7 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
     source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *incoming_);
     ranges_ = &program(context_, "ranges", tile, tile, density_->definitions());
     march_ = &program(context_, "march", tile, tile, density_->definitions());
+    if (surfaces_) dim_ = &program(context_, "smoke_dim", tile, tile, density_->definitions());
     grid_->aim(*incoming_, execution);
     source_->light(*grid_, *incoming_, true, timer, execution);
   }
@@ -106,6 +129,14 @@ void PreparedSmokeGpu::set_environments() {
     behind_.push_back(&program(context_, "smoke_behind", tile, tile, environments_->definitions(l)));
 }
 
+// What surfaces reflect comes from the directions that smoke is lit from, one after the other.
+void PreparedSmokeGpu::set_lamps() {
+  lamps_.lights.clear();
+  for (std::size_t k = 0; k < incoming_->directions().size(); ++k)
+    if ((incoming_->power()[k] != 0).any())
+      lamps_.lights.push_back(scene::DirectionalLight{incoming_->directions()[k], incoming_->power()[k]});
+}
+
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
 std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_ptr<const Scene> scene,
                                                                     const Execution& execution) {
@@ -117,6 +148,7 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
   std::vector<scene::StageTime> times;
   scene::Stopwatch watch;
   incoming_->become(scene_->lights);
+  if (surfaces_) set_lamps();
   times.push_back({"environment", watch.lap()});
   if (!smoke_) return times;
   const bool aimed = grid_->aim(*incoming_, execution);
@@ -137,14 +169,28 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
     again = fmt::format("{} bands, deepest cell {:.2g}; {} iterations, error about {:.1g}{}", options_.order,
                         grid_->deepest_cell(), source_->iterations(), source_->error(),
                         source_->error() > options_.tolerance ? ": more than the tolerance" : "");
-  return {{"single scattering", scatters,
-           !smoke_    ? none
-           : scatters ? fmt::format("{} nodes, {} directions", grid_->nodes().size(), incoming_->directions().size())
-                      : "the albedo is 0"},
-          {"multiple scattering", multiple, again},
-          {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},
-          {"background", behind(), behind() ? "environments through the smoke" : "nothing stands behind"},
-          {"composition", true, "layers of the film"}};
+  return {
+      {"single scattering", scatters,
+       !smoke_    ? none
+       : scatters ? fmt::format("{} nodes, {} directions", grid_->nodes().size(), incoming_->directions().size())
+                  : "the albedo is 0"},
+      {"multiple scattering", multiple, again},
+      {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},
+      {"ends", first_hits_ || backdrops_,
+       first_hits_ || backdrops_ ? "where surfaces and backdrops end camera rays" : "nothing ends a ray"},
+      {"surfaces", bool(surfaces_),
+       surfaces_ ? fmt::format("lit from {} directions, through the smoke", lamps_.lights.size()) : "there are none"},
+      {"background", behind(), behind() ? "environments through the smoke" : "nothing stands behind"},
+      {"composition", true, "layers of the film"}};
+}
+
+void PreparedSmokeGpu::find_ends(const View& view) const {
+  const Buffer& distances = of_pixels("distances", view, 4);
+  if (first_hits_) {
+    const Buffer& primitives = of_pixels("primitives", view, 4);
+    first_hits_->find(view, distances, &primitives);
+  }
+  if (backdrops_) backdrops_->find(view, distances, bool(first_hits_), of_pixels("seen", view, 12));
 }
 
 void PreparedSmokeGpu::march(const View& view) const {
@@ -153,6 +199,9 @@ void PreparedSmokeGpu::march(const View& view) const {
   const Buffer &airlight = frame_.buffers.get("airlight", 12 * pixels),
                &column = frame_.buffers.get("column", 4 * pixels);
   Program& find = *ranges_;
+  const bool ends = first_hits_ || backdrops_;
+  (ends ? of_pixels("distances", view, 4) : ranges).bind(at::distances);
+  find.set("has_ends", ends);
   ranges.bind(at::ranges);
   airlight.bind(at::airlight);
   column.bind(at::column);
@@ -181,8 +230,31 @@ void PreparedSmokeGpu::look_behind(const View& view) const {
     set_camera(p, view);
     environments_->bind(l, p);
     p.set("first", l == 0);
+    (first_hits_ ? of_pixels("primitives", view, 4) : of_pixels("surface", view, 12)).bind(at::primitives);
+    p.set("has_primitives", bool(first_hits_));
     p.dispatch(view.width, view.height);
   }
+}
+
+void PreparedSmokeGpu::light_surfaces(const View& view) const {
+  Buffer& lit = of_pixels("lit", view, sizeof(fogmaps::LitData));
+  if (lamps_.lights.empty()) lit.clear();
+  surfaces_->render(lamps_, view, &of_pixels("primitives", view, 4), lit,
+                    [&](const scene::Light& light) { dim(view, light); });
+}
+
+void PreparedSmokeGpu::dim(const View& view, const scene::Light& light) const {
+  if (!smoke_) return;
+  Program& p = *dim_;
+  of_pixels("lit", view, sizeof(fogmaps::LitData)).bind(at::lit);
+  density_->bind(p);
+  set_view(p, view);
+  p.set_double("middle", middle_);
+  p.set("to_light", std::get<scene::DirectionalLight>(light).to_light);
+  p.set("sigma_t", smoke_->medium().sigma_t);
+  p.set("widths2", density_->widths2());
+  p.set("loop_count", 3);
+  p.dispatch(view.width, view.height);
 }
 
 void PreparedSmokeGpu::compose(std::size_t pixels) const {
@@ -205,6 +277,11 @@ void PreparedSmokeGpu::compose(std::size_t pixels) const {
   p.set("sigma_t", smoke_ ? smoke_->medium().sigma_t : Rgb(Rgb::Zero()));
   p.set("has_smoke", smoke_.has_value());
   p.set("has_behind", behind());
+  const Buffer& column = frame_.buffers.get("column", 4 * pixels);
+  (surfaces_ ? frame_.buffers.get("lit", sizeof(fogmaps::LitData) * pixels) : column).bind(at::lit);
+  (backdrops_ ? frame_.buffers.get("seen", 12 * pixels) : column).bind(at::seen);
+  p.set("has_lit", bool(surfaces_));
+  p.set("has_seen", bool(backdrops_));
   p.set("has_ambient", ambient());
   p.set("ambient", ambient() ? scene_->ambient_in_scatter : Rgb(Rgb::Zero()));
   p.dispatch(int(3 * pixels));
@@ -215,6 +292,10 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   frame_.begin(execution);
+  if (first_hits_ || backdrops_) {
+    frame_.timer.begin("ends");
+    find_ends(view);
+  }
   if (smoke_) {
     frame_.timer.begin("towards the camera");
     source_->towards(view, middle_);
@@ -222,6 +303,11 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
     march(view);
   }
   frame_.buffers.get("surface", 12 * pixels).bind(at::surface);
+  if (surfaces_) {
+    frame_.timer.begin("surfaces");
+    light_surfaces(view);
+    frame_.buffers.get("surface", 12 * pixels).bind(at::surface);
+  }
   if (behind()) {
     frame_.timer.begin("background");
     look_behind(view);

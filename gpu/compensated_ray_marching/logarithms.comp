@@ -9,5 +9,6 @@ void main() {
   int cell = int(gl_GlobalInvocationID.x);
   if (cell >= cells) return;
   float least = max(1e-6 * uintBitsToFloat(greatest), 1.2e-38);  // LitGrid::towards
-  logarithms[cell] = log(max(radiance[cell], vec4(least)));
+  // Without any light exactly none.
+  logarithms[cell] = greatest == 0u ? vec4(-1000) : log(max(radiance[cell], vec4(least)));
 }

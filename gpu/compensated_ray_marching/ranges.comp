@@ -5,6 +5,8 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 layout(std430, binding = AT_RANGES) writeonly buffer Ranges { vec4 ranges[]; };  // start, length of a slice [m], slices, slope
 layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_COLUMN) writeonly buffer Column { float column[]; };  // [m]
+layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // where something ends the ray [m]
+uniform int has_ends;
 uniform float slice;           // across [m]
 uniform float widths2;         // of Gaussians: beyond so many widths, squared, there is nothing
 
@@ -35,6 +37,7 @@ void main() {
   }
 #endif
   int place = at.y * width + at.x;
+  if (has_ends != 0) t.y = min(t.y, distances[place]);
   ranges[place] = vec4(0);
   if (t.x < t.y) {
     float slope = max(dot(direction, camera_forward), 1e-3), count = max(1.0, ceil((t.y - t.x) * slope / slice));

@@ -69,8 +69,6 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
     else if (!std::holds_alternative<scene::Unbounded>(medium.region))
       reasons.push_back(label(scene.media, i) + " is cut off by a region; shaders know none");
   }
-  if (scene.geometry) reasons.push_back("surfaces; shaders know none");
-  if (!scene.backdrops.empty()) reasons.push_back("a backdrop; shaders know none");
   return reasons;
 }
 

@@ -33,7 +33,12 @@ const std::vector<Binding> bindings = {{"COLUMNS", at::columns},
                                        {"SURFACE", at::surface},
                                        {"AMBIENT", at::ambient},
                                        {"MEAN", at::mean},
-                                       {"COLUMN", at::column}};
+                                       {"COLUMN", at::column},
+                                       {"DISTANCES", at::distances},
+                                       {"PRIMITIVES", at::primitives},
+                                       {"LIT", at::lit},
+                                       {"SEEN", at::seen},
+                                       {"OPEN", at::open}};
 
 }  // namespace
 

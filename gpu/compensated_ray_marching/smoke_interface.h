@@ -19,6 +19,7 @@ enum Binding {
   result = 5,
   source = 6,
   state = 7,
+  open = 4,
   emitted = 1,
   light = 0,
   ways = 3,
@@ -40,6 +41,10 @@ enum Binding {
   ambient = 5,
   mean = 6,
   column = 7,
+  distances = 3,
+  primitives = 5,
+  lit = 1,
+  seen = 0,
 };
 }  // namespace at
 

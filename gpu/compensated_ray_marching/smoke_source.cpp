@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
@@ -103,6 +104,13 @@ SmokeSource::SmokeSource(Context& context, const scene::Medium& medium, const Op
   ways_ = std::make_unique<Buffer>(context_, "ways", ways);
   ordinate_harmonics_ = std::make_unique<Buffer>(context_, "harmonics of ordinates", floats(harmonics));
   weighted_ = std::make_unique<Buffer>(context_, "weighted harmonics", floats(weighted));
+  std::vector<std::uint32_t> open;
+  for (std::size_t d = 0; d < grid.open().size(); ++d) {
+    if (d % 32 == 0) open.resize(open.size() + std::size_t(cells_), 0);
+    for (std::size_t i = 0; i < std::size_t(cells_); ++i)
+      if (grid.open()[d][i] > 0) open[d / 32 * std::size_t(cells_) + i] |= 1u << (d % 32);
+  }
+  if (!open.empty()) open_ = std::make_unique<Buffer>(context_, "open ways", open);
   parts_ = std::make_unique<Buffer>(context_, "parts of sums", 8 * std::size_t(groups_of_sums * (3 + 2 * kept)));
   state_ = std::make_unique<Buffer>(context_, "state", sizeof(StateData));
 }
@@ -208,6 +216,8 @@ void SmokeSource::iterate(const Group& g, int iteration) {
   densities_->bind(at::densities);
   radiance_of_ways_->bind(at::light);
   ways_->bind(at::ways);
+  (open_ ? *open_ : *ways_).bind(at::open);
+  sweep.set("has_objects", open_ != nullptr);
   set_scatterer(sweep, g);
   sweep.set("cells_along", cells_along_);
   const int x = int(std::max(cells_along_[0], cells_along_[1])), y = int(std::max(cells_along_[1], cells_along_[2]));

@@ -63,7 +63,7 @@ class SmokeSource {
   int iterations_ = 0;
   double error_ = 0;
   std::unique_ptr<Buffer> nodes_, densities_, columns_, powers_, towards_light_, harmonics_, ordinate_harmonics_,
-      weighted_, ways_, single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_,
+      weighted_, ways_, open_, single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_,
       radiance_, greatest_, logarithms_;
 };
 

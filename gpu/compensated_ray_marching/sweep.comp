@@ -13,6 +13,8 @@ layout(std430, binding = AT_DENSITIES) readonly buffer Densities { float densiti
 layout(std430, binding = AT_EMITTED) readonly buffer Emitted { float emitted[]; };        // [direction][light of the solve][cell]
 layout(std430, binding = AT_LIGHT) buffer Light { float light[]; };                       // the same: radiance
 layout(std430, binding = AT_WAYS) readonly buffer Ways { Way ways[]; };
+layout(std430, binding = AT_OPEN) readonly buffer Open { uint open[]; };                  // [32 directions][cell]: open_ways
+uniform int has_objects;
 uniform vec3 cells_along;  // each axis
 uniform int plane;  // from where the ray comes in
 
@@ -81,7 +83,8 @@ void main() {
     Meeting m = meeting(place, offset, start - on, stride, extent);
     depth += density_at(m);
     up = emitted_at(m, from);
-    before = dot(m.weight * m.within, vec4(light[from + m.at.x], light[from + m.at.y], light[from + m.at.z], light[from + m.at.w]));
+    bool passes = has_objects == 0 || (open[(which / lights / 32) * cells + at] >> (which / lights % 32) & 1u) != 0;
+    if (passes) before = dot(m.weight * m.within, vec4(light[from + m.at.x], light[from + m.at.y], light[from + m.at.z], light[from + m.at.w]));
   }
   depth *= 0.5 * way.step * sigma;
   beyond = max(beyond * 0.5 * way.step * sigma, 1e-6 * depth + 1e-30);

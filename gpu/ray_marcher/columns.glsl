@@ -1,4 +1,5 @@
 // Integrals of densities from a point towards a light: reference/ray_marcher/columns.cpp and its kernels.
+#include "common/error_function.glsl"
 uniform int shadow_steps;
 uniform float shadow_step;  // [m]; > 0: instead of the count
 uniform int exact_shadow;
@@ -70,14 +71,6 @@ float gaussian_column(int k, vec3 o, vec3 d, vec2 t) {
     sum += g.amplitude * part;
   }
   return sum * h;
-}
-
-// erf, absolute error 1.5e-7: Abramowitz and Stegun, formula 7.1.26. Absolute is what counts, in optical depths.
-float error_function(float x) {
-  float size = abs(x), t = 1 / (1 + 0.3275911 * size);
-  float sum = 0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)));
-  float value = 1 - sum * t * exp(-size * size);
-  return x < 0 ? -value : value;
 }
 
 // Zhou et al. 2007, Eq. 31: sqrt(pi)/2 * amplitude * exp(-near^2) / rate * (erf(u1) - erf(u0)).

@@ -188,9 +188,16 @@ TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous"
 }
 
 TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]") {
-  const std::vector<std::string> know = {
-      "ray_marcher", "ray_marcher_gpu", "path_tracer",         "deterministic",           "fogshop",
-      "wavelet_fog", "legendre_fluids", "legendre_fluids_gpu", "compensated_ray_marching"};
+  const std::vector<std::string> know = {"ray_marcher",
+                                         "ray_marcher_gpu",
+                                         "path_tracer",
+                                         "deterministic",
+                                         "fogshop",
+                                         "wavelet_fog",
+                                         "legendre_fluids",
+                                         "legendre_fluids_gpu",
+                                         "compensated_ray_marching",
+                                         "compensated_ray_marching_gpu"};
   for (const std::string& name : experiments::renderer_names()) {
     CAPTURE(name);
     const scene::Renderer& renderer = experiments::find_renderer(name, "test");

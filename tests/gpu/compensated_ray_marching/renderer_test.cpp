@@ -5,6 +5,7 @@
 #include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/convert/residual.h"
+#include "scene/geometry/shapes.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"
@@ -124,6 +125,64 @@ TEST_CASE("compensated march on the device: voxels, turned, and what Gaussians l
     Given given = small;
     given["residual"] = residual;
     compare(scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven()), given);
+  }
+}
+
+TEST_CASE("compensated march on the device: surfaces, their shadows on smoke and the smoke's on them",
+          "[gpu][compensated_ray_marching]") {
+  if (!gpu::test::device()) return;
+  auto scene = scene_of(puffs(), 4, 0.9, uneven());
+  scene->camera = scene::look_at({0.3, 1.7, 3.4}, {0, 0, 0}, Vec3::UnitY());
+  scene->width = 26;
+  scene->height = 18;
+  scene->surfaces = {{"ground", scene::Plane{{0, -0.8, 0}, Vec3::UnitY()}, scene::Lambert{Rgb(0.7, 0.6, 0.5)}},
+                     {"ball", scene::Sphere{{0.6, 0.6, 0.5}, 0.25}, scene::Phong{}},
+                     {"box", scene::make_box({Point3(-0.9, -0.8, -0.6), Point3(-0.6, 0.1, 0.2)}), scene::Lambert{}}};
+  Given single = small;
+  single["multiple"] = "none";
+  for (const bool sun : {false, true}) {
+    if (sun) scene->lights.push_back(scene::DirectionalLight{Vec3(1, 2, 1).normalized(), Rgb(1, 2, 3)});
+    finish(*scene);
+    compare(scene);
+    compare(scene, single);
+  }
+  // Of voxels, turned, and before a picture with depth; then none at all.
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = {9, 7, 8};
+  grid->voxel_size = 0.2;
+  grid->rotation = Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+  grid->translation = {-0.7, -0.4, -0.8};
+  for (int i = 0; i < 9 * 7 * 8; ++i) grid->values.push_back(float(std::max(0.0, 0.4 + std::sin(0.37 * i))));
+  scene->media[0].field = scene::GridPointer(grid);
+  scene::Backdrop backdrop{26, 18, {}, {}, true};
+  for (int i = 0; i < 26 * 18; ++i) {
+    for (int c = 0; c < 3; ++c) backdrop.radiance.push_back(float(0.1 + 0.001 * i + 0.1 * c));
+    backdrop.depth.push_back(float(i % 3 ? 2.5 + 0.01 * i : infinity));
+  }
+  for (const bool picture : {false, true}) {
+    if (picture) scene->backdrops.push_back(std::make_shared<const scene::Backdrop>(backdrop));
+    finish(*scene);
+    compare(scene);
+  }
+  scene->media[0].sigma_t = Rgb::Zero();
+  finish(*scene);
+  compare(scene);
+}
+
+TEST_CASE("compensated march on the device: other lights on surfaces in the next frame",
+          "[gpu][compensated_ray_marching]") {
+  if (!gpu::test::device()) return;
+  const auto lit_by = [](scene::EnvironmentLight light) {
+    auto scene = scene_of(puffs(), 4, 0.9, std::move(light));
+    scene->surfaces = {{"ground", scene::Plane{{0, -0.8, 0}, Vec3::UnitY()}, scene::Lambert{Rgb(0.7, 0.6, 0.5)}}};
+    finish(*scene);
+    return scene;
+  };
+  const auto dark = lit_by(scene::make_constant_environment(Rgb::Zero()));
+  const auto prepared = device.prepare(dark, {device.settings(), small}, {1, {}});
+  for (const auto& scene : {lit_by(uneven(1)), dark, lit_by(uneven(0.3))}) {
+    REQUIRE(prepared->next(scene, {1, {}}));
+    compare(picture(cpu, scene, small), prepared->render(view_of(*scene), {1, {}}).film);
   }
 }
 
