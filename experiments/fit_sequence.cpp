@@ -153,9 +153,38 @@ class Folder {
 
   // The frames that are there; into `previous`, the last of them that is not empty.
   std::vector<FittedFrame> resume(GaussianFit& previous) {
+    if (!fs::exists(at("record.json"))) return {};
+    if (!s_.begin_anew) return frames_there(previous);
+    try {
+      return frames_there(previous);
+    } catch (const Error&) {
+      previous = {};
+      fs::remove(at("record.json"));
+      return {};
+    }
+  }
+
+  void keep(const Frame& of, const VoxelGrid& grid, const GaussianFit& fit, FittedFrame& frame) {
+    const std::string csv = at(frame.name + ".csv"), residual = at(frame.name + ".residual");
+    scene::write_gaussians_csv(csv, fit);
+    scene::write_residual(residual, scene::residual_of(grid, fit.sum, {s_.threshold, {}, true}));
+    frame.residual_bytes = fs::file_size(residual);
+    json entry = as_json(frame, of);
+    entry["csv"] = content_key(scene::read_whole_file(csv, most_bytes));
+    entry["residual"] = content_key(scene::read_whole_file(residual, most_bytes));
+    if (!fit.sum.gaussians.empty()) {
+      record_["last_filled"] = record_["frames"].size();
+      record_["first_ratio"] = fit.first_ratio;
+      record_["next_id"] = fit.next_id;
+    }
+    record_["frames"].push_back(std::move(entry));
+    scene::write_file_atomically(at("record.json"), record_.dump(1) + "\n");
+  }
+
+ private:
+  std::vector<FittedFrame> frames_there(GaussianFit& previous) {
     std::vector<FittedFrame> frames;
     const std::string path = at("record.json");
-    if (!fs::exists(path)) return frames;
     const json there = read_json(path);
     try {
       if (there.at("key") != key_)
@@ -192,25 +221,6 @@ class Folder {
     record_ = there;
     return frames;
   }
-
-  void keep(const Frame& of, const VoxelGrid& grid, const GaussianFit& fit, FittedFrame& frame) {
-    const std::string csv = at(frame.name + ".csv"), residual = at(frame.name + ".residual");
-    scene::write_gaussians_csv(csv, fit);
-    scene::write_residual(residual, scene::residual_of(grid, fit.sum, {s_.threshold, {}, true}));
-    frame.residual_bytes = fs::file_size(residual);
-    json entry = as_json(frame, of);
-    entry["csv"] = content_key(scene::read_whole_file(csv, most_bytes));
-    entry["residual"] = content_key(scene::read_whole_file(residual, most_bytes));
-    if (!fit.sum.gaussians.empty()) {
-      record_["last_filled"] = record_["frames"].size();
-      record_["first_ratio"] = fit.first_ratio;
-      record_["next_id"] = fit.next_id;
-    }
-    record_["frames"].push_back(std::move(entry));
-    scene::write_file_atomically(at("record.json"), record_.dump(1) + "\n");
-  }
-
- private:
   std::string at(const std::string& name) const { return (s_.folder / name).string(); }
   const FitSequence& s_;
   const Survey& all_;

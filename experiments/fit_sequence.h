@@ -22,6 +22,7 @@ struct FitSequence {
   scene::FitOptions options;       // unit 0: the cube root of the volume of the box that all frames fill together
   int threshold = 0;               // of the residual: levels of this size or less are dropped
   std::filesystem::path folder;
+  bool begin_anew = false;  // where the folder holds another fit; else that is an error
 };
 
 struct FittedFrame {

@@ -3,6 +3,7 @@
 #include "experiments/compensated_ray_marching/fitted_picture_probe.h"
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/residual_probe.h"
+#include "experiments/compensated_ray_marching/smoke_flicker_probe.h"
 #include "experiments/find_component.h"
 #include "experiments/fogshop/kernel_rate.h"
 #include "experiments/legendre_fluids/fluid_probes.h"
@@ -47,6 +48,7 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<ResidualStores>());
     list.push_back(std::make_unique<GaussianFitProbe>());
     list.push_back(std::make_unique<FittedPicture>());
+    list.push_back(std::make_unique<SmokeFlicker>());
     return list;
   }();
   return probes;

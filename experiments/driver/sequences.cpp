@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiments/driver/toml_values.h"
+#include "experiments/fit_sequence.h"
 #include "experiments/frames.h"
 #include "experiments/progress.h"
 #include "experiments/simulation.h"
@@ -39,11 +40,25 @@ TableReader reader_of(const toml::table& list, const std::string& name) {
   if (!table)
     throw Error(fmt::format("{}: expected a table [{}]", scene::load::location(list[name].node()->source()), name));
   TableReader reader(*table, name);
-  reader.allow({"problem", "solver", "quick", "paper"});
+  if (table->contains("fit"))
+    reader.allow({"fit", "quick", "paper"});
+  else
+    reader.allow({"problem", "solver", "quick", "paper"});
   return reader;
 }
 
-// "swirl.red.csv": the sequence swirl, the coefficients of its density red; "snow.particles.csv": where its particles are. Frames by default.
+// Whose frames a sequence that is a fit is of; itself, if it is none.
+std::string simulated(const toml::table& list, const std::string& name) {
+  const TableReader reader = reader_of(list, name);
+  if (!list[name].as_table()->contains("fit")) return name;
+  const std::string of = reader.text("fit");
+  const toml::table* other = list[of].as_table();
+  if (!other || other->contains("fit")) reader.expected("fit", "the name of a sequence that is simulated");
+  return of;
+}
+
+// "swirl.red.csv": the sequence swirl, the coefficients of its density red; "snow.particles.csv": where its particles are;
+// "fitted.csv", "fitted.residual": of a fit. Frames by default.
 std::pair<std::string, std::string> name_and_kind(const std::string& asked) {
   const std::size_t dot = std::min(asked.find('.'), asked.size());
   return {asked.substr(0, dot), dot < asked.size() ? asked.substr(dot) : ".vdb"};
@@ -64,14 +79,19 @@ std::string sequence_files(const fs::path& root, const std::string& asked, const
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
                             scene::nearest_hint(name, known)));
-  const auto problem = scene::load_flow(problem_of(root, reader_of(list, name)).string());
+  const std::string of = simulated(list, name);
+  const auto problem = scene::load_flow(problem_of(root, reader_of(list, of)).string());
   std::vector<std::string> kinds{".vdb", ".csv"};
-  if (!problem.particles.empty()) kinds.push_back(".particles.csv");
-  for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
+  if (of != name) {
+    kinds = {".csv", ".residual"};
+  } else {
+    if (!problem.particles.empty()) kinds.push_back(".particles.csv");
+    for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
+  }
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw Error(fmt::format("{}: the sequence '{}' has no files {}, expected one of {}", where, name, kind,
                             fmt::join(kinds, ", ")));
-  const std::size_t ending = kind.size() - 4;
+  const std::size_t ending = kind.rfind('.');
   return (folder_of(root, name, profile) / (problem.name + kind.substr(0, ending) + ".####" + kind.substr(ending)))
       .string();
 }
@@ -87,10 +107,34 @@ void name_sequences(const fs::path& root, const std::string& profile, const std:
   }
 }
 
+namespace {
+
+void fit(const fs::path& root, const TableReader& reader, const std::string& name, const std::string& of,
+         const std::string& profile, int threads) {
+  TableReader of_profile = reader.required_table(profile);
+  of_profile.allow({"gaussians"});
+  FitSequence fitted;
+  fitted.options.gaussians = int(of_profile.integer("gaussians", 1, scene::most_fit_gaussians));
+  fitted.folder = folder_of(root, name, profile);
+  fitted.begin_anew = true;
+  for (const auto& entry : fs::directory_iterator(folder_of(root, of, profile)))
+    if (entry.path().extension() == ".vdb") fitted.files.push_back(entry.path().string());
+  std::sort(fitted.files.begin(), fitted.files.end());
+  Progress progress(fmt::format("sequence {} ({})", name, profile));
+  fit_sequence(fitted, progress.execution(threads));
+}
+
+}  // namespace
+
 void make_sequence(const fs::path& root, const std::string& asked, const std::string& profile, int threads) {
   const std::string name = name_and_kind(asked).first;
   const toml::table list = read_list(root);
   const TableReader reader = reader_of(list, name);
+  if (const std::string of = simulated(list, name); of != name) {
+    make_sequence(root, of, profile, threads);
+    fit(root, reader, name, of, profile, threads);
+    return;
+  }
   TableReader of_profile = reader.required_table(profile);
   of_profile.allow({"settings", "overrides"});
   const toml::table& raw = *list[name][profile].as_table();

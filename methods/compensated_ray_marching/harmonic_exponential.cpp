@@ -77,7 +77,7 @@ LinearExponential::LinearExponential(const std::vector<Harmonics>& family, doubl
     : longest_(longest), log_a_(std::size_t(steps) + 1, 0.0), log_b_(std::size_t(steps) + 1, 0.0) {
   if (family.empty()) throw Error("a linear exponential of an empty family");
   const Sphere sphere(order_of(family[0]), 24, 48);
-  std::vector<double> a(log_a_.size(), 0.0), b(log_a_.size(), 0.0);
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(steps + 1), b = a;
   for (const Harmonics& h : family)
     for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
       const double value = sphere.value(h, i), weight = sphere.directions[i].weight;
@@ -85,15 +85,15 @@ LinearExponential::LinearExponential(const std::vector<Harmonics>& family, doubl
       double power = 1;
       for (int k = 1; k <= steps; ++k) {
         power = k % 16 ? power * factor : std::exp(-longest * k / steps * value);
-        a[std::size_t(k)] += weight * power;
-        b[std::size_t(k)] -= weight * power * value;
+        a[k] += weight * power;
+        b[k] -= weight * power * value;
       }
     }
   for (int k = 1; k <= steps; ++k) {
     const double s = longest * k / steps, members = double(family.size());
-    log_a_[std::size_t(k)] = std::log(a[std::size_t(k)] / (4 * pi * members));
+    log_a_[std::size_t(k)] = std::log(a[k] / (4 * pi * members));
     // One band alone has no slope.
-    if (b[std::size_t(k)] > 0) log_b_[std::size_t(k)] = std::log(b[std::size_t(k)] / (s * members));
+    if (b[k] > 0) log_b_[std::size_t(k)] = std::log(b[k] / (s * members));
   }
 }
 

@@ -106,6 +106,43 @@ TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flo
   CHECK(airlight::read_bytes(project.frame(1).string()) != before);
 }
 
+TEST_CASE("Gaussians are fitted to the frames of a sequence, and again where those or their number change",
+          "[driver][flow][gaussian_fit]") {
+  const Frames project;
+  const auto list = [&](int n, int gaussians) {
+    project.list("n = " + std::to_string(n));
+    const fs::path file = project.path() / "experiments/sequences.toml";
+    project.write("experiments/sequences.toml",
+                  airlight::read_bytes(file.string()) +
+                      "[fitted]\nfit = \"puff\"\nquick = { gaussians = " + std::to_string(gaussians) + " }\n");
+  };
+  const auto files = [&](const std::string& kind) {
+    std::string pattern = sequence_files(project.path(), "fitted" + kind, "quick", "here");
+    return pattern.replace(pattern.find("####"), 4, "0002");
+  };
+  list(8, 3);
+  CHECK_THAT(files(".csv"), Contains("fitted.quick/puff.0002.csv"));
+  CHECK_THAT(files(".residual"), Contains("fitted.quick/puff.0002.residual"));
+  CHECK_THROWS_WITH(files(""),
+                    Contains("here: the sequence 'fitted' has no files .vdb, expected one of .csv, .residual"));
+  make_sequence(project.path(), "fitted.csv", "quick", 1);
+  const std::string three = airlight::read_bytes(files(".csv"));
+  CHECK(fs::exists(project.frame(2)));
+  CHECK(fs::exists(files(".residual")));
+  const auto made = fs::last_write_time(files(".csv"));
+  make_sequence(project.path(), "fitted.residual", "quick", 1);
+  CHECK(fs::last_write_time(files(".csv")) == made);
+  for (const auto& [n, gaussians] : {std::pair(8, 2), std::pair(10, 2)}) {
+    const std::string before = airlight::read_bytes(files(".csv"));
+    list(n, gaussians);
+    make_sequence(project.path(), "fitted", "quick", 1);
+    CHECK(airlight::read_bytes(files(".csv")) != before);
+  }
+  project.write("experiments/sequences.toml", "[fitted]\nfit = \"fitted\"\nquick = { gaussians = 2 }\n");
+  CHECK_THROWS_WITH(make_sequence(project.path(), "fitted", "quick", 1),
+                    Contains("expected the name of a sequence that is simulated"));
+}
+
 TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow]") {
   Frames project;
   project.write("experiments/sequences.toml", "[puf]\nproblem = \"flows/puff.toml\"\n");
