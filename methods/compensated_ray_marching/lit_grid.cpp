@@ -19,16 +19,16 @@ namespace {
 constexpr int most_cells = 96;           // along a side, for cells that are not too deep
 constexpr double least_share = 1e-6;     // of the greatest mean density: below it a cell counts as empty
 constexpr double least_radiance = 1e-6;  // of the greatest
-constexpr std::size_t chunk = 64;        // nodes a task
+constexpr std::size_t run = 64;          // nodes a task
 
-// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr].
-double phase_in_bands(const std::vector<double>& moments, double c) {
-  double before = 0, now = 1, sum = 0;
+// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr], of many cosines.
+Eigen::ArrayXXd phase_in_bands(const std::vector<double>& moments, const Eigen::ArrayXXd& c) {
+  Eigen::ArrayXXd before = Eigen::ArrayXXd::Zero(c.rows(), c.cols()), now = before + 1, sum = before;
   for (std::size_t l = 0; l < moments.size(); ++l) {
-    sum += (2 * double(l) + 1) * moments[l] * now;
-    const double next = ((2 * double(l) + 1) * c * now - double(l) * before) / (double(l) + 1);
-    before = now;
-    now = next;
+    const double n = double(l);
+    sum += (2 * n + 1) * moments[l] * now;
+    before = ((2 * n + 1) / (n + 1)) * c * now - (n / (n + 1)) * before;
+    now.swap(before);
   }
   return sum / (4 * pi);
 }
@@ -112,9 +112,8 @@ void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const sce
   toward_ = light.directions();
   columns_.resize(from);
   columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
-  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
-  scene::parallel_rows(int(chunks), execution, [&](int row) {
-    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i)
+  in_runs(execution, [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i)
       for (std::size_t k = from; k < toward_.size(); ++k) {
         const Ray ray{grid_.node(nodes_[i]), toward_[k]};
         const bool blocked = scene_.geometry && scene_.geometry->occluded(ray);
@@ -124,16 +123,32 @@ void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const sce
   });
 }
 
-Rgb LitGrid::left(std::size_t node, std::size_t direction) const {
-  const double column = columns_[direction][node];
-  if (column == infinity) return Rgb::Zero();
-  return power_[direction] * (-medium_.sigma_t * column).exp();
+// In a node's row what the smoke leaves of the light of each direction.
+Eigen::ArrayXXd LitGrid::left(std::size_t first, std::size_t count, double sigma_t) const {
+  Eigen::ArrayXXd left(Eigen::Index(count), Eigen::Index(columns_.size()));
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const auto column =
+        Eigen::Map<const Eigen::ArrayXf>(columns_[k].data() + first, Eigen::Index(count)).cast<double>();
+    left.col(Eigen::Index(k)) = (column < infinity).select((-sigma_t * column).exp(), 0.0);
+  }
+  return left;
+}
+
+// Calls of(first, count) for runs of nodes with smoke.
+void LitGrid::in_runs(const scene::Execution& execution,
+                      const std::function<void(std::size_t, std::size_t)>& of) const {
+  const std::size_t runs = (nodes_.size() + run - 1) / run;
+  scene::parallel_rows(int(runs), execution, [&](int row) {
+    const std::size_t first = std::size_t(row) * run;
+    of(first, std::min(run, nodes_.size() - first));
+  });
 }
 
 bool LitGrid::aim(const IncomingLight& light, const scene::Execution& execution) {
   scene::Stopwatch watch;
   times_.clear();
-  power_ = light.power();
+  power_.resize(Eigen::Index(light.power().size()), 3);
+  for (std::size_t k = 0; k < light.power().size(); ++k) power_.row(Eigen::Index(k)) = light.power()[k].transpose();
   if (light.directions().size() == toward_.size() && std::equal(toward_.begin() + long(light.fixed()), toward_.end(),
                                                                 light.directions().begin() + long(light.fixed())))
     return false;
@@ -153,35 +168,34 @@ void LitGrid::light(const IncomingLight& light, const scene::Execution& executio
 void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& execution) {
   scene::Stopwatch watch;
   const int order = options_.order;
-  const std::size_t bands = std::size_t(order) * std::size_t(order);
+  const Eigen::Index bands = order * order;
   const std::vector<double> moments = phase_moments(medium_.phase, order);
-  std::vector<std::vector<double>> harmonics;
-  for (const Vec3& d : toward_) harmonics.push_back(scene::evaluate_sh(order, d));
-  std::vector<std::vector<Rgb>> single(nodes_.size());
-  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
-  scene::parallel_rows(int(chunks), execution, [&](int row) {
-    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i) {
-      std::vector<Rgb> sum(bands, Rgb::Zero());
-      for (std::size_t k = 0; k < toward_.size(); ++k) {
-        const Rgb here = left(i, k);
-        for (std::size_t b = 0; b < bands; ++b) sum[b] += harmonics[k][b] * here;
-      }
-      single[i] = scattered(std::move(sum), medium_.albedo, moments);
-    }
-  });
-  times_.push_back({"single scattering", watch.lap()});
+  // What a direction's light of radiance 1 adds to each coefficient, but for albedo and its power.
+  Eigen::MatrixXd scatters(Eigen::Index(toward_.size()), bands);
+  for (std::size_t k = 0; k < toward_.size(); ++k) {
+    const std::vector<double> harmonics = scene::evaluate_sh(order, -toward_[k]);
+    for (Eigen::Index b = 0; b < bands; ++b)
+      scatters(Eigen::Index(k), b) = harmonics[std::size_t(b)] * moments[std::size_t(std::sqrt(double(b)))];
+  }
 
-  again_.assign(nodes_.size(), std::vector<Rgb>(bands, Rgb::Zero()));
+  again_.assign(nodes_.size(), std::vector<Rgb>(std::size_t(bands), Rgb::Zero()));
   tbb::task_arena arena(scene::threads_for(execution.threads));
   std::atomic<bool> stopped{false};
+  double single_seconds = 0, multiple_seconds = 0;
   for (Channels& group : channels_) {
     // Of light without colour one channel stands for all.
     const std::size_t lights = light.grey() ? 1 : group.which.size();
-    Moments source = Moments::Zero(grid_.cells.nodes(), Eigen::Index(lights * bands));
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      for (std::size_t l = 0; l < lights; ++l)
-        for (std::size_t b = 0; b < bands; ++b)
-          source(nodes_[i], Eigen::Index(l * bands + b)) = single[i][b][group.which[l]];
+    const double albedo = medium_.albedo[group.which[0]];
+    Eigen::MatrixXd of_direction(scatters.rows(), Eigen::Index(lights) * bands);
+    for (std::size_t l = 0; l < lights; ++l)
+      of_direction.middleCols(Eigen::Index(l) * bands, bands) =
+          (albedo * power_.col(group.which[l])).matrix().asDiagonal() * scatters;
+    Moments source = Moments::Zero(grid_.cells.nodes(), of_direction.cols());
+    in_runs(execution, [&](std::size_t first, std::size_t count) {
+      const Eigen::MatrixXd single = left(first, count, medium_.sigma_t[group.which[0]]).matrix() * of_direction;
+      for (std::size_t i = 0; i < count; ++i) source.row(nodes_[first + i]) = single.row(Eigen::Index(i));
+    });
+    single_seconds += watch.lap();
     const bool known = group.before && group.before->cols() == source.cols();
     const Moments* before = known ? &*group.before : nullptr;
     const auto interrupted = [&] {
@@ -196,34 +210,44 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
       solution = {p1.radiance, std::move(p1.radiance), p1.iterations, p1.error};
     }
     if (stopped) throw scene::Interrupted("interrupted");
-    const double albedo = medium_.albedo[group.which[0]];
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       for (std::size_t l = 0; l < group.which.size(); ++l)
-        for (std::size_t b = 0; b < bands; ++b)
-          again_[i][b][group.which[l]] = albedo * moments[std::size_t(std::sqrt(double(b)))] *
-                                         solution.radiance(nodes_[i], Eigen::Index((lights == 1 ? 0 : l) * bands + b));
+        for (Eigen::Index b = 0; b < bands; ++b)
+          again_[i][std::size_t(b)][group.which[l]] =
+              albedo * moments[std::size_t(std::sqrt(double(b)))] *
+              solution.radiance(nodes_[i], Eigen::Index(lights == 1 ? 0 : l) * bands + b);
     iterations_ += solution.iterations;
     error_ = std::max(error_, solution.error);
     group.before = std::move(solution.source);
+    multiple_seconds += watch.lap();
   }
-  times_.push_back({"multiple scattering", watch.lap()});
+  times_.push_back({"single scattering", single_seconds});
+  times_.push_back({"multiple scattering", multiple_seconds});
 }
 
 std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Execution& execution) const {
   std::vector<Rgb> values(std::size_t(grid_.cells.nodes()), Rgb::Zero());
-  const std::size_t fixed = std::size_t(options_.grid.levels) * 2 * std::size_t(options_.grid.levels);
-  const std::size_t chunks = (nodes_.size() + chunk - 1) / chunk;
-  scene::parallel_rows(int(chunks), execution, [&](int row) {
-    for (std::size_t i = std::size_t(row) * chunk; i < std::min(nodes_.size(), (std::size_t(row) + 1) * chunk); ++i) {
-      const Vec3 out = to_camera(camera, grid_.node(nodes_[i]));
-      Rgb sum = Rgb::Zero();
-      for (std::size_t k = 0; k < toward_.size(); ++k) {
-        const double cosine = std::clamp(-toward_[k].dot(out), -1.0, 1.0);
-        sum += left(i, k) * (k < fixed ? phase_in_bands(phase_, cosine) : phase_value(medium_.phase, cosine));
-      }
-      sum *= medium_.albedo;
-      if (!again_.empty()) sum += scene::evaluate_sh(again_[i], out);
-      values[std::size_t(nodes_[i])] = sum.max(0);
+  const Eigen::Index fixed = Eigen::Index(options_.grid.levels) * 2 * Eigen::Index(options_.grid.levels);
+  Eigen::MatrixXd came(3, Eigen::Index(toward_.size()));  // the ways that light goes
+  for (std::size_t k = 0; k < toward_.size(); ++k) came.col(Eigen::Index(k)) = -toward_[k];
+  in_runs(execution, [&](std::size_t first, std::size_t count) {
+    Eigen::MatrixXd out(Eigen::Index(count), 3);
+    for (std::size_t i = 0; i < count; ++i)
+      out.row(Eigen::Index(i)) = to_camera(camera, grid_.node(nodes_[first + i])).transpose();
+    const Eigen::ArrayXXd cosine = (out * came).array().max(-1.0).min(1.0);
+    Eigen::ArrayXXd phase(cosine.rows(), cosine.cols());
+    phase.leftCols(fixed) = phase_in_bands(phase_, cosine.leftCols(fixed));
+    for (Eigen::Index k = fixed; k < cosine.cols(); ++k)
+      for (Eigen::Index i = 0; i < cosine.rows(); ++i) phase(i, k) = phase_value(medium_.phase, cosine(i, k));
+    Eigen::ArrayXXd sum(cosine.rows(), 3), once;
+    for (int c = 0; c < 3; ++c) {
+      if (c == 0 || medium_.sigma_t[c] != medium_.sigma_t[c - 1]) once = left(first, count, medium_.sigma_t[c]) * phase;
+      sum.col(c) = medium_.albedo[c] * (once.matrix() * power_.col(c).matrix()).array();
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      Rgb here = sum.row(Eigen::Index(i)).transpose();
+      if (!again_.empty()) here += scene::evaluate_sh(again_[first + i], Vec3(out.row(Eigen::Index(i))));
+      values[std::size_t(nodes_[first + i])] = here.max(0);
     }
   });
   Rgb most = Rgb::Zero();

@@ -1,6 +1,7 @@
 // Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): exact depths towards the light, in
 // fixed directions, for single scattering; discrete ordinates or diffusion for the rest.
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "methods/compensated_ray_marching/incoming_light.h"
@@ -51,7 +52,8 @@ class LitGrid {
   };
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
   void find_open_ways(const OrdinateOptions&, const scene::Execution&);
-  Rgb left(std::size_t node, std::size_t direction) const;
+  Eigen::ArrayXXd left(std::size_t first, std::size_t count, double sigma_t) const;
+  void in_runs(const scene::Execution&, const std::function<void(std::size_t, std::size_t)>&) const;
   void scatter_again(const IncomingLight&, const scene::Execution&);
 
   const scene::Scene& scene_;
@@ -65,7 +67,7 @@ class LitGrid {
   std::vector<std::vector<float>>
       columns_;               // of each direction, at the nodes with smoke [m]; infinite where a surface is in the way
   std::vector<Vec3> toward_;  // the directions
-  std::vector<Rgb> power_;
+  Eigen::ArrayX3d power_;     // of each
   std::vector<std::vector<float>> open_;
   std::vector<Channels> channels_;
   std::vector<std::vector<Rgb>> again_;  // J_ms of each node with smoke, order^2 coefficients; empty without
