@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/driver/toml_values.h"
 #include "experiments/fit_sequence.h"
 #include "experiments/frames.h"
+#include "experiments/json.h"
 #include "experiments/progress.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
@@ -151,7 +153,19 @@ void make_sequence(const fs::path& root, const std::string& asked, const std::st
 }
 
 Columns sequence_history(const fs::path& root, const std::string& name, const std::string& profile) {
-  const std::string file = (folder_of(root, name, profile) / "history.csv").string();
+  const fs::path folder = folder_of(root, name, profile);
+  Columns columns;
+  if (const fs::path file = folder / "record.json"; fs::exists(file)) {
+    const auto record = read_json(file.string());
+    double number = 0;
+    for (const auto& frame : record.at("frames")) {
+      columns["frame"].push_back(number++);
+      for (const auto& [key, value] : frame.items())
+        if (value.is_number()) columns[key].push_back(value.get<double>());
+    }
+    return columns;
+  }
+  const std::string file = (folder / "history.csv").string();
   std::istringstream lines(scene::read_whole_file(file));
   const auto cells_of = [](const std::string& line) {
     std::vector<std::string> cells;
@@ -162,7 +176,6 @@ Columns sequence_history(const fs::path& root, const std::string& name, const st
   std::string line;
   std::getline(lines, line);
   const std::vector<std::string> names = cells_of(line);
-  Columns columns;
   for (int number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != names.size())

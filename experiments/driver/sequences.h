@@ -23,7 +23,7 @@ void name_sequences(const std::filesystem::path& root, const std::string& profil
 // that was stopped goes on. Throws Error (file, line, column), Interrupted.
 void make_sequence(const std::filesystem::path& root, const std::string& name, const std::string& profile, int threads);
 
-// The columns of its history.csv (frames.h). Throws Error.
+// The columns of its history.csv (frames.h); of a fit the numbers that its record holds of each frame. Throws Error.
 Columns sequence_history(const std::filesystem::path& root, const std::string& name, const std::string& profile);
 
 }  // namespace airlight::experiments

@@ -12,19 +12,22 @@ constexpr double nothing_beyond = 6;  // widths: 2e-16 of the amplitude
 
 GaussianRow::GaussianRow(const scene::GaussianSum& sum, const std::vector<Rgb>* values, const Point3& point,
                          const Vec3& normal)
-    : sum_(sum), values_(values), cut2_(std::pow(std::min(sum.cutoff, nothing_beyond), 2)) {
+    : near_(sum), cut2_(std::pow(std::min(sum.cutoff, nothing_beyond), 2)) {
+  near_.gaussians.clear();
   for (std::size_t i = 0; i < sum.gaussians.size(); ++i) {
     const scene::Gaussian& g = sum.gaussians[i];
     const double away = normal.dot(g.center - point) / g.width;
-    if (away * away < cut2_ && g.amplitude != 0) near_.push_back(i);
+    if (!(away * away < cut2_) || g.amplitude == 0) continue;
+    near_.gaussians.push_back(g);
+    if (values) values_.push_back((*values)[i]);
   }
 }
 
 // Equal steps along a Gaussian: each value is the one before times a factor that itself shrinks by the same factor every step.
 long GaussianRow::add(const Ray& ray, const RaySlices& slices, double* density, Rgb* weighted) const {
   long samples = 0;
-  for (const std::size_t i : near_) {
-    const scene::Gaussian& g = sum_.gaussians[i];
+  for (std::size_t i = 0; i < near_.gaussians.size(); ++i) {
+    const scene::Gaussian& g = near_.gaussians[i];
     const Vec3 offset = g.center - ray.origin;
     const double along = offset.dot(ray.direction), square = g.width * g.width;
     const double aside = std::max(0.0, offset.squaredNorm() - along * along) / square;
@@ -38,7 +41,7 @@ long GaussianRow::add(const Ray& ray, const RaySlices& slices, double* density, 
     const double shrink = std::exp(-2 * step * step);
     for (int k = first; k <= last; ++k) {
       density[k] += value;
-      if (weighted) weighted[k] += value * (*values_)[i];
+      if (weighted) weighted[k] += value * values_[i];
       value *= factor;
       factor *= shrink;
     }

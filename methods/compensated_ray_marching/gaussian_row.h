@@ -16,16 +16,17 @@ struct RaySlices {
 
 class GaussianRow {
  public:
-  // values: one of each Gaussian, to be interpolated between their centres; null: none. Both outlive this. The plane: a point, a unit normal.
+  // values: one of each Gaussian, to be interpolated between their centres; null: none. The plane: a point, a unit normal.
   GaussianRow(const scene::GaussianSum&, const std::vector<Rgb>* values, const Point3&, const Vec3& normal);
+  // Where there is density along a ray.
+  Interval extent(const Ray& ray, Interval t) const { return scene::extent(near_, ray, t); }
   // Adds to the densities, count of them, and with values to those times density. Returns how many samples of Gaussians that took.
   long add(const Ray&, const RaySlices&, double* density, Rgb* weighted) const;
 
  private:
-  const scene::GaussianSum& sum_;
-  const std::vector<Rgb>* values_;
+  scene::GaussianSum near_;
+  std::vector<Rgb> values_;  // of each
   double cut2_;
-  std::vector<std::size_t> near_;
 };
 
 }  // namespace airlight::compensated_ray_marching

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 #include "methods/compensated_ray_marching/centre_sources.h"
@@ -26,6 +27,18 @@ struct Pixel {
   Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
   long slices = 0, samples = 0;
 };
+
+// Most media are grey: one expensive function instead of three.
+Rgb one_minus_exp(const Rgb& x) {
+  const double first = -std::expm1(-x[0]);
+  return {first, x[1] == x[0] ? first : -std::expm1(-x[1]), x[2] == x[0] ? first : -std::expm1(-x[2])};
+}
+
+// Four at a time: arrays of three are not vectorised.
+Rgb exponentials(const Rgb& x) {
+  const Eigen::Array4d all = Eigen::Array4d(x[0], x[1], x[2], 0).exp();
+  return all.head<3>();
+}
 
 class PreparedPicture final : public scene::Prepared {
  public:
@@ -180,13 +193,14 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
                              std::vector<double>& density, std::vector<Rgb>& weighted) const {
   Pixel p;
   const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
-  const Interval t = smoke_ ? smoke_->extent(ray, {0, end.t}) : Interval{};
+  const Interval t = row ? row->extent(ray, {0, end.t}) : smoke_ ? smoke_->extent(ray, {0, end.t}) : Interval{};
   if (!t.empty()) {
     const double slope = std::max(ray.direction.dot(view.camera.forward), 1e-3);
     RaySlices slices{t.lo, 0, std::max(1, int(std::ceil(t.length() * slope / slice_)))};
     slices.step = t.length() / slices.count;
     density.assign(std::size_t(slices.count), 0.0);
     weighted.assign(centres_ ? density.size() : 0, Rgb::Zero());
+    const bool exact = options_.weight == SliceWeight::exact;
     if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
     for (int k = 0; k < slices.count; ++k) {
       const Point3 x = ray.at(slices.middle(k));
@@ -194,14 +208,15 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       const double here = smoke_->density(x, of_gaussians);
       if (!(here > 0)) continue;
       ++p.slices;
-      const Rgb depth = smoke_->medium().sigma_t * here * slices.step;
+      const Rgb depth = smoke_->medium().sigma_t * here * slices.step, lost = one_minus_exp(depth);
       Rgb source = Rgb::Zero();
       if (grid_)
-        source = between_nodes(grid_->grid(), towards, x).exp();
+        source = exponentials(between_nodes(grid_->grid(), towards, x));
       else if (of_gaussians >= least_source_density)
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
-      p.airlight += p.transmittance * source * seen(depth, slope, options_.weight);
-      p.transmittance *= (-depth).exp();
+      // What a slice shows of its source is what it takes away, by exact weights.
+      p.airlight += p.transmittance * source * (exact ? lost : seen(depth, slope, options_.weight));
+      p.transmittance *= 1 - lost;
     }
   }
   if (behind_kept() && p.transmittance.maxCoeff() > 0) p.surface = p.transmittance * behind(ray, end);

@@ -129,6 +129,9 @@ TEST_CASE("Gaussians are fitted to the frames of a sequence, and again where tho
   const std::string three = airlight::read_bytes(files(".csv"));
   CHECK(fs::exists(project.frame(2)));
   CHECK(fs::exists(files(".residual")));
+  const auto history = sequence_history(project.path(), "fitted", "quick");
+  CHECK(history.at("frame") == std::vector<double>{0, 1, 2});
+  CHECK(history.at("gaussians").size() == 3);
   const auto made = fs::last_write_time(files(".csv"));
   make_sequence(project.path(), "fitted.residual", "quick", 1);
   CHECK(fs::last_write_time(files(".csv")) == made);
