@@ -228,7 +228,11 @@ class Run {
     gaussian.color = op.color("color");
     gaussian.tag = op.text("tag", "");
     Ids ids;
-    for (const auto& [id, particle] : interpolate(read_frames(found(op, "file")), op.number("frame", any_number))) {
+    const std::string file = found(op, "file");
+    const double frame = op.number("frame", any_number);
+    const bool fitted = std::filesystem::path(file).filename().string().find('#') != std::string::npos;
+    for (const auto& [id, particle] :
+         interpolate(fitted ? read_frames_around(file, frame) : read_frames(file), frame)) {
       if (!(particle.density > 0)) continue;  // nothing is there
       gaussian.a = 1 / particle.radius;
       gaussian.c = particle.density;

@@ -7,6 +7,7 @@
 
 #include "experiments/authoring/script.h"
 #include "experiments/authoring/write_scene.h"
+#include "scene/convert/gaussian_fit.h"
 #include "scene/error.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
@@ -55,13 +56,18 @@ TEST_CASE("every operation of a script", "[authoring]") {
   CHECK(touched["emit"] == 10);
   CHECK(touched["airbrush"] == 10);
   CHECK(touched["freeze"] == 10);
-  CHECK(touched["import"] == 2);
-  CHECK(a.list.all().size() == 9 + 10 + 10 + 2);
+  CHECK(touched["import"] == 3);
+  CHECK(a.list.all().size() == 9 + 10 + 10 + 3);
   const auto& imported = a.list.all()[29];
   CHECK(imported.b == airlight::Point3(1, 0, 0));  // a quarter of the way from frame 1 to frame 3
   CHECK(imported.a == 1 / 0.75);
   CHECK(imported.c == 1.75);
+  // One that frame 3 has no more, three quarters of what it was; one that frame 1 has not yet, a quarter of what it will be.
   CHECK(a.list.all()[30].b == airlight::Point3(0, 1, 0));
+  CHECK(a.list.all()[30].c == 1.5);
+  CHECK(a.list.all()[31].b == airlight::Point3(0, 0, 0));
+  CHECK(a.list.all()[31].a == 1);
+  CHECK(a.list.all()[31].c == 0.125);  // half of it: the eraser was there
 
   // Three colours, three media; the loader gives back the list.
   const SceneFiles files = scene_files(a, folder.file("s.jsonl"), folder.file("out.toml"));
@@ -120,6 +126,71 @@ type = "plane"
   }
   CHECK_THAT(read_bytes(folder.file("elsewhere/deep/out.toml")), Contains("file = \"../../in/old.csv\" # kept"));
   CHECK_THROWS_WITH(scene_files(a, folder.file("in/s.jsonl"), folder.file("in/base.toml")), Contains("base scene"));
+}
+
+TEST_CASE("between frames of a fit Gaussians go over by their ids", "[authoring]") {
+  const TemporaryFolder folder;
+  const auto table = [&](int frame, std::vector<int> ids, std::vector<airlight::scene::Gaussian> gaussians) {
+    airlight::scene::GaussianFit fit;
+    fit.ids = ids;
+    fit.sum.gaussians = gaussians;
+    airlight::scene::write_gaussians_csv(folder.file(fmt::format("fit/puff_{:03}.csv", frame)), fit);
+  };
+  std::filesystem::create_directories(folder.file("fit"));
+  table(8, {4, 7}, {{{0, 0, 0}, 0.5, 2}, {{1, 0, 0}, 0.25, 1}});
+  table(12, {9, 4}, {{{3, 0, 0}, 1, 4}, {{0, 4, 0}, 1.5, 6}});
+  table(1012, {}, {});
+  folder.write("fit/puff_0012.csv", "not a frame: a leading zero too many\n");
+  folder.write("fit/puff_12.residual", "not a table\n");
+  const auto imported = [&](double frame) {
+    const Authored a =
+        run(folder,
+            fmt::format("{}\n{{\"op\": \"import\", \"file\": \"fit/puff_###.csv\", \"frame\": {}}}\n", view, frame));
+    return a.list.all();
+  };
+
+  const auto first = imported(8);
+  REQUIRE(first.size() == 2);
+  CHECK(first[0].a == 2);
+  CHECK(first[0].c == 2);
+  CHECK(first[1].b == airlight::Point3(1, 0, 0));
+  CHECK(first[1].a == 4);
+  // A quarter of the way: 4 moves, 7 goes, 9 comes.
+  const auto between = imported(9);
+  REQUIRE(between.size() == 3);
+  CHECK(between[0].b == airlight::Point3(0, 1, 0));
+  CHECK(between[0].a == 1 / 0.75);
+  CHECK(between[0].c == 3);
+  CHECK(between[1].b == airlight::Point3(1, 0, 0));
+  CHECK(between[1].c == 0.75);
+  CHECK(between[2].b == airlight::Point3(3, 0, 0));
+  CHECK(between[2].a == 1);
+  CHECK(between[2].c == 1);
+  CHECK(imported(12).size() == 2);
+  CHECK(imported(12)[0].c == 6);
+  // Into an empty frame, 1000 on.
+  REQUIRE(imported(512).size() == 2);
+  CHECK(imported(512)[1].c == 2);
+  CHECK(imported(1012).empty());
+
+  const auto refused = [&](const std::string& file, double frame, const std::string& words) {
+    const std::string script = fmt::format("{{\"op\": \"import\", \"file\": \"{}\", \"frame\": {}}}\n", file, frame);
+    CHECK_THROWS_WITH(run(folder, view + "\n" + script), Contains(":2: ") && Contains(words));
+  };
+  refused("fit/puff_###.csv", 7.5, "frame = 7.5, expected one from 8 to 1012");
+  refused("fit/puff_###.csv", 1013, "expected one from 8 to 1012");
+  refused("fit/other_###.csv", 8, "other_###.csv: there is no file of this name");
+  refused("none/puff_###.csv", 8, "there is no file of this name");
+  refused("fit/p#ff_###.csv", 8, "in one place");
+  folder.write("fit/puff_013.csv", "center_x,center_y,center_z,width,amplitude\n0,0,0,1,1\n");
+  refused("fit/puff_###.csv", 12.5, "puff_013.csv:1:1: found no ids");
+  CHECK(imported(9).size() == 3);  // what is not asked for may be wrong
+  folder.write("fit/puff_013.csv", "id,center_x,center_y,center_z,width,amplitude\n5,0,0,0,1,1\n5,0,0,0,1,1\n");
+  refused("fit/puff_###.csv", 13, "id 5 is twice");
+  folder.write("fit/puff_013.csv", "id,center_x,center_y,center_z,width,amplitude\n5,0,0,0,1,-1\n");
+  refused("fit/puff_###.csv", 13, "id 5: amplitude = -1, expected a number >= 0");
+  folder.write("fit/puff_013.csv", "id,center_x,center_y,center_z,width,amplitude\n5,0,0,0,1\n");
+  refused("fit/puff_###.csv", 13, "puff_013.csv:2:");
 }
 
 TEST_CASE("bad scripts are one line with the place, and leave nothing", "[authoring][cli]") {

@@ -277,6 +277,12 @@ def queue_scripts():
     for what, content, _ in damaged(frames):
         script = good.replace('frames.csv', write(f'frames {what}.csv', content))
         case(f'frames, {what}', ['author', write(f'script of frames {what}.jsonl', script), *out])
+    fitted = 'id,center_x,center_y,center_z,width,amplitude\n1,0,0,0,1,1\n2,1,0,0,1,1\n3,1,0,0,1,2\n'
+    for number, (what, content, _) in enumerate(damaged(fitted)):
+        write(f'fitted {number} 001.csv', fitted)
+        write(f'fitted {number} 002.csv', content)
+        script = good.replace('frames.csv', f'fitted {number} ###.csv')
+        case(f'frames of a fit, {what}', ['author', write(f'script of a fit {what}.jsonl', script), *out])
     for what, text in {'nan': good.replace('"c": 1', '"c": NaN'), 'huge': good.replace('"a": 2', '"a": 1e12'),
                        'nested': '[' * 1000000, 'nested and closed': '[' * 1000000 + ']' * 1000000,
                        'endless flight': good + '{"op": "airbrush", "pos": [0, 0, 0], "rate": 1e-9, "speed": 1e308, "diffusion": '

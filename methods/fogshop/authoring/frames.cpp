@@ -5,10 +5,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
 
 #include "methods/fogshop/authoring/gaussian_list.h"
 #include "scene/error.h"
+#include "scene/load/parts.h"
 #include "scene/read_file.h"
 
 namespace airlight::fogshop::authoring {
@@ -57,6 +59,11 @@ std::array<double, 7> read_row(std::string_view row, const std::string& path, in
   return values;
 }
 
+void require_within(double frame, double first, double last) {
+  if (!(frame >= first && frame <= last))
+    throw Error(fmt::format("frame = {}, expected one from {} to {}", frame, first, last));
+}
+
 }  // namespace
 
 Frames read_frames(const std::string& path) {
@@ -85,10 +92,51 @@ Frames read_frames(const std::string& path) {
   return frames;
 }
 
+Frames read_frames_around(const std::string& path, double frame) {
+  namespace fs = std::filesystem;
+  const std::string name = fs::path(path).filename().string();
+  const std::size_t first = name.find('#'), last = name.rfind('#');
+  if (first == std::string::npos || name.find_first_not_of('#', first) <= last)
+    throw Error(path + ": expected the digits of the frame in one place of the file's name, as in smoke_####.csv");
+  const std::string head = name.substr(0, first), tail = name.substr(last + 1);
+  const std::size_t least_digits = last + 1 - first;
+  const fs::path folder = fs::path(path).parent_path();
+  std::map<double, std::string> files;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, code)) {
+    const std::string file = entry.path().filename().string();
+    if (file.size() < head.size() + least_digits + tail.size() || !file.starts_with(head) || !file.ends_with(tail))
+      continue;
+    const std::string digits = file.substr(head.size(), file.size() - head.size() - tail.size());
+    int number = 0;
+    const auto [stop, wrong] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (wrong == std::errc() && digits == fmt::format("{:0{}}", number, least_digits)) files[number] = file;
+  }
+  if (files.empty()) throw Error(path + ": there is no file of this name, expected a number in the place of #");
+  require_within(frame, files.begin()->first, files.rbegin()->first);
+
+  Frames frames;
+  const auto before = std::prev(files.upper_bound(frame)), end = std::next(before, before->first == frame ? 1 : 2);
+  for (auto of = before; of != end; ++of) {
+    const std::string table = (folder / of->second).string();
+    std::vector<int> ids;
+    const std::vector<scene::Gaussian> gaussians = scene::load::read_gaussians_csv(table, &ids);
+    if (ids.size() != gaussians.size())
+      throw Error(table + ":1:1: found no ids, expected a first column of them, as airlight fit writes it");
+    Frame& particles = frames[of->first];
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const scene::Gaussian& g = gaussians[i];
+      if (!(g.amplitude >= 0))
+        throw Error(fmt::format("{}: id {}: amplitude = {}, expected a number >= 0", table, ids[i], g.amplitude));
+      if (!particles.emplace(ids[i], FrameParticle{g.center, g.width, g.amplitude}).second)
+        throw Error(fmt::format("{}: id {} is twice in the table, expected once", table, ids[i]));
+    }
+  }
+  return frames;
+}
+
 Frame interpolate(const Frames& frames, double frame) {
-  const double first = frames.begin()->first, last = frames.rbegin()->first;
-  if (!(frame >= first && frame <= last))
-    throw Error(fmt::format("frame = {}, expected one from {} to {}", frame, first, last));
+  require_within(frame, frames.begin()->first, frames.rbegin()->first);
   const auto after = frames.upper_bound(frame);
   const auto before = std::prev(after);
   Frame out = before->second;
@@ -96,11 +144,16 @@ Frame interpolate(const Frames& frames, double frame) {
   const double s = (frame - before->first) / (after->first - before->first);
   for (auto& [id, particle] : out) {
     const auto next = after->second.find(id);
-    if (next == after->second.end()) continue;
+    if (next == after->second.end()) {
+      particle.density *= 1 - s;
+      continue;
+    }
     particle.position += s * (next->second.position - particle.position);
     particle.radius += s * (next->second.radius - particle.radius);
     particle.density += s * (next->second.density - particle.density);
   }
+  for (const auto& [id, particle] : after->second)
+    if (const auto [place, born] = out.emplace(id, particle); born) place->second.density *= s;
   return out;
 }
 
