@@ -9,6 +9,7 @@
 #include "gpu/view_uniforms.h"
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_picture.h"
+#include "scene/background.h"
 #include "scene/error.h"
 
 namespace airlight::gpu::legendre {
@@ -58,8 +59,8 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
       moving_(legendre_fluids::moving_axes(*scene_)),
       frame_(context_) {
   for (const scene::Light& light : scene_->lights)
-    if (const auto& sun = std::get<scene::DirectionalLight>(light); sun.irradiance.maxCoeff() > 0)
-      lights_.push_back(sun);
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+      lights_.push_back(*sun);
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium)) medium_ = &medium;
   if (medium_) field_ = legendre_fluids::field_within_region(*medium_);
@@ -162,8 +163,11 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
 
 }  // namespace
 
-std::vector<std::string> reasons_against_paper(const legendre_fluids::PaperOptions& options) {
+std::vector<std::string> reasons_against_paper(const Scene& scene, const legendre_fluids::PaperOptions& options) {
   std::vector<std::string> reasons;
+  if (!scene.surfaces.empty() || scene::has_environment(scene))
+    reasons.push_back("variant = paper with surfaces or an environment: shaders know backdrops and particles alone");
+  scene::refuse_backdrops(scene, reasons);
   if (options.n > most_intensities)
     reasons.push_back(fmt::format("variant = paper with n = {}: shaders take up to {} coefficients along an axis",
                                   options.n, most_intensities));
