@@ -33,6 +33,8 @@ class PreparedPaper final : public scene::Prepared {
   bool ends() const { return scene_->geometry || behind_kept(); }
   Scattered scattered(const Vec3& direction) const;
   Rgb left_of_light(const Point3&, std::size_t light) const;
+  // Where rays of a row end, and what they see there without the medium.
+  void look(int y, const scene::CameraRays&, PaperView::Row&, std::vector<Rgb>& behind) const;
 
   std::shared_ptr<const scene::Scene> scene_;
   PaperOptions options_;
@@ -138,6 +140,18 @@ Rgb PreparedPaper::left_of_light(const Point3& x, std::size_t light) const {
   return left;
 }
 
+void PreparedPaper::look(int y, const scene::CameraRays& rays, PaperView::Row& row, std::vector<Rgb>& behind) const {
+  const LeftOfLight left = [&](const Point3& x, std::size_t light) { return left_of_light(x, light); };
+  const bool kept = behind_kept();
+  for (std::size_t x = 0; x < behind.size(); ++x) {
+    const Ray ray = rays(double(x) + 0.5, y + 0.5);
+    const scene::RayEnd end = scene::camera_end(*scene_, ray);
+    row.end[x] = end.t;
+    row.seen[x] = row.seen[x] || end.t < infinity || end.seen;
+    if (row.seen[x] && kept) behind[x] = sent_back(*scene_, lights_, ray, end, left);
+  }
+}
+
 scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Execution& execution) const {
   require_view(view, moving_);
   require_own_camera(*scene_, view);
@@ -156,7 +170,6 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
   std::optional<PaperView> medium;
   if (field_) medium.emplace(*field_, *light_, scattered, medium_->sigma_t, view, ends());
   const bool all_columns = transmittance || scene::has_environment(*scene_);
-  const LeftOfLight left = [&](const Point3& x, std::size_t light) { return left_of_light(x, light); };
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;
   long met = 0, negative = 0;
@@ -165,24 +178,20 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
     PaperView::Row row;
     row.end.assign(width, infinity);
     row.seen.assign(width, all_columns);
-    std::vector<scene::RayEnd> end(ends() ? width : 0);
-    for (std::size_t x = 0; x < end.size(); ++x) {
-      end[x] = scene::camera_end(*scene_, rays(double(x) + 0.5, y + 0.5));
-      row.end[x] = end[x].t;
-      row.seen[x] = all_columns || end[x].t < infinity || end[x].seen;
-    }
+    std::vector<Rgb> behind(width, Rgb::Zero());
+    if (ends()) look(y, rays, row, behind);
     if (medium) medium->row(y, row);
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t at = 3 * (std::size_t(y) * width + x);
       const Rgb lit = medium ? Rgb(row.airlight[x].max(0)) : Rgb(Rgb::Zero());
-      Rgb clear = Rgb::Ones(), behind = Rgb::Zero();
+      Rgb clear = Rgb::Ones();
       if (medium && row.column[x] != 0) clear = (-medium_->sigma_t * row.column[x]).exp();
-      if (behind_kept()) behind = clear * sent_back(*scene_, lights_, rays(double(x) + 0.5, y + 0.5), end[x], left);
+      const Rgb seen = clear * behind[x];
       for (std::size_t c = 0; c < 3; ++c) {
         const auto channel = Eigen::Index(c);
-        mean[at + c] = float(lit[channel] + behind[channel]);
+        mean[at + c] = float(lit[channel] + seen[channel]);
         if (airlight) airlight[at + c] = float(lit[channel]);
-        if (surface) surface[at + c] = float(behind[channel]);
+        if (surface) surface[at + c] = float(seen[channel]);
         if (transmittance) transmittance[at + c] = float(clear[channel]);
       }
     }
