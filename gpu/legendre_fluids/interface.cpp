@@ -34,6 +34,8 @@ const std::vector<Binding> bindings = {{"START", at::start},
                                        {"POINTS", at::values},
                                        {"DIRECT", at::direct},
                                        {"FACES", at::faces},
+                                       {"RAY_ENDS", at::ray_ends},
+                                       {"KEPT", at::kept},
                                        {"DENSITIES", at::densities},
                                        {"RULE", at::rule}};
 

@@ -40,6 +40,8 @@ enum Binding {
   values = 4,
   direct = 7,
   faces = 2,
+  ray_ends = 4,  // paper_image.comp
+  kept = 7,      // paper_density.comp
   // uniform blocks
   matrices = 0,
   densities = 0,

@@ -318,7 +318,7 @@ std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const sc
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
   if (options.variant == legendre_fluids::LightOptions::Variant::paper)
-    for (const std::string& reason : legendre::reasons_against_paper(options.paper)) reasons.push_back(reason);
+    for (const std::string& reason : legendre::reasons_against_paper(scene, options.paper)) reasons.push_back(reason);
   if (!reasons.empty() || options.variant == legendre_fluids::LightOptions::Variant::paper) return reasons;
   const LightRays rays(scene, options.ray);
   for (const std::string& reason : legendre::reasons_against(rays.media())) reasons.push_back(reason);

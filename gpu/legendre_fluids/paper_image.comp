@@ -1,24 +1,34 @@
 // Radiance that leaves the medium towards the camera: the series of the face where a ray enters, eq. 24; of a camera within, that of all.
+// With ENDS backdrops and particles end rays: methods/legendre_fluids/paper_view.h.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 layout(std430, binding = AT_FACES) readonly buffer Faces { float faces[]; };  // of paper_kept.comp
 layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_MEAN) writeonly buffer Mean { float mean_layer[]; };
 layout(std430, binding = AT_STATUS) buffer Status { uint counts[]; };  // rays that meet the box, those below 0
+#if ENDS
+layout(std430, binding = AT_RAY_ENDS) readonly buffer Ends { float ends[]; };  // [m] along rays
+layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen[]; };      // there [W/m^2/sr]; -1: nothing
+layout(std430, binding = AT_TRANSMITTANCE) writeonly buffer Transmittance { float transmittance[]; };
+layout(std430, binding = AT_SURFACE) writeonly buffer Surface { float surface[]; };
+uniform vec3 sigma_t;                                 // [1/m]
+const float node[] = NODES, node_weight[] = WEIGHTS;  // of [0, 1], exact for the density on any line
+#endif
 uniform dvec3 box_low, box_high;                                       // [m]
 uniform int system_of[3];                                               // of each channel
 uniform vec3 scale;                                                    // of its solution
 shared uint met, below;
 
+const ivec3 most = max(N, R);
 float series(int first, ivec3 shape, vec3 at) {
-  float px[N.x], py[N.y], before = 0, p = 1, sum = 0;
-  for (int i = 0; i < N.x; ++i) {
+  float px[most.x], py[most.y], before = 0, p = 1, sum = 0;
+  for (int i = 0; i < shape.x; ++i) {
     px[i] = p;
     float next = (float(2 * i + 1) * at.x * p - float(i) * before) / float(i + 1);
     before = p, p = next;
   }
   before = 0, p = 1;
-  for (int j = 0; j < N.y; ++j) {
+  for (int j = 0; j < shape.y; ++j) {
     py[j] = p;
     float next = (float(2 * j + 1) * at.y * p - float(j) * before) / float(j + 1);
     before = p, p = next;
@@ -38,10 +48,22 @@ float series(int first, ivec3 shape, vec3 at) {
   return sum;
 }
 
-// False where the ray misses the box.
-bool radiance(dvec3 origin, dvec3 direction, out vec3 value) {
+vec3 local(dvec3 x) { return vec3((2 * x - box_low - box_high) / (box_high - box_low)); }
+
+// Of the series from `first` on of a system, in channels.
+vec3 all_series(int first, ivec3 shape, vec3 at) {
+  vec3 value;
+  for (int c = 0; c < 3; ++c) {
+    bool same = c > 0 && system_of[c] == system_of[0];
+    value[c] = same ? value[0] : series(system_of[c] * SERIES_STRIDE + first, shape, at);
+  }
+  return scale * value;
+}
+
+// Up to `end`, and what is left of light from there. False where the ray misses the box or ends before.
+bool radiance(dvec3 origin, dvec3 direction, double end, out vec3 value, out vec3 left) {
   double enters = 0, leaves = 1e300LF;
-  value = vec3(0);
+  value = vec3(0), left = vec3(1);
   for (int a = 0; a < 3; ++a) {
     if (direction[a] == 0) {
       if (origin[a] < box_low[a] || origin[a] > box_high[a]) return false;
@@ -51,8 +73,8 @@ bool radiance(dvec3 origin, dvec3 direction, out vec3 value) {
     enters = max(enters, min(s, t));
     leaves = min(leaves, max(s, t));
   }
-  if (enters >= leaves) return false;
-  vec3 at = vec3((2 * (origin + enters * direction) - box_low - box_high) / (box_high - box_low));
+  if (enters >= min(leaves, end)) return false;
+  vec3 at = local(origin + enters * direction);
   int first = 0;
   ivec3 shape = N;
   if (enters > 0) {
@@ -64,11 +86,14 @@ bool radiance(dvec3 origin, dvec3 direction, out vec3 value) {
       if (a == axis) shape[a] = 1;
     }
   }
-  for (int c = 0; c < 3; ++c) {
-    bool same = c > 0 && system_of[c] == system_of[0];
-    value[c] = same ? value[0] : series(system_of[c] * SERIES_STRIDE + first, shape, at);
-  }
-  value *= scale;
+  value = all_series(first, shape, at);
+#if ENDS
+  vec3 last = local(origin + min(leaves, end) * direction);
+  float column = 0;
+  for (int g = 0; g < COLUMN_POINTS; ++g) column += node_weight[g] * series(DENSITY_AT, R, mix(at, last, node[g]));
+  left = exp(-sigma_t * column * float(min(leaves, end) - enters));
+  if (end < leaves) value -= left * all_series(0, N, last);
+#endif
   return true;
 }
 
@@ -79,13 +104,26 @@ void main() {
   if (pixel.x < view_width && pixel.y < view_height) {
     dvec3 origin, direction;
     view_ray(dvec2(pixel) + 0.5LF, origin, direction);
-    vec3 value;
-    if (radiance(origin, direction, value)) {
+    int place = 3 * (pixel.y * view_width + pixel.x);
+    vec3 value, left;
+    double end = 1e300LF;
+#if ENDS
+    end = ends[place / 3];
+#endif
+    if (radiance(origin, direction, end, value, left)) {
       atomicAdd(met, 1u);
       if (min(value.x, min(value.y, value.z)) < 0) atomicAdd(below, 1u);
     }
-    int place = 3 * (pixel.y * view_width + pixel.x);
-    for (int c = 0; c < 3; ++c) airlight[place + c] = mean_layer[place + c] = max(value[c], 0);
+    for (int c = 0; c < 3; ++c) {
+      float behind = 0;
+#if ENDS
+      behind = left[c] * max(seen[place + c], 0);
+      transmittance[place + c] = left[c];
+      surface[place + c] = behind;
+#endif
+      airlight[place + c] = max(value[c], 0);
+      mean_layer[place + c] = max(value[c], 0) + behind;
+    }
   }
   barrier();
   if (gl_LocalInvocationIndex > 0u) return;

@@ -1,14 +1,17 @@
 #include "gpu/legendre_fluids/paper_light_gpu.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "gpu/frame.h"
 #include "gpu/legendre_fluids/paper_systems.h"
+#include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_picture.h"
+#include "scene/background.h"
 #include "scene/error.h"
 
 namespace airlight::gpu::legendre {
@@ -18,7 +21,24 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-constexpr int tile = 8;  // of pixels, both ways
+constexpr int tile = 8;            // of pixels, both ways
+constexpr int most_loops = 50000;  // of a ray's column: llvmpipe ends all loops after 65535 iterations
+
+int column_points(const scene::TensorShape& density) { return (density[0] + density[1] + density[2] - 3) / 2 + 1; }
+
+// What paper_image.comp needs for columns.
+void define_columns(const scene::TensorShape& density, bool ends, Definitions& definitions) {
+  definitions["ENDS"] = ends ? "1" : "0";
+  const scene::LegendrePoints& rule = scene::legendre_points(column_points(density));
+  std::vector<std::string> nodes, weights;
+  for (Eigen::Index i = 0; i < rule.node.size(); ++i) {
+    nodes.push_back(fmt::format("{:.9f}", 0.5 + 0.5 * rule.node[i]));
+    weights.push_back(fmt::format("{:.9f}", 0.5 * rule.weight[i]));
+  }
+  definitions["COLUMN_POINTS"] = std::to_string(nodes.size());
+  definitions["NODES"] = fmt::format("float[]({})", fmt::join(nodes, ", "));
+  definitions["WEIGHTS"] = fmt::format("float[]({})", fmt::join(weights, ", "));
+}
 
 class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
  public:
@@ -41,6 +61,7 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
   std::vector<scene::DirectionalLight> lights_;
   std::array<bool, 3> moving_;
   std::unique_ptr<PaperSystems> systems_;  // null: no light scatters
+  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
   Program* image_ = nullptr;
   double negative_direct_ = 0;
   bool flows_ = false;          // the density is a flow's
@@ -58,8 +79,8 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
       moving_(legendre_fluids::moving_axes(*scene_)),
       frame_(context_) {
   for (const scene::Light& light : scene_->lights)
-    if (const auto& sun = std::get<scene::DirectionalLight>(light); sun.irradiance.maxCoeff() > 0)
-      lights_.push_back(sun);
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+      lights_.push_back(*sun);
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium)) medium_ = &medium;
   if (medium_) field_ = legendre_fluids::field_within_region(*medium_);
@@ -68,7 +89,10 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
   StageTimer timer(context_);
   timer.begin("upload");
   systems_ = std::make_unique<PaperSystems>(context_, *field_, *medium_, lights_, options_, moving_);
-  image_ = &program(context_, "paper_image", tile, tile, systems_->definitions());
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+  Definitions definitions = systems_->definitions();
+  define_columns(field_->shape(), bool(backdrops_), definitions);
+  image_ = &program(context_, "paper_image", tile, tile, definitions);
   timer.begin("direct systems");
   systems_->begin();
   times_ = timer.times();
@@ -87,7 +111,8 @@ std::vector<scene::Stage> PreparedPaperGpu::stages() const {
   return {{"direct systems", kept, kept ? how : why},
           {"scattered systems", kept, kept ? how : why},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
-          {"clamping", kept, kept ? "negative radiance is taken as 0" : why}};
+          {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
+          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"}};
 }
 
 bool PreparedPaperGpu::take(const DensityOnDevice& density) {
@@ -100,8 +125,20 @@ bool PreparedPaperGpu::take(const DensityOnDevice& density) {
 void PreparedPaperGpu::draw(const View& view) const {
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   Program& p = *image_;
-  for (const auto& [name, binding] : {std::pair("mean", at::mean), std::pair("airlight", at::airlight)})
-    frame_.buffers.get(name, 12 * pixels).bind(binding);
+  std::vector<std::pair<const char*, int>> all{{"mean", at::mean}, {"airlight", at::airlight}};
+  if (backdrops_) {
+    const Buffer &ends = frame_.buffers.get("ends", 4 * pixels), &seen = frame_.buffers.get("seen", 12 * pixels);
+    backdrops_->find(view, ends, false, seen);
+    ends.bind(at::ray_ends);
+    seen.bind(at::seen);
+    all.insert(all.end(), {{"surface", at::surface}, {"transmittance", at::transmittance}});
+    p.set("sigma_t", medium_->sigma_t);
+  }
+  for (const auto& [name, binding] : all) {
+    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
+    buffer.bind(binding);
+    frame_.download.add(name, buffer, 12 * pixels);
+  }
   Buffer& counts = frame_.buffers.get("counts", 8);
   counts.clear();
   counts.bind(at::status);
@@ -144,10 +181,11 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
       frame_.timer.begin("image");
       draw(view);
     } else {
-      for (const char* layer : {"mean", "airlight"}) frame_.buffers.get(layer, 12 * pixels).clear();
+      for (const char* layer : {"mean", "airlight"}) {
+        frame_.buffers.get(layer, 12 * pixels).clear();
+        frame_.download.add(layer, frame_.buffers.get(layer, 12 * pixels), 12 * pixels);
+      }
     }
-    for (const char* layer : {"mean", "airlight"})
-      frame_.download.add(layer, frame_.buffers.get(layer, 12 * pixels), 12 * pixels);
     frame_.finish(result);
     // Systems that were not solved to the end are solved anew, with more steps.
     if (systems_ && !systems_->keep_up(frame_)) continue;
@@ -162,8 +200,34 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
 
 }  // namespace
 
-std::vector<std::string> reasons_against_paper(const legendre_fluids::PaperOptions& options) {
+namespace {
+
+// The systems are what columns are made beside.
+void object_to_backdrops(const Scene& scene, std::vector<std::string>& reasons) {
+  const bool shines = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    return sun && sun->irradiance.maxCoeff() > 0;
+  });
+  const auto medium =
+      std::find_if(scene.media.begin(), scene.media.end(), [](const scene::Medium& m) { return extinguishes(m); });
+  if (!shines || medium == scene.media.end())
+    reasons.push_back(
+        "variant = paper with backdrops or particles where no medium is lit: shaders have no systems there");
+  else if (const auto* field = std::get_if<scene::LegendrePointer>(&medium->field);
+           field && column_points((*field)->shape()) * scene::tensor_size((*field)->shape()) > most_loops)
+    reasons.push_back(
+        fmt::format("variant = paper with backdrops or particles in a density of {} coefficients: shaders add "
+                    "up columns of fewer, about {}",
+                    scene::tensor_size((*field)->shape()), 2500));
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_against_paper(const Scene& scene, const legendre_fluids::PaperOptions& options) {
   std::vector<std::string> reasons;
+  if (!scene.surfaces.empty() || scene::has_environment(scene))
+    reasons.push_back("variant = paper with surfaces or an environment: shaders know backdrops and particles alone");
+  if (!scene.backdrops.empty()) object_to_backdrops(scene, reasons);
   if (options.n > most_intensities)
     reasons.push_back(fmt::format("variant = paper with n = {}: shaders take up to {} coefficients along an axis",
                                   options.n, most_intensities));

@@ -144,6 +144,7 @@ void PaperSystems::layout(const DensityProduct& product) {
   number("STRIDE", size);
   const std::size_t series = n + n / std::size_t(x) + n / std::size_t(y) + n / std::size_t(z);
   number("SERIES_STRIDE", series);
+  number("DENSITY_AT", series * std::size_t(scattered_.count));
   // A step's loops are those of its products, and of GMRES its way through the vectors.
   const double widest = std::max({m[0], m[1], m[2]}), lanes = group_;
   const double loops = (6 * double(region) * widest + 4 * double(n) * widest) * (upwind() ? 1 : 2) / lanes +
@@ -156,8 +157,10 @@ void PaperSystems::layout(const DensityProduct& product) {
   points_ = doubles("density at points", points);
   work_ = doubles("systems of light", systems * size);
   direct_values_ = doubles("direct light", std::size_t(direct_.count) * n);
-  faces_ = std::make_unique<Buffer>(context_, "scattered light", 4 * series * std::size_t(scattered_.count),
-                                    Contents::undefined);
+  faces_ = std::make_unique<Buffer>(
+      context_, "scattered light and density",
+      4 * (series * std::size_t(scattered_.count) + std::size_t(scene::tensor_size(field_.shape()))),
+      Contents::undefined);
 }
 
 // Of the lights, then of the view.
@@ -181,6 +184,7 @@ void PaperSystems::density_from(const Buffer& coefficients, std::size_t first) {
   work_->bind(at::work);
   points_->bind(at::values);
   coefficients.bind(at::state);
+  faces_->bind(at::kept);
   density_->set("first", int(first));
   density_->dispatch(group_);
 }

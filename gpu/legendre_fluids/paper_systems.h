@@ -38,7 +38,7 @@ class PaperSystems {
   bool keep_up(const Frame&);
   int iterations() const { return direct_.iterations + scattered_.iterations; }  // of the frame that was looked at last
 
-  // E_s towards the camera: what paper_image.comp reads. Of each channel.
+  // E_s towards the camera, and the density: what paper_image.comp reads. Of each channel.
   const Buffer& faces() const { return *faces_; }
   const Definitions& definitions() const { return definitions_; }
   std::array<int, 3> system_of() const { return system_of_; }

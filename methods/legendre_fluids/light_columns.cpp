@@ -15,8 +15,11 @@ constexpr int most_along = 48;      // coefficients: of more, rounding leaves no
 
 }  // namespace
 
-LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light, double rounding)
-    : box_(&box), to_light_(to_light), rate_(2 * to_light.cwiseQuotient(box.box().size())) {
+LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light, double rounding, Below below)
+    : box_(&box),
+      clamped_(box.negative() && below == Below::zero),
+      to_light_(to_light),
+      rate_(2 * to_light.cwiseQuotient(box.box().size())) {
   int degree = 0;
   for (int axis = 0; axis < 3; ++axis) {
     side_[axis] = rate_[axis] > 0 ? 1 : -1;
@@ -27,7 +30,7 @@ LightColumns::LightColumns(const scene::LegendreBox& box, const Vec3& to_light, 
     node_.push_back(0.5 + 0.5 * rule.node[i]);
     weight_.push_back(0.5 * rule.weight[i]);
   }
-  if (box.negative() || degree + 2 > most_along) return;
+  if (clamped_ || degree + 2 > most_along) return;
   for (int axis = 0; axis < 3; ++axis)
     if (rate_[axis] != 0) face_[std::size_t(axis)] = polynomial(axis, degree + 2, rounding);
 }
@@ -81,14 +84,14 @@ double LightColumns::rounding_of(const Face& face, int axis) const {
       length[lane] = most * (0.5 + 0.5 * uniform(random));
       for (int b = 0; b < 3; ++b) local[std::size_t(b)][lane] = at[b] - length[lane] * rate_[b];
     }
-    const Lanes exact = integrated(local, length);
+    const Lanes exact = over(local, length);
     const Lanes got = series_values(face.shape, face.coefficients.data(), local[0], local[1], local[2]);
     worst = std::max(worst, (got - exact).abs().maxCoeff());
   }
   return worst;
 }
 
-Lanes LightColumns::integrated(const LocalLanes& local, const Lanes& length) const {
+Lanes LightColumns::over(const LocalLanes& local, const Lanes& length) const {
   Lanes sum = Lanes::Zero();
   for (std::size_t q = 0; q < node_.size(); ++q) {
     const Lanes way = node_[q] * length;
@@ -98,12 +101,19 @@ Lanes LightColumns::integrated(const LocalLanes& local, const Lanes& length) con
   return sum * length;
 }
 
+Lanes LightColumns::to_face(int axis, const LocalLanes& local) const {
+  const Face& face = face_[std::size_t(axis)];
+  if (face.coefficients.size() > 0)
+    return series_values(face.shape, face.coefficients.data(), local[0], local[1], local[2]);
+  return over(local, ((side_[axis] - local[std::size_t(axis)]) / rate_[axis]).max(0));
+}
+
 int LightColumns::nearest_face(const Vec3& local) const {
   int nearest = -1;
   double least = infinity;
   for (int axis = 0; axis < 3; ++axis)
-    if (rate_[axis] != 0 && to_face(axis, local, side_[axis]) < least)
-      least = to_face(axis, local, side_[axis]), nearest = axis;
+    if (rate_[axis] != 0 && way_to(axis, local, side_[axis]) < least)
+      least = way_to(axis, local, side_[axis]), nearest = axis;
   return nearest;
 }
 
@@ -112,8 +122,8 @@ int LightColumns::first_face(const Vec3& local) const {
   int last = -1;
   double most = 0;
   for (int axis = 0; axis < 3; ++axis)
-    if (rate_[axis] != 0 && to_face(axis, local, -side_[axis]) > most)
-      most = to_face(axis, local, -side_[axis]), last = axis;
+    if (rate_[axis] != 0 && way_to(axis, local, -side_[axis]) > most)
+      most = way_to(axis, local, -side_[axis]), last = axis;
   return last;
 }
 
@@ -129,14 +139,13 @@ void LightColumns::along(const Ray& ray, const double* t, int count, double* col
   const Point3 middle = ray.at(0.5 * (t[0] + t[count - 1]));
   const Interval lit = scene::extent(*box_, {middle, to_light_}, {0, infinity});
   if (lit.empty()) return;
-  if (box_->negative()) {
+  if (clamped_) {
     for (int i = 0; i < count; ++i)
       columns[i] = scene::density_integral(*box_, {ray.at(t[i]), to_light_}, {0, infinity});
     return;
   }
   const Vec3 local_middle = box_->local(middle);
   const int in = box_->box().contains(middle) ? -1 : first_face(local_middle), out = nearest_face(local_middle);
-  const Face& face = face_[std::size_t(out)];
   const Vec3 origin = box_->local(ray.origin), slope = 2 * ray.direction.cwiseQuotient(box_->box().size());
   for (int begin = 0; begin < count; begin += lanes) {
     Lanes at;
@@ -147,9 +156,7 @@ void LightColumns::along(const Ray& ray, const double* t, int count, double* col
       const Lanes to_box = (-side_[in] - local[std::size_t(in)]) / rate_[in];
       for (int b = 0; b < 3; ++b) local[std::size_t(b)] += to_box * rate_[b];
     }
-    const Lanes values = face.coefficients.size() > 0
-                             ? series_values(face.shape, face.coefficients.data(), local[0], local[1], local[2])
-                             : integrated(local, ((side_[out] - local[std::size_t(out)]) / rate_[out]).max(0));
+    const Lanes values = to_face(out, local);
     for (int lane = 0; lane < std::min(lanes, count - begin); ++lane)
       columns[begin + lane] = std::max(0.0, values[lane]);
   }

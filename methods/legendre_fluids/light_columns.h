@@ -16,13 +16,20 @@ namespace airlight::legendre_fluids {
 
 class LightColumns {
  public:
+  enum class Below { zero, as_it_is };  // what is below 0 of a density
   // The box outlives this. `to_light` is a unit vector of the world. A face keeps its polynomial where that is right to `rounding` [m].
-  LightColumns(const scene::LegendreBox&, const Vec3& to_light, double rounding);
+  LightColumns(const scene::LegendreBox&, const Vec3& to_light, double rounding, Below = Below::zero);
 
   // Integral of the density from places of a ray to the light [m], `count` of them; the ray may be outside of the box. Between the first and
   // the last place the light comes in and goes out by the same faces (cuts).
   void along(const Ray&, const double* t, int count, double* columns) const;
   double at(const Point3& x) const;  // at one point of the world
+
+  // Of a density that is nowhere below 0, or taken as it is: from points of the box to the face of an axis that the light comes in by, and
+  // over lengths towards the light [m]. Points are in the box's own coordinates, lanes of them.
+  using LocalLanes = std::array<Lanes, 3>;
+  Lanes to_face(int axis, const LocalLanes& local) const;
+  Lanes over(const LocalLanes& local, const Lanes& length) const;
 
   // Ray parameters where the face changes by which light enters or leaves, ascending in no order: the planes that light and edges span.
   // With `inside` only of the edges that matter within the box.
@@ -39,15 +46,14 @@ class LightColumns {
   const Vec3& rate() const { return rate_; }  // of the box's own coordinates, per metre towards the light
 
  private:
-  using LocalLanes = std::array<Lanes, 3>;
   int nearest_face(const Vec3& local) const;
   int first_face(const Vec3& local) const;
-  double to_face(int axis, const Vec3& local, int side) const { return (side - local[axis]) / rate_[axis]; }
+  double way_to(int axis, const Vec3& local, int side) const { return (side - local[axis]) / rate_[axis]; }
   Face polynomial(int axis, int along, double rounding) const;
   double rounding_of(const Face&, int axis) const;
-  Lanes integrated(const LocalLanes&, const Lanes& length) const;
 
   const scene::LegendreBox* box_;
+  bool clamped_;  // what is integrated is no polynomial
   Vec3 to_light_, rate_;
   Eigen::Vector3i side_;               // -1 or 1: of the faces that the light comes in by
   std::vector<double> node_, weight_;  // on [0, 1], exact for the density on any line

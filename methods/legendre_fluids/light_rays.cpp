@@ -16,25 +16,6 @@ constexpr double least_share = 4e-16;     // of where it is: a piece that roundi
 constexpr double rounding_share = 0.01;   // of the tolerance, that polynomials of columns may cost
 constexpr double bent_share = 0.1;        // of the tolerance, that that may be
 
-// Can a surface stand between the box and a light there: not if all of it lies behind the box, as seen from the light.
-bool may_shadow(const scene::Surface& surface, const Box& box, const Vec3& to_light) {
-  const auto least = [](const Box& b, const Vec3& d) {
-    return d.cwiseProduct((d.array() > 0).select(b.lo, b.hi)).sum();
-  };
-  return scene::match(
-      surface.shape,
-      [&](const scene::TriangleMesh& mesh) {
-        double most = -infinity;
-        for (const Point3& v : mesh.vertices) most = std::max(most, v.dot(to_light));
-        return most > least(box, to_light);
-      },
-      [&](const scene::Sphere& s) { return s.center.dot(to_light) + s.radius > least(box, to_light); },
-      [&](const scene::Plane& plane) {
-        const double rising = plane.normal.dot(to_light), at = plane.point.dot(plane.normal);
-        return rising < 0 ? -least(box, -plane.normal) > at : rising > 0 && least(box, plane.normal) < at;
-      });
-}
-
 }  // namespace
 
 // One ray under one light.

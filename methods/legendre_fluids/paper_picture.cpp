@@ -6,7 +6,9 @@
 #include <mutex>
 
 #include "methods/legendre_fluids/lit_media.h"
+#include "methods/legendre_fluids/paper_view.h"
 #include "methods/legendre_fluids/point_values.h"
+#include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/error.h"
 #include "scene/stopwatch.h"
@@ -16,13 +18,6 @@ namespace {
 
 using Coefficients = std::array<Eigen::VectorXd, 3>;  // of the channels
 
-// E_s of all lights together where the camera looks: everywhere, and on the three faces of the box that it may see.
-struct Scattered {
-  Coefficients everywhere;
-  std::array<Coefficients, 3> face;
-  int iterations = 0;
-};
-
 class PreparedPaper final : public scene::Prepared {
  public:
   PreparedPaper(std::shared_ptr<const scene::Scene>, const PaperOptions&, std::string settings);
@@ -31,9 +26,15 @@ class PreparedPaper final : public scene::Prepared {
   scene::Rendering render(const scene::View&, const scene::Execution&) const override;
 
  private:
+  bool scatters() const { return field_ && !lights_.empty(); }
+  bool behind_kept() const {
+    return (scene_->geometry && !lights_.empty()) || scene::has_environment(*scene_) || !scene_->backdrops.empty();
+  }
+  bool ends() const { return scene_->geometry || behind_kept(); }
   Scattered scattered(const Vec3& direction) const;
-  // Radiance that leaves towards the camera; false where the ray misses the box.
-  bool radiance(const Scattered&, const Ray&, Rgb&) const;
+  Rgb left_of_light(const Point3&, std::size_t light) const;
+  // Where rays of a row end, and what they see there without the medium.
+  void look(int y, const scene::CameraRays&, PaperView::Row&, std::vector<Rgb>& behind) const;
 
   std::shared_ptr<const scene::Scene> scene_;
   PaperOptions options_;
@@ -45,7 +46,7 @@ class PreparedPaper final : public scene::Prepared {
   std::array<bool, 3> moving_;
   std::vector<Coefficients> direct_;  // E_d of each light, 1 where it comes in
   int iterations_ = 0;
-  double negative_direct_ = 0;
+  double negative_direct_ = 0, negative_density_ = 0;  // shares of the box
   std::vector<scene::StageTime> times_;
 };
 
@@ -64,8 +65,8 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), moving_(moving_axes(*scene_)) {
   scene::Stopwatch watch;
   for (const scene::Light& light : scene_->lights)
-    if (const auto& sun = std::get<scene::DirectionalLight>(light); sun.irradiance.maxCoeff() > 0)
-      lights_.push_back(sun);
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+      lights_.push_back(*sun);
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium)) medium_ = &medium;
   if (medium_) field_ = field_within_region(*medium_);
@@ -78,11 +79,12 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     for (const Eigen::VectorXd& e : direct_.back())
       negative_direct_ = std::max(negative_direct_, negative_share(light_->shape(), e));
   }
+  if (field_->negative()) negative_density_ = negative_share(field_->shape(), field_->coefficients());
   times_ = {{"direct systems", watch.lap()}};
 }
 
 std::vector<scene::Stage> PreparedPaper::stages() const {
-  const bool kept = field_ && !lights_.empty();
+  const bool kept = scatters();
   const std::string why = !field_ ? "no medium extinguishes" : "no directional light shines";
   const std::string how = !field_ ? ""
                                   : fmt::format("{} of {} unknowns", options_.solver.dense ? "dense" : "GMRES",
@@ -90,86 +92,121 @@ std::vector<scene::Stage> PreparedPaper::stages() const {
   return {{"direct systems", kept, kept ? how : why},
           {"scattered systems", kept, kept ? how : why},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
-          {"clamping", kept, kept ? "negative radiance is taken as 0" : why}};
+          {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
+          {"transmittance", field_ && ends(),
+           !field_  ? "no medium extinguishes"
+           : ends() ? "exact along camera rays"
+                    : "nothing is behind the medium"},
+          {"surfaces", behind_kept(),
+           behind_kept() ? "lights through the medium, backgrounds" : "no surface is lit, no background"}};
 }
 
 Scattered PreparedPaper::scattered(const Vec3& direction) const {
   Scattered all;
-  for (std::size_t l = 0; l < lights_.size(); ++l) {
-    const double omega = phase_value(medium_->phase, std::clamp(direction.dot(-lights_[l].to_light), -1.0, 1.0));
-    int channel = 0;
-    Coefficients of_light;
-    std::array<const Eigen::VectorXd*, 3> direct{&direct_[l][0], &direct_[l][1], &direct_[l][2]};
-    for_extinctions(medium_->sigma_t, of_light, [&](double sigma) {
-      while (medium_->sigma_t[channel] != sigma) ++channel;
-      return light_->scattered(*direct[std::size_t(channel)], direction, sigma, sigma * omega, &all.iterations);
-    });
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double scale = medium_->albedo[Eigen::Index(c)] * lights_[l].irradiance[Eigen::Index(c)];
-      of_light[c] *= scale;
-      all.everywhere[c] = l == 0 ? of_light[c] : Eigen::VectorXd(all.everywhere[c] + of_light[c]);
-    }
+  if (!scatters()) return all;
+  std::vector<double> omega;
+  for (const scene::DirectionalLight& light : lights_)
+    omega.push_back(phase_value(medium_->phase, std::clamp(direction.dot(-light.to_light), -1.0, 1.0)));
+  std::array<Eigen::VectorXd, 3> shares;  // of the lights, the greatest is 1
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto channel = Eigen::Index(c);
+    shares[c].resize(Eigen::Index(lights_.size()));
+    for (std::size_t l = 0; l < lights_.size(); ++l) shares[c][Eigen::Index(l)] = lights_[l].irradiance[channel];
+    const double most = shares[c].maxCoeff(), sigma = medium_->sigma_t[channel];
+    all.scale[channel] = medium_->albedo[channel] * most;
+    if (most > 0) shares[c] /= most;
+    std::size_t same = 0;
+    while (medium_->sigma_t[Eigen::Index(same)] != sigma || shares[same] != shares[c]) ++same;
+    all.of_channel[c] = same < c ? all.of_channel[same] : all.series.size();
+    if (same < c) continue;
+    Eigen::VectorXd direct = shares[c][0] * omega[0] * direct_[0][c];
+    for (std::size_t l = 1; l < lights_.size(); ++l) direct += shares[c][Eigen::Index(l)] * omega[l] * direct_[l][c];
+    all.series.push_back(light_->scattered(direct, direction, sigma, sigma, &all.iterations));
   }
-  for (int a = 0; a < 3; ++a)
-    for (std::size_t c = 0; c < 3; ++c)
-      all.face[std::size_t(a)][c] = light_->on_face(all.everywhere[c], a, direction[a] > 0 ? 1 : -1);
   return all;
 }
 
-bool PreparedPaper::radiance(const Scattered& scattered, const Ray& ray, Rgb& radiance) const {
-  const Interval t = scene::clip(field_->box(), ray, {0, infinity});
-  if (t.empty()) return false;
-  const Vec3 x = field_->local(ray.at(t.lo));
-  int axis = 0;
-  x.cwiseAbs().maxCoeff(&axis);
-  // A camera within the box: E_s there is what arrives.
-  const bool on_face = t.lo > 0;
-  const Coefficients& from = on_face ? scattered.face[std::size_t(axis)] : scattered.everywhere;
-  scene::TensorShape shape = light_->shape();
-  if (on_face) shape[std::size_t(axis)] = 1;
-  for (int c = 0; c < 3; ++c) {
-    const bool same = c > 0 && from[std::size_t(c)] == from[0];
-    radiance[c] = same ? radiance[0] : series_value(shape, from[std::size_t(c)].data(), x);
+// E_d where the light leaves the medium on its way there: a shadowgram on what lies behind.
+Rgb PreparedPaper::left_of_light(const Point3& x, std::size_t light) const {
+  const Ray ray{x, lights_[light].to_light};
+  const Interval t = field_ ? scene::clip(field_->box(), ray, {0, infinity}) : Interval{1, 0};
+  if (t.empty()) return Rgb::Ones();
+  Rgb left;
+  for (int c = 0; c < 3; ++c)
+    left[c] = c > 0 && medium_->sigma_t[c] == medium_->sigma_t[0]
+                  ? left[0]
+                  : std::max(0.0, series_value(light_->shape(), direct_[light][std::size_t(c)].data(),
+                                               field_->local(ray.at(t.lo))));
+  return left;
+}
+
+void PreparedPaper::look(int y, const scene::CameraRays& rays, PaperView::Row& row, std::vector<Rgb>& behind) const {
+  const LeftOfLight left = [&](const Point3& x, std::size_t light) { return left_of_light(x, light); };
+  const bool kept = behind_kept();
+  for (std::size_t x = 0; x < behind.size(); ++x) {
+    const Ray ray = rays(double(x) + 0.5, y + 0.5);
+    const scene::RayEnd end = scene::camera_end(*scene_, ray);
+    row.end[x] = end.t;
+    row.seen[x] = row.seen[x] || end.t < infinity || end.seen;
+    if (row.seen[x] && kept) behind[x] = sent_back(*scene_, lights_, ray, end, left);
   }
-  return true;
 }
 
 scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Execution& execution) const {
   require_view(view, moving_);
+  require_own_camera(*scene_, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  float *mean = film.add("mean").data(), *airlight = film.add("airlight").data();
+  const auto wanted = [&](const char* name) { return !execution.layers || execution.layers->contains(name); };
+  const auto layer = [&](const char* name, bool made) { return made ? film.add(name).data() : nullptr; };
+  float *mean = layer("mean", true), *airlight = layer("airlight", wanted("airlight"));
+  float* surface = layer("surface", ends() && wanted("surface"));
+  float* transmittance = layer("transmittance", ends() && wanted("transmittance"));
   film.metadata = {
       {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
-  if (!field_ || lights_.empty()) return result;
   scene::Stopwatch watch;
   const Scattered scattered = this->scattered(-view.camera.forward);
-  result.times.push_back({"scattered systems", watch.lap()});
+  if (scatters()) result.times.push_back({"scattered systems", watch.lap()});
+  std::optional<PaperView> medium;
+  if (field_) medium.emplace(*field_, *light_, scattered, medium_->sigma_t, view, ends());
+  const bool all_columns = transmittance || scene::has_environment(*scene_);
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;
-  long hits = 0, negative = 0;
+  long met = 0, negative = 0;
   scene::parallel_rows(view.height, execution, [&](int y) {
-    long row_hits = 0, row_negative = 0;
-    for (int x = 0; x < view.width; ++x) {
-      Rgb value;
-      if (!radiance(scattered, rays(x + 0.5, y + 0.5), value)) continue;
-      ++row_hits;
-      if (value.minCoeff() < 0) ++row_negative;
-      const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
-      for (int c = 0; c < 3; ++c)
-        mean[at + std::size_t(c)] = airlight[at + std::size_t(c)] = float(std::max(0.0, value[c]));
+    const auto width = std::size_t(view.width);
+    PaperView::Row row;
+    row.end.assign(width, infinity);
+    row.seen.assign(width, all_columns);
+    std::vector<Rgb> behind(width, Rgb::Zero());
+    if (ends()) look(y, rays, row, behind);
+    if (medium) medium->row(y, row);
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::size_t at = 3 * (std::size_t(y) * width + x);
+      const Rgb lit = medium ? Rgb(row.airlight[x].max(0)) : Rgb(Rgb::Zero());
+      Rgb clear = Rgb::Ones();
+      if (medium && row.column[x] != 0) clear = (-medium_->sigma_t * row.column[x]).exp();
+      const Rgb seen = clear * behind[x];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = Eigen::Index(c);
+        mean[at + c] = float(lit[channel] + seen[channel]);
+        if (airlight) airlight[at + c] = float(lit[channel]);
+        if (surface) surface[at + c] = float(seen[channel]);
+        if (transmittance) transmittance[at + c] = float(clear[channel]);
+      }
     }
     const std::lock_guard lock(mutex);
-    hits += row_hits;
-    negative += row_negative;
+    met += row.met;
+    negative += row.negative;
   });
   result.times.push_back({"image", watch.lap()});
-  result.counters = {{"rays", double(film.pixels())},
-                     {"unknowns", double(scene::tensor_size(light_->shape()))},
-                     {"iterations", double(iterations_ + scattered.iterations)},
-                     {"negative_share", hits > 0 ? double(negative) / double(hits) : 0},
-                     {"negative_direct_share", negative_direct_},
-                     {"negative_density_share", negative_share(field_->shape(), field_->coefficients())}};
+  result.counters["rays"] = double(film.pixels());
+  if (!scatters()) return result;
+  result.counters["unknowns"] = double(scene::tensor_size(light_->shape()));
+  result.counters["iterations"] = double(iterations_ + scattered.iterations);
+  result.counters["negative_share"] = met > 0 ? double(negative) / double(met) : 0;
+  result.counters["negative_direct_share"] = negative_direct_;
+  result.counters["negative_density_share"] = negative_density_;
   return result;
 }
 
@@ -195,20 +232,37 @@ void require_view(const scene::View& view, const std::array<bool, 3>& moving) {
       throw Error("variant = paper: a view along an axis on which the scene's own does not move; prepare it anew");
 }
 
+namespace {
+
+bool surface_may_shadow(const scene::Scene& scene, std::size_t medium) {
+  const scene::LegendrePointer field =
+      field_against(scene.media, medium).empty() ? field_within_region(scene.media[medium]) : nullptr;
+  for (const scene::Light& light : scene.lights)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); field && sun && sun->irradiance.maxCoeff() > 0)
+      for (const scene::Surface& surface : scene.surfaces)
+        if (may_shadow(surface, field->box(), sun->to_light)) return true;
+  return false;
+}
+
+}  // namespace
+
 std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const PaperOptions& options) {
   std::vector<std::string> reasons;
   if (scene.camera.kind != scene::Camera::Kind::orthographic)
     reasons.push_back("variant = paper has one image of a whole view: expected an orthographic camera");
-  if (!scene.surfaces.empty()) reasons.push_back("variant = paper knows no surfaces");
   if ((scene.ambient_in_scatter > 0).any()) reasons.push_back("variant = paper knows no ambient_in_scatter");
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (const std::string why = scene::unknown_light<scene::DirectionalLight>(scene.lights, i); !why.empty())
+    if (const std::string why = scene::unknown_light<scene::DirectionalLight, scene::EnvironmentLight>(scene.lights, i);
+        !why.empty())
       reasons.push_back(why);
   std::size_t media = 0;
   int unknowns = 0;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     if (!extinguishes(scene.media[i])) continue;
     ++media;
+    if (surface_may_shadow(scene, i))
+      reasons.push_back(
+          "variant = paper knows no shadows within the medium: a surface may stand between it and a light");
     const auto* field = std::get_if<scene::LegendrePointer>(&scene.media[i].field);
     const scene::TensorShape of_density = field ? (*field)->shape() : scene::TensorShape{1, 1, 1};
     unknowns = std::max(unknowns, scene::tensor_size(intensity_shape(of_density, options.n, moving_axes(scene))));

@@ -46,7 +46,6 @@ class PreparedRays final : public scene::Prepared {
   }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
   Pixel pixel(const Ray&, RayVisits&) const;
-  Rgb behind(const Ray&, const scene::RayEnd&) const;
 
   scene::Stopwatch watch_;
   std::shared_ptr<const Scene> scene_;
@@ -86,32 +85,17 @@ std::vector<scene::Stage> PreparedRays::stages() const {
            scene::has_environment(*scene_) ? "no direction: only the background is drawn" : "no environment"}};
 }
 
-// What the ray ends on sends back, without the media in between.
-Rgb PreparedRays::behind(const Ray& ray, const scene::RayEnd& end) const {
-  if (!end.hit) return scene::background(*scene_, end, ray.direction);
-  const scene::Hit& hit = *end.hit;
-  const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
-  Rgb sum = Rgb::Zero();
-  for (std::size_t l = 0; l < rays_.media().lights.size(); ++l) {
-    const scene::DirectionalLight& light = rays_.media().lights[l];
-    const double cosine = hit.normal.dot(light.to_light);
-    if (!(cosine > 0)) continue;
-    const Rgb reflected = scene::brdf(material, hit.normal, light.to_light, -ray.direction) * light.irradiance * cosine;
-    if (!(reflected.maxCoeff() > 0)) continue;
-    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, light.to_light);
-    if (scene_->geometry->occluded({start, light.to_light})) continue;
-    sum += reflected * (-rays_.media().light_depth(hit.position, l)).exp();
-  }
-  return sum;
-}
-
 PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
   Pixel pixel;
   const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
   const Rgb depth = rays_.media().view_depth(ray, end.t);
   pixel.transmittance = (-depth).exp();
   if (scatters()) pixel.airlight = rays_.airlight(ray, end.t, visits);
-  if (behind_kept() && pixel.transmittance.maxCoeff() > 0) pixel.surface = pixel.transmittance * behind(ray, end);
+  if (behind_kept() && pixel.transmittance.maxCoeff() > 0)
+    pixel.surface = pixel.transmittance *
+                    sent_back(*scene_, rays_.media().lights, ray, end, [&](const Point3& x, std::size_t light) -> Rgb {
+                      return (-rays_.media().light_depth(x, light)).exp();
+                    });
   // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
   if (ambient_kept())
     pixel.ambient = scene_->ambient_in_scatter * depth.unaryExpr([](double d) { return -std::expm1(-d); });

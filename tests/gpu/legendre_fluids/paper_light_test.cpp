@@ -5,6 +5,7 @@
 
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "methods/legendre_fluids/light.h"
+#include "scene/particles.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
@@ -110,6 +111,49 @@ TEST_CASE("legendre light on the device: the paper's systems by colours, lights,
   for (const char* closure : {"upwind", "least_squares"}) compare("one", scene, paper(closure, 1));
 }
 
+// Depths in front of the box, in it, behind it, and none; flakes, drawn by the camera.
+TEST_CASE("legendre light on the device: the paper's systems before pictures with depth", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const auto with_ends = [](ScenePointer scene, double step) {
+    auto picture = std::make_shared<scene::Backdrop>();
+    picture->width = scene->width;
+    picture->height = scene->height;
+    for (int i = 0; i < scene->width * scene->height; ++i) {
+      picture->depth.push_back(i % 11 == 10 ? float(infinity) : float(3 + step * (i % 23)));
+      for (const float c : {2.f, 3.f, 4.f}) picture->radiance.push_back(c);
+    }
+    scene::Particles flakes;
+    flakes.radius = 0.04;
+    flakes.radiances = {Rgb(5, 2, 1)};
+    for (int i = 0; i < 100; ++i) flakes.positions.push_back(Point3(std::sin(i), std::sin(1.7 * i), std::sin(2.3 * i)));
+    scene->backdrops = {
+        picture, std::make_shared<scene::Backdrop>(scene::draw(flakes, scene->camera, scene->width, scene->height))};
+    finish(*scene);
+    return scene;
+  };
+  for (const char* closure : {"upwind", "least_squares"})
+    for (const double depth : {0.1, 1.0, 5.0, 20.0})
+      compare("ends", with_ends(oblique({4, 4, 4}, depth), 0.17), paper(closure, 6));
+  ScenePointer scene = oblique({6, 3, 5}, 2);
+  scene->media[0].sigma_t = {0.4, 1, 2};
+  scene->lights.push_back(scene::DirectionalLight{Vec3(0.1, 1, 0.1).normalized(), {3, 1, 1}});
+  scene->camera.position = Point3(0.3, 0.2, 0.1);  // within
+  compare("colours, from within", with_ends(scene, 0.05), paper("upwind", 5));
+  scene = lit_scene(smoke(random_density({8, 8, 8}, 3), 1), {0, 1, 0}, {0, 0, -1}, 24, 20);
+  compare("along an axis", with_ends(scene, 0.17), paper("upwind", 6));
+  // What nobody asks for does not come down, and the picture is the same.
+  const gpu::LegendreLightGpu method;
+  const auto prepared = method.prepare(scene, {method.settings(), paper("upwind", 6)}, {1, {}});
+  scene::Execution some{1, {}};
+  some.layers = std::set<std::string>{"mean"};
+  const scene::Film mean = prepared->render(view_of(*scene), some).film;
+  CHECK(mean.layers.size() == 1);
+  CHECK(mean.layer("mean") == prepared->render(view_of(*scene), {1, {}}).film.layer("mean"));
+  scene::View other = view_of(*scene);
+  other.camera.height *= 2;
+  CHECK_THROWS_WITH(prepared->render(other, {1, {}}), Contains("belongs to the scene's own camera"));
+}
+
 TEST_CASE("legendre light on the device: the paper's systems where nothing is lit", "[gpu][legendre_fluids]") {
   if (!gpu::test::device()) return;
   ScenePointer scene = oblique({4, 4, 4}, 2);
@@ -173,6 +217,16 @@ TEST_CASE("legendre light on the device: what the paper's systems refuse there",
   CHECK_THAT(objections(*scene, paper("upwind", 17)).at(0), Contains("n = 17"));
   CHECK_THAT(objections(*scene, paper("least_squares", 6, {{"boundary_weight", "2000"}})).at(0),
              Contains("boundary_weight = 2000"));
+  scene->backdrops = {
+      std::make_shared<scene::Backdrop>(scene::draw(scene::Particles{{}, {}, 1, {Rgb::Ones()}}, scene->camera, 4, 4))};
+  CHECK(objections(*scene, paper("upwind", 6)).empty());
+  scene->media[0].field = random_density({16, 16, 16}, 1);
+  CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("a density of 4096 coefficients"));
+  scene->lights.clear();
+  CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("no medium is lit"));
+  scene = oblique({4, 4, 4}, 2);
+  scene->lights.push_back(scene::make_constant_environment(Rgb::Ones()));
+  CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("surfaces or an environment"));
   scene->camera.kind = scene::Camera::Kind::perspective;
   CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("orthographic"));
 }

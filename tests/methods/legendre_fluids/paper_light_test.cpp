@@ -170,9 +170,6 @@ TEST_CASE("legendre light: what the systems cannot do is refused by name", "[leg
   scene.camera.kind = scene::Camera::Kind::perspective;
   refused(paper("upwind", 6), "expected an orthographic camera");
   scene = good;
-  scene.surfaces.resize(1);
-  refused(paper("upwind", 6), "knows no surfaces");
-  scene = good;
   scene.media.push_back(scene.media[0]);
   refused(paper("upwind", 6), "2 media, expected one");
   scene = good;
