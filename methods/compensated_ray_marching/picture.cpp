@@ -20,8 +20,6 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-constexpr double least_source_density = 1e-10;  // of Gaussians: below it no one knows the source
-
 struct Pixel {
   Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
   long slices = 0, samples = 0;
@@ -201,7 +199,7 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       Rgb source = Rgb::Zero();
       if (grid_)
         source = between_nodes(grid_->grid(), towards, x).exp();
-      else if (of_gaussians >= least_source_density)
+      else if (of_gaussians >= smoke_->least_density())
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
       p.airlight += p.transmittance * source * seen(depth, slope, options_.weight);
       p.transmittance *= (-depth).exp();
