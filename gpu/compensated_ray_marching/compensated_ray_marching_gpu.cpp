@@ -325,6 +325,9 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
                           {"settings", settings_},
                           {"scene", scene_->name},
                           {"hash", scene_->hash}};
+  const bool again = grid_ && grid_->single_only().empty();
+  if (const std::string doubt = compensated_ray_marching::doubt_of(*scene_, options_, again); !doubt.empty())
+    result.film.metadata["warning"] = "compensated_ray_marching_gpu: " + doubt;
   return result;
 }
 

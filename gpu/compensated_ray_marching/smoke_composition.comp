@@ -19,9 +19,9 @@ void main() {
   float depth = has_smoke != 0 ? min(sigma_t[i % 3] * column[i / 3], 200.0) : 0, clear = exp(-depth);
   if (has_smoke == 0) airlight[i] = 0;
   float there = has_behind != 0 ? surface[i] : 0, fog = ambient[i % 3] * opacity(depth);
-  if (has_lit != 0) there += lit[i / 3].reflected[i % 3] + lit[i / 3].sum[i % 3];
+  if (has_lit != 0) there += max(lit[i / 3].reflected[i % 3] + lit[i / 3].sum[i % 3], 0.0);
   if (has_seen != 0 && seen_there[i] >= 0) there = seen_there[i];
-  float behind = clear * max(there, 0.0);
+  float behind = clear * there;  // environments of a few bands may be negative
   transmittance[i] = clear;
   surface[i] = behind;
   mean[i] = airlight[i] + behind + fog;

@@ -1,13 +1,14 @@
 #include "methods/compensated_ray_marching/marched_smoke.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "scene/convert/residual.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr double least_density = 1e-10;  // of the Gaussians: below it no one knows the source
+constexpr double least_share = 1e-10;  // of the greatest amplitude: below it no one knows the source
 
 }  // namespace
 
@@ -26,6 +27,10 @@ SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : gi
   }
   const auto* sum = std::get_if<scene::GaussianSum>(&this->medium().field);
   if (sum && std::holds_alternative<scene::Unbounded>(this->medium().region)) gaussians_ = sum;
+  if (!gaussians_) return;
+  for (const scene::Gaussian& g : gaussians_->gaussians)
+    least_density_ = std::max(least_density_, least_share * g.amplitude);
+  least_density_ = std::max(least_density_, double(std::numeric_limits<float>::min()));
 }
 
 Interval SmokeField::extent(const Ray& ray, Interval t) const { return scene::extent(medium(), ray, t); }
@@ -33,7 +38,7 @@ Interval SmokeField::extent(const Ray& ray, Interval t) const { return scene::ex
 double SmokeField::density(const Point3& x, double of_gaussians) const {
   if (!gaussians_) return scene::density(medium(), x);
   if (!residual_) return std::max(0.0, of_gaussians);
-  return of_gaussians < least_density ? 0 : std::max(0.0, of_gaussians + scene::density(*residual_, x));
+  return of_gaussians < least_density_ ? 0 : std::max(0.0, of_gaussians + scene::density(*residual_, x));
 }
 
 }  // namespace airlight::compensated_ray_marching

@@ -9,7 +9,7 @@
 namespace airlight::compensated_ray_marching {
 
 // variant = grid marches through the medium itself; paper through Gaussians, with what they leave of fitted smoke (trilinear, of either
-// sign) where `residual` asks for it, and without density where the Gaussians have less than 1e-10.
+// sign) where `residual` asks for it, and without density where the Gaussians have less than least_density().
 class SmokeField {
  public:
   // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out.
@@ -18,6 +18,8 @@ class SmokeField {
   const scene::Medium& medium() const { return own_ ? *own_ : *given_; }
   // The Gaussians; null where there are none, or a region cuts them off.
   const scene::GaussianSum* gaussians() const { return gaussians_; }
+  // Of the Gaussians, where they have a source: 1e-10 of the greatest amplitude, no less than a float holds with all its digits.
+  double least_density() const { return least_density_; }
   bool with_residual() const { return residual_.has_value(); }
 
   // Where it is along a ray.
@@ -29,6 +31,7 @@ class SmokeField {
   const scene::Medium* given_;
   std::optional<scene::Medium> own_;
   const scene::GaussianSum* gaussians_ = nullptr;
+  double least_density_ = 0;
   std::optional<scene::VoxelGrid> residual_;
 };
 

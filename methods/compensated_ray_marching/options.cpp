@@ -1,17 +1,23 @@
 #include "methods/compensated_ray_marching/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/background.h"
 #include "scene/error.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr int most_paper_gaussians = 4096;  // the diffusion system is dense
+constexpr int most_paper_gaussians = 4096;               // the diffusion system is dense
+constexpr double most_left_out = 0.6 * 0.6 * 0.6 * 0.6;  // of a phase function: its first moment without a band
 
-std::vector<std::string> reasons_against_medium(const scene::Scene& scene, std::size_t i, bool paper) {
+std::vector<std::string> reasons_against_medium(const scene::Scene& scene, std::size_t i, const Options& o) {
+  const bool paper = o.variant == Options::Variant::paper;
   std::vector<std::string> reasons;
   const scene::Medium& medium = scene.media[i];
   const std::string name = label(scene.media, i);
@@ -28,6 +34,10 @@ std::vector<std::string> reasons_against_medium(const scene::Scene& scene, std::
     reasons.push_back(name +
                       " has a Gaussian of negative amplitude; variant = paper interpolates with them as weights");
   if (sum.constant > 0) reasons.push_back(name + " has a constant density; variant = paper has none");
+  if (o.paper.multiple != Options::Paper::Multiple::none && (medium.albedo == 1 && medium.sigma_t > 0).any())
+    reasons.push_back(
+        name +
+        " has albedo 1, for which the closed system of variant = paper is singular: variant = grid, or multiple = none");
   if (sum.gaussians.size() > most_paper_gaussians)
     reasons.push_back(name + " has more Gaussians than variant = paper solves for");
   if (!std::holds_alternative<scene::Unbounded>(medium.region) && !fitted)
@@ -114,7 +124,7 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     if (!extinguishes(scene.media[i])) continue;
     ++media;
-    const std::vector<std::string> some = reasons_against_medium(scene, i, paper);
+    const std::vector<std::string> some = reasons_against_medium(scene, i, o);
     reasons.insert(reasons.end(), some.begin(), some.end());
   }
   if (media > 1) reasons.push_back("more than one medium");
@@ -135,6 +145,27 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       reasons.push_back("surface " + name + " does not reflect as Lambert's; variant = paper");
   }
   return reasons;
+}
+
+std::string doubt_of(const scene::Scene& scene, const Options& o, bool again) {
+  const bool paper = o.variant == Options::Variant::paper;
+  std::vector<std::string> doubts;
+  for (const scene::Medium& medium : scene.media) {
+    if (!extinguishes(medium) || !(medium.albedo > 0).any()) continue;
+    const auto look_at = [&](const char* what, const char* setting, int bands) {
+      const double left_out = std::abs(phase_moments(medium.phase, bands + 1).back());
+      if (left_out > most_left_out * (1 + 1e-12))
+        doubts.push_back(fmt::format("{} leaves out moments of the phase function from {:.2g} down with {} = {}", what,
+                                     left_out, setting, bands));
+    };
+    if (paper)
+      look_at("source radiance", "order", o.order);
+    else if (scene::has_environment(scene))
+      look_at("single scattering of environments", "levels", o.grid.levels);
+    if (!paper && again) look_at("multiple scattering", "order", o.order);
+  }
+  if (doubts.empty()) return "";
+  return fmt::format("{} (expected: {:.2g}, |g| = 0.6 at order 4)", fmt::join(doubts, "; "), most_left_out);
 }
 
 }  // namespace airlight::compensated_ray_marching

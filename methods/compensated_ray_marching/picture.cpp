@@ -21,8 +21,6 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-constexpr double least_source_density = 1e-10;  // of Gaussians: below it no one knows the source
-
 struct Pixel {
   Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
   long slices = 0, samples = 0;
@@ -51,6 +49,11 @@ class PreparedPicture final : public scene::Prepared {
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
   std::vector<scene::StageTime> light(const Execution&);
+  // Of several orders, in what is drawn.
+  bool multiple() const {
+    return (grid_ && grid_->single_only().empty()) ||
+           (centres_ && options_.paper.multiple != Options::Paper::Multiple::none);
+  }
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
@@ -144,13 +147,11 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
                 ? "not asked for"
                 : fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
   }
-  const bool multiple = (grid_ && grid_->single_only().empty()) ||
-                        (centres_ && options_.paper.multiple != Options::Paper::Multiple::none);
   return {{"single scattering", smoke_ && scatters,
            !smoke_    ? none
            : scatters ? how
                       : "the albedo is 0"},
-          {"multiple scattering", multiple, !smoke_ ? none : again},
+          {"multiple scattering", multiple(), !smoke_ ? none : again},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
            : smoke_->with_residual() ? "added to the Gaussians"
@@ -212,7 +213,7 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       Rgb source = Rgb::Zero();
       if (grid_)
         source = exponentials(between_nodes(grid_->grid(), towards, x));
-      else if (of_gaussians >= least_source_density)
+      else if (of_gaussians >= smoke_->least_density())
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
       // What a slice shows of its source is what it takes away, by exact weights.
       p.airlight += p.transmittance * source * (exact ? lost : seen(depth, slope, options_.weight));
@@ -230,6 +231,8 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
   scene::Film& film = result.film;
   film.metadata = {
       {"method", "compensated_ray_marching"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  if (const std::string doubt = doubt_of(*scene_, options_, multiple()); !doubt.empty())
+    film.metadata["warning"] = "compensated_ray_marching: " + doubt;
   float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
   float *airlight = film.add("airlight").data(), *surface = film.add("surface").data();
   float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;

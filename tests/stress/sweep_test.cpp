@@ -26,6 +26,12 @@ std::string row(const SweepCase& c, const std::string& renderer, const Tally& t)
 std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std::string>& renderers) {
   std::vector<std::string> specs;
   for (const std::string& name : renderers) {
+    if (name.starts_with("compensated_ray_marching")) {
+      specs.push_back(name + " cells=12");
+      specs.push_back(name + " cells=12 multiple=none");
+      if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " variant=paper multiple=none");
+      continue;
+    }
     specs.push_back(name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
     if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
@@ -52,7 +58,8 @@ void run(int step, const std::vector<std::string>& renderers, const char* file) 
 }  // namespace
 
 TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep]") {
-  run(11, {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes"}, nullptr);
+  run(11, {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes", "compensated_ray_marching"},
+      nullptr);
 }
 
 // On demand: AIRLIGHT_SWEEP names the file of the table, a list of renderers in AIRLIGHT_SWEEP_OF replaces all.
