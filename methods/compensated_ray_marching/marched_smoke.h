@@ -12,13 +12,16 @@ namespace airlight::compensated_ray_marching {
 // sign) where `residual` asks for it, and without density where the Gaussians have less than 1e-10.
 class SmokeField {
  public:
-  // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out.
+  // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out, and of paper, which has an
+  // equation for every Gaussian, where some have no amplitude: they are left out.
   SmokeField(const scene::Medium&, const Options&);
 
   const scene::Medium& medium() const { return own_ ? *own_ : *given_; }
   // The Gaussians; null where there are none, or a region cuts them off.
   const scene::GaussianSum* gaussians() const { return gaussians_; }
   bool with_residual() const { return residual_.has_value(); }
+  // Of fitted smoke, where it is added to the Gaussians; null: it is not.
+  const scene::Residual* residual() const { return levels_.get(); }
 
   // Where it is along a ray.
   Interval extent(const Ray&, Interval) const;
@@ -29,7 +32,8 @@ class SmokeField {
   const scene::Medium* given_;
   std::optional<scene::Medium> own_;
   const scene::GaussianSum* gaussians_ = nullptr;
-  std::optional<scene::VoxelGrid> residual_;
+  std::shared_ptr<const scene::Residual> levels_;
+  std::optional<scene::VoxelGrid> residual_;  // of the levels
 };
 
 }  // namespace airlight::compensated_ray_marching
