@@ -4,13 +4,11 @@
 
 #include <cmath>
 
+#include "gpu/compensated_ray_marching/centre_sources_on_device.h"
 #include "gpu/compensated_ray_marching/smoke_density.h"
 #include "gpu/compensated_ray_marching/smoke_source.h"
-#include "gpu/environment_lights.h"
-#include "gpu/frame.h"
-#include "gpu/raster/backdrops.h"
+#include "gpu/compensated_ray_marching/surroundings.h"
 #include "gpu/view_uniforms.h"
-#include "gpu/wavelet_fog/surface_light.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/single_precision.h"
 #include "scene/stopwatch.h"
@@ -39,18 +37,17 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
+  bool paper() const { return options_.variant == Options::Variant::paper; }
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
-  bool behind() const { return environments_->count() > 0; }
-  void set_environments();
-  void set_lamps();
-  void find_ends(const View&) const;
+  void begin_grid(StageTimer&, const Execution&);
+  void begin_centres(StageTimer&, const Execution&);
+  std::vector<scene::StageTime> light(const Execution&);
   void march(const View&) const;
-  void look_behind(const View&) const;
   void light_surfaces(const View&) const;
   void dim(const View&, const scene::Light&) const;
-  void compose(std::size_t pixels) const;
+  void compose(const View&) const;
   Buffer& of_pixels(const char* name, const View& view, std::size_t bytes) const {
-    return frame_.buffers.get(name, bytes * std::size_t(view.width) * std::size_t(view.height));
+    return smoke::of_pixels(frame_, name, view, bytes);
   }
 
   std::shared_ptr<const Scene> first_, scene_;  // the first has the smoke
@@ -62,18 +59,18 @@ class PreparedSmokeGpu final : public scene::Prepared {
   Point3 middle_ = Point3::Zero();  // of the smoke
   double slice_ = 0;                // [m] across
   Context& context_;
+  std::unique_ptr<Surroundings> surroundings_;
   std::unique_ptr<SmokeDensity> density_;
-  std::unique_ptr<SmokeSource> source_;
-  std::unique_ptr<EnvironmentLights> environments_;
-  std::unique_ptr<FirstHits> first_hits_;            // null: there are no surfaces
-  std::unique_ptr<Backdrops> backdrops_;             // null: there are none
-  std::unique_ptr<fogmaps::SurfaceLight> surfaces_;  // null: there are no surfaces
-  Scene lamps_;  // the surfaces, lit from the directions that light is gathered from
+  std::unique_ptr<SmokeSource> source_;             // of grid
+  std::unique_ptr<CentreSourcesOnDevice> centres_;  // of paper
   Program *ranges_ = nullptr, *march_ = nullptr, *composition_ = nullptr, *dim_ = nullptr;
-  std::vector<Program*> behind_;  // for each environment
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
 };
+
+void append(std::vector<scene::StageTime>& times, const std::vector<scene::StageTime>& more) {
+  times.insert(times.end(), more.begin(), more.end());
+}
 
 PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Options& options, std::string settings,
                                    const Execution& execution)
@@ -86,55 +83,47 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !compensated_ray_marching::smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   scene::Stopwatch watch;
-  incoming_.emplace(scene_->lights, options_.grid.levels);
-  times_.push_back({"environment", watch.lap()});
-  if (smoke_) {
-    grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
-    times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
+  if (!paper()) {
+    incoming_.emplace(scene_->lights, options_.grid.levels);
+    times_.push_back({"environment", watch.lap()});
+    if (smoke_) {
+      grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
+      append(times_, grid_->times());
+    }
   }
   const Use use(context_);
   StageTimer timer(context_);
   timer.begin("upload");
-  set_environments();
-  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
-  if (scene_->geometry) {
-    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-    lamps_ = *scene_;
-    set_lamps();
-    Scene any = lamps_;  // its programs are wanted even when no direction has light yet
-    any.lights = {scene::DirectionalLight{}};
-    surfaces_ = std::make_unique<fogmaps::SurfaceLight>(context_, any, first_hits_.get());
-  }
+  surroundings_ = std::make_unique<Surroundings>(context_, *scene_);
   composition_ = &program(context_, "smoke_composition", 64, 1, {});
   if (smoke_) {
     const Box box = compensated_ray_marching::smoke_box(smoke_->medium());
     middle_ = box.center();
     slice_ = box.size().maxCoeff() / options_.slices;
-    density_ = std::make_unique<SmokeDensity>(context_, *smoke_, middle_);
-    source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *incoming_);
+    density_ = std::make_unique<SmokeDensity>(context_, *smoke_, middle_, paper());
     ranges_ = &program(context_, "ranges", tile, tile, density_->definitions());
     march_ = &program(context_, "march", tile, tile, density_->definitions());
-    if (surfaces_) dim_ = &program(context_, "smoke_dim", tile, tile, density_->definitions());
-    grid_->aim(*incoming_, execution);
-    source_->light(*grid_, *incoming_, true, timer, execution);
   }
-  const std::vector<scene::StageTime> lit = timer.times();
-  times_.insert(times_.end(), lit.begin(), lit.end());
+  paper() ? begin_centres(timer, execution) : begin_grid(timer, execution);
+  append(times_, timer.times());
 }
 
-void PreparedSmokeGpu::set_environments() {
-  environments_ = std::make_unique<EnvironmentLights>(context_, *scene_);
-  behind_.clear();
-  for (int l = 0; l < environments_->count(); ++l)
-    behind_.push_back(&program(context_, "smoke_behind", tile, tile, environments_->definitions(l)));
+void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution) {
+  if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
+  if (!smoke_) return;
+  if (surroundings_->surfaces()) dim_ = &program(context_, "smoke_dim", tile, tile, density_->definitions());
+  source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *incoming_);
+  grid_->aim(*incoming_, execution);
+  source_->light(*grid_, *incoming_, true, timer, execution);
 }
 
-// What surfaces reflect comes from the directions that smoke is lit from, one after the other.
-void PreparedSmokeGpu::set_lamps() {
-  lamps_.lights.clear();
-  for (std::size_t k = 0; k < incoming_->directions().size(); ++k)
-    if ((incoming_->power()[k] != 0).any())
-      lamps_.lights.push_back(scene::DirectionalLight{incoming_->directions()[k], incoming_->power()[k]});
+void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& execution) {
+  static const scene::GaussianSum no_smoke;
+  static const scene::Medium clear;
+  centres_ =
+      std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
+                                              smoke_ ? smoke_->medium() : clear, scene_->surfaces, options_, timer);
+  centres_->light(scene_->lights, timer, execution);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
@@ -144,53 +133,66 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
     return std::nullopt;
   const Use use(context_);
   scene_ = std::move(scene);
-  if (!environments_->become(*scene_)) set_environments();
+  surroundings_->become(*scene_);
+  return light(execution);
+}
+
+std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution) {
   std::vector<scene::StageTime> times;
+  StageTimer timer(context_);
+  if (centres_) {
+    centres_->light(scene_->lights, timer, execution);
+    return timer.times();
+  }
   scene::Stopwatch watch;
   incoming_->become(scene_->lights);
-  if (surfaces_) set_lamps();
+  if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   times.push_back({"environment", watch.lap()});
   if (!smoke_) return times;
   const bool aimed = grid_->aim(*incoming_, execution);
-  times.insert(times.end(), grid_->times().begin(), grid_->times().end());
-  StageTimer timer(context_);
+  append(times, grid_->times());
+  timer.restart();
   source_->light(*grid_, *incoming_, aimed, timer, execution);
-  const std::vector<scene::StageTime> lit = timer.times();
-  times.insert(times.end(), lit.begin(), lit.end());
+  append(times, timer.times());
   return times;
 }
 
 std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
   const std::string none = "no medium extinguishes";
   const bool scatters = smoke_ && (smoke_->medium().albedo * smoke_->medium().sigma_t).maxCoeff() > 0;
-  const bool multiple = smoke_ && grid_->single_only().empty();
-  std::string again = smoke_ ? grid_->single_only() : none;
-  if (multiple)
+  std::string again = grid_ ? grid_->single_only() : none, how = none;
+  if (grid_) how = fmt::format("{} nodes, {} directions", grid_->nodes().size(), incoming_->directions().size());
+  bool multiple = grid_ && grid_->single_only().empty();
+  if (smoke_ && centres_) {
+    how = fmt::format("{} centres, {} bands", centres_->centres(), options_.order);
+    multiple = scatters && options_.paper.multiple != Options::Paper::Multiple::none;
+    again = multiple   ? fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual())
+            : scatters ? "not asked for"
+                       : "the albedo is 0";
+  } else if (multiple)
     again = fmt::format("{} bands, deepest cell {:.2g}; {} iterations, error about {:.1g}{}", options_.order,
                         grid_->deepest_cell(), source_->iterations(), source_->error(),
                         source_->error() > options_.tolerance ? ": more than the tolerance" : "");
-  return {
-      {"single scattering", scatters,
-       !smoke_    ? none
-       : scatters ? fmt::format("{} nodes, {} directions", grid_->nodes().size(), incoming_->directions().size())
-                  : "the albedo is 0"},
-      {"multiple scattering", multiple, again},
-      {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},
-      {"ends", first_hits_ || backdrops_,
-       first_hits_ || backdrops_ ? "where surfaces and backdrops end camera rays" : "nothing ends a ray"},
-      {"surfaces", bool(surfaces_),
-       surfaces_ ? fmt::format("lit from {} directions, through the smoke", lamps_.lights.size()) : "there are none"},
-      {"background", behind(), behind() ? "environments through the smoke" : "nothing stands behind"},
-      {"composition", true, "layers of the film"}};
-}
-
-void PreparedSmokeGpu::find_ends(const View& view) const {
-  const Buffer& distances = of_pixels("distances", view, 4);
-  if (first_hits_) {
-    const Buffer& primitives = of_pixels("primitives", view, 4);
-    first_hits_->find(view, distances, &primitives);
-  }
-  if (backdrops_) backdrops_->find(view, distances, bool(first_hits_), of_pixels("seen", view, 12));
+  return {{"single scattering", scatters,
+           !smoke_    ? none
+           : scatters ? how
+                      : "the albedo is 0"},
+          {"multiple scattering", multiple, again},
+          {"residual", smoke_ && smoke_->with_residual(),
+           !smoke_                   ? none
+           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->gaussians()     ? "the Gaussians are all"
+                                     : "the field itself is marched through"},
+          {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},
+          {"ends", surroundings_->ends(),
+           surroundings_->ends() ? "where surfaces and backdrops end camera rays" : "nothing ends a ray"},
+          {"surfaces", bool(surroundings_->surfaces()),
+           !surroundings_->surfaces() ? "there are none"
+           : centres_ ? fmt::format("lit by the environment in bands, past {} spheres", centres_->objects())
+                      : fmt::format("lit from {} directions, through the smoke", surroundings_->lamps())},
+          {"background", surroundings_->behind(),
+           surroundings_->behind() ? "environments through the smoke" : "nothing stands behind"},
+          {"composition", true, "layers of the film"}};
 }
 
 void PreparedSmokeGpu::march(const View& view) const {
@@ -199,7 +201,7 @@ void PreparedSmokeGpu::march(const View& view) const {
   const Buffer &airlight = frame_.buffers.get("airlight", 12 * pixels),
                &column = frame_.buffers.get("column", 4 * pixels);
   Program& find = *ranges_;
-  const bool ends = first_hits_ || backdrops_;
+  const bool ends = surroundings_->ends();
   (ends ? of_pixels("distances", view, 4) : ranges).bind(at::distances);
   find.set("has_ends", ends);
   ranges.bind(at::ranges);
@@ -211,10 +213,16 @@ void PreparedSmokeGpu::march(const View& view) const {
   find.set("widths2", density_->widths2());
   find.dispatch(view.width, view.height);
   Program& p = *march_;
-  source_->logarithms().bind(at::logarithms);
   set_camera(p, view, middle_);
   density_->bind(p);
-  source_->set_grid(p, middle_);
+  density_->bind_residual(p);
+  if (centres_) {
+    centres_->sources().bind(at::centre_sources);
+    p.set("least_source_density", smoke_->least_density());
+  } else {
+    source_->logarithms().bind(at::logarithms);
+    source_->set_grid(p, middle_);
+  }
   p.set("sigma_t", smoke_->medium().sigma_t);
   p.set("weight", int(options_.weight));
   const int most = int(std::ceil(density_->longest() / slice_)) + 2;
@@ -224,23 +232,12 @@ void PreparedSmokeGpu::march(const View& view) const {
   }
 }
 
-void PreparedSmokeGpu::look_behind(const View& view) const {
-  for (int l = 0; l < environments_->count(); ++l) {
-    Program& p = *behind_[std::size_t(l)];
-    set_camera(p, view);
-    environments_->bind(l, p);
-    p.set("first", l == 0);
-    (first_hits_ ? of_pixels("primitives", view, 4) : of_pixels("surface", view, 12)).bind(at::primitives);
-    p.set("has_primitives", bool(first_hits_));
-    p.dispatch(view.width, view.height);
-  }
-}
-
 void PreparedSmokeGpu::light_surfaces(const View& view) const {
-  Buffer& lit = of_pixels("lit", view, sizeof(fogmaps::LitData));
-  if (lamps_.lights.empty()) lit.clear();
-  surfaces_->render(lamps_, view, &of_pixels("primitives", view, 4), lit,
-                    [&](const scene::Light& light) { dim(view, light); });
+  if (centres_)
+    centres_->light_surfaces(view, surroundings_->surfaces()->surfaces(), of_pixels("primitives", view, 4),
+                             of_pixels("lit", view, sizeof(fogmaps::LitData)));
+  else
+    surroundings_->light_surfaces(view, frame_, [&](const scene::Light& light) { dim(view, light); });
 }
 
 void PreparedSmokeGpu::dim(const View& view, const scene::Light& light) const {
@@ -257,10 +254,11 @@ void PreparedSmokeGpu::dim(const View& view, const scene::Light& light) const {
   p.dispatch(view.width, view.height);
 }
 
-void PreparedSmokeGpu::compose(std::size_t pixels) const {
+void PreparedSmokeGpu::compose(const View& view) const {
   Program& p = *composition_;
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   const auto layer = [&](const char* name, int binding) {
-    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
+    const Buffer& buffer = of_pixels(name, view, 12);
     buffer.bind(binding);
     frame_.download.add(name, buffer, 12 * pixels);
   };
@@ -271,17 +269,18 @@ void PreparedSmokeGpu::compose(std::size_t pixels) const {
   if (ambient())
     layer("ambient", at::ambient);
   else
-    frame_.buffers.get("mean", 12 * pixels).bind(at::ambient);
+    of_pixels("mean", view, 12).bind(at::ambient);
   p.set("values", int(3 * pixels));
-  frame_.buffers.get("column", 4 * pixels).bind(at::column);
+  const Buffer& column = of_pixels("column", view, 4);
+  column.bind(at::column);
   p.set("sigma_t", smoke_ ? smoke_->medium().sigma_t : Rgb(Rgb::Zero()));
   p.set("has_smoke", smoke_.has_value());
-  p.set("has_behind", behind());
-  const Buffer& column = frame_.buffers.get("column", 4 * pixels);
-  (surfaces_ ? frame_.buffers.get("lit", sizeof(fogmaps::LitData) * pixels) : column).bind(at::lit);
-  (backdrops_ ? frame_.buffers.get("seen", 12 * pixels) : column).bind(at::seen);
-  p.set("has_lit", bool(surfaces_));
-  p.set("has_seen", bool(backdrops_));
+  p.set("has_behind", surroundings_->behind());
+  const bool lit = surroundings_->surfaces(), seen = surroundings_->backdrops();
+  (lit ? of_pixels("lit", view, sizeof(fogmaps::LitData)) : column).bind(at::lit);
+  (seen ? of_pixels("seen", view, 12) : column).bind(at::seen);
+  p.set("has_lit", lit);
+  p.set("has_seen", seen);
   p.set("has_ambient", ambient());
   p.set("ambient", ambient() ? scene_->ambient_in_scatter : Rgb(Rgb::Zero()));
   p.dispatch(int(3 * pixels));
@@ -292,31 +291,33 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   frame_.begin(execution);
-  if (first_hits_ || backdrops_) {
+  if (surroundings_->ends()) {
     frame_.timer.begin("ends");
-    find_ends(view);
+    surroundings_->find_ends(view, frame_);
   }
   if (smoke_) {
     frame_.timer.begin("towards the camera");
-    source_->towards(view, middle_);
+    centres_ ? centres_->towards(view) : source_->towards(view, middle_);
     frame_.timer.begin("march");
     march(view);
   }
-  frame_.buffers.get("surface", 12 * pixels).bind(at::surface);
-  if (surfaces_) {
+  if (surroundings_->surfaces()) {
     frame_.timer.begin("surfaces");
     light_surfaces(view);
-    frame_.buffers.get("surface", 12 * pixels).bind(at::surface);
   }
-  if (behind()) {
+  if (surroundings_->behind()) {
     frame_.timer.begin("background");
-    look_behind(view);
+    surroundings_->look_behind(view, frame_);
   }
   frame_.timer.begin("composition");
-  compose(pixels);
+  compose(view);
   frame_.finish(result);
   result.counters["rays"] = double(pixels);
-  if (smoke_) {
+  if (centres_) {
+    result.counters["iterations"] = centres_->iterations();
+    result.counters["multiple_error"] = centres_->residual();
+    result.counters["negative_share"] = centres_->negative_share();
+  } else if (smoke_) {
     result.counters["iterations"] = source_->iterations();
     result.counters["multiple_error"] = source_->error();
     result.counters["deepest_cell"] = grid_->deepest_cell();
@@ -334,7 +335,7 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
 }  // namespace
 
 std::string CompensatedRayMarchingGpu::about() const {
-  return "compensated_ray_marching in compute shaders: discrete ordinates and the march on the device (Zhou et al. 2008)";
+  return "compensated_ray_marching in compute shaders: on a grid or at the centres of Gaussians (Zhou et al. 2008)";
 }
 
 std::vector<scene::SettingSpec> CompensatedRayMarchingGpu::settings() const {

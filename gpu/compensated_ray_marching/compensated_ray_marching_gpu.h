@@ -1,5 +1,6 @@
-// Compensated ray marching in compute shaders: the variant `grid` of methods/compensated_ray_marching, the same settings and layers, in
-// single precision. Depths towards the light are the processor's, once; everything that depends on light or camera is the device's.
+// Compensated ray marching in compute shaders: both variants of methods/compensated_ray_marching, the same settings and layers. `grid` in
+// single precision: depths towards the light are the processor's, once, what depends on light or camera is the device's. `paper`: all but
+// tables is the device's, sources at the centres in double precision, the march in single.
 #pragma once
 #include "gpu/context.h"
 #include "scene/renderer.h"

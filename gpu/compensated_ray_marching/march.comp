@@ -6,9 +6,14 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 layout(std430, binding = AT_RANGES) readonly buffer Ranges { vec4 ranges[]; };  // start, length of a slice [m], slices, slope
 layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_COLUMN) buffer Column { float column[]; };  // so far [m]
-layout(std430, binding = AT_LOGARITHMS) readonly buffer Logarithms { vec4 logarithms[]; };  // of source radiance, by cell
 uniform int first_slice, weight;  // as SliceWeight
-uniform vec3 sigma_t, corner;
+uniform vec3 sigma_t;
+#if PAPER
+layout(std430, binding = AT_CENTRE_SOURCES) readonly buffer CentreSources { vec4 sources[]; };  // by Gaussian
+uniform float least_source_density;  // of Gaussians: below it no one knows the source
+#else
+layout(std430, binding = AT_LOGARITHMS) readonly buffer Logarithms { vec4 logarithms[]; };  // of source radiance, by cell
+uniform vec3 corner;
 uniform float cell_edge;
 uniform vec3 cells_along;  // each axis
 
@@ -24,6 +29,20 @@ vec3 source_at(vec3 x) {
   vec4 c = mix(logarithms[at], logarithms[at + on.x], share.x), d = mix(logarithms[at + on.y], logarithms[at + on.y + on.x], share.x);
   return exp(mix(mix(a, b, share.y), mix(c, d, share.y), share.z).rgb);
 }
+#endif
+
+#if RESIDUAL
+#include "compensated_ray_marching/residual.glsl"
+uniform vec3 residual_along;  // samples of each axis, without the border that the levels have around them
+uniform mat3 to_residual;
+uniform vec3 middle_of_residual;
+uniform float border_of_residual, residual_step;
+float residual_at(vec3 x) {
+  vec3 s = to_residual * x + middle_of_residual;
+  if (any(lessThan(s, vec3(-border_of_residual))) || any(greaterThan(s, residual_along - 1 + border_of_residual))) return 0;
+  return residual_step * residual_between(s + 1);
+}
+#endif
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -36,6 +55,10 @@ void main() {
   camera_ray(vec2(at) + 0.5, origin, direction);
   float density[SLICES];
   for (int k = 0; k < SLICES; ++k) density[k] = 0;
+#if PAPER
+  vec3 weighted[SLICES];
+  for (int k = 0; k < SLICES; ++k) weighted[k] = vec3(0);
+#endif
 #if GAUSSIANS
   float from = range.x + (float(first_slice) + 0.5) * range.y, to = from + float(SLICES - 1) * range.y;
   for (int i = 0; i < gaussian_count; ++i) {
@@ -45,7 +68,11 @@ void main() {
     float step = range.y / gaussians[i].width, start = (from - nearest) / gaussians[i].width;
     for (int k = 0; k < SLICES; ++k) {
       float along = start + float(k) * step, square = aside + along * along;
-      density[k] += square < farthest ? gaussians[i].amplitude * exp(-square) : 0;
+      float value = square < farthest ? gaussians[i].amplitude * exp(-square) : 0;
+      density[k] += value;
+#if PAPER
+      weighted[k] += value * sources[i].rgb;
+#endif
     }
   }
 #else
@@ -55,13 +82,23 @@ void main() {
   vec3 light = vec3(0);
   float passed = column[place];
   for (int k = 0; k < SLICES; ++k) {
-    if (first_slice + k >= count || !(density[k] > 0)) continue;
-    vec3 depth = sigma_t * (density[k] * range.y), seen;
+    float here = density[k];
+    if (first_slice + k >= count || !(here > 0)) continue;
+    vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
+#if PAPER
+    bool known = here >= least_source_density;
+    vec3 source = known ? max(weighted[k] / here, vec3(0)) : vec3(0);
+#if RESIDUAL
+    here = known ? max(here + residual_at(middle), 0.0) : 0;
+#endif
+#else
+    vec3 source = source_at(middle);
+#endif
+    vec3 depth = sigma_t * (here * range.y), seen;
     for (int c = 0; c < 3; ++c)
       seen[c] = weight == WEIGHT_EXACT ? opacity(min(depth[c], 200.0)) : weight == WEIGHT_PAPER ? depth[c] : depth[c] * range.w;
-    vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
-    light += exp(-min(sigma_t * passed, vec3(200))) * source_at(middle) * seen;
-    passed += density[k] * range.y;
+    light += exp(-min(sigma_t * passed, vec3(200))) * source * seen;
+    passed += here * range.y;
   }
   column[place] = passed;
   for (int c = 0; c < 3; ++c) airlight[3 * place + c] += light[c];

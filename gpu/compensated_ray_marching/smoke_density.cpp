@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/convert/residual.h"
+#include "scene/media/voxel.h"
+
 namespace airlight::gpu::smoke {
 namespace {
 
@@ -11,14 +14,34 @@ using compensated_ray_marching::SmokeField;
 
 constexpr double negligible_widths = 6.257, nothing_beyond = 6;  // scene/media/gaussian_sum.cpp, gaussian_row.cpp
 
+constexpr int slices_of_density = 32, slices_of_sources = 16;  // that an invocation holds
+
 struct GaussianData {
   float center[3], width, amplitude, unused[3] = {0, 0, 0};
 };
 
+// One sample more on every side, as far as a border is clamped at all; 0 beyond.
+scene::ResidualLevels with_border(const scene::VoxelGrid& layout, const std::vector<std::int8_t>& levels) {
+  const Eigen::Vector3i size = layout.size, padded = size + Eigen::Vector3i::Constant(2);
+  scene::ResidualLevels all{padded, 0, std::vector<std::int8_t>(std::size_t(padded.prod()), 0)};
+  for (int i = 0; i < padded.prod(); ++i) {
+    const Eigen::Vector3i there(i % padded[0] - 1, i / padded[0] % padded[1] - 1, i / padded[0] / padded[1] - 1);
+    const Eigen::Vector3i within = there.cwiseMax(0).cwiseMin(size - Eigen::Vector3i::Ones());
+    if (layout.clamp_border || there == within)
+      all.values[std::size_t(i)] = levels[std::size_t(within[0] + size[0] * (within[1] + size[1] * within[2]))];
+  }
+  return all;
+}
+
 }  // namespace
 
-SmokeDensity::SmokeDensity(Context& context, const SmokeField& smoke, const Point3& middle) {
+SmokeDensity::SmokeDensity(Context& context, const SmokeField& smoke, const Point3& middle, bool paper)
+    : slices_(paper ? slices_of_sources : slices_of_density) {
   longest_ = bounding_box(smoke.medium()).size().norm();
+  definitions_ = {{"GAUSSIANS", smoke.gaussians() ? "1" : "0"},
+                  {"SLICES", std::to_string(slices())},
+                  {"PAPER", paper ? "1" : "0"},
+                  {"RESIDUAL", "0"}};
   if (const scene::GaussianSum* sum = smoke.gaussians()) {
     std::vector<GaussianData> data;
     for (const scene::Gaussian& g : sum->gaussians) {
@@ -30,16 +53,28 @@ SmokeDensity::SmokeDensity(Context& context, const SmokeField& smoke, const Poin
     widths2_ = std::pow(std::min(negligible_widths, sum->cutoff), 2);
     farthest_ = std::pow(std::min(nothing_beyond, sum->cutoff), 2);
     values_ = std::make_unique<Buffer>(context, "gaussians of the smoke", data);
-    definitions_ = {{"GAUSSIANS", "1"}, {"SLICES", std::to_string(slices())}};
+    if (!smoke.residual()) return;
+    const scene::Residual& residual = *smoke.residual();
+    const scene::ResidualLevels levels = with_border(residual.layout, levels_of(residual.bricks));
+    residual_ = std::make_unique<compensated::ResidualOnDevice>(context, levels.size,
+                                                                scene::apron_bricks_of(levels.size, levels.values));
+    step_ = residual.step;
+    for (const auto& [name, value] : residual_->definitions()) definitions_[name] = value;
+    definitions_["RESIDUAL"] = "1";
+    set_samples(residual.layout, middle);
     return;
   }
   const scene::VoxelGrid& grid = *grid_of(smoke.medium().field);
+  set_samples(grid, middle);
+  values_ = std::make_unique<Buffer>(context, "voxels of the smoke", grid.values);
+  definitions_["CLAMPED"] = grid.clamp_border ? "1" : "0";
+}
+
+void SmokeDensity::set_samples(const scene::VoxelGrid& grid, const Point3& middle) {
   samples_ = grid.size.cast<double>();
   to_samples_ = grid.rotation.transpose() / grid.voxel_size;
   middle_sample_ = world_to_sample(grid, middle);
-  border_ = -sample_support(grid).lo[0];
-  values_ = std::make_unique<Buffer>(context, "voxels of the smoke", grid.values);
-  definitions_ = {{"GAUSSIANS", "0"}, {"SLICES", std::to_string(slices())}, {"CLAMPED", grid.clamp_border ? "1" : "0"}};
+  border_ = border_width(grid);
 }
 
 void SmokeDensity::bind(Program& p) const {
@@ -55,10 +90,27 @@ void SmokeDensity::bind(Program& p) const {
   p.set("border", border_);
 }
 
+void SmokeDensity::bind_residual(Program& p) const {
+  if (!residual_) return;
+  residual_->bind(p);
+  p.set("residual_along", samples_);
+  p.set("to_residual", to_samples_);
+  p.set("middle_of_residual", middle_sample_);
+  p.set("border_of_residual", border_);
+  p.set("residual_step", step_);
+}
+
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
-  if (options.variant == Options::Variant::paper) reasons.push_back("variant = paper; shaders know grid");
-  if (options.grid.multiple == Options::Grid::Multiple::p1) reasons.push_back("multiple = p1; shaders know ordinates");
+  const bool paper = options.variant == Options::Variant::paper;
+  using compensated_ray_marching::LeastSquaresSolver;
+  const LeastSquaresSolver solver = options.paper.solver;
+  if (paper && options.paper.transmittance == compensated_ray_marching::Transmittance::directional)
+    reasons.push_back("transmittance = directional; shaders know ol, hyb, series");
+  if (paper && (solver == LeastSquaresSolver::lsqr || solver == LeastSquaresSolver::lsqr_scaled))
+    reasons.push_back("solver = lsqr; shaders know conjugate gradients");
+  if (!paper && options.grid.multiple == Options::Grid::Multiple::p1)
+    reasons.push_back("multiple = p1; shaders know ordinates");
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     const scene::Medium& medium = scene.media[i];
     if (!extinguishes(medium)) continue;

@@ -38,7 +38,20 @@ const std::vector<Binding> bindings = {{"COLUMNS", at::columns},
                                        {"PRIMITIVES", at::primitives},
                                        {"LIT", at::lit},
                                        {"SEEN", at::seen},
-                                       {"OPEN", at::open}};
+                                       {"OPEN", at::open},
+                                       {"CENTRE_TABLES", at::centre_tables},
+                                       {"CENTRES", at::centres},
+                                       {"SPHERES", at::spheres},
+                                       {"PASSED", at::passed},
+                                       {"SINGLE_BANDS", at::single_bands},
+                                       {"LIGHT_BANDS", at::light_bands},
+                                       {"TERMS", at::terms},
+                                       {"AGAIN", at::again},
+                                       {"CENTRE_SOURCES", at::centre_sources},
+                                       {"MATRIX", at::matrix},
+                                       {"ROW_SCALES", at::row_scales},
+                                       {"VECTORS", at::vectors},
+                                       {"SYSTEMS", at::systems}};
 
 }  // namespace
 

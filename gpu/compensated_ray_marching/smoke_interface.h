@@ -45,6 +45,20 @@ enum Binding {
   primitives = 5,
   lit = 1,
   seen = 0,
+  // centres of Gaussians
+  centre_tables = 0,
+  centres = 2,
+  spheres = 3,
+  passed = 4,
+  single_bands = 5,
+  light_bands = 6,
+  terms = 7,
+  again = 3,
+  centre_sources = 4,
+  matrix = 6,
+  row_scales = 7,
+  vectors = 0,
+  systems = 1,
 };
 }  // namespace at
 

@@ -7,7 +7,6 @@
 #include "scene/stopwatch.h"
 
 namespace airlight::compensated_ray_marching {
-namespace {
 
 SourceLight environments(const std::vector<scene::Light>& lights, int order) {
   SourceLight all{std::vector<Rgb>(std::size_t(order) * std::size_t(order), Rgb::Zero()), {}};
@@ -18,8 +17,6 @@ SourceLight environments(const std::vector<scene::Light>& lights, int order) {
   all.radiance = [harmonics = all.harmonics](const Vec3& w) { return scene::evaluate_sh(harmonics, w); };
   return all;
 }
-
-}  // namespace
 
 CentreSources::CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium,
                              const std::vector<scene::Surface>& surfaces, const Options& options)

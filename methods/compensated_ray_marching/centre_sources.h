@@ -8,6 +8,9 @@
 
 namespace airlight::compensated_ray_marching {
 
+// Environments together, as harmonics of lookup directions.
+SourceLight environments(const std::vector<scene::Light>&, int order);
+
 class CentreSources {
  public:
   // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over. Of the surfaces spheres cast

@@ -20,13 +20,15 @@ double distance_of_angle(double theta);
 
 // T_l by linear interpolation. `paper`: over 256 equal angles, distances in widths, nothing infinitely far away. `even`: T_l (1 + d^2) over
 // 256 equal steps of d / (1 + d), whose error stays relative far away, where many Gaussians add with one sign.
+constexpr int depth_samples = 256;
 class DepthTable {
  public:
   enum class Spacing { paper, even };
-  DepthTable(int order, Spacing, int samples = 256, double cut = 3);
+  DepthTable(int order, Spacing, int samples = depth_samples, double cut = 3);
   // Writes `order` numbers.
   void zonal(double distance, double* depth) const;
   int order() const { return order_; }
+  const std::vector<double>& samples() const { return samples_; }  // [sample][l]
 
  private:
   int order_;

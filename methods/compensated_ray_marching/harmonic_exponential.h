@@ -23,6 +23,10 @@ class LinearExponential {
   // a and b at a size.
   double constant(double size) const { return std::exp(at(log_a_, size)); }
   double slope(double size) const { return std::exp(at(log_b_, size)); }
+  // The tables: logarithms at equal steps of the size, from 0 to the longest.
+  const std::vector<double>& log_constants() const { return log_a_; }
+  const std::vector<double>& log_slopes() const { return log_b_; }
+  double longest() const { return longest_; }
 
  private:
   double at(const std::vector<double>&, double size) const;
@@ -38,6 +42,7 @@ std::vector<Harmonics> depth_family(int order, const std::vector<int>& counts, i
 Harmonics squared_exponential(const Harmonics&, const LinearExponential&, double threshold = 0.5);
 
 // Scaling and squaring of the product series of degree 3, without a table; as good as HYB with a threshold of 0.1.
-Harmonics series_exponential(const Harmonics&, double threshold = 1);
+constexpr double series_threshold = 1;
+Harmonics series_exponential(const Harmonics&, double threshold = series_threshold);
 
 }  // namespace airlight::compensated_ray_marching

@@ -20,10 +20,18 @@ SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : gi
     own_->field = (*fitted)->gaussians;
     own_->region = scene::Unbounded{};
     if (options.residual && (*fitted)->residual) {
-      const scene::Residual& r = *(*fitted)->residual;
+      levels_ = (*fitted)->residual;
+      const scene::Residual& r = *levels_;
       residual_ = r.layout;
       for (const std::int8_t level : levels_of(r.bricks)) residual_->values.push_back(float(r.step * level));
     }
+  }
+  const auto empty = [](const scene::Gaussian& g) { return g.amplitude == 0; };
+  if (const auto* all = std::get_if<scene::GaussianSum>(&this->medium().field);
+      paper && all && std::any_of(all->gaussians.begin(), all->gaussians.end(), empty)) {
+    if (!own_) own_ = medium;
+    std::vector<scene::Gaussian>& kept = std::get<scene::GaussianSum>(own_->field).gaussians;
+    kept.erase(std::remove_if(kept.begin(), kept.end(), empty), kept.end());
   }
   const auto* sum = std::get_if<scene::GaussianSum>(&this->medium().field);
   if (sum && std::holds_alternative<scene::Unbounded>(this->medium().region)) gaussians_ = sum;

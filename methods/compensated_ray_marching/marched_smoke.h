@@ -12,7 +12,8 @@ namespace airlight::compensated_ray_marching {
 // sign) where `residual` asks for it, and without density where the Gaussians have less than least_density().
 class SmokeField {
  public:
-  // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out.
+  // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out, and of paper, which has an
+  // equation for every Gaussian, where some have no amplitude: they are left out.
   SmokeField(const scene::Medium&, const Options&);
 
   const scene::Medium& medium() const { return own_ ? *own_ : *given_; }
@@ -21,6 +22,8 @@ class SmokeField {
   // Of the Gaussians, where they have a source: 1e-10 of the greatest amplitude, no less than a float holds with all its digits.
   double least_density() const { return least_density_; }
   bool with_residual() const { return residual_.has_value(); }
+  // Of fitted smoke, where it is added to the Gaussians; null: it is not.
+  const scene::Residual* residual() const { return levels_.get(); }
 
   // Where it is along a ray.
   Interval extent(const Ray&, Interval) const;
@@ -32,7 +35,8 @@ class SmokeField {
   std::optional<scene::Medium> own_;
   const scene::GaussianSum* gaussians_ = nullptr;
   double least_density_ = 0;
-  std::optional<scene::VoxelGrid> residual_;
+  std::shared_ptr<const scene::Residual> levels_;
+  std::optional<scene::VoxelGrid> residual_;  // of the levels
 };
 
 }  // namespace airlight::compensated_ray_marching

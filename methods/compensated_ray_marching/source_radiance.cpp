@@ -11,11 +11,29 @@
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr double squaring_threshold = 0.5;
 const std::vector<int> family_counts{1, 2, 4, 16, 64};
 constexpr int family_members = 32;
 
-// That of an order, made when first asked for and kept. Thread safe.
+HarmonicExponential exponential_of(Transmittance kind, const LinearExponential* linear) {
+  if (kind == Transmittance::paper_linear) return [linear](const Harmonics& f) { return (*linear)(f); };
+  if (kind == Transmittance::paper_squared)
+    return [linear](const Harmonics& f) { return squared_exponential(f, *linear, squaring_threshold); };
+  return [](const Harmonics& f) { return series_exponential(f); };
+}
+
+// Null where it is not needed.
+const LinearExponential* linear_of(int order, Transmittance kind) {
+  const bool needed = kind == Transmittance::paper_linear || kind == Transmittance::paper_squared;
+  return needed ? &linear_exponential(order) : nullptr;
+}
+
+scene::GaussianSum without_constant(scene::GaussianSum sum) {
+  sum.constant = 0;
+  return sum;
+}
+
+}  // namespace
+
 const LinearExponential& linear_exponential(int order) {
   static std::mutex mutex;
   static std::map<int, LinearExponential> kept;
@@ -25,29 +43,15 @@ const LinearExponential& linear_exponential(int order) {
   return kept.emplace(order, LinearExponential(depth_family(order, family_counts, family_members))).first->second;
 }
 
-HarmonicExponential exponential_of(Transmittance kind, const LinearExponential* linear) {
-  if (kind == Transmittance::paper_linear) return [linear](const Harmonics& f) { return (*linear)(f); };
-  if (kind == Transmittance::paper_squared)
-    return [linear](const Harmonics& f) { return squared_exponential(f, *linear, squaring_threshold); };
-  return [](const Harmonics& f) { return series_exponential(f); };
-}
-
-// That of an order and an exponential, likewise kept.
-const ShadowTable& shadow_table(int order, Transmittance kind, const LinearExponential* linear) {
+const ShadowTable& shadow_table(int order, Transmittance kind) {
   static std::mutex mutex;
   static std::map<std::pair<int, Transmittance>, ShadowTable> kept;
+  const LinearExponential* linear = linear_of(order, kind);
   const std::lock_guard lock(mutex);
   const auto found = kept.find({order, kind});
   if (found != kept.end()) return found->second;
   return kept.emplace(std::pair(order, kind), ShadowTable(order, exponential_of(kind, linear))).first->second;
 }
-
-scene::GaussianSum without_constant(scene::GaussianSum sum) {
-  sum.constant = 0;
-  return sum;
-}
-
-}  // namespace
 
 SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, const Rgb& albedo,
                                std::vector<double> phase, SourceLight light, Transmittance kind,
@@ -58,11 +62,9 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
       phase_(std::move(phase)),
       light_(std::move(light)),
       kind_(kind),
-      depths_(int(phase_.size()), DepthTable::Spacing::even, 256, smoke_.cutoff),
+      depths_(int(phase_.size()), DepthTable::Spacing::even, depth_samples, smoke_.cutoff),
       objects_(std::move(objects)),
-      linear_(kind == Transmittance::paper_linear || kind == Transmittance::paper_squared
-                  ? &linear_exponential(int(phase_.size()))
-                  : nullptr) {
+      linear_(linear_of(int(phase_.size()), kind)) {
   if (kind == Transmittance::directional) {
     directions_ = std::move(directions);
     for (const Ordinate& d : directions_) {
@@ -72,7 +74,7 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
   } else if (light_.harmonics.size() != phase_.size() * phase_.size()) {
     throw Error("source radiance: light and phase function of different orders");
   } else if (!objects_.empty()) {
-    shadows_ = &shadow_table(order(), kind, linear_);
+    shadows_ = &shadow_table(order(), kind);
   }
 }
 

@@ -24,6 +24,13 @@ struct SourceLight {
 //   directional: exact depths in fixed directions, whose transmittances times the light are projected once; nothing rings
 enum class Transmittance { paper_linear, paper_squared, series, directional };
 
+// Those of an order, made when first asked for and kept. Thread safe.
+const LinearExponential& linear_exponential(int order);
+// Of every kind but `directional`.
+const ShadowTable& shadow_table(int order, Transmittance);
+
+constexpr double squaring_threshold = 0.5;  // of paper_squared
+
 class SourceRadiance {
  public:
   // extinction: sigma_t of each channel [1/m]. phase: mean of P_l over the phase function, g^l for Henyey-Greenstein; its size is the order.

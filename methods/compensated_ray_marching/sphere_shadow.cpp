@@ -115,14 +115,18 @@ std::optional<Harmonics> log_visibility(const std::vector<scene::Sphere>& sphere
   return sum;
 }
 
+// Ramamoorthi and Hanrahan 2001.
+std::vector<double> cosine_zonal(int order) {
+  std::vector<double> cosine{std::sqrt(pi) / 2, std::sqrt(pi / 3), std::sqrt(5 * pi) / 8, 0, -std::sqrt(pi) / 16, 0};
+  cosine.resize(std::size_t(order));
+  return cosine;
+}
+
 Rgb irradiance(const Vec3& normal, const Harmonics& visible, const std::vector<Rgb>& light) {
   const int order = int(std::lround(std::sqrt(double(visible.size()))));
   if (light.size() != visible.size() || order < 1 || order > 6)
     throw Error("irradiance: light and visibility of different orders, or of none from 1 to 6");
-  // Of the cosine over its hemisphere; bands above 4, which only order 6 has, by Ramamoorthi and Hanrahan 2001: of odd ones nothing.
-  std::vector<double> cosine{std::sqrt(pi) / 2, std::sqrt(pi / 3), std::sqrt(5 * pi) / 8, 0, -std::sqrt(pi) / 16, 0};
-  cosine.resize(std::size_t(order));
-  const std::vector<double> lobe = about_axis(cosine, normal);
+  const std::vector<double> lobe = about_axis(cosine_zonal(order), normal);
   const std::vector<Rgb> lit = scene::triple_product(order)(light, visible);
   Rgb sum = Rgb::Zero();
   for (std::size_t i = 0; i < lobe.size(); ++i) sum += lobe[i] * lit[i];

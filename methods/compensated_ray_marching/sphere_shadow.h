@@ -32,6 +32,7 @@ class ShadowTable {
   std::vector<double> zonal(double angle) const;
   // RMS over the sphere of what the exponential misses the visibility by, of each sample.
   const std::vector<double>& errors() const { return errors_; }
+  const std::vector<std::vector<double>>& samples() const { return samples_; }
 
  private:
   int order_;
@@ -39,10 +40,15 @@ class ShadowTable {
   std::vector<double> errors_;
 };
 
+constexpr double least_hidden = 0.5 * pi / 180;  // [rad]
+
 // Logarithm of the visibility from x past all spheres, order^2 coefficients of lookup directions, to be added to minus an optical depth.
 // Spheres that hide less than `least` [rad] are passed over. Nothing where x is inside a sphere: no light gets there.
 std::optional<Harmonics> log_visibility(const std::vector<scene::Sphere>&, const Point3& x, const ShadowTable&,
-                                        double least = 0.5 * pi / 180);
+                                        double least = least_hidden);
+
+// The cosine of the angle to a normal, where it is above 0, as a zonal function of 1 to 6 bands; of odd ones above 1 nothing.
+std::vector<double> cosine_zonal(int order);
 
 // Irradiance on a surface [the light's unit times sr]: of light times what is visible, over the hemisphere around the normal. `visible` and
 // `light`: order^2 coefficients of lookup directions; the cosine in as many bands, and at least 0. Throws

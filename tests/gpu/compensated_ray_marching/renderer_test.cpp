@@ -253,7 +253,6 @@ TEST_CASE("compensated march on the device: refusals name the reason", "[gpu][co
   };
   auto scene = scene_of(puffs(), 3, 0.8, uneven());
   CHECK(reason(*scene).empty());
-  CHECK_THAT(reason(*scene, {{"variant", "paper"}}), Contains("variant = paper; shaders know grid"));
   CHECK_THAT(reason(*scene, {{"multiple", "p1"}}), Contains("multiple = p1"));
   scene->media[0].region = scene::Sphere{};
   CHECK_THAT(reason(*scene), Contains("cut off by a region"));

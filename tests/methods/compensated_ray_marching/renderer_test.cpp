@@ -118,6 +118,7 @@ TEST_CASE("compensated march: no Gaussian, one, two at one place, one without we
   one.gaussians = {{{0, 0, 0}, 0.5, 1}};
   twins.gaussians = {{{0, 0, 0}, 0.5, 0.5}, {{0, 0, 0}, 0.5, 0.5}};
   idle.gaussians.push_back({{0, 0, 0}, 0.5, 0});
+  idle.gaussians.push_back({{30, 0, 0}, 0.1, 0});  // where there is nothing at all
   for (const Given& given : {Given{}, paper}) {
     CAPTURE(given);
     for (const scene::GaussianSum& nothing : {none, empty}) {

@@ -1,0 +1,326 @@
+#include "gpu/compensated_ray_marching/centre_sources_on_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/view_uniforms.h"
+#include "methods/compensated_ray_marching/centre_sources.h"
+#include "methods/compensated_ray_marching/zonal_harmonics.h"
+
+namespace airlight::gpu::smoke {
+namespace {
+
+using compensated_ray_marching::LeastSquaresSolver;
+using compensated_ray_marching::Options;
+
+constexpr int lanes = 64, edge = 16, summing = 256;  // invocations of a work group
+constexpr int first_iterations = 8;                  // told to the device before any is looked at
+
+// diffusion_vectors.glsl and diffusion_gradients.comp.
+enum Vector { right, solution, missed, slope, direction, along, vector_count };
+enum GradientStage { stage_begin, stage_miss, stage_step, stage_turn, stage_spread };
+struct SystemData {
+  double square, whole;
+  int done, iterations, negative, unused;
+};
+
+std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
+
+std::vector<scene::Sphere> spheres_of(const std::vector<scene::Surface>& surfaces) {
+  std::vector<scene::Sphere> spheres;
+  for (const scene::Surface& surface : surfaces)
+    if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) spheres.push_back(*sphere);
+  return spheres;
+}
+
+// Spheres with their surface, then what each surface reflects.
+std::vector<double> objects_of(const std::vector<scene::Surface>& surfaces) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape))
+      for (const double v : {sphere->center[0], sphere->center[1], sphere->center[2], sphere->radius, double(i)})
+        values.push_back(v);
+  const Vec3 any = Vec3::UnitY();
+  for (const scene::Surface& surface : surfaces)
+    for (const double v : scene::brdf(surface.material, any, any, any)) values.push_back(v);
+  return values;
+}
+
+}  // namespace
+
+CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::GaussianSum& sum,
+                                             const scene::Medium& medium, const std::vector<scene::Surface>& surfaces,
+                                             const Options& options, StageTimer& timer)
+    : context_(context),
+      medium_(medium),
+      options_(options),
+      count_(int(sum.gaussians.size())),
+      objects_(int(spheres_of(surfaces).size())),
+      scatters_(count_ > 0 && (medium.albedo * medium.sigma_t).maxCoeff() > 0),
+      tables_(context, options.order, options.paper.transmittance, sum.cutoff, objects_ > 0),
+      moments_(compensated_ray_marching::phase_moments(medium.phase, options.order)) {
+  std::vector<double> values;
+  for (const scene::Gaussian& g : sum.gaussians)
+    for (const double v : {g.center[0], g.center[1], g.center[2], g.width, g.amplitude}) values.push_back(v);
+  centres_ = std::make_unique<Buffer>(context, "centres", values);
+  spheres_ = std::make_unique<Buffer>(context, "spheres that cast shadows", objects_of(surfaces));
+  const auto bands = std::size_t(options.order * options.order), n = std::size_t(count_);
+  light_bands_ = std::make_unique<Buffer>(context, "light in bands", 8 * 3 * bands);
+  sources_ = std::make_unique<Buffer>(context, "sources of centres", 16 * n);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto same = std::find(extinctions_.begin(), extinctions_.end(), medium.sigma_t[Eigen::Index(c)]);
+    extinction_of_[c] = int(same - extinctions_.begin());
+    if (same == extinctions_.end()) extinctions_.push_back(medium.sigma_t[Eigen::Index(c)]);
+  }
+  const auto program_of = [&](const char* file, int x, int y, Definitions more = {}) {
+    more.insert(tables_.definitions().begin(), tables_.definitions().end());
+    return &program(context_, file, x, y, more);
+  };
+  if (!surfaces.empty()) surfaces_program_ = program_of("centre_surfaces", lanes, 1);
+  if (!scatters_) return;
+  passed_program_ = program_of("centre_passed", lanes, 1);
+  single_program_ = program_of("centre_single", lanes, 1);
+  towards_program_ = program_of("centre_towards", lanes, 1);
+  passed_ = std::make_unique<Buffer>(context, "what passes to centres", 8 * n * bands * extinctions_.size());
+  single_ = std::make_unique<Buffer>(context, "single scattering at centres", 8 * n * bands * 3);
+  again_ = std::make_unique<Buffer>(context, "scattered again at centres", 8 * n * 4 * 3);
+  timer.begin("passing light");
+  Program& p = *passed_program_;
+  tables_.bind(p);
+  tables_.bind_terms();
+  centres_->bind(at::centres);
+  spheres_->bind(at::spheres);
+  passed_->bind(at::passed);
+  p.set("gaussian_count", count_);
+  p.set("sphere_count", objects_);
+  p.set("extinctions", int(extinctions_.size()));
+  for (std::size_t e = 0; e < extinctions_.size(); ++e) p.set_double(at_index("extinction", e), extinctions_[e]);
+  p.dispatch(lanes * count_);
+  if (options_.paper.multiple == Options::Paper::Multiple::none) return;
+  matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
+  right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
+  again_program_ = program_of("diffusion_again", lanes, 1, {{"SUMS", "11"}});
+  product_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "0"}});
+  transposed_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "1"}});
+  gradients_program_ = program_of("diffusion_gradients", summing, 1,
+                                  {{"STAGE_BEGIN", std::to_string(stage_begin)},
+                                   {"STAGE_MISS", std::to_string(stage_miss)},
+                                   {"STAGE_STEP", std::to_string(stage_step)},
+                                   {"STAGE_TURN", std::to_string(stage_turn)},
+                                   {"STAGE_SPREAD", std::to_string(stage_spread)}});
+  timer.begin("diffusion matrix");
+  find_groups();
+}
+
+// Channels that scatter nothing have no system.
+void CentreSourcesOnDevice::find_groups() {
+  const auto n = std::size_t(count_);
+  int systems = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double sigma_t = medium_.sigma_t[c], albedo = medium_.albedo[c];
+    if (!(albedo > 0) || !(sigma_t > 0)) continue;
+    const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
+      return sigma_t == medium_.sigma_t[g.channels[0]] && albedo == medium_.albedo[g.channels[0]];
+    });
+    if (known != groups_.end())
+      known->channels.push_back(c);
+    else
+      groups_.emplace_back().channels = {c};
+  }
+  const LeastSquaresSolver solver = options_.paper.solver;
+  const double g = mean_cosine(medium_.phase);
+  for (Group& group : groups_) {
+    group.first = systems;
+    systems += int(group.channels.size());
+    group.matrix = std::make_unique<Buffer>(context_, "diffusion matrix", 8 * n * n, Contents::undefined);
+    group.row_scales = std::make_unique<Buffer>(context_, "scales of rows", 8 * n, Contents::undefined);
+    const double sigma_t = medium_.sigma_t[group.channels[0]], albedo = medium_.albedo[group.channels[0]];
+    Program& p = *matrix_program_;
+    centres_->bind(at::centres);
+    group.matrix->bind(at::matrix);
+    group.row_scales->bind(at::row_scales);
+    p.set("gaussian_count", count_);
+    p.set("scaled", solver == LeastSquaresSolver::cg_scaled);
+    p.set_double("transport", (1 - albedo * g) * sigma_t);
+    p.set_double("absorption", (1 - albedo) * sigma_t);
+    p.dispatch(lanes * count_);
+  }
+  vectors_ = std::make_unique<Buffer>(context_, "vectors of diffusion", 8 * n * vector_count * std::size_t(systems));
+  systems_ = std::make_unique<Buffer>(context_, "diffusion systems", sizeof(SystemData) * std::size_t(systems));
+}
+
+void CentreSourcesOnDevice::scatter_once() {
+  Program& p = *single_program_;
+  tables_.bind_terms();
+  passed_->bind(at::passed);
+  light_bands_->bind(at::light_bands);
+  single_->bind(at::single_bands);
+  p.set("gaussian_count", count_);
+  const int bands = options_.order * options_.order;
+  for (std::size_t c = 0; c < 3; ++c) {
+    p.set(at_index("extinction_of", c), extinction_of_[c]);
+    p.set_double(at_index("albedo", c), medium_.albedo[Eigen::Index(c)]);
+  }
+  for (std::size_t b = 0; b < std::size_t(bands); ++b) {
+    const auto band = std::size_t(std::sqrt(double(b)));  // from towards the light to along it
+    p.set_double(at_index("moment", b), (band % 2 ? -1 : 1) * moments_[band]);
+  }
+  p.dispatch(count_, bands, 3);
+}
+
+void CentreSourcesOnDevice::bind_systems(Program& p, const Group& g) const {
+  vectors_->bind(at::vectors);
+  systems_->bind(at::systems);
+  p.set("gaussian_count", count_);
+  p.set("first_system", g.first);
+}
+
+void CentreSourcesOnDevice::product(const Group& g, bool transposed, int from, int to) {
+  Program& p = transposed ? *transposed_program_ : *product_program_;
+  bind_systems(p, g);
+  g.matrix->bind(at::matrix);
+  p.set("from_vector", from);
+  p.set("to_vector", to);
+  p.dispatch(count_, 1, g.systems);
+}
+
+void CentreSourcesOnDevice::gradients(const Group& g, int stage) {
+  Program& p = *gradients_program_;
+  bind_systems(p, g);
+  p.set("stage", stage);
+  p.set("most_iterations", options_.iterations);
+  p.set_double("tolerance", options_.tolerance);
+  p.dispatch(summing, 1, stage == stage_spread ? int(g.channels.size()) : g.systems);
+}
+
+void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& execution) {
+  const bool printed = options_.paper.multiple == Options::Paper::Multiple::as_printed;
+  const int channel = g.channels[0];
+  const double sigma_t = medium_.sigma_t[channel], albedo = medium_.albedo[channel];
+  const double cosine = mean_cosine(medium_.phase), sigma_tr = (1 - albedo * cosine) * sigma_t;
+  const auto set_channels = [&](Program& p) {
+    bind_systems(p, g);
+    centres_->bind(at::centres);
+    single_->bind(at::single_bands);
+    for (std::size_t i = 0; i < g.channels.size(); ++i) p.set(at_index("channel", i), g.channels[i]);
+  };
+  Program& of_right = *right_program_;
+  set_channels(of_right);
+  g.row_scales->bind(at::row_scales);
+  of_right.set_double("of_mean", printed ? -sigma_t / albedo : -sigma_t);
+  of_right.set_double("of_gradient", sigma_t / ((printed ? 1 : 3) * sigma_tr));
+  of_right.dispatch(lanes * count_, 1, g.systems);
+
+  product(g, false, solution, along);
+  gradients(g, stage_miss);
+  product(g, true, missed, slope);
+  product(g, true, right, along);
+  gradients(g, stage_begin);
+  int told = 0, next = std::min(g.last > 0 ? g.last : first_iterations, options_.iterations);
+  for (bool done = false; !done;) {
+    for (; told < next; ++told) {
+      product(g, false, direction, along);
+      gradients(g, stage_step);
+      product(g, true, missed, slope);
+      gradients(g, stage_turn);
+    }
+    const std::vector<SystemData> all = systems_->download<SystemData>();
+    done = true;
+    g.last = 0;
+    for (int s = g.first; s < g.first + g.systems; ++s) {
+      done = done && all[std::size_t(s)].done != 0;
+      g.last = std::max(g.last, all[std::size_t(s)].iterations);
+    }
+    if (done) {
+      for (int s = g.first; s < g.first + g.systems; ++s) {
+        const SystemData& system = all[std::size_t(s)];
+        const int alike = int(g.channels.size()) / g.systems;
+        iterations_ += alike * system.iterations;
+        residual_ = std::max(residual_, std::sqrt(system.square) / system.whole);
+        negative_share_ += double(alike * system.negative) / (3 * count_);
+      }
+    } else {
+      if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
+      next = told + std::max(4, told / 2);
+    }
+  }
+
+  Program& again = *again_program_;
+  set_channels(again);
+  again_->bind(at::again);
+  again.set("channels", int(g.channels.size()) / g.systems);
+  again.set_double("albedo", albedo);
+  again.set_double("mean_cosine", cosine);
+  again.set_double("sigma_t", sigma_t);
+  again.set_double("factor", (printed ? 1 : 3) / (3 * sigma_tr));
+  again.dispatch(lanes * count_, 1, g.systems);
+}
+
+void CentreSourcesOnDevice::light(const std::vector<scene::Light>& lights, StageTimer& timer,
+                                  const scene::Execution& execution) {
+  iterations_ = 0;
+  residual_ = negative_share_ = 0;
+  if (!scatters_ && !surfaces_program_) return;
+  timer.begin("environment");
+  const std::vector<Rgb> light = compensated_ray_marching::environments(lights, options_.order).harmonics;
+  std::vector<double> bands;
+  bool grey = true;
+  for (int c = 0; c < 3; ++c)
+    for (const Rgb& band : light) {
+      bands.push_back(band[c]);
+      grey = grey && band[c] == band[0];
+    }
+  light_bands_->upload(bands);
+  if (!scatters_) return;
+  timer.begin("single scattering");
+  scatter_once();
+  if (groups_.empty()) return;
+  timer.begin("multiple scattering");
+  for (Group& g : groups_)
+    if (!grey && g.systems < int(g.channels.size())) {
+      gradients(g, stage_spread);
+      g.systems = int(g.channels.size());
+    }
+  systems_->clear();
+  for (Group& g : groups_) scatter_again(g, execution);
+}
+
+void CentreSourcesOnDevice::towards(const scene::View& view) {
+  if (!scatters_) return;
+  Program& p = *towards_program_;
+  tables_.bind(p);
+  centres_->bind(at::centres);
+  single_->bind(at::single_bands);
+  again_->bind(at::again);
+  sources_->bind(at::centre_sources);
+  p.set("gaussian_count", count_);
+  p.set("perspective_", view.camera.kind == scene::Camera::Kind::perspective);
+  p.set_double("eye", view.camera.position);
+  p.set_double("forward", view.camera.forward);
+  p.dispatch(count_);
+}
+
+void CentreSourcesOnDevice::light_surfaces(const scene::View& view, const SurfacesOnDevice& surfaces,
+                                           const Buffer& primitives, const Buffer& lit) {
+  Program& p = *surfaces_program_;
+  tables_.bind(p);
+  tables_.bind_terms();
+  centres_->bind(at::centres);
+  spheres_->bind(at::spheres);
+  light_bands_->bind(at::light_bands);
+  primitives.bind(at::primitives);
+  lit.bind(at::lit);
+  surfaces.bind();
+  set_view(p, view);
+  p.set("gaussian_count", count_);
+  p.set("sphere_count", objects_);
+  for (std::size_t c = 0; c < 3; ++c) p.set_double(at_index("extinction", c), medium_.sigma_t[Eigen::Index(c)]);
+  const std::vector<double> cosine = compensated_ray_marching::cosine_zonal(options_.order);
+  for (std::size_t l = 0; l < cosine.size(); ++l)
+    p.set_double(at_index("cosine", l), cosine[l] * about_axis_factor(int(l)));
+  p.dispatch(lanes * view.width, view.height);
+}
+
+}  // namespace airlight::gpu::smoke

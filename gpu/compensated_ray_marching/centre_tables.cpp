@@ -1,0 +1,129 @@
+#include "gpu/compensated_ray_marching/centre_tables.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "methods/compensated_ray_marching/gaussian_depth.h"
+#include "methods/compensated_ray_marching/sphere_shadow.h"
+#include "scene/math/sh_product.h"
+
+namespace airlight::gpu::smoke {
+namespace {
+
+using compensated_ray_marching::Transmittance;
+
+struct TermData {
+  int i, j;
+  double value;
+};
+
+// Of every coefficient all that its sum runs over, in a row; before them where each row begins and ends.
+std::vector<TermData> terms_of(int order) {
+  std::vector<std::vector<TermData>> rows(std::size_t(order * order));
+  for (const auto& [i, j, k, value] : scene::triple_product(order).terms()) {
+    const int index[3] = {i, j, k};
+    for (int a = 0; a < 3; ++a) {
+      const bool again = (a > 0 && index[a] == index[0]) || (a > 1 && index[a] == index[1]);
+      if (again) continue;  // a coefficient that stands in the term twice
+      const int b = index[(a + 1) % 3], c = index[(a + 2) % 3];
+      rows[std::size_t(index[a])].push_back({b, c, value});
+      if (b != c) rows[std::size_t(index[a])].push_back({c, b, value});
+    }
+  }
+  std::vector<TermData> all;
+  int at = order * order;
+  for (const auto& row : rows) {
+    all.push_back({at, at + int(row.size()), 0});
+    at += int(row.size());
+  }
+  for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+std::string exact(double value) { return fmt::format("{:.17g}{}LF", value, std::floor(value) == value ? ".0" : ""); }
+
+}  // namespace
+
+double about_axis_factor(int l) { return std::sqrt(4 * pi / (2 * l + 1)); }
+
+CentreTables::CentreTables(Context& context, int order, Transmittance kind, double cutoff, bool objects)
+    : order_(order) {
+  std::vector<double> all;
+  const auto number = [&](const char* name, std::size_t value) { definitions_[name] = std::to_string(value); };
+  const auto begin = [&](const char* name) { number(name, all.size()); };
+  const auto size = std::size_t(order);
+  number("SH_ORDER", size);
+  number("BANDS", size * size);
+  // scene/math/spherical_harmonics.cpp
+  std::vector<double> up(size * size, 0.0), back = up, first;
+  double diagonal = 1 / (4 * pi);
+  for (int m = 0; m <= order; ++m) {
+    if (m > 0) diagonal *= (2 * m + 1) / (2.0 * m);
+    first.push_back((m % 2 ? -1 : 1) * std::sqrt((m > 0 ? 2 : 1) * diagonal));
+    for (int l = m + 1; l < order; ++l) {
+      const double span = double(l - m) * (l + m);
+      const auto at = std::size_t(l * order + m);
+      up[at] = std::sqrt((2.0 * l - 1) * (2.0 * l + 1) / span);
+      if (l > m + 1) back[at] = std::sqrt((2.0 * l + 1) * (l - 1.0 - m) * (l - 1.0 + m) / ((2.0 * l - 3) * span));
+    }
+  }
+  begin("UP_AT");
+  all.insert(all.end(), up.begin(), up.end());
+  begin("BACK_AT");
+  all.insert(all.end(), back.begin(), back.end());
+  begin("FIRST_AT");
+  all.insert(all.end(), first.begin(), first.end());
+  begin("DEPTH_AT");
+  using compensated_ray_marching::DepthTable;
+  const DepthTable depths(order, DepthTable::Spacing::even, compensated_ray_marching::depth_samples, cutoff);
+  for (std::size_t i = 0; i < depths.samples().size(); ++i)
+    all.push_back(depths.samples()[i] * about_axis_factor(int(i % size)));
+  number("DEPTH_LAST", depths.samples().size() / size - 1);
+
+  number("EXPONENTIAL_LINEAR", std::size_t(Transmittance::paper_linear));
+  number("EXPONENTIAL_SQUARED", std::size_t(Transmittance::paper_squared));
+  number("EXPONENTIAL", std::size_t(kind));
+  const bool linear = kind != Transmittance::series;
+  definitions_["THRESHOLD"] = exact(kind == Transmittance::series ? compensated_ray_marching::series_threshold
+                                                                  : compensated_ray_marching::squaring_threshold);
+  begin("LOG_A_AT");
+  if (linear) {
+    const auto& exponential = compensated_ray_marching::linear_exponential(order);
+    all.insert(all.end(), exponential.log_constants().begin(), exponential.log_constants().end());
+    begin("LOG_B_AT");
+    all.insert(all.end(), exponential.log_slopes().begin(), exponential.log_slopes().end());
+    number("LINEAR_LAST", exponential.log_constants().size() - 1);
+    definitions_["LINEAR_LONGEST"] = exact(exponential.longest());
+  } else {
+    number("LOG_B_AT", all.size());
+    number("LINEAR_LAST", 1);
+    definitions_["LINEAR_LONGEST"] = "1.0LF";
+  }
+
+  definitions_["LEAST_SINE"] = exact(std::sin(compensated_ray_marching::least_hidden));
+  std::vector<std::vector<double>> shadows;
+  if (objects) shadows = compensated_ray_marching::shadow_table(order, kind).samples();
+  const std::size_t last = std::max<std::size_t>(shadows.size(), 2) - 1;
+  begin("SHADOW_AT");
+  for (const auto& zonal : shadows)
+    for (std::size_t l = 0; l < size; ++l) all.push_back(zonal[l] * about_axis_factor(int(l)));
+  begin("SINES_AT");
+  for (std::size_t i = 0; i < shadows.size(); ++i) all.push_back(std::sin(0.5 * pi * double(i) / double(last)));
+  begin("COSINES_AT");
+  for (std::size_t i = 0; i < shadows.size(); ++i) all.push_back(std::cos(0.5 * pi * double(i) / double(last)));
+  number("SHADOW_LAST", last);
+  definitions_["SHADOWS_PER_ANGLE"] = exact(double(last) / (0.5 * pi));
+
+  tables_ = std::make_unique<Buffer>(context, "tables of sources", all);
+  terms_ = std::make_unique<Buffer>(context, "terms of products", terms_of(order));
+}
+
+void CentreTables::bind(Program& p) const {
+  tables_->bind(at::centre_tables);
+  p.set("sh_order", order_);
+}
+
+void CentreTables::bind_terms() const { terms_->bind(at::terms); }
+
+}  // namespace airlight::gpu::smoke

@@ -1,0 +1,25 @@
+// What shaders read of the processor's tables for sources at the centres, in double precision: centre_tables.glsl, triple_product.glsl.
+#pragma once
+#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "methods/compensated_ray_marching/source_radiance.h"
+
+namespace airlight::gpu::smoke {
+
+class CentreTables {
+ public:
+  // Shadows of objects only where there are any.
+  CentreTables(Context&, int order, compensated_ray_marching::Transmittance, double cutoff, bool objects);
+  const Definitions& definitions() const { return definitions_; }
+  void bind(Program&) const;  // centre_tables.glsl
+  void bind_terms() const;    // triple_product.glsl
+
+ private:
+  int order_;
+  Definitions definitions_;
+  std::unique_ptr<Buffer> tables_, terms_;
+};
+
+// sqrt(4 pi / (2l+1)): a zonal coefficient times it and y_lm(axis) is a coefficient of the function about the axis.
+double about_axis_factor(int l);
+
+}  // namespace airlight::gpu::smoke

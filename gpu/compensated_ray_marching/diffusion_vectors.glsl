@@ -1,0 +1,16 @@
+// Vectors and state of the diffusion systems, one for each light; those of a solve have their matrix in common.
+layout(std430, binding = AT_VECTORS) buffer Vectors { double vectors[]; };  // [system][vector][centre]
+uniform int first_system;
+#define RIGHT 0
+#define SOLUTION 1
+#define MISSED 2     // right side less matrix times solution
+#define SLOPE 3      // transposed matrix times that
+#define DIRECTION 4
+#define ALONG 5      // matrix times direction
+int vector_at(int system, int vector) { return ((first_system + system) * 6 + vector) * gaussian_count; }
+
+struct State {
+  double square, whole;  // |slope|^2, and what its root is relative to
+  int done, iterations, negative, unused;
+};
+layout(std430, binding = AT_SYSTEMS) buffer Systems { State states[]; };

@@ -1,0 +1,290 @@
+// variant = paper on the device against the CPU: every layer of every setting, extremes, frames after frames, what goes up for them.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
+#include "gpu/context.h"
+#include "methods/compensated_ray_marching/compensated_ray_marching.h"
+#include "scene/convert/residual.h"
+#include "scene/geometry/shapes.h"
+#include "scene/math/random.h"
+#include "tests/gpu/device.h"
+#include "tests/gpu/p99.h"
+#include "tests/pictures.h"
+
+using namespace airlight;
+using namespace airlight::test;
+using Catch::Contains;
+
+namespace {
+
+const compensated_ray_marching::CompensatedRayMarching cpu;
+const gpu::CompensatedRayMarchingGpu device;
+// Sources and systems are in double precision; the march's depths and places are rounded to 6e-8 of the whole.
+constexpr double bound = 5e-5;
+
+Given paper(Given more = {}) {
+  more["variant"] = "paper";
+  return more;
+}
+
+scene::GaussianSum puffs() {
+  scene::GaussianSum sum;
+  sum.cutoff = 3;
+  sum.gaussians = {{{0, 0, 0}, 0.4, 1}, {{0.5, 0.2, -0.1}, 0.25, 0.7}, {{-0.3, 0.4, 0.2}, 0.3, 0.9}};
+  return sum;
+}
+// Many, overlapping, of a plume 1 m wide.
+scene::GaussianSum cloud(int count) {
+  scene::GaussianSum sum;
+  sum.cutoff = 3;
+  for (int i = 0; i < count; ++i) {
+    const PhiloxCounter a = philox4x32_10({std::uint32_t(i), 0, 0, 0}, {2008, 5}),
+                        b = philox4x32_10({std::uint32_t(i), 1, 0, 0}, {2008, 5});
+    sum.gaussians.push_back({Point3(uniform32(a[0]), 1.5 * uniform32(a[1]), uniform32(a[2])) - Point3(0.5, 0.75, 0.5),
+                             0.08 + 0.12 * uniform32(b[0]), 0.1 + 0.9 * uniform32(b[1])});
+  }
+  return sum;
+}
+scene::EnvironmentLight uneven(double turn = 0) {
+  const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
+  const Mat3 rotation = Eigen::AngleAxisd(turn, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  return scene::make_sh_environment(
+      {Rgb::Constant(one), Rgb(-0.8 * slope, 0, 0.2), Rgb(0, 0.5, 0), Rgb(0, -0.5 * slope, 0.4)}, rotation,
+      Rgb::Ones());
+}
+std::shared_ptr<scene::Scene> scene_of(scene::DensityField field, double sigma_t, double albedo,
+                                       scene::EnvironmentLight light) {
+  auto s = std::make_shared<scene::Scene>();
+  s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
+  s->camera.vertical_fov = 0.6;
+  s->width = 13;
+  s->height = 9;
+  s->lights = {std::move(light)};
+  scene::Medium smoke;
+  smoke.field = std::move(field);
+  smoke.sigma_t = Rgb::Constant(sigma_t);
+  smoke.albedo = Rgb::Constant(albedo);
+  s->media = {smoke};
+  finish(*s);
+  return s;
+}
+
+void compare(const scene::Film& a, const scene::Film& b, double most = bound) {
+  REQUIRE(a.layers.size() == b.layers.size());
+  most += 20 * gpu::test::injected_error();
+  for (const auto& [layer, values] : a.layers) {
+    CAPTURE(layer);
+    CHECK(gpu::test::quantile(a, b, layer, 1) < most);
+  }
+}
+void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = paper(), double most = bound) {
+  const scene::Rendering a = render(cpu, scene, given), b = render(device, scene, given);
+  compare(a.film, b.film, most);
+  for (const char* counter : {"iterations", "negative_share"})
+    if (a.counters.count(counter)) {
+      CAPTURE(counter);
+      CHECK(std::abs(a.counters.at(counter) - b.counters.at(counter)) < 1e-12);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("paper on the device: thin to thick, albedo to .99", "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  for (const double sigma_t : {1e-6, 1e-3, 0.3, 4.0, 50.0, 7e3})
+    for (const double albedo : {0.0, 0.5, 0.99}) {
+      CAPTURE(sigma_t, albedo);
+      compare(scene_of(puffs(), sigma_t, albedo, uneven()));
+    }
+}
+
+TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  const auto grey = scene_of(cloud(70), 6, 0.8, scene::make_constant_environment(Rgb::Ones()));
+  auto coloured = scene_of(cloud(70), 6, 0.8, uneven());
+  coloured->media[0].sigma_t = Rgb(2, 6, 6);
+  coloured->media[0].albedo = Rgb(0.9, 0.6, 0.6);
+  coloured->media[0].phase = scene::HenyeyGreenstein{0.6};
+  coloured->ambient_in_scatter = Rgb(0.1, 0.2, 0.3);
+  finish(*coloured);
+  for (const char* order : {"1", "2", "3", "4", "5", "6"})
+    for (const char* transmittance : {"ol", "hyb", "series"}) {
+      CAPTURE(order, transmittance);
+      compare(coloured, paper({{"order", order}, {"transmittance", transmittance}, {"iterations", "12"}}));
+    }
+  for (Given more : {Given{{"multiple", "none"}}, Given{{"multiple", "corrected"}}, Given{{"iterations", "1"}},
+                     Given{{"solver", "cg_scaled"}}, Given{{"slice_weight", "exact"}, {"slices", "77"}},
+                     Given{{"slice_weight", "printed"}}, Given{{"tolerance", "0.5"}}}) {
+    more.insert({"iterations", "12"});
+    CAPTURE(more);
+    compare(coloured, paper(more));
+    compare(grey, paper(more));
+  }
+}
+
+TEST_CASE("paper on the device: phase functions at their ends, light below 0 and none",
+          "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  auto scene = scene_of(puffs(), 4, 0.9, uneven());
+  for (const double g : {-0.99, 0.99}) {
+    scene->media[0].phase = scene::HenyeyGreenstein{g};
+    finish(*scene);
+    CAPTURE(g);
+    compare(scene);
+  }
+  scene->media[0].phase = scene::Murky{};
+  finish(*scene);
+  compare(scene);
+  const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
+  compare(scene_of(puffs(), 4, 0.9,
+                   scene::make_sh_environment(
+                       {Rgb::Constant(0.4 * one), Rgb::Constant(slope), Rgb::Constant(-slope), Rgb(0.3, -1, 1)},
+                       Mat3::Identity(), Rgb::Ones())));
+  const auto dark = scene_of(puffs(), 4, 0.9, scene::make_constant_environment(Rgb::Zero()));
+  compare(dark);
+  const scene::Film film = picture(device, dark, paper());
+  for (const float v : film.layer("airlight")) REQUIRE(v == 0);
+}
+
+TEST_CASE("paper on the device: no Gaussian, one, two at one place, some without weight",
+          "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  scene::GaussianSum none, one, twins, idle = puffs(), uncut = puffs();
+  none.cutoff = one.cutoff = twins.cutoff = 3;
+  one.gaussians = {{{0, 0, 0}, 0.5, 1}};
+  twins.gaussians = {{{0, 0, 0}, 0.5, 0.5}, {{0, 0, 0}, 0.5, 0.5}};
+  idle.gaussians.push_back({{0, 0, 0}, 0.5, 0});
+  idle.gaussians.push_back({{30, 0, 0}, 0.1, 0});  // where there is nothing at all
+  uncut.cutoff = infinity;
+  for (const scene::GaussianSum& sum : {none, one, twins, idle, uncut})
+    for (const char* multiple : {"as_printed", "corrected"}) {
+      CAPTURE(sum.gaussians.size(), multiple);
+      compare(scene_of(sum, 3, 0.8, uneven()), paper({{"multiple", multiple}, {"iterations", "12"}}));
+    }
+  compare(scene_of(puffs(), 0, 0.8, uneven()));
+}
+
+TEST_CASE("paper on the device: the eye within, from above, far away", "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  auto scene = scene_of(puffs(), 3, 0.8, uneven());
+  for (const Point3& eye : {Point3(0.05, 0.1, 0), Point3(0, 0, 0)}) {  // beside a centre, and in it
+    scene->camera = scene::look_at(eye, {1, 0.1, 0}, Vec3::UnitY());
+    finish(*scene);
+    compare(scene);
+  }
+  scene->camera = scene::look_at({0, 40, 0}, {0, 0, 0}, Vec3::UnitZ());
+  scene->camera.vertical_fov = 0.05;
+  finish(*scene);
+  compare(scene);
+  scene->camera.kind = scene::Camera::Kind::orthographic;
+  scene->camera.height = 2;
+  finish(*scene);
+  compare(scene);
+}
+
+TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = {9, 7, 8};
+  grid->origin_index = {1, -2, 0};
+  grid->voxel_size = 0.2;
+  grid->rotation = Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+  grid->translation = {-1, -0.4, -0.8};
+  for (int i = 0; i < 9 * 7 * 8; ++i) grid->values.push_back(float(std::max(0.0, 0.4 + std::sin(0.37 * i))));
+  for (const bool clamped : {false, true}) {
+    grid->clamp_border = clamped;
+    auto fitted = std::make_shared<scene::Fitted>();
+    fitted->gaussians = puffs();
+    fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(*grid, fitted->gaussians, {0, {}}));
+    fitted->grid = *grid;
+    for (const char* residual : {"true", "false"}) {
+      CAPTURE(clamped, residual);
+      compare(scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven()), paper({{"residual", residual}}));
+    }
+  }
+}
+
+TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the smoke's on them",
+          "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  auto scene = scene_of(puffs(), 4, 0.9, uneven());
+  scene->camera = scene::look_at({0.3, 1.7, 3.4}, {0, 0, 0}, Vec3::UnitY());
+  scene->width = 26;
+  scene->height = 18;
+  scene->surfaces = {{"ground", scene::Plane{{0, -0.8, 0}, Vec3::UnitY()}, scene::Lambert{Rgb(0.7, 0.6, 0.5)}},
+                     {"ball", scene::Sphere{{0.6, 0.6, 0.5}, 0.25}, scene::Lambert{Rgb(0.2, 0.3, 0.4)}},
+                     {"speck", scene::Sphere{{-3, 2, 0}, 0.01}, scene::Lambert{}},  // less than half a degree
+                     {"around a centre", scene::Sphere{{-0.3, 0.4, 0.2}, 0.1}, scene::Lambert{}}};
+  finish(*scene);
+  for (const Given& more : {Given{}, Given{{"transmittance", "ol"}, {"order", "3"}}, Given{{"order", "6"}}})
+    compare(scene, paper(more));
+  scene->media[0].sigma_t = Rgb(3, 4, 5);
+  scene::Backdrop backdrop{26, 18, {}, {}, true};
+  for (int i = 0; i < 26 * 18; ++i) {
+    for (int c = 0; c < 3; ++c) backdrop.radiance.push_back(float(0.1 + 0.001 * i + 0.1 * c));
+    backdrop.depth.push_back(float(i % 3 ? 2.5 + 0.01 * i : infinity));
+  }
+  scene->backdrops.push_back(std::make_shared<const scene::Backdrop>(backdrop));
+  finish(*scene);
+  compare(scene);
+  scene->media[0].sigma_t = Rgb::Zero();
+  finish(*scene);
+  compare(scene);
+}
+
+TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, for no more than its harmonics",
+          "[gpu][compensated_ray_marching][paper]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const auto lit_by = [](scene::EnvironmentLight light) { return scene_of(cloud(60), 6, 0.9, std::move(light)); };
+  const auto white = lit_by(scene::make_constant_environment(Rgb::Ones()));
+  // Systems are far from solved after 15 iterations, so that a picture tells what they began with.
+  const Given given = paper({{"iterations", "15"}});
+  const auto on_cpu = cpu.prepare(white, {cpu.settings(), given}, {1, {}});
+  const auto on_device = device.prepare(white, {device.settings(), given}, {1, {}});
+  on_device->render(view_of(*white), {1, {}});
+  bool was_even = true;  // a constant environment
+  for (const auto& [even, light] : {std::pair(true, scene::make_constant_environment(Rgb::Constant(2))),
+                                    {false, uneven()},
+                                    {false, uneven(0.5)},
+                                    {true, scene::make_constant_environment(Rgb::Ones())},
+                                    {false, uneven(0.3)},
+                                    {false, uneven(0.4)}}) {
+    const auto scene = lit_by(light);
+    REQUIRE(on_cpu->next(scene, {1, {}}));
+    const gpu::Use use(*context);
+    const gpu::Traffic before = context->traffic();
+    const auto times = on_device->next(scene, {1, {}});
+    const gpu::Traffic moved = context->traffic() - before;
+    REQUIRE(times);
+    if (even == was_even) {  // else programs of another environment are wanted for what is seen behind the smoke
+      // The light in four bands, and what is seen of it: nothing of the smoke.
+      CHECK(moved.bytes_up == 8 * 3 * 16 + (even ? 0 : 4 * 3 * 4));
+      CHECK(moved.look_ups == 0);
+    }
+    was_even = even;
+    for (const scene::StageTime& time : *times) {
+      CAPTURE(time.name);
+      CHECK((time.name == "environment" || time.name == "single scattering" || time.name == "multiple scattering"));
+    }
+    const scene::Rendering a = on_cpu->render(view_of(*scene), {1, {}}),
+                           b = on_device->render(view_of(*scene), {1, {}});
+    compare(a.film, b.film);
+    CHECK(a.counters.at("iterations") == b.counters.at("iterations"));
+    CHECK(std::abs(a.counters.at("multiple_error") - b.counters.at("multiple_error")) <
+          1e-6 * a.counters.at("multiple_error"));
+  }
+  CHECK_FALSE(on_device->next(scene_of(cloud(60), 5, 0.9, uneven()), {1, {}}));
+}
+
+TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ray_marching][paper]") {
+  const auto scene = scene_of(puffs(), 3, 0.8, uneven());
+  const auto reason = [&](const Given& given) {
+    const auto reasons = device.supports(*scene, {device.settings(), paper(given)});
+    return reasons.empty() ? std::string() : reasons.front();
+  };
+  CHECK(reason({}).empty());
+  CHECK_THAT(reason({{"transmittance", "directional"}}), Contains("transmittance = directional"));
+  CHECK_THAT(reason({{"solver", "lsqr"}}), Contains("solver = lsqr"));
+}
