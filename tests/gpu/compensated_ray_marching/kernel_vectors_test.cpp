@@ -132,7 +132,7 @@ void main() {
       const scene::Medium medium = medium_of(grid, 1);
       const compensated_ray_marching::SmokeField field(medium, {});
       const Point3 middle(0.9, 1.1, 1.6);
-      const gpu::smoke::SmokeDensity density(*context, field, middle);
+      const gpu::smoke::SmokeDensity density(*context, field, middle, false);
       std::vector<std::array<float, 4>> points;
       for (const json& p : in.at("points")) {
         const Vec3 sample =
@@ -203,7 +203,7 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums", "[gp
     grid.clamp_border = true;
     const scene::Medium medium = medium_of(grid, number(in.at("sigma_t")));
     const compensated_ray_marching::SmokeField field(medium, {});
-    const gpu::smoke::SmokeDensity density(*context, field, Point3::Zero());
+    const gpu::smoke::SmokeDensity density(*context, field, Point3::Zero(), false);
     scene::View view{scene::look_at({0, 0, 2 * length}, {0, 0, 0}, Vec3::UnitY()), 1, 1};
     const Buffer ranges(*context, "ranges", 16), airlight(*context, "airlight", 12), column(*context, "column", 4),
         logarithms(*context, "logarithms", std::vector<float>(4, float(std::log(J))));
