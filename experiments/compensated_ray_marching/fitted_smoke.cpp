@@ -47,6 +47,25 @@ Vec3 curl(const Vec3& p) {
   return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
 }
 
+// n^3 samples of a cube of 1 m of a density, its places displaced by a curl that has risen.
+template <class Density>
+scene::VoxelGrid stirred_smoke(int n, const Vec3& risen, Density&& density) {
+  scene::VoxelGrid grid;
+  grid.size = Eigen::Vector3i::Constant(n);
+  grid.voxel_size = 1.0 / n;
+  grid.translation = Vec3::Constant(0.5 / n);
+  grid.values.resize(std::size_t(n) * n * n);
+  scene::parallel_rows(n, {}, [&](int z) {
+    float* to = grid.values.data() + std::size_t(z) * n * n;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const Vec3 p = (Vec3(x, y, z) + Vec3::Constant(0.5)) / n, from = p - risen;
+        *to++ = float(density(Vec3(p + (0.05 * curl(4 * from) + 0.012 * curl(11 * from + Vec3(7, 3, 5))))));
+      }
+  });
+  return grid;
+}
+
 // Of all that a fit depends on.
 std::string key_of(const scene::VoxelGrid& grid, int count) {
   scene::load::ContentHash hash;
@@ -65,29 +84,23 @@ scene::VoxelGrid grid_of_scene(const ProbeInput& input) {
 }
 
 scene::VoxelGrid noise_smoke(int n, double time, int octaves) {
-  scene::VoxelGrid grid;
-  grid.size = Eigen::Vector3i::Constant(n);
-  grid.voxel_size = 1.0 / n;
-  grid.translation = Vec3::Constant(0.5 / n);
-  grid.values.resize(std::size_t(n) * n * n);
   const Vec3 risen = time * Vec3::UnitY();
-  scene::parallel_rows(n, {}, [&](int z) {
-    float* to = grid.values.data() + std::size_t(z) * n * n;
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) {
-        Vec3 p = (Vec3(x, y, z) + Vec3::Constant(0.5)) / n;
-        p += 0.05 * curl(4 * (p - risen)) + 0.012 * curl(11 * (p - risen) + Vec3(7, 3, 5));
-        // A column that widens with its height.
-        const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
-        const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
-        double detail = 0;
-        for (int octave = 0; octave < octaves; ++octave)
-          detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
-        const double value = ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12);
-        *to++ = float(std::max(0.0, value));
-      }
+  return stirred_smoke(n, risen, [&](const Vec3& p) {
+    // A column that widens with its height.
+    const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
+    const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
+    double detail = 0;
+    for (int octave = 0; octave < octaves; ++octave)
+      detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
+    return std::max(0.0, ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12));
   });
-  return grid;
+}
+
+scene::VoxelGrid puff_smoke(int n, double time) {
+  return stirred_smoke(n, time * Vec3::UnitY(), [](const Vec3& p) {
+    const double share = std::max(0.0, 1 - (p - Vec3::Constant(0.5)).squaredNorm() / (0.305 * 0.305));
+    return share * share;
+  });
 }
 
 scene::GaussianSum gaussians_for(const scene::VoxelGrid& grid, int count, const scene::Execution& execution) {

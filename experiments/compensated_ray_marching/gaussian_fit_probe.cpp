@@ -15,12 +15,14 @@ namespace {
 using scene::GaussianFit;
 using scene::VoxelGrid;
 
-enum class Smoke { noise, scene };
+enum class Smoke { noise, puff, scene };
 
 // A frame of the smoke that the settings name.
 VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
+  const double time = s.real("rise") * frame;
   if (s.choice<Smoke>("smoke") == Smoke::noise)
-    return noise_smoke(int(s.integer("size")), 0.02 * frame, int(s.integer("octaves")));
+    return noise_smoke(int(s.integer("size")), time, int(s.integer("octaves")));
+  if (s.choice<Smoke>("smoke") == Smoke::puff) return puff_smoke(int(s.integer("size")), time);
   ProbeInput one = input;
   if (s.integer("frames") > 1)
     one.overrides["medium.0.frame"] = std::to_string(s.integer("first") + frame * s.integer("step"));
@@ -80,8 +82,9 @@ std::string GaussianFitProbe::about() const {
 
 std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
   return {
-      scene::choice_setting("smoke", "noise", {"noise", "scene"}, "curl noise, or the voxels of the [[scene]]"),
-      scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise"),
+      scene::choice_setting("smoke", "noise", {"noise", "puff", "scene"},
+                            "curl noise, a ball stirred by a curl, or the voxels of the [[scene]]"),
+      scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise and puff"),
       scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
       scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
       scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
@@ -91,6 +94,7 @@ std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
       scene::integer_setting("frames", "1", 1, 1000, "of a sequence"),
       scene::integer_setting("first", "0", 0, 100000, "frame of the scene's files"),
       scene::integer_setting("step", "1", 1, 1000, "from frame to frame of the scene's files"),
+      scene::real_setting("rise", "0.02", 0, 1, "of noise and puff from frame to frame, m"),
       scene::flag_setting("warm", true, "a frame begins with the Gaussians of the one before"),
       scene::flag_setting("resent", true, "where the error grows, others are sent to another place in later frames"),
       scene::integer_setting("runs", "1", 1, 100, "of the same, for times")};
@@ -126,7 +130,7 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
   for (int frame = 0; frame < frames; ++frame) {
     step();
     const VoxelGrid grid = smoke_at(input, s, frame);
-    if (frame == 0) options.unit = s.choice<Smoke>("smoke") == Smoke::noise ? scene::fit_unit(grid) : 0;
+    if (frame == 0) options.unit = s.choice<Smoke>("smoke") != Smoke::scene ? scene::fit_unit(grid) : 0;
     GaussianFit fit;
     for (int run = 0; run < runs; ++run) {
       fit = s.flag("warm") ? scene::next_fit(grid, previous, options) : scene::fit_gaussians(grid, options);

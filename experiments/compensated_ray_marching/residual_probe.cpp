@@ -25,6 +25,8 @@ enum class Store { raw, bricks, apron, hash_tags, hash_domain, hash_sequence, na
 enum class Step { residual, density };
 enum class Of { residual, density };
 
+constexpr int middle_frame = scene::HashedSequence::frames_per_table / 2;
+
 Positions random_positions(const Vector3i& size, int count) {
   Positions positions;
   for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
@@ -46,6 +48,7 @@ Positions consecutive_positions(const Vector3i& size, int count) {
 struct Task {
   Vector3i size;
   std::vector<std::int8_t> levels;
+  std::vector<std::vector<std::int8_t>> frames;  // of hash_sequence; the one that is looked up is `levels`
   Positions random, consecutive;
   int runs;
   int level(const Vector3i& p) const {
@@ -153,14 +156,22 @@ Measured measure_store(const Task& task, const scene::Settings& s, scene::Perfec
       return hashed([](const auto& h) { return h.bytes_with_domain(); },
                     [](const auto& h, const Vector3i& p) { return h.value_by_domain(p); });
     case Store::hash_sequence: {
-      // The same frame 27 times: sizes and times are those of one frame among them.
+      // Sizes and times are those of one frame among 27.
       scene::HashedSequence sequence;
-      const std::vector<std::vector<std::int8_t>> frames(scene::HashedSequence::frames_per_table, task.levels);
+      const double frames = double(task.frames.size());
       Measured m = measure_levels(
-          task, sequence, [&] { return scene::hashed_sequence(task.size, frames, options); },
-          [&](const auto& h) { return h.tables[0].bytes_with_tags() / frames.size(); },
-          [](const auto& h, const Vector3i& p) { return h.value(13, p); });
-      for (double& seconds : m.build) seconds /= double(frames.size());
+          task, sequence, [&] { return scene::hashed_sequence(task.size, task.frames, options); },
+          [&](const auto& h) { return double(h.tables[0].bytes_with_tags()) / frames; },
+          [](const auto& h, const Vector3i& p) { return h.value(middle_frame, p); });
+      for (double& seconds : m.build) seconds /= frames;
+      for (std::size_t f = 0; f < task.frames.size(); ++f)
+        for (std::size_t i = 0; i < task.levels.size(); ++i) {
+          const int x = int(i) % task.size[0], y = int(i) / task.size[0] % task.size[1];
+          const Vector3i at(x, y, int(i) / task.size[0] / task.size[1]);
+          if (sequence.value(int(f), at) != task.frames[f][i])
+            throw Error(fmt::format("residual_stores: frame {} of the hash is not the frame at ({})", f,
+                                    fmt::join(at.data(), at.data() + 3, ", ")));
+        }
       hash = std::move(sequence.tables[0]);
       return m;
     }
@@ -206,6 +217,10 @@ std::vector<scene::SettingSpec> ResidualStores::settings() const {
           scene::choice_setting("step", "residual", {"residual", "density"}, "of a level: max|R|/127, or max D/255"),
           scene::choice_setting("of", "residual", {"residual", "density"},
                                 "what is stored: the residual, or the density itself"),
+          scene::real_setting(
+              "rise", "0", 0, 1,
+              "hash_sequence: of the curl noise from frame to frame, m, each with Gaussians of its own; 0: one frame "
+              "27 times"),
           scene::integer_setting("edge", "8", 1, 64, "of bricks"),
           scene::choice_setting("offsets", "thirds", {"thirds", "root_thirds", "sixths"},
                                 "first r of a hash: cbrt(K/3) + 9, cbrt(K)/3 + 9, cbrt(K/6)"),
@@ -220,16 +235,30 @@ std::vector<std::string> ResidualStores::figures() const {
 
 Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
                              const scene::Execution& execution) const {
-  const scene::VoxelGrid grid = s.text("smoke") == "scene" ? grid_of_scene(input) : noise_smoke(int(s.integer("size")));
+  const bool moves = s.real("rise") > 0;
+  if (moves && (s.choice<Store>("store") != Store::hash_sequence || s.text("smoke") == "scene"))
+    throw Error("residual_stores: rise has an effect with store = hash_sequence and smoke = noise alone");
+  const auto noise = [&](int frame) { return noise_smoke(int(s.integer("size")), s.real("rise") * frame); };
+  const scene::VoxelGrid grid = s.text("smoke") == "scene" ? grid_of_scene(input) : noise(moves ? middle_frame : 0);
   const bool density = s.choice<Of>("of") == Of::density;
-  const scene::GaussianSum sum = gaussians_for(grid, density ? 0 : int(s.integer("gaussians")), execution);
+  const int gaussians = density ? 0 : int(s.integer("gaussians"));
+  const scene::GaussianSum sum = gaussians_for(grid, gaussians, execution);
   scene::QuantisationOptions options;
   options.threshold = int(s.integer("threshold"));
   options.keep_empty = s.flag("keep_empty");
   const float most = *std::max_element(grid.values.begin(), grid.values.end());
   if (s.choice<Step>("step") == Step::density) options.step = most / 255;
   const scene::Residual residual = scene::residual_of(grid, sum, options);
-  Task task{residual.layout.size, levels_of(residual.bricks), {}, {}, int(s.integer("runs"))};
+  Task task{residual.layout.size, levels_of(residual.bricks), {}, {}, {}, int(s.integer("runs"))};
+  if (s.choice<Store>("store") == Store::hash_sequence) {
+    task.frames.assign(scene::HashedSequence::frames_per_table, task.levels);
+    for (int frame = 0; moves && frame < scene::HashedSequence::frames_per_table; ++frame) {
+      if (frame == middle_frame) continue;
+      const scene::VoxelGrid other = noise(frame);
+      const auto left = scene::residual_of(other, gaussians_for(other, gaussians, execution), options);
+      task.frames[std::size_t(frame)] = levels_of(left.bricks);
+    }
+  }
   task.random = random_positions(task.size, int(s.integer("lookups")));
   task.consecutive = consecutive_positions(task.size, int(s.integer("lookups")));
   const auto voxels = scene::hashed_voxels(task.size, task.levels);

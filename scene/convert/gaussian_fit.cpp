@@ -49,12 +49,22 @@ class Frame {
     bounds_.amplitudes = options.amplitudes;
   }
 
+  // Some where the mass is, then half as many again where density is missing, over and over. Gaussians that all begin where the mass is
+  // stay about as wide as they are apart, and too few of them ever come to the edge of the smoke, where most of the error is.
   void place() {
-    gaussians_ = place_gaussians(grid_.size, grid_.values.data(), 1 / greatest_, options_.gaussians, bounds_);
+    const int n = int(std::min(std::size_t(options_.gaussians), objective_.filled()));
+    gaussians_ =
+        place_gaussians(grid_.size, grid_.values.data(), 1 / greatest_, std::max(n / 16, std::min(n, 50)), bounds_);
     ids_.resize(gaussians_.size());
     std::iota(ids_.begin(), ids_.end(), 0);
     next_id_ = int(ids_.size());
     amplitudes(5);
+    for (int before = 0, now = next_id_; now < n && now > before; now = next_id_) {
+      before = now;
+      run(FitMethod::gauss_newton, 5, options_.tolerance);
+      insert(std::min(n, now + (now + 1) / 2) - now);
+    }
+    inserted_ = 0;
   }
   void take(const GaussianFit& previous) {
     for (const Gaussian& g : previous.sum.gaussians) {
@@ -68,7 +78,7 @@ class Frame {
   void minimise() {
     double before = objective_.value(gaussians_);
     for (int round = 0; round < options_.rounds; ++round) {
-      const double value = run(options_.iterations, options_.tolerance);
+      const double value = run(options_.method, options_.iterations, options_.tolerance);
       const int moved = options_.teleport && round + 1 < options_.rounds ? send_least(20) : 0;
       if (!(before - value > options_.tolerance * before) && moved <= int(gaussians_.size()) / 100) break;
       before = value;
@@ -79,7 +89,7 @@ class Frame {
     const double wanted = ratio * objective_.sum_of_squares();
     double before = objective_.value(gaussians_);
     for (int round = 0; round < options_.later_rounds; ++round) {
-      const double value = run(options_.iterations, options_.later_tolerance);
+      const double value = run(options_.method, options_.iterations, options_.later_tolerance);
       int moved = 0;
       if (value > wanted && round + 1 < options_.later_rounds) {
         if (inserted_ == 0) insert(options_.inserted);
@@ -153,10 +163,10 @@ class Frame {
     teleported_ += moved;
     return moved;
   }
-  double run(int iterations, double tolerance) {
+  double run(FitMethod method, int iterations, double tolerance) {
     const MinimizerOptions options{iterations, 0.1 * tolerance, options_.check};
     const auto minimise = [&] {
-      switch (options_.method) {
+      switch (method) {
         case FitMethod::lbfgs:
           return minimize_lbfgs(objective_, bounds_, gaussians_, options, false);
         case FitMethod::lbfgs_blocks:

@@ -57,7 +57,7 @@ int main(int count, char** words) try {
                          {least, std::max(fit.widths.hi * unit, 2 * least)},
                          fit.amplitudes};
   FitObjective<float> objective(grid.size, grid.values.data(), scale, fit_cutoff, std::atoi(words[4]));
-  // As a first frame begins.
+  // All where the mass is, as the first of a frame.
   std::vector<Gaussian> gaussians = place_gaussians(grid.size, grid.values.data(), scale, std::atoi(words[3]), bounds);
   minimize_gauss_newton(objective, bounds, gaussians, {5, 1e-6, {}}, true);
 

@@ -208,6 +208,21 @@ TEST_CASE("more Gaussians fit better, and what is deposited is so", "[gaussian_f
   }
 }
 
+// A ball that ends in a kink: along its surface Gaussians of width h number 1/h^2, and sum E^2 ~ h^3: n^-3/2 at best, n^-0.7 where they all
+// begin, and so stay, where the mass is.
+TEST_CASE("more Gaussians gather along the edge of smoke", "[gaussian_fit][convert]") {
+  VoxelGrid grid = empty_grid(32, 32, 32);
+  for (int k = 0; k < 32; ++k)
+    for (int j = 0; j < 32; ++j)
+      for (int i = 0; i < 32; ++i)
+        grid.values[std::size_t(i + 32 * (j + 32 * k))] =
+            float(std::max(0.0, 1 - (Point3(i, j, k) - Point3::Constant(15.5)).squaredNorm() / 95));
+  const GaussianFit few = fit_gaussians(grid, options(50)), many = fit_gaussians(grid, options(400));
+  CAPTURE(few.errors.squared_ratio, many.errors.squared_ratio);
+  CHECK(many.ids.size() == 400);
+  CHECK(many.errors.squared_ratio < few.errors.squared_ratio * std::pow(8, -0.9));
+}
+
 TEST_CASE("the same fit by one thread and two, and of turned smoke", "[gaussian_fit][convert]") {
   VoxelGrid grid = smoke(24);
   FitOptions one = options(60), two = one;

@@ -10,8 +10,8 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0243448:5.06301]
-set yrange [0:3.51895]
+set xrange [0.0322842:1.53511]
+set yrange [0:1.81324]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "gauss_newton", \

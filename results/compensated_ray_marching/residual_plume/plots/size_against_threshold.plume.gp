@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [0:2.3]
 set logscale y
 set format y "%g"
-set yrange [440.965:2888.74]
+set yrange [441.03:2881.2]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "size_against_threshold.plume.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "hash, tags", \
