@@ -39,6 +39,8 @@ TIME_STEPS = "methods/legendre_fluids/time_steps.cpp", "methods/legendre_fluids/
 LEGENDRE_LINE = "scene/media/legendre_line.cpp", "scene/media/legendre_box_test.cpp"
 LIGHT_RAYS = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/light_rays_test.cpp"
 LIGHT_PHASES = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/light_pictures_test.cpp"
+PAPER_VIEW = "methods/legendre_fluids/paper_view.cpp", "methods/legendre_fluids/paper_view_test.cpp"
+PAPER_PICTURE = "methods/legendre_fluids/paper_picture.cpp", "methods/legendre_fluids/paper_view_test.cpp"
 PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
 
 
@@ -221,6 +223,12 @@ MUTANTS = [
         "legendre light: rays equal quadrature at every optical depth"),
     bug("forward is backward", LIGHT_PHASES, "lit.lights[l].to_light.dot(ray.direction)", "-lit.lights[l].to_light.dot(ray.direction)",
         "legendre light: pictures equal the quadrature's and the path tracer's"),
+    bug("light from behind an end is not dimmed before it", PAPER_VIEW, "(-sigma_t_ * row.column[pixel]).exp() * in_channels(lane)",
+        "in_channels(lane)", "legendre light: air before an end sends the integral of what the system's series scatters"),
+    bug("columns to the end of the box", PAPER_VIEW, "return std::min(clipped.leave[x], row.end[x]);", "return clipped.leave[x];",
+        "legendre light: air before an end sends the integral of what the system's series scatters"),
+    bug("a shadowgram of where light comes in", PAPER_PICTURE, "field_->local(ray.at(t.lo))", "field_->local(ray.at(t.hi))",
+        "legendre light: E_d casts the medium's shadowgram on what lies behind"),
     bug("the third slope of particles from the step's end", PARTICLES, "slope(b, 0.5 * dt, 0.5)", "slope(b, 0.5 * dt, 1)",
         "the velocity between two states of a flow is linear in time"),
 ]
