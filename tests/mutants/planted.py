@@ -32,6 +32,9 @@ GATES = "experiments/driver/gates.cpp", "experiments/gates_test.cpp"
 EXPOSURE = "experiments/driver/pictures.cpp", "experiments/pictures_test.cpp"
 TIGHTEN = "scripts/tighten", "scripts/scripts_test.py"
 FIGURES = "scripts/figures", "scripts/scripts_test.py"
+SMOKE_OPTIONS = "methods/compensated_ray_marching/options.cpp", "methods/compensated_ray_marching/stress_test.cpp"
+SMOKE = "methods/compensated_ray_marching/marched_smoke.cpp", "methods/compensated_ray_marching/stress_test.cpp"
+SMOKE_PICTURE = "methods/compensated_ray_marching/picture.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
 CONFINED = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/confined_space_test.cpp"
 BOXES = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/flow_test.cpp"
@@ -231,4 +234,15 @@ MUTANTS = [
         "legendre light: E_d casts the medium's shadowgram on what lies behind"),
     bug("the third slope of particles from the step's end", PARTICLES, "slope(b, 0.5 * dt, 0.5)", "slope(b, 0.5 * dt, 1)",
         "the velocity between two states of a flow is linear in time"),
+    # Compensated ray marching
+    bug("wide phase functions are warned of", SMOKE_OPTIONS, "left_out > most_left_out", "left_out < most_left_out",
+        "compensated march, stress list: narrow phase functions keep the light's mean, and are warned of"),
+    bug("thin smoke is warned of for its orders", SMOKE_OPTIONS, "if (!paper && again)", "if (!paper)",
+        "compensated march, stress list: narrow phase functions keep the light's mean, and are warned of"),
+    bug("albedo 0 is singular", SMOKE_OPTIONS, "(medium.albedo == 1 && medium.sigma_t > 0)", "(medium.albedo == 0 && medium.sigma_t > 0)",
+        "compensated march, stress list: albedo 1 is refused where the system is singular"),
+    bug("no density is small beside 1", SMOKE, "least_share * g.amplitude", "least_share",
+        "compensated march, stress list: densities are seen beside extinction alone"),
+    bug("sources below 0", SMOKE_PICTURE, "(weighted[std::size_t(k)] / of_gaussians).max(0)", "(weighted[std::size_t(k)] / of_gaussians)",
+        "compensated march, stress list: pictures of both variants"),
 ]

@@ -9,6 +9,7 @@
 
 #include "experiments/renderers.h"
 #include "scene/error.h"
+#include "tests/gpu/device.h"
 #include "tests/stress/stress.h"
 
 using namespace airlight;
@@ -30,21 +31,26 @@ struct Answer {
   std::string refused;
 };
 
-Answer answer(const std::string& name, const Point3& camera, const Point3& light, const std::string& table) {
+std::string lamp(const Point3& at) { return "type = 'point'\nintensity = 3\nposition = " + point(at); }
+
+Answer answer(const std::string& name, const Point3& camera, const std::string& light, const std::string& table) {
   // The camera looks past the middle: no ray along an axis or a face.
-  const std::string text =
-      "film = { width = 3, height = 3 }\n[camera]\nposition = " + point(camera) +
-      "\nlook_at = [0.11, 0.07, -0.13]\n[[light]]\ntype = 'point'\nintensity = 3\nposition = " + point(light) + "\n" +
-      table + "\n";
+  const std::string text = "film = { width = 3, height = 3 }\n[camera]\nposition = " + point(camera) +
+                           "\nlook_at = [0.11, 0.07, -0.13]\n[[light]]\n" + light + "\n" + table + "\n";
   const auto scene = std::make_shared<const scene::Scene>(scene::parse_scene(text, "touching", "."));
   const auto& renderer = experiments::find_renderer(name, "touching");
-  const scene::Settings settings(renderer.settings(), name == "path_tracer" ? Given{{"samples", "256"}} : Given{});
+  const scene::Settings settings(renderer.settings(), name == "path_tracer"             ? Given{{"samples", "256"}}
+                                                      : name.starts_with("compensated") ? Given{{"cells", "8"}}
+                                                                                        : Given{});
   if (const auto reasons = renderer.supports(*scene, settings); !reasons.empty()) return {{}, reasons.front()};
   try {
     return {renderer.prepare(scene, settings, {1, {}})->render(view_of(*scene), {1, {}}).film, ""};
   } catch (const Error& e) {
     return {{}, e.what()};
   }
+}
+Answer answer(const std::string& name, const Point3& camera, const Point3& light, const std::string& table) {
+  return answer(name, camera, lamp(light), table);
 }
 
 // The light's neighbourhood is bright and sampled badly by steps: what lies 1e-7 m aside moves a pixel by 1e-4 at most.
@@ -103,6 +109,17 @@ TEST_CASE("stress: light and camera on and inside media", "[stress][touching]") 
                    truth = answer("deterministic", Point3(0.2, 0.3, 0.4), Point3(-0.3, 0.2, 0.1), s.table);
       if (inside.refused.empty() && renderer != "path_tracer") check_limit("ray_marcher", inside, truth);
     }
+    // Those that know no lamps, under the sky.
+    const std::string sky = "type = 'environment'\nradiance = 2";
+    std::vector<std::string> under_the_sky = {"compensated_ray_marching"};
+    if (gpu::test::device()) under_the_sky.push_back("compensated_ray_marching_gpu");
+    for (const std::string& renderer : under_the_sky)
+      for (const double side : {1e-7, -1e-7}) {
+        CAPTURE(s.name, renderer, side);
+        const Answer at = answer(renderer, s.on, sky, s.table);
+        CHECK(at.refused.empty() == (s.name != "slab" && (renderer == under_the_sky[0] || s.table.starts_with(grid))));
+        check_limit(renderer, at, answer(renderer, s.on + side * s.normal, sky, s.table));
+      }
   }
 }
 

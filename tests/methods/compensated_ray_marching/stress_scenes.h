@@ -195,6 +195,12 @@ class StressScenes {
     }
     add(23, "a sun in four bands", puffs(), 4, 0.9, scene::make_sh_environment(sun, Mat3::Identity(), Rgb::Ones()),
         brightest);
+    // Scattered forwards, in four bands, there is less than nothing to be seen with it in the back.
+    StressScene& back = add(23, "a sun in four bands, in the back", puffs(), 0.5, 0.1,
+                            scene::make_sh_environment(sun, Mat3::Identity(), Rgb::Ones()), brightest);
+    back.given = {{"multiple", "none"}};
+    back.scene->media[0].phase = scene::HenyeyGreenstein{0.6};
+    back.scene->camera = scene::look_at({1.3, 2.7, 2.7}, {0, 0.1, 0}, Vec3::UnitY());
     add(24, "no light", puffs(), 4, 0.9, scene::make_constant_environment(Rgb::Zero()), 0);
     StressScene& inside = add(26, "the eye within, rays nearly along the slices", puffs(), 4, 0.9);
     inside.scene->camera = scene::look_at({0.05, 0.1, 0}, {1, 0.1, 0}, Vec3::UnitY());

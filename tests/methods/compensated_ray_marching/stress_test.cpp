@@ -134,6 +134,21 @@ TEST_CASE("compensated march, stress list: narrow phase functions keep the light
   CHECK(doubt(HG{0.99}, {}).empty());
 }
 
+// Row 28: what counts as no density is small beside the rest, not beside 1.
+TEST_CASE("compensated march, stress list: densities are seen beside extinction alone",
+          "[stress][compensated_ray_marching]") {
+  const StressScene& s = StressScenes::all().at(2);
+  for (const double scale : {1e-20, 1e20}) {
+    auto other = std::make_shared<scene::Scene>(*s.scene);
+    for (scene::Gaussian& g : std::get<scene::GaussianSum>(other->media[0].field).gaussians) g.amplitude *= scale;
+    other->media[0].sigma_t /= scale;
+    finish(*other);
+    for (const bool paper : {false, true})
+      CHECK(relative_l2(picture(method, other, settings_of(s, paper)), picture(method, s.scene, settings_of(s, paper)),
+                        "mean") < 1e-6);
+  }
+}
+
 // Row 10: an empty frame is other matter, so that what comes after it is drawn as if nothing had been before.
 TEST_CASE("compensated march, stress list: an empty frame in between", "[stress][compensated_ray_marching]") {
   const std::vector<StressScene>& all = StressScenes::all();

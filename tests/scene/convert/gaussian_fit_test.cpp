@@ -191,6 +191,36 @@ TEST_CASE("each minimiser lowers the objective and keeps the bounds", "[gaussian
   for (const double end : ends) CHECK(ends[0] < 1.1 * end);
 }
 
+// Gradients that point out of the bounds are projected: what begins there leads no minimiser outside, and does not stop it.
+TEST_CASE("each minimiser goes on from the bounds", "[gaussian_fit][convert]") {
+  const VoxelGrid grid = smoke(20);
+  const FitBounds bounds{{Point3::Constant(-0.5), Point3::Constant(19.5)}, {0.7, 1.8}, {0.01, 1}};
+  const float greatest = *std::max_element(grid.values.begin(), grid.values.end());
+  FitObjective<float> objective(grid.size, grid.values.data(), 1 / greatest, 3, 2);
+  std::vector<Gaussian> start = place_gaussians(grid.size, grid.values.data(), 1 / greatest, 40, bounds);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    for (int v = 3; v < 5; ++v) variable(start[i], v) = (i >> (v - 3)) % 2 ? bounds.lo(v) : bounds.hi(v);
+    if (i % 5 == 0) start[i].center[int(i / 5) % 3] = i % 2 ? -0.5 : 19.5;
+  }
+  const double before = objective.value(start);
+  for (int method = 0; method < 4; ++method) {
+    CAPTURE(method);
+    std::vector<Gaussian> gaussians = start;
+    const MinimizerOptions how{15, 1e-5, {}};
+    const Minimization done = method == 0   ? minimize_gauss_newton(objective, bounds, gaussians, how)
+                              : method == 1 ? minimize_lbfgs(objective, bounds, gaussians, how, false)
+                              : method == 2 ? minimize_lbfgs(objective, bounds, gaussians, how, true)
+                                            : minimize_trust_region(objective, bounds, gaussians, how);
+    CHECK(done.value < 0.8 * before);
+    CHECK(objective.value(gaussians) == Approx(done.value));
+    for (const Gaussian& g : gaussians)
+      for (int v = 0; v < 5; ++v) {
+        CHECK(variable(g, v) >= bounds.lo(v));
+        CHECK(variable(g, v) <= bounds.hi(v));
+      }
+  }
+}
+
 TEST_CASE("more Gaussians fit better, and what is deposited is so", "[gaussian_fit][convert]") {
   const VoxelGrid grid = smoke(32);
   double last = 1;
@@ -279,6 +309,17 @@ TEST_CASE("grids at the edge of sense", "[gaussian_fit][convert]") {
     CHECK(fit.sum.gaussians[0].center.allFinite());
     CHECK(fit.errors.squared_ratio < 0.6);
     check_bounds(grid, fit);
+  }
+  SECTION("density whose middle lies beyond a face, and on one") {
+    for (const double beyond : {0.1, 0.0}) {
+      VoxelGrid grid = empty_grid(20, 20, 20);
+      const Point3 middle = sample_to_world(grid, Point3(19.5, 10, 10)) + Vec3(beyond, 0, 0);
+      grid.values = gaussian_samples({{{middle, 0.15, 1}}, 0, 3}, grid);
+      const GaussianFit fit = fit_gaussians(grid, options(6));
+      CAPTURE(beyond, fit.errors.squared_ratio);
+      CHECK(fit.errors.squared_ratio < 0.05);
+      check_bounds(grid, fit);
+    }
   }
   SECTION("even density everywhere") {
     VoxelGrid grid = empty_grid(20, 20, 20);
