@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "gpu/view_uniforms.h"
-#include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 
 namespace airlight::gpu::smoke {
@@ -258,13 +257,11 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
   again.dispatch(lanes * count_, 1, g.systems);
 }
 
-void CentreSourcesOnDevice::light(const std::vector<scene::Light>& lights, StageTimer& timer,
-                                  const scene::Execution& execution) {
+void CentreSourcesOnDevice::light(const std::vector<Rgb>& light, StageTimer& timer, const scene::Execution& execution) {
   iterations_ = 0;
   residual_ = negative_share_ = 0;
   if (!scatters_ && !surfaces_program_) return;
-  timer.begin("environment");
-  const std::vector<Rgb> light = compensated_ray_marching::environments(lights, options_.order).harmonics;
+  timer.begin("upload");
   std::vector<double> bands;
   bool grey = true;
   for (int c = 0; c < 3; ++c)

@@ -19,9 +19,9 @@ class CentreSourcesOnDevice {
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
                         const std::vector<scene::Surface>&, const compensated_ray_marching::Options&, StageTimer&);
 
-  // A light, or another. Conjugate gradients begin with the radiance before; as many as it took are told to the device before they are
-  // looked at.
-  void light(const std::vector<scene::Light>&, StageTimer&, const scene::Execution&);
+  // A light, or another, order^2 coefficients of lookup directions. Conjugate gradients begin with the radiance before; as many as it took
+  // are told to the device before they are looked at.
+  void light(const std::vector<Rgb>& harmonics, StageTimer&, const scene::Execution&);
 
   // Of each centre towards the camera, of either sign, in sources() [W/m^2/sr].
   void towards(const scene::View&);

@@ -9,6 +9,7 @@
 #include "gpu/compensated_ray_marching/smoke_source.h"
 #include "gpu/compensated_ray_marching/surroundings.h"
 #include "gpu/view_uniforms.h"
+#include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/single_precision.h"
 #include "scene/stopwatch.h"
@@ -40,7 +41,7 @@ class PreparedSmokeGpu final : public scene::Prepared {
   bool paper() const { return options_.variant == Options::Variant::paper; }
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
   void begin_grid(StageTimer&, const Execution&);
-  void begin_centres(StageTimer&, const Execution&);
+  void begin_centres(StageTimer&);
   std::vector<scene::StageTime> light(const Execution&);
   void march(const View&) const;
   void light_surfaces(const View&) const;
@@ -104,8 +105,9 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
     ranges_ = &program(context_, "ranges", tile, tile, density_->definitions());
     march_ = &program(context_, "march", tile, tile, density_->definitions());
   }
-  paper() ? begin_centres(timer, execution) : begin_grid(timer, execution);
+  paper() ? begin_centres(timer) : begin_grid(timer, execution);
   append(times_, timer.times());
+  if (paper()) append(times_, light(execution));
 }
 
 void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution) {
@@ -117,13 +119,12 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
   source_->light(*grid_, *incoming_, true, timer, execution);
 }
 
-void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& execution) {
+void PreparedSmokeGpu::begin_centres(StageTimer& timer) {
   static const scene::GaussianSum no_smoke;
   static const scene::Medium clear;
   centres_ =
       std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
                                               smoke_ ? smoke_->medium() : clear, scene_->surfaces, options_, timer);
-  centres_->light(scene_->lights, timer, execution);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
@@ -140,11 +141,15 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
 std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution) {
   std::vector<scene::StageTime> times;
   StageTimer timer(context_);
-  if (centres_) {
-    centres_->light(scene_->lights, timer, execution);
-    return timer.times();
-  }
   scene::Stopwatch watch;
+  if (centres_) {
+    const auto light = compensated_ray_marching::environments(scene_->lights, options_.order).harmonics;
+    times.push_back({"environment", watch.lap()});
+    timer.restart();
+    centres_->light(light, timer, execution);
+    append(times, timer.times());
+    return times;
+  }
   incoming_->become(scene_->lights);
   if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   times.push_back({"environment", watch.lap()});

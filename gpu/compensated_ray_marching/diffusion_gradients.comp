@@ -70,6 +70,6 @@ void main() {
     if (vectors[solution + i] < 0) negative += 1;
   }
   negative = total(negative);
-  bool done = !(iterations < most_iterations && sqrt(next) > tolerance * whole);
-  if (lane == 0) states[system] = State(next, whole, done ? 1 : 0, iterations, int(negative), 0);
+  bool goes_on = iterations < most_iterations && sqrt(next) > tolerance * whole;
+  if (lane == 0) states[system] = State(next, whole, goes_on ? 0 : 1, iterations, int(negative), 0);
 }

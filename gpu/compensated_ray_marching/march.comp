@@ -44,13 +44,17 @@ float residual_at(vec3 x) {
 }
 #endif
 
+#if GAUSSIANS
+#include "compensated_ray_marching/tile_gaussians.glsl"
+#endif
+
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (at.x >= width || at.y >= height) return;
-  int place = at.y * width + at.x;
-  vec4 range = ranges[place];
+  bool within_film = at.x < width && at.y < height;
+  int place = within_film ? at.y * width + at.x : 0;
+  vec4 range = within_film ? ranges[place] : vec4(0);
   int count = int(range.z);
-  if (first_slice >= count) return;
+  bool active_ = first_slice < count;
   vec3 origin, direction;
   camera_ray(vec2(at) + 0.5, origin, direction);
   float density[SLICES];
@@ -61,24 +65,33 @@ void main() {
 #endif
 #if GAUSSIANS
   float from = range.x + (float(first_slice) + 0.5) * range.y, to = from + float(SLICES - 1) * range.y;
-  for (int i = 0; i < gaussian_count; ++i) {
-    float nearest, aside;
-    vec2 part = within(gaussians[i], farthest, origin, direction, nearest, aside);
-    if (!(part.x <= to && part.y >= from)) continue;
-    float step = range.y / gaussians[i].width, start = (from - nearest) / gaussians[i].width;
-    for (int k = 0; k < SLICES; ++k) {
-      float along = start + float(k) * step, square = aside + along * along;
-      float value = square < farthest ? gaussians[i].amplitude * exp(-square) : 0;
-      density[k] += value;
+  if (!begin_tile(active_, origin, direction, vec2(from, to))) return;
+  for (int turn = 0; turn * tile_lanes < gaussian_count; ++turn) {
+    look_at(turn);
+    if (!active_) continue;
+    for (int w = 0; w < tile_words; ++w)
+      for (uint left = tile_word(turn, w); left != 0u; left &= left - 1u) {
+        int i = turn * tile_lanes + 32 * w + findLSB(left);
+        float nearest, aside;
+        vec2 part = within(gaussians[i], farthest, origin, direction, nearest, aside);
+        if (!(part.x <= to && part.y >= from)) continue;
+        float step = range.y / gaussians[i].width, start = (from - nearest) / gaussians[i].width;
+        for (int k = 0; k < SLICES; ++k) {
+          float along = start + float(k) * step, square = aside + along * along;
+          float value = square < farthest ? gaussians[i].amplitude * exp(-square) : 0;
+          density[k] += value;
 #if PAPER
-      weighted[k] += value * sources[i].rgb;
+          weighted[k] += value * sources[i].rgb;
 #endif
-    }
+        }
+      }
   }
 #else
-  for (int k = 0; k < SLICES; ++k)
-    density[k] = density_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction);
+  if (active_)
+    for (int k = 0; k < SLICES; ++k)
+      density[k] = density_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction);
 #endif
+  if (!active_) return;
   vec3 light = vec3(0);
   float passed = column[place];
   for (int k = 0; k < SLICES; ++k) {

@@ -56,8 +56,8 @@ void find_depth(dvec3 x) {
   sum_rows(DEPTH);
 }
 
-// Past all spheres but that of a surface (-1: past all): log_visibility of sphere_shadow.h. The angle is found from its sine among those of
-// the table.
+// Past all spheres but that of a surface (-1: past all): log_visibility of sphere_shadow.h. The angle is found from its sine, among those
+// of the table.
 void find_hidden(dvec3 x, int surface) {
   if (lane == 0) within_sphere = 0;
   clear_rows();

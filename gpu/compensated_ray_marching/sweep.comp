@@ -84,10 +84,8 @@ void main() {
     depth += density_at(m);
     up = emitted_at(m, from);
     bool passes = has_objects == 0 || (open[(which / lights / 32) * cells + at] >> (which / lights % 32) & 1u) != 0;
-    if (passes) {
-      vec4 values = vec4(light[from + m.at.x], light[from + m.at.y], light[from + m.at.z], light[from + m.at.w]);
-      before = dot(m.weight * m.within, values);
-    }
+    vec4 there = vec4(light[from + m.at.x], light[from + m.at.y], light[from + m.at.z], light[from + m.at.w]);
+    if (passes) before = dot(m.weight * m.within, there);
   }
   depth *= 0.5 * way.step * sigma;
   beyond = max(beyond * 0.5 * way.step * sigma, 1e-6 * depth + 1e-30);
