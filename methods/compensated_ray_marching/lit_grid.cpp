@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "methods/compensated_ray_marching/gaussian_columns.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/math/spherical_harmonics.h"
@@ -112,14 +113,24 @@ void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const sce
   toward_ = light.directions();
   columns_.resize(from);
   columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
+  const auto* sum = std::get_if<scene::GaussianSum>(&medium_.field);
+  const bool whole = sum && GaussianColumns::knows(*sum) && std::holds_alternative<scene::Unbounded>(medium_.region);
+  const std::optional<GaussianColumns> gaussians =
+      whole ? std::optional<GaussianColumns>(*sum) : std::optional<GaussianColumns>();
   in_runs(execution, [&](std::size_t first, std::size_t count) {
-    for (std::size_t i = first; i < first + count; ++i)
-      for (std::size_t k = from; k < toward_.size(); ++k) {
-        const Ray ray{grid_.node(nodes_[i]), toward_[k]};
-        const bool blocked = scene_.geometry && scene_.geometry->occluded(ray);
-        columns_[k][i] =
-            blocked ? std::numeric_limits<float>::infinity() : float(density_integral(medium_, ray, {0, infinity}));
+    std::vector<Point3> points;
+    for (std::size_t i = first; i < first + count; ++i) points.push_back(grid_.node(nodes_[i]));
+    for (std::size_t k = from; k < toward_.size(); ++k) {
+      float* columns = columns_[k].data() + first;
+      if (gaussians) gaussians->from(points, toward_[k], columns);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Ray ray{points[i], toward_[k]};
+        if (scene_.geometry && scene_.geometry->occluded(ray))
+          columns[i] = std::numeric_limits<float>::infinity();
+        else if (!gaussians)
+          columns[i] = float(density_integral(medium_, ray, {0, infinity}));
       }
+    }
   });
 }
 

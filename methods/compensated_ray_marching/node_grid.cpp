@@ -11,6 +11,7 @@ namespace {
 
 constexpr double widths_without_cutoff = 3;
 constexpr int samples_of_gaussians = 3, most_samples = 8;  // along a side of a cell
+constexpr int block = 4;                                   // nodes along a side
 
 }  // namespace
 
@@ -87,8 +88,15 @@ std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid& grid, const Eigen::Ar
           near[std::size_t(i) + std::size_t(size[0]) * (std::size_t(j) + std::size_t(size[1]) * std::size_t(k))] = 1;
   }
   std::vector<Eigen::Index> nodes;
-  for (std::size_t i = 0; i < near.size(); ++i)
-    if (near[i]) nodes.push_back(Eigen::Index(i));
+  for (int z = 0; z < size[2]; z += block)
+    for (int y = 0; y < size[1]; y += block)
+      for (int x = 0; x < size[0]; x += block)
+        for (int k = z; k < std::min(z + block, size[2]); ++k)
+          for (int j = y; j < std::min(y + block, size[1]); ++j)
+            for (int i = x; i < std::min(x + block, size[0]); ++i) {
+              const Eigen::Index at = i + Eigen::Index(size[0]) * (j + Eigen::Index(size[1]) * k);
+              if (near[std::size_t(at)]) nodes.push_back(at);
+            }
   return nodes;
 }
 
