@@ -1,5 +1,7 @@
 #include "scene/light.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
