@@ -1,7 +1,6 @@
 #include "scene/light.h"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
