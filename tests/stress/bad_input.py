@@ -388,6 +388,7 @@ def main():
             killed = kill_cases.KillAndResume(PROGRAM, WORK, run, project, fail, ok)
             killed.render()
             killed.experiment(EXPERIMENT)
+            killed.fit()
         left = [str(f.relative_to(WORK)) for f in WORK.rglob('*.tmp') if 'broken' not in f.parts[:-1] and
                 not f.name.startswith('broken')]
         if left:
