@@ -196,14 +196,18 @@ class Reader {
                        experiment_.sequences);
       std::vector<SceneCase> cases{scene};
       if (auto sweep = reader.table("sweep")) {
-        sweep->allow({"key", "values"});
+        sweep->allow({"key", "values", "with"});
         cases.clear();
         const std::string key = sweep->text("key");
-        for (const double value : sweep->numbers("values", scene::load::any_number)) {
+        const std::vector<double> values = sweep->numbers("values", scene::load::any_number);
+        const std::vector<Pairs> along =
+            overrides_of_each(*table->get("sweep")->as_table(), "with", values.size(), *sweep);
+        for (std::size_t i = 0; i < values.size(); ++i) {
           cases.push_back(scene);
-          cases.back().overrides[key] = fmt::format("{}", value);
-          cases.back().parameter = value;
-          cases.back().name = fmt::format("{} {:g}", scene.name, value);
+          for (const auto& [path, value] : along[i]) cases.back().overrides[path] = value;
+          cases.back().overrides[key] = fmt::format("{}", values[i]);
+          cases.back().parameter = values[i];
+          cases.back().name = fmt::format("{} {:g}", scene.name, values[i]);
           cases.back().swept_from = scene.name;
           cases.back().is_frame = key.ends_with(".frame");
         }

@@ -67,4 +67,19 @@ Pairs overrides(const toml::table& table, const std::string& key, const TableRea
   return pairs;
 }
 
+std::vector<Pairs> overrides_of_each(const toml::table& table, const std::string& key, std::size_t n,
+                                     const TableReader& reader) {
+  std::vector<Pairs> each(n);
+  if (!reader.has(key)) return each;
+  const toml::table* inner = table.get(key)->as_table();
+  if (!inner) reader.expected(key, "a table { \"path.in.the.scene\" = [values] }");
+  for (const auto& [path, list] : *inner) {
+    const toml::array* values = list.as_array();
+    if (!values || values->size() != n)
+      reader.fail(key, fmt::format("'{}': expected a list of {} values, one for each of the sweep", path.str(), n));
+    for (std::size_t i = 0; i < n; ++i) each[i][std::string(path.str())] = quoted((*values)[i]);
+  }
+  return each;
+}
+
 }  // namespace airlight::experiments

@@ -22,4 +22,8 @@ Pairs settings(const toml::table&, const std::string& key, const scene::load::Ta
 // key = { "path.in.the.scene" = value, ... } or nested tables; values as TOML text.
 Pairs overrides(const toml::table&, const std::string& key, const scene::load::TableReader&);
 
+// key = { "path.in.the.scene" = [value, ...] }: the overrides that go with each of n values of a sweep, one list of n for each path.
+std::vector<Pairs> overrides_of_each(const toml::table&, const std::string& key, std::size_t n,
+                                     const scene::load::TableReader&);
+
 }  // namespace airlight::experiments

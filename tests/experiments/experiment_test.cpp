@@ -90,6 +90,25 @@ TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[exper
   CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/f"}), Contains("nearest: g/e"));
 }
 
+TEST_CASE("overrides go along with the values of a sweep", "[experiment]") {
+  const std::string swept = "values = [0.5, 2]";
+  const std::string along = ", with = { \"film.width\" = [4, 5], \"camera.position\" = [[0, 1, 2], [3, 4, 5]] }";
+  const TemporaryFolder folder;
+  folder.write("experiments/README.md", "");
+  folder.write("experiments/g/e.toml", replaced(good, swept, swept + along));
+  const Experiment e = read_experiment(folder.path(), "g/e", "quick");
+  REQUIRE(e.scenes.size() == 2);
+  CHECK(e.scenes[0].overrides.at("film.width") == "4");
+  CHECK(e.scenes[1].overrides.at("film.width") == "5");
+  CHECK(e.scenes[1].overrides.at("film.height") == "6");
+  CHECK(e.scenes[1].overrides.at("medium.0.sigma_t") == "2");
+  CHECK_THAT(e.scenes[0].overrides.at("camera.position"), Contains("0, 1, 2"));
+  CHECK_THAT(e.scenes[1].overrides.at("camera.position"), Contains("3, 4, 5"));
+  CHECK_THAT(failure(replaced(good, swept, swept + ", with = { \"film.width\" = [4] }")),
+             Contains("e.toml:7:") && Contains("film.width") && Contains("a list of 2 values"));
+  CHECK_THAT(failure(replaced(good, swept, swept + ", with = 3")), Contains("e.toml:7:"));
+}
+
 TEST_CASE("mistakes in an experiment file are one line with position and nearest name", "[experiment]") {
   CHECK_THAT(failure(good), Contains("no failure"));
   CHECK_THAT(failure("title = "), Contains("e.toml:1:"));

@@ -1,8 +1,10 @@
-// The fluid rows of the table of extremes (corrected mathematics, section 12): every variant ends finite, or says why in a line.
+// The table of extremes (corrected mathematics, section 12): every variant ends finite, or says why in a line.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "methods/legendre_fluids/light.h"
+#include "tests/methods/legendre_fluids/extreme_scenes.h"
 #include "tests/methods/legendre_fluids/flows.h"
 
 using namespace airlight;
@@ -150,4 +152,28 @@ TEST_CASE("legendre fluids, extremes: what is no number, no count and no box is 
     CHECK_THROWS_WITH(
         scene::parse_flow(std::string("[flow]\ndimensions = 2\nduration = 1\nbox = ") + box, "f.toml", "."),
         Contains("f.toml:4:") && Contains("expected"));
+}
+
+TEST_CASE("legendre light, extremes: every row by rays and by the paper's systems", "[legendre_fluids][light]") {
+  const legendre_fluids::LegendreLight method;
+  for (const ExtremeLight& row : extreme_lights()) {
+    check_light(row, test::picture(method, row.scene));
+    for (const char* closure : {"least_squares", "upwind"})
+      for (const char* n : {"1", "6"})
+        check_paper_light(row,
+                          test::picture(method, row.scene, {{"variant", "paper"}, {"closure", closure}, {"n", n}}));
+  }
+}
+
+// The smallest depths keep their digits: light scattered is in proportion to the depth, to its square.
+TEST_CASE("legendre light, extremes: a medium of depth 1e-6 sends a millionth", "[legendre_fluids][light]") {
+  const legendre_fluids::LegendreLight method;
+  const auto thin = [&](double depth) {
+    return test::picture(method,
+                         lit_scene(smoke(random_density({4, 4, 4}, 3), depth), oblique_light, oblique_view, 9, 7))
+        .layer("airlight");
+  };
+  const std::vector<float> small = thin(1e-6), less = thin(1e-12);
+  for (std::size_t i = 0; i < small.size(); ++i)
+    CHECK(double(small[i]) == Approx(1e6 * double(less[i])).epsilon(1e-5).margin(1e-18));
 }
