@@ -18,7 +18,7 @@ struct SceneCase {  // kind "numbers": the input of a probe, all empty where the
   std::filesystem::path file;
   Pairs overrides;                  // with those of the profile
   std::optional<double> parameter;  // abscissa of plots over scenes
-  bool is_frame = false;            // of a sequence: swept is the `frame` of a medium
+  std::string of_sequence;          // what is swept from picture to picture: "frame" of a medium, "angle" of what turns
 };
 
 struct MethodCase {

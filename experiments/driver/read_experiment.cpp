@@ -209,7 +209,8 @@ class Reader {
           cases.back().parameter = values[i];
           cases.back().name = fmt::format("{} {:g}", scene.name, values[i]);
           cases.back().swept_from = scene.name;
-          cases.back().is_frame = key.ends_with(".frame");
+          for (const std::string moves : {"frame", "angle"})
+            if (key.ends_with("." + moves)) cases.back().of_sequence = moves;
         }
       }
       if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());

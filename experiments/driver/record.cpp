@@ -8,7 +8,7 @@ namespace airlight::experiments {
 using nlohmann::json;
 namespace {
 
-// Pictures of one scene: the reference, then the last setting of every method; of a frame with its sequence.
+// Pictures of one scene: the reference, then the last setting of every method; of a sequence with its frame.
 json pictures(const Outcome& outcome) {
   const auto entry = [&](const std::string& label, const std::string& image, const std::string& layer,
                          double exposure) {
@@ -32,7 +32,9 @@ json pictures(const Outcome& outcome) {
     }
     if (list.empty()) continue;
     groups.push_back({{"title", scene.name}, {"pictures", list}});
-    if (scene.is_frame) groups.back().update({{"sequence", scene.swept_from}, {"frame", *scene.parameter}});
+    if (!scene.of_sequence.empty())
+      groups.back().update(
+          {{"sequence", scene.swept_from}, {"frame", *scene.parameter}, {"frame_is", scene.of_sequence}});
   }
   return groups;
 }

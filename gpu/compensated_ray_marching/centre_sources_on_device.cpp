@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gpu/view_uniforms.h"
+#include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 
 namespace airlight::gpu::smoke {
@@ -55,6 +56,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
     : context_(context),
       medium_(medium),
       options_(options),
+      single_only_(compensated_ray_marching::single_only(sum, medium, options)),
       count_(int(sum.gaussians.size())),
       objects_(int(spheres_of(surfaces).size())),
       scatters_(count_ > 0 && (medium.albedo * medium.sigma_t).maxCoeff() > 0),
@@ -97,7 +99,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   p.set("extinctions", int(extinctions_.size()));
   for (std::size_t e = 0; e < extinctions_.size(); ++e) p.set_double(at_index("extinction", e), extinctions_[e]);
   p.dispatch(lanes * count_);
-  if (options_.paper.multiple == Options::Paper::Multiple::none) return;
+  if (!single_only_.empty()) return;
   matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
   right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
   again_program_ = program_of("diffusion_again", lanes, 1, {{"SUMS", "11"}});

@@ -32,6 +32,8 @@ class CentreSourcesOnDevice {
 
   int centres() const { return count_; }
   int objects() const { return objects_; }
+  // Why multiple scattering is left out; empty where it is not.
+  const std::string& single_only() const { return single_only_; }
   int iterations() const { return iterations_; }             // of all channels
   double residual() const { return residual_; }              // the greatest, relative
   double negative_share() const { return negative_share_; }  // of the centres' scattered radiance, taken as 0
@@ -54,6 +56,7 @@ class CentreSourcesOnDevice {
   Context& context_;
   const scene::Medium& medium_;
   compensated_ray_marching::Options options_;
+  std::string single_only_;
   int count_ = 0, objects_ = 0;
   bool scatters_ = false;
   CentreTables tables_;

@@ -170,10 +170,9 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
   bool multiple = grid_ && grid_->single_only().empty();
   if (smoke_ && centres_) {
     how = fmt::format("{} centres, {} bands", centres_->centres(), options_.order);
-    multiple = scatters && options_.paper.multiple != Options::Paper::Multiple::none;
-    again = multiple   ? fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual())
-            : scatters ? "not asked for"
-                       : "the albedo is 0";
+    again = centres_->single_only();
+    multiple = again.empty();
+    if (multiple) again = fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
   } else if (multiple)
     again = fmt::format("{} bands, deepest cell {:.2g}; {} iterations, error about {:.1g}{}", options_.order,
                         grid_->deepest_cell(), source_->iterations(), source_->error(),

@@ -1,5 +1,9 @@
 #include "methods/compensated_ray_marching/centre_sources.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "methods/compensated_ray_marching/diffusion_system.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
@@ -18,9 +22,21 @@ SourceLight environments(const std::vector<scene::Light>& lights, int order) {
   return all;
 }
 
+std::string single_only(const scene::GaussianSum& sum, const scene::Medium& medium, const Options& options) {
+  if (options.paper.multiple == Options::Paper::Multiple::none) return "not asked for";
+  double column = 0;  // [m]
+  for (const scene::Gaussian& g : sum.gaussians) column += std::sqrt(pi) * g.width * std::abs(g.amplitude);
+  double most = 0;  // as a share of the light
+  for (int c = 0; c < 3; ++c) most = std::max(most, -medium.albedo[c] * std::expm1(-medium.sigma_t[c] * column));
+  return most < options.tolerance ? fmt::format("at most {:.2g} of the light is scattered again", most) : "";
+}
+
 CentreSources::CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium,
                              const std::vector<scene::Surface>& surfaces, const Options& options)
-    : sum_(sum), medium_(medium), options_(options) {
+    : sum_(sum),
+      medium_(medium),
+      options_(options),
+      single_only_(compensated_ray_marching::single_only(sum, medium, options)) {
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape)) {
       objects_.push_back(*sphere);
@@ -45,7 +61,7 @@ void CentreSources::light(const std::vector<scene::Light>& lights, const scene::
   times_.push_back({"single scattering", watch.lap()});
   iterations_ = 0;
   residual_ = negative_share_ = 0;
-  if (options_.paper.multiple == Options::Paper::Multiple::none) return;
+  if (!single_only_.empty()) return;
   scatter_again();
   times_.push_back({"multiple scattering", watch.lap()});
 }

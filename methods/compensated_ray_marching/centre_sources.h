@@ -11,6 +11,10 @@ namespace airlight::compensated_ray_marching {
 // Environments together, as harmonics of lookup directions.
 SourceLight environments(const std::vector<scene::Light>&, int order);
 
+// Why multiple scattering at the centres is left out; empty where it is not. What is scattered again is no more than the albedo times what
+// is lost on a way along the axes of all Gaussians, one after another: below the tolerance it is not looked for.
+std::string single_only(const scene::GaussianSum&, const scene::Medium&, const Options&);
+
 class CentreSources {
  public:
   // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over. Of the surfaces spheres cast
@@ -27,6 +31,7 @@ class CentreSources {
   // Irradiance at a point of a surface [W/m^2]: past the smoke and the other objects.
   Rgb irradiance(const Point3&, const Vec3& normal, int surface) const;
   std::size_t objects() const { return objects_.size(); }
+  const std::string& single_only() const { return single_only_; }  // of the free function
 
   const std::vector<std::vector<Rgb>>& sources() const {
     return sources_;
@@ -42,6 +47,7 @@ class CentreSources {
   const scene::GaussianSum& sum_;
   const scene::Medium& medium_;
   Options options_;
+  std::string single_only_;
   std::vector<scene::Sphere> objects_;
   std::vector<int> surface_of_;             // of each object
   std::optional<SourceRadiance> radiance_;  // of the light now

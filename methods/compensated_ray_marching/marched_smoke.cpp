@@ -20,10 +20,13 @@ SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : gi
     own_->field = (*fitted)->gaussians;
     own_->region = scene::Unbounded{};
     if (options.residual && (*fitted)->residual) {
-      levels_ = (*fitted)->residual;
-      const scene::Residual& r = *levels_;
-      residual_ = r.layout;
-      for (const std::int8_t level : levels_of(r.bricks)) residual_->values.push_back(float(r.step * level));
+      const scene::Residual& r = *(*fitted)->residual;
+      const std::vector<std::int8_t> levels = levels_of(r.bricks);
+      if (std::any_of(levels.begin(), levels.end(), [](std::int8_t level) { return level != 0; })) {
+        levels_ = (*fitted)->residual;
+        residual_ = r.layout;
+        for (const std::int8_t level : levels) residual_->values.push_back(float(r.step * level));
+      }
     }
   }
   const auto empty = [](const scene::Gaussian& g) { return g.amplitude == 0; };

@@ -9,7 +9,7 @@
 namespace airlight::compensated_ray_marching {
 
 // variant = grid marches through the medium itself; paper through Gaussians, with what they leave of fitted smoke (trilinear, of either
-// sign) where `residual` asks for it, and without density where the Gaussians have less than least_density().
+// sign) where `residual` asks for it and they leave anything, and without density where the Gaussians have less than least_density().
 class SmokeField {
  public:
   // Of a medium that reasons_against has nothing against. The medium is copied where its residual is left out, and of paper, which has an

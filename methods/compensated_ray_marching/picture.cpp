@@ -51,8 +51,7 @@ class PreparedPicture final : public scene::Prepared {
   std::vector<scene::StageTime> light(const Execution&);
   // Of several orders, in what is drawn.
   bool multiple() const {
-    return (grid_ && grid_->single_only().empty()) ||
-           (centres_ && options_.paper.multiple != Options::Paper::Multiple::none);
+    return (grid_ && grid_->single_only().empty()) || (centres_ && centres_->single_only().empty());
   }
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
@@ -143,9 +142,9 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
                           grid_->error() > options_.tolerance ? ": more than the tolerance" : "");
   } else if (centres_) {
     how = fmt::format("{} centres, {} bands", centres_->sources().size(), options_.order);
-    again = options_.paper.multiple == Options::Paper::Multiple::none
-                ? "not asked for"
-                : fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
+    again = centres_->single_only();
+    if (again.empty())
+      again = fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
   }
   return {{"single scattering", smoke_ && scatters,
            !smoke_    ? none

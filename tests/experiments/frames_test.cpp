@@ -72,12 +72,47 @@ TEST_CASE("a sequence is swept by its frames and shown with a slider", "[driver]
   REQUIRE(record["pictures"].size() == 2);
   CHECK(record["pictures"][1]["sequence"] == "smoke");
   CHECK(record["pictures"][1]["frame"] == 12);
+  CHECK(record["pictures"][1]["frame_is"] == "frame");
   const Result report = run_command(
       "'" + root + "/scripts/report' --results results --out page.html --program '" + program + "'", project);
   CHECK(report.err == "");
   const std::string page = read_bytes(project.file("page.html"));
   CHECK_THAT(page, Catch::Contains("<div class=sequence><h3>smoke</h3>") && Catch::Contains("type=range min=0 max=1") &&
                        Catch::Contains("data-frame=\"7\"") && Catch::Contains("data-frame=\"12\""));
+}
+
+TEST_CASE("a light that turns is shown with a slider, too", "[driver]") {
+  const SmallProject project(R"([film]
+width = 8
+height = 6
+[camera]
+position = [0, 0, 4]
+look_at = [0, 0, 0]
+[[light]]
+type = "environment"
+sh = [[1, 1, 1]]
+rotation = { axis = [0, 1, 0], angle = 0 }
+)",
+                             R"(title = "Turns"
+layer = "mean"
+metrics = []
+[[scene]]
+name = "sky, angle"
+file = "scenes/one.toml"
+sweep = { key = "light.0.rotation.angle", values = [0, 1.5] }
+[[method]]
+renderer = "ray_marcher"
+[profile.quick]
+budget = 0
+)");
+  run_of(project);
+  const auto record = nlohmann::json::parse(read_bytes(project.file("results/g/e/run.json")));
+  REQUIRE(record["pictures"].size() == 2);
+  CHECK(record["pictures"][1]["sequence"] == "sky, angle");
+  CHECK(record["pictures"][1]["frame"] == 1.5);
+  run_command("'" + root + "/scripts/report' --results results --out page.html --program '" + program + "'", project);
+  CHECK_THAT(read_bytes(project.file("page.html")),
+             Catch::Contains("<label>angle <input") && Catch::Contains("data-frame=\"1.5\""));
 }
 
 // Times of next frames have their stages; a method that would prepare anew says so.

@@ -89,7 +89,7 @@ TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flo
   const Outcome outcome = run_experiment(project.read(), {project.path(), false, 1, false});
   REQUIRE(outcome.rows.size() == 2);
   CHECK(outcome.rows[0].scene_hash != outcome.rows[1].scene_hash);  // the smoke has moved
-  CHECK(outcome.experiment.scenes[0].is_frame);
+  CHECK(outcome.experiment.scenes[0].of_sequence == "frame");
   CHECK(outcome.histories.front().columns.at("time") == std::vector<double>{0, 0.25, 0.5});
   CHECK_THAT(airlight::read_bytes((project.path() / "results/g/e/plots/mass.csv").string()), Contains("puff,0.25,"));
   const auto made = fs::last_write_time(project.frame(2));

@@ -99,6 +99,22 @@ TEST_CASE("paper on the device: thin to thick, albedo to .99", "[gpu][compensate
     }
 }
 
+TEST_CASE("paper on the device: stages kept and left out as on the CPU", "[gpu][compensated_ray_marching][paper]") {
+  if (!gpu::test::device()) return;
+  for (const double sigma_t : {1e-6, 1.6e-4, 1.8e-4, 3.0}) {
+    const auto scene = scene_of(puffs(), sigma_t, 0.8, uneven());
+    const auto again = [&](const scene::Renderer& renderer) {
+      const auto prepared = renderer.prepare(scene, {renderer.settings(), paper()}, {1, {}});
+      for (const scene::Stage& s : prepared->stages())
+        if (s.name == "multiple scattering") return std::pair(s.kept, s.kept ? std::string() : s.reason);
+      return std::pair(false, std::string("no such stage"));
+    };
+    CAPTURE(sigma_t);
+    CHECK(again(device).first == (sigma_t > 1.7e-4));
+    CHECK(again(device) == again(cpu));
+  }
+}
+
 TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper]") {
   if (!gpu::test::device()) return;
   const auto grey = scene_of(cloud(70), 6, 0.8, scene::make_constant_environment(Rgb::Ones()));

@@ -4,6 +4,7 @@
 
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "methods/compensated_ray_marching/gaussian_row.h"
+#include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "tests/pictures.h"
 
@@ -108,6 +109,51 @@ TEST_CASE("compensated march: albedo 0, no light, thin and black smoke", "[compe
     CHECK(thick.layer("transmittance")[middle] == 0);
     for (const float v : thick.layer("mean")) REQUIRE((v >= 0 && v < (given.empty() ? 1.5 : 1e3)));
   }
+}
+
+TEST_CASE("compensated march: paper leaves out what is less than the tolerance, and a residual of nothing",
+          "[compensated_ray_marching]") {
+  const auto stage = [](const std::shared_ptr<scene::Scene>& scene, const char* name) {
+    for (const scene::Stage& s : method.prepare(scene, {method.settings(), paper}, {1, {}})->stages())
+      if (s.name == name) return s;
+    FAIL("no stage " << name);
+    return scene::Stage{};
+  };
+  // Columns along the axes of puffs(): sqrt(pi) (0.4 + 0.25 0.7 + 0.3 0.9) = 1.498; 2e-4 is the tolerance.
+  const auto kept = [&](double sigma_t, double albedo) {
+    const auto scene = in_white(puffs(), sigma_t, albedo);
+    const scene::Stage s = stage(scene, "multiple scattering");
+    CHECK((render(method, scene, paper).counters.at("iterations") > 0) == s.kept);
+    CHECK_THAT(s.reason, Contains(s.kept ? "iterations, residual" : "of the light is scattered again"));
+    return s.kept;
+  };
+  CHECK_FALSE(kept(1e-6, 0.8));
+  CHECK_FALSE(kept(1.6e-4, 0.8));
+  CHECK(kept(1.8e-4, 0.8));
+  CHECK_FALSE(kept(30, 1.9e-4));
+  CHECK(kept(30, 2.1e-4));
+
+  scene::VoxelGrid grid;
+  grid.size = {8, 8, 8};
+  grid.voxel_size = 0.2;
+  grid.translation = Vec3::Constant(-0.7);
+  auto fitted = std::make_shared<scene::Fitted>();
+  fitted->gaussians = puffs();
+  grid.values = scene::decoded(grid, puffs(), {}).values;
+  scene::QuantisationOptions one;
+  one.step = 1;
+  fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(grid, puffs(), one));
+  fitted->grid = scene::decoded(puffs(), *fitted->residual);
+  const auto of_fit = in_white(puffs(), 2);
+  of_fit->media[0].field = scene::FittedPointer(fitted);
+  finish(*of_fit);
+  CHECK_FALSE(stage(of_fit, "residual").kept);
+  CHECK(picture(method, of_fit, paper).layer("mean") == picture(method, in_white(puffs(), 2), paper).layer("mean"));
+  for (float& v : grid.values) v += 2;
+  fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(grid, puffs(), one));
+  fitted->grid = scene::decoded(puffs(), *fitted->residual);
+  finish(*of_fit);
+  CHECK(stage(of_fit, "residual").kept);
 }
 
 TEST_CASE("compensated march: no Gaussian, one, two at one place, one without weight, the eye within",
