@@ -3,13 +3,11 @@
 #pragma once
 #include <optional>
 
+#include "methods/compensated_ray_marching/environment_bands.h"
 #include "methods/compensated_ray_marching/options.h"
 #include "scene/renderer.h"
 
 namespace airlight::compensated_ray_marching {
-
-// Environments together, as harmonics of lookup directions.
-SourceLight environments(const std::vector<scene::Light>&, int order);
 
 class CentreSources {
  public:
@@ -42,6 +40,7 @@ class CentreSources {
   const scene::GaussianSum& sum_;
   const scene::Medium& medium_;
   Options options_;
+  EnvironmentBands bands_;
   std::vector<scene::Sphere> objects_;
   std::vector<int> surface_of_;             // of each object
   std::optional<SourceRadiance> radiance_;  // of the light now

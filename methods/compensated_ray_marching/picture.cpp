@@ -80,7 +80,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
     if (extinguishes(medium) && !smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   scene::Stopwatch watch;
   if (!paper()) {
-    incoming_.emplace(scene_->lights, options_.grid.levels);
+    incoming_.emplace(scene_->lights, EnvironmentBands(options_.grid.levels));
     times_.push_back({"environment", watch.lap()});
   }
   static const scene::GaussianSum no_smoke;
