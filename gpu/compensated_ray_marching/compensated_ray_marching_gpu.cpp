@@ -93,6 +93,8 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
       settings_(std::move(settings)),
       context_(Context::get()),
       frame_(context_) {
+  using compensated_ray_marching::ResidualStore;
+  if (options_.paper.store == ResidualStore::automatic) options_.paper.store = ResidualStore::bricks;
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !compensated_ray_marching::smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   const Use use(context_);
@@ -211,7 +213,7 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
           {"multiple scattering", multiple, again},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
-           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
            : smoke_->gaussians()     ? "the Gaussians are all"
                                      : "the field itself is marched through"},
           {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},

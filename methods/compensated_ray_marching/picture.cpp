@@ -154,7 +154,7 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
           {"multiple scattering", multiple(), !smoke_ ? none : again},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
-           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
            : smoke_->gaussians()     ? "the Gaussians are all"
                                      : "the field itself is marched through"},
           {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},

@@ -64,10 +64,10 @@ scene::View along(const Ray& ray) {
 
 class MarchOnDevice {
  public:
-  MarchOnDevice(gpu::Context& context, const json& in)
+  MarchOnDevice(gpu::Context& context, const json& in, ResidualStore store)
       : context_(context),
         medium_(medium_of(in)),
-        options_(of_paper()),
+        options_(of_paper(store)),
         field_(medium_, options_),
         density_(context, field_, middle_, true),
         tables_(context, number(in.at("order")), Transmittance::series, 3, false),
@@ -135,7 +135,8 @@ class MarchOnDevice {
       smoke.source.emplace_back();
       for (const json& c : list) smoke.source.back().push_back(Rgb::Constant(number(c)));
     }
-    if (const scene::Residual* residual = field_.residual()) {
+    if (fitted) {
+      const auto& residual = (*fitted)->residual;
       auto grid = std::make_shared<scene::VoxelGrid>(residual->layout);
       for (const std::int8_t level : levels_of(residual->bricks)) grid->values.push_back(float(residual->step * level));
       smoke.residual = grid;
@@ -143,12 +144,13 @@ class MarchOnDevice {
     return CompensatedMarch(smoke);
   }
   // Density that a residual in levels is off by, at most.
-  double rounded() const { return field_.residual() ? 0.5 * field_.residual()->step : 0; }
+  double rounded() const { return field_.residual() ? 0.5 * field_.residual()->step() : 0; }
 
  private:
-  static Options of_paper() {
+  static Options of_paper(ResidualStore store) {
     Options options;
     options.variant = Options::Variant::paper;
+    options.paper.store = store;
     return options;
   }
 
@@ -174,7 +176,7 @@ TEST_CASE("slices through Gaussians on the device add up to the oracle's, with a
   int vectors = 0;
   for (const json& v : vectors_of("compensated_ray_marching", "march_compensated")) {
     const json &in = v.at("input"), &expected = v.at("expected");
-    MarchOnDevice march(*context, in);
+    MarchOnDevice march(*context, in, ResidualStore::bricks), by_hash(*context, in, ResidualStore::hash);
     const double thickness = number(in.at("slice_thickness")), background = number(in.at("background"));
     const int count = in.at("slices");
     const CompensatedMarch processor = march.on_processor(in);
@@ -197,6 +199,9 @@ TEST_CASE("slices through Gaussians on the device add up to the oracle's, with a
       for (const SliceWeight weight : {SliceWeight::printed, SliceWeight::paper, SliceWeight::exact}) {
         const MarchOnDevice::Marched here = march(ray, thickness, count, weight);
         const Marched there = processor.slices(ray, slices, weight);
+        const MarchOnDevice::Marched again = by_hash(ray, thickness, count, weight);
+        CHECK(again.radiance == here.radiance);
+        CHECK(again.transmittance == here.transmittance);
         CHECK(std::abs(here.radiance - there.radiance[0]) <=
               1e-5 * there.radiance[0] + 2 * gpu::test::injected_error());
         CHECK(std::abs(here.transmittance - there.transmittance[0]) <=

@@ -203,9 +203,17 @@ TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][
     fitted->gaussians = puffs();
     fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(*grid, fitted->gaussians, {0, {}}));
     fitted->grid = *grid;
-    for (const char* residual : {"true", "false"}) {
-      CAPTURE(clamped, residual);
-      compare(scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven()), paper({{"residual", residual}}));
+    const auto scene = scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven());
+    compare(scene, paper({{"residual", "false"}}));
+    // All stores have the same levels; the processor's grid rounds them to floats.
+    const scene::Film grid = picture(cpu, scene, paper()), bricks = picture(device, scene, paper());
+    compare(grid, bricks);
+    for (const char* store : {"bricks", "hash"}) {
+      CAPTURE(clamped, store);
+      const Given given = paper({{"residual_store", store}});
+      compare(picture(cpu, scene, given), grid, 1e-6);
+      const scene::Film film = picture(device, scene, given);
+      for (const auto& [layer, values] : bricks.layers) CHECK(film.layer(layer) == values);
     }
   }
 }
@@ -321,6 +329,7 @@ TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ra
   CHECK(reason({}).empty());
   CHECK_THAT(reason({{"transmittance", "directional"}}), Contains("transmittance = directional"));
   CHECK_THAT(reason({{"solver", "lsqr"}}), Contains("solver = lsqr"));
+  CHECK_THAT(reason({{"residual_store", "grid"}}), Contains("residual_store = grid"));
 }
 
 TEST_CASE("paper on the device: solved to the end, and stopped where rounding steers",
