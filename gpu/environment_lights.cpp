@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/error.h"
+
 namespace airlight::gpu {
 namespace {
 
@@ -48,9 +50,16 @@ bool EnvironmentLights::become(const scene::Scene& scene) {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     lights_[i].scale = others[i]->scale;
     lights_[i].to_map = others[i]->to_map;
+    lights_[i].from = others[i]->map;
     if (lights_[i].kind == harmonics) lights_[i].values->upload(coefficients(others[i]->sh));
   }
   return true;
+}
+
+const Buffer& EnvironmentLights::texels(const std::shared_ptr<const scene::EnvironmentMap>& map) const {
+  for (const Light& l : lights_)
+    if (l.from == map) return *l.values;
+  throw Error("a map of no environment");
 }
 
 std::map<std::string, std::string> EnvironmentLights::definitions(int light) const {

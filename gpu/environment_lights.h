@@ -19,6 +19,8 @@ class EnvironmentLights {
   // Other turns, brightness and coefficients; false, and nothing is done: other maps, or lights of another kind.
   bool become(const scene::Scene&);
 
+  // Of one of the lights' maps: rgb of the texels.
+  const Buffer& texels(const std::shared_ptr<const scene::EnvironmentMap>&) const;
   int count() const { return int(lights_.size()); }
   // KIND and SH_ORDER, which a program that includes environment.glsl needs for one of them.
   std::map<std::string, std::string> definitions(int light) const;

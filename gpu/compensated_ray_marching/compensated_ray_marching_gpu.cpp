@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gpu/compensated_ray_marching/centre_sources_on_device.h"
+#include "gpu/compensated_ray_marching/map_projection.h"
 #include "gpu/compensated_ray_marching/smoke_density.h"
 #include "gpu/compensated_ray_marching/smoke_source.h"
 #include "gpu/compensated_ray_marching/surroundings.h"
 #include "gpu/view_uniforms.h"
-#include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/single_precision.h"
 #include "scene/stopwatch.h"
@@ -18,6 +19,7 @@ namespace airlight::gpu {
 namespace {
 
 using namespace smoke;
+using compensated_ray_marching::EnvironmentBands;
 using compensated_ray_marching::IncomingLight;
 using compensated_ray_marching::LitGrid;
 using compensated_ray_marching::Options;
@@ -40,6 +42,7 @@ class PreparedSmokeGpu final : public scene::Prepared {
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
+  void begin_environments();
   void begin_grid(StageTimer&, const Execution&);
   void begin_centres(StageTimer&);
   std::vector<scene::StageTime> light(const Execution&);
@@ -55,7 +58,9 @@ class PreparedSmokeGpu final : public scene::Prepared {
   Options options_;
   std::string settings_;
   std::optional<SmokeField> smoke_;  // nothing where no medium extinguishes
-  std::optional<IncomingLight> incoming_;
+  std::unique_ptr<MapProjection> projection_;
+  std::optional<IncomingLight> incoming_;  // of grid
+  std::optional<EnvironmentBands> bands_;  // of paper
   std::optional<LitGrid> grid_;
   Point3 middle_ = Point3::Zero();  // of the smoke
   double slice_ = 0;                // [m] across
@@ -69,8 +74,15 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
+// The same name again adds up.
 void append(std::vector<scene::StageTime>& times, const std::vector<scene::StageTime>& more) {
-  times.insert(times.end(), more.begin(), more.end());
+  for (const scene::StageTime& time : more) {
+    const auto same = std::find_if(times.begin(), times.end(), [&](const auto& t) { return t.name == time.name; });
+    if (same == times.end())
+      times.push_back(time);
+    else
+      same->seconds += time.seconds;
+  }
 }
 
 PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Options& options, std::string settings,
@@ -81,21 +93,22 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
       settings_(std::move(settings)),
       context_(Context::get()),
       frame_(context_) {
+  using compensated_ray_marching::ResidualStore;
+  if (options_.paper.store == ResidualStore::automatic) options_.paper.store = ResidualStore::bricks;
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !compensated_ray_marching::smoke_box(medium).empty()) smoke_.emplace(medium, options_);
-  scene::Stopwatch watch;
-  if (!paper()) {
-    incoming_.emplace(scene_->lights, options_.grid.levels);
-    times_.push_back({"environment", watch.lap()});
-    if (smoke_) {
-      grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
-      append(times_, grid_->times());
-    }
-  }
   const Use use(context_);
   StageTimer timer(context_);
   timer.begin("upload");
   surroundings_ = std::make_unique<Surroundings>(context_, *scene_);
+  append(times_, timer.times());
+  begin_environments();
+  if (!paper() && smoke_) {
+    grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
+    append(times_, grid_->times());
+  }
+  timer.restart();
+  timer.begin("upload");
   composition_ = &program(context_, "smoke_composition", 64, 1, {});
   if (smoke_) {
     const Box box = compensated_ray_marching::smoke_box(smoke_->medium());
@@ -108,6 +121,21 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
   paper() ? begin_centres(timer) : begin_grid(timer, execution);
   append(times_, timer.times());
   if (paper()) append(times_, light(execution));
+}
+
+void PreparedSmokeGpu::begin_environments() {
+  const int order = paper() ? options_.order : options_.grid.levels;
+  EnvironmentBands bands(order, [this, order](const std::shared_ptr<const scene::EnvironmentMap>& map) {
+    if (!projection_) projection_ = std::make_unique<MapProjection>(context_, order);
+    return projection_->of(*map, surroundings_->environments().texels(map));
+  });
+  if (paper()) {
+    bands_.emplace(std::move(bands));
+    return;
+  }
+  scene::Stopwatch watch;
+  incoming_.emplace(scene_->lights, std::move(bands));
+  times_.push_back({"environment", watch.lap()});
 }
 
 void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution) {
@@ -143,7 +171,7 @@ std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution
   StageTimer timer(context_);
   scene::Stopwatch watch;
   if (centres_) {
-    const auto light = compensated_ray_marching::environments(scene_->lights, options_.order).harmonics;
+    const auto light = bands_->of(scene_->lights);
     times.push_back({"environment", watch.lap()});
     timer.restart();
     centres_->light(light, timer, execution);
@@ -184,7 +212,7 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
           {"multiple scattering", multiple, again},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
-           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
            : smoke_->gaussians()     ? "the Gaussians are all"
                                      : "the field itself is marched through"},
           {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},

@@ -56,8 +56,22 @@ void find_depth(dvec3 x) {
   sum_rows(DEPTH);
 }
 
-// Past all spheres but that of a surface (-1: past all): log_visibility of sphere_shadow.h. The angle is found from its sine, among those
-// of the table.
+// Where the table of shadows has the angle of which this is the sine: found among those of its samples.
+double place_of_shadow(double sine) {
+  int low = 0, high = SHADOW_LAST;
+  while (high - low > 1) {
+    int middle_ = (low + high) / 2;
+    if (tables[SINES_AT + middle_] <= sine)
+      low = middle_;
+    else
+      high = middle_;
+  }
+  // sin(angle - that of the sample), at most 1/160: three terms of the arc sine leave 1e-17.
+  double more = sine * tables[COSINES_AT + low] - sqrt(max(1 - sine * sine, 0.0LF)) * tables[SINES_AT + low], two = more * more;
+  return double(low) + more * (1 + two * (1 / 6.0LF + two * 0.075LF)) * SHADOWS_PER_ANGLE;
+}
+
+// Past all spheres but that of a surface (-1: past all): log_visibility of sphere_shadow.h.
 void find_hidden(dvec3 x, int surface) {
   if (lane == 0) within_sphere = 0;
   clear_rows();
@@ -69,17 +83,7 @@ void find_hidden(dvec3 x, int surface) {
     if (far <= radius) within_sphere = 1;
     double sine = radius / far;
     if (far <= radius || sine < LEAST_SINE) continue;
-    int low = 0, high = SHADOW_LAST;
-    while (high - low > 1) {
-      int middle_ = (low + high) / 2;
-      if (tables[SINES_AT + middle_] <= sine)
-        low = middle_;
-      else
-        high = middle_;
-    }
-    // sin(angle - that of the sample), at most 1/160: three terms of the arc sine leave 1e-17.
-    double more = sine * tables[COSINES_AT + low] - sqrt(max(1 - sine * sine, 0.0LF)) * tables[SINES_AT + low], two = more * more;
-    double place = double(low) + more * (1 + two * (1 / 6.0LF + two * 0.075LF)) * SHADOWS_PER_ANGLE;
+    double place = place_of_shadow(sine);
     for (int l = 0; l < SH_ORDER; ++l) band[l] = between(SHADOW_AT + l, SH_ORDER, SHADOW_LAST, place);
     add_about(offset / far, 1);
   }

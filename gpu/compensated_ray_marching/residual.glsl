@@ -1,6 +1,6 @@
 // Levels of a residual on the device: scene/convert/residual_bricks.h and perfect_hash.h, decoded; residual_on_device.h is the host's side.
 //   int residual_level(ivec3 sample)     the level of a sample, 0 outside; bit for bit the processor's
-//   float residual_between(vec3 sample)  trilinear between levels, 0 beyond one voxel outside [levels]
+//   float residual_between(vec3 sample)  trilinear between levels, 0 beyond one voxel outside [levels]; the same of all kinds
 // A hash takes two dependent reads for a level, sixteen for what lies between; bricks take two and five.
 #if RESIDUAL_KIND == RESIDUAL_BRICKS
 layout(std430, binding = AT_RESIDUAL_INDEX) readonly buffer ResidualIndex { uint residual_index[]; };
@@ -41,12 +41,10 @@ int residual_level(ivec3 p) {
 }
 
 float residual_between(vec3 p) {
-  vec3 x = p + 1;
-  if (!all(greaterThanEqual(x, vec3(0))) || !all(lessThan(x, vec3(residual_size + 1)))) return 0;
-  ivec3 cell = ivec3(x);
-  int at = residual_cell(cell);
+  if (!all(greaterThanEqual(p, vec3(-1))) || !all(lessThan(p, vec3(residual_size)))) return 0;
+  vec3 before = floor(p), f = p - before;
+  int at = residual_cell(ivec3(before) + 1);
   if (at < 0) return 0;
-  vec3 f = x - vec3(cell);
   const int up = residual_side, back = residual_side * residual_side;
   vec4 low = vec4(residual_in_brick(at), residual_in_brick(at + up), residual_in_brick(at + back),
                   residual_in_brick(at + back + up));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/convert/residual.h"
 #include "scene/media/voxel.h"
 
 namespace airlight::gpu::smoke {
@@ -19,19 +18,6 @@ constexpr int slices_of_density = 32, slices_of_sources = 16;  // that an invoca
 struct GaussianData {
   float center[3], width, amplitude, unused[3] = {0, 0, 0};
 };
-
-// One sample more on every side, as far as a border is clamped at all; 0 beyond.
-scene::ResidualLevels with_border(const scene::VoxelGrid& layout, const std::vector<std::int8_t>& levels) {
-  const Eigen::Vector3i size = layout.size, padded = size + Eigen::Vector3i::Constant(2);
-  scene::ResidualLevels all{padded, 0, std::vector<std::int8_t>(std::size_t(padded.prod()), 0)};
-  for (int i = 0; i < padded.prod(); ++i) {
-    const Eigen::Vector3i there(i % padded[0] - 1, i / padded[0] % padded[1] - 1, i / padded[0] / padded[1] - 1);
-    const Eigen::Vector3i within = there.cwiseMax(0).cwiseMin(size - Eigen::Vector3i::Ones());
-    if (layout.clamp_border || there == within)
-      all.values[std::size_t(i)] = levels[std::size_t(within[0] + size[0] * (within[1] + size[1] * within[2]))];
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -54,14 +40,17 @@ SmokeDensity::SmokeDensity(Context& context, const SmokeField& smoke, const Poin
     farthest_ = std::pow(std::min(nothing_beyond, sum->cutoff), 2);
     values_ = std::make_unique<Buffer>(context, "gaussians of the smoke", data);
     if (!smoke.residual()) return;
-    const scene::Residual& residual = *smoke.residual();
-    const scene::ResidualLevels levels = with_border(residual.layout, levels_of(residual.bricks));
-    residual_ = std::make_unique<compensated::ResidualOnDevice>(context, levels.size,
-                                                                scene::apron_bricks_of(levels.size, levels.values));
-    step_ = residual.step;
+    const compensated_ray_marching::StoredResidual& residual = *smoke.residual();
+    using compensated::ResidualOnDevice;
+    if (const scene::PerfectHash* hash = residual.hash())
+      residual_ =
+          std::make_unique<ResidualOnDevice>(context, residual.size(), *hash, ResidualOnDevice::Membership::domain);
+    else
+      residual_ = std::make_unique<ResidualOnDevice>(context, residual.size(), *residual.bricks());
+    step_ = residual.step();
     for (const auto& [name, value] : residual_->definitions()) definitions_[name] = value;
     definitions_["RESIDUAL"] = "1";
-    set_samples(residual.layout, middle);
+    set_samples(residual.layout(), middle);
     return;
   }
   const scene::VoxelGrid& grid = *grid_of(smoke.medium().field);
@@ -109,6 +98,8 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
     reasons.push_back("transmittance = directional; shaders know ol, hyb, series");
   if (paper && (solver == LeastSquaresSolver::lsqr || solver == LeastSquaresSolver::lsqr_scaled))
     reasons.push_back("solver = lsqr; shaders know conjugate gradients");
+  if (paper && options.paper.store == compensated_ray_marching::ResidualStore::grid)
+    reasons.push_back("residual_store = grid; shaders know bricks and hash");
   if (!paper && options.grid.multiple == Options::Grid::Multiple::p1)
     reasons.push_back("multiple = p1; shaders know ordinates");
   for (std::size_t i = 0; i < scene.media.size(); ++i) {

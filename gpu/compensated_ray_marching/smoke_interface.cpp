@@ -51,7 +51,12 @@ const std::vector<Binding> bindings = {{"COLUMNS", at::columns},
                                        {"MATRIX", at::matrix},
                                        {"ROW_SCALES", at::row_scales},
                                        {"VECTORS", at::vectors},
-                                       {"SYSTEMS", at::systems}};
+                                       {"SYSTEMS", at::systems},
+                                       {"MAP_TEXELS", at::map_texels},
+                                       {"CIRCLE", at::circle},
+                                       {"FOURIER", at::fourier},
+                                       {"ROW_WEIGHTS", at::row_weights},
+                                       {"PROJECTED", at::projected}};
 
 }  // namespace
 

@@ -59,6 +59,12 @@ enum Binding {
   row_scales = 7,
   vectors = 0,
   systems = 1,
+  // maps of environments
+  map_texels = 0,
+  circle = 1,
+  fourier = 2,
+  row_weights = 3,
+  projected = 4,
 };
 }  // namespace at
 

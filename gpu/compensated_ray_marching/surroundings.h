@@ -20,6 +20,7 @@ class Surroundings {
   // Surfaces are lit from the directions that smoke is lit from, one after the other; where they are not, light_surfaces is not called.
   void set_lamps(const scene::Scene&, const compensated_ray_marching::IncomingLight&);
 
+  const EnvironmentLights& environments() const { return *environments_; }
   const FirstHits* surfaces() const { return first_hits_.get(); }  // null: there are none
   bool backdrops() const { return bool(backdrops_); }
   bool ends() const { return first_hits_ || backdrops_; }

@@ -12,16 +12,6 @@
 
 namespace airlight::compensated_ray_marching {
 
-SourceLight environments(const std::vector<scene::Light>& lights, int order) {
-  SourceLight all{std::vector<Rgb>(std::size_t(order) * std::size_t(order), Rgb::Zero()), {}};
-  for (const scene::Light& light : lights) {
-    const std::vector<Rgb> one = project_environment(std::get<scene::EnvironmentLight>(light), order);
-    for (std::size_t i = 0; i < one.size(); ++i) all.harmonics[i] += one[i];
-  }
-  all.radiance = [harmonics = all.harmonics](const Vec3& w) { return scene::evaluate_sh(harmonics, w); };
-  return all;
-}
-
 std::string single_only(const scene::GaussianSum& sum, const scene::Medium& medium, const Options& options) {
   if (options.paper.multiple == Options::Paper::Multiple::none) return "not asked for";
   double column = 0;  // [m]
@@ -36,6 +26,7 @@ CentreSources::CentreSources(const scene::GaussianSum& sum, const scene::Medium&
     : sum_(sum),
       medium_(medium),
       options_(options),
+      bands_(options.order),
       single_only_(compensated_ray_marching::single_only(sum, medium, options)) {
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape)) {
@@ -51,9 +42,10 @@ Rgb CentreSources::irradiance(const Point3& x, const Vec3& normal, int surface) 
 void CentreSources::light(const std::vector<scene::Light>& lights, const scene::Execution& execution) {
   scene::Stopwatch watch;
   times_.clear();
+  SourceLight light{bands_.of(lights), {}};
+  light.radiance = [harmonics = light.harmonics](const Vec3& w) { return scene::evaluate_sh(harmonics, w); };
   radiance_.emplace(sum_, medium_.sigma_t, medium_.albedo, phase_moments(medium_.phase, options_.order),
-                    environments(lights, options_.order), options_.paper.transmittance,
-                    ordinate_directions(8, 16, false), objects_);
+                    std::move(light), options_.paper.transmittance, ordinate_directions(8, 16, false), objects_);
   sources_.resize(sum_.gaussians.size());
   times_.push_back({"environment", watch.lap()});
   scene::parallel_rows(int(sources_.size()), execution,

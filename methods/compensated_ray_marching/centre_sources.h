@@ -3,13 +3,11 @@
 #pragma once
 #include <optional>
 
+#include "methods/compensated_ray_marching/environment_bands.h"
 #include "methods/compensated_ray_marching/options.h"
 #include "scene/renderer.h"
 
 namespace airlight::compensated_ray_marching {
-
-// Environments together, as harmonics of lookup directions.
-SourceLight environments(const std::vector<scene::Light>&, int order);
 
 // Why multiple scattering at the centres is left out; empty where it is not. What is scattered again is no more than the albedo times what
 // is lost on a way along the axes of all Gaussians, one after another: below the tolerance it is not looked for.
@@ -47,6 +45,7 @@ class CentreSources {
   const scene::GaussianSum& sum_;
   const scene::Medium& medium_;
   Options options_;
+  EnvironmentBands bands_;
   std::string single_only_;
   std::vector<scene::Sphere> objects_;
   std::vector<int> surface_of_;             // of each object

@@ -1,29 +1,15 @@
 #include "methods/compensated_ray_marching/incoming_light.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {
-namespace {
 
-bool same(const scene::EnvironmentMap& a, const scene::EnvironmentMap& b) {
-  return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
-}
-
-}  // namespace
-
-IncomingLight::IncomingLight(const std::vector<scene::Light>& lights, int levels)
-    : levels_(levels), fixed_(ordinate_directions(levels, 2 * levels, false)) {
+IncomingLight::IncomingLight(const std::vector<scene::Light>& lights, EnvironmentBands bands)
+    : bands_(std::move(bands)), fixed_(ordinate_directions(bands_.order(), 2 * bands_.order(), false)) {
   become(lights);
-}
-
-const std::vector<Rgb>& IncomingLight::projected(const std::shared_ptr<const scene::EnvironmentMap>& map) {
-  for (const Projected& p : known_)
-    if (p.map == map || same(*p.map, *map)) return p.harmonics;
-  const scene::EnvironmentLight upright = make_map_environment(map, Mat3::Identity(), Rgb::Ones(), "");
-  known_.push_back({map, project_environment(upright, levels_)});
-  return known_.back().harmonics;
 }
 
 void IncomingLight::become(const std::vector<scene::Light>& lights) {
@@ -38,10 +24,10 @@ void IncomingLight::become(const std::vector<scene::Light>& lights) {
     } else if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
       std::vector<Rgb> harmonics;
       if (environment->map) {
-        harmonics = projected(environment->map);
+        harmonics = bands_.upright(environment->map);
       } else if (!environment->sh.empty()) {
         harmonics = environment->sh;
-        harmonics.resize(std::min(harmonics.size(), std::size_t(levels_) * std::size_t(levels_)));
+        harmonics.resize(std::min(harmonics.size(), std::size_t(bands_.order() * bands_.order())));
       }
       for (std::size_t k = 0; k < fixed_.size(); ++k) {
         const Rgb radiance =

@@ -1,10 +1,9 @@
 // The directions that light is gathered from, and what comes from each of them without the smoke.
 #pragma once
-#include <memory>
 #include <vector>
 
+#include "methods/compensated_ray_marching/environment_bands.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
-#include "scene/light.h"
 
 namespace airlight::compensated_ray_marching {
 
@@ -12,8 +11,9 @@ namespace airlight::compensated_ray_marching {
 // products with as many bands of what the smoke leaves of them. Directional lights follow, each a direction of its own.
 class IncomingLight {
  public:
-  IncomingLight(const std::vector<scene::Light>&, int levels);
-  // Other lights. What costs, a map's projection, is kept where the map is the same, however it is turned.
+  // With as many levels as the bands have order.
+  IncomingLight(const std::vector<scene::Light>&, EnvironmentBands);
+  // Other lights.
   void become(const std::vector<scene::Light>&);
 
   const std::vector<Vec3>& directions() const { return directions_; }  // towards the light, unit
@@ -23,15 +23,8 @@ class IncomingLight {
   bool grey() const;  // the same in all channels
 
  private:
-  struct Projected {
-    std::shared_ptr<const scene::EnvironmentMap> map;
-    std::vector<Rgb> harmonics;  // of the map's own directions
-  };
-  const std::vector<Rgb>& projected(const std::shared_ptr<const scene::EnvironmentMap>&);
-
-  int levels_;
+  EnvironmentBands bands_;
   std::vector<Ordinate> fixed_;
-  std::vector<Projected> known_;
   std::vector<Vec3> directions_;
   std::vector<Rgb> power_;
 };

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "scene/convert/residual.h"
-
 namespace airlight::compensated_ray_marching {
 namespace {
 
@@ -20,13 +18,9 @@ SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : gi
     own_->field = (*fitted)->gaussians;
     own_->region = scene::Unbounded{};
     if (options.residual && (*fitted)->residual) {
-      const scene::Residual& r = *(*fitted)->residual;
-      const std::vector<std::int8_t> levels = levels_of(r.bricks);
-      if (std::any_of(levels.begin(), levels.end(), [](std::int8_t level) { return level != 0; })) {
-        levels_ = (*fitted)->residual;
-        residual_ = r.layout;
-        for (const std::int8_t level : levels) residual_->values.push_back(float(r.step * level));
-      }
+      const std::vector<std::int8_t> levels = levels_of((*fitted)->residual->bricks);
+      if (std::any_of(levels.begin(), levels.end(), [](std::int8_t level) { return level != 0; }))
+        residual_.emplace(*(*fitted)->residual, options.paper.store);
     }
   }
   const auto empty = [](const scene::Gaussian& g) { return g.amplitude == 0; };
@@ -49,7 +43,7 @@ Interval SmokeField::extent(const Ray& ray, Interval t) const { return scene::ex
 double SmokeField::density(const Point3& x, double of_gaussians) const {
   if (!gaussians_) return scene::density(medium(), x);
   if (!residual_) return std::max(0.0, of_gaussians);
-  return of_gaussians < least_density_ ? 0 : std::max(0.0, of_gaussians + scene::density(*residual_, x));
+  return of_gaussians < least_density_ ? 0 : std::max(0.0, of_gaussians + residual_->at(x));
 }
 
 }  // namespace airlight::compensated_ray_marching

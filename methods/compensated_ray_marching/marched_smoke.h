@@ -1,6 +1,5 @@
 // The medium of a scene as it is marched through.
 #pragma once
-#include <memory>
 #include <optional>
 
 #include "methods/compensated_ray_marching/gaussian_row.h"
@@ -23,7 +22,7 @@ class SmokeField {
   double least_density() const { return least_density_; }
   bool with_residual() const { return residual_.has_value(); }
   // Of fitted smoke, where it is added to the Gaussians; null: it is not.
-  const scene::Residual* residual() const { return levels_.get(); }
+  const StoredResidual* residual() const { return residual_ ? &*residual_ : nullptr; }
 
   // Where it is along a ray.
   Interval extent(const Ray&, Interval) const;
@@ -35,8 +34,7 @@ class SmokeField {
   std::optional<scene::Medium> own_;
   const scene::GaussianSum* gaussians_ = nullptr;
   double least_density_ = 0;
-  std::shared_ptr<const scene::Residual> levels_;
-  std::optional<scene::VoxelGrid> residual_;  // of the levels
+  std::optional<StoredResidual> residual_;
 };
 
 }  // namespace airlight::compensated_ray_marching

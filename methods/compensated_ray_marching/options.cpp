@@ -63,6 +63,9 @@ std::vector<scene::SettingSpec> option_settings() {
                      "how much of a slice's light is seen: depth without the slope of the ray, depth, 1 - exp(-depth); "
                      "auto is exact, paper"),
       flag_setting("residual", true, "with what the Gaussians leave of fitted smoke; false: the Gaussians alone"),
+      choice_setting("residual_store", "auto", {"auto", "grid", "bricks", "hash"},
+                     "of paper, where it is looked up: a float a sample, bricks of 8 bits, a perfect hash of 8 bits; "
+                     "auto is grid, on a device, which has no grid, bricks"),
       real_setting("tolerance", "2e-4", 1e-12, 1, "of multiple scattering, relative"),
       integer_setting("iterations", "200", 1, 100000, "of multiple scattering, at most"),
       integer_setting("levels", "8", 2, 32,
@@ -109,6 +112,7 @@ Options read_options(const scene::Settings& settings) {
   o.grid.ordinate_levels = levels > 0 ? int(levels) : std::max(2, (o.order + 1) / 2);
   o.grid.azimuths = azimuths > 0 ? int(azimuths) : std::max(8, 2 * o.order);
   o.paper.transmittance = settings.choice<Transmittance>("transmittance");
+  o.paper.store = settings.choice<ResidualStore>("residual_store");
   o.paper.solver = settings.choice<LeastSquaresSolver>("solver");
   const bool of_grid = multiple == "ordinates" || multiple == "p1",
              of_paper = multiple == "as_printed" || multiple == "corrected";

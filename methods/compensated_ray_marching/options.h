@@ -2,6 +2,7 @@
 #pragma once
 #include "methods/compensated_ray_marching/compensated_march.h"
 #include "methods/compensated_ray_marching/diffusion_system.h"
+#include "methods/compensated_ray_marching/residual_store.h"
 #include "methods/compensated_ray_marching/source_radiance.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
@@ -29,6 +30,7 @@ struct Options {
     enum class Multiple { as_printed, corrected, none } multiple = Multiple::as_printed;
     Transmittance transmittance = Transmittance::paper_squared;
     LeastSquaresSolver solver = LeastSquaresSolver::cg;
+    ResidualStore store = ResidualStore::automatic;
   } paper;
 };
 

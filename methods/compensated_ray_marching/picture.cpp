@@ -79,7 +79,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
     if (extinguishes(medium) && !smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   scene::Stopwatch watch;
   if (!paper()) {
-    incoming_.emplace(scene_->lights, options_.grid.levels);
+    incoming_.emplace(scene_->lights, EnvironmentBands(options_.grid.levels));
     times_.push_back({"environment", watch.lap()});
   }
   static const scene::GaussianSum no_smoke;
@@ -153,7 +153,7 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
           {"multiple scattering", multiple(), !smoke_ ? none : again},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
-           : smoke_->with_residual() ? "added to the Gaussians"
+           : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
            : smoke_->gaussians()     ? "the Gaussians are all"
                                      : "the field itself is marched through"},
           {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},

@@ -10,6 +10,7 @@
 #include "scene/math/random.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
 using namespace airlight;
@@ -218,9 +219,17 @@ TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][
     fitted->gaussians = puffs();
     fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(*grid, fitted->gaussians, {0, {}}));
     fitted->grid = *grid;
-    for (const char* residual : {"true", "false"}) {
-      CAPTURE(clamped, residual);
-      compare(scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven()), paper({{"residual", residual}}));
+    const auto scene = scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven());
+    compare(scene, paper({{"residual", "false"}}));
+    // All stores have the same levels; the processor's grid rounds them to floats.
+    const scene::Film grid = picture(cpu, scene, paper()), bricks = picture(device, scene, paper());
+    compare(grid, bricks);
+    for (const char* store : {"bricks", "hash"}) {
+      CAPTURE(clamped, store);
+      const Given given = paper({{"residual_store", store}});
+      compare(picture(cpu, scene, given), grid, 1e-6);
+      const scene::Film film = picture(device, scene, given);
+      for (const auto& [layer, values] : bricks.layers) CHECK(film.layer(layer) == values);
     }
   }
 }
@@ -299,6 +308,34 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
   CHECK_FALSE(on_device->next(scene_of(cloud(60), 5, 0.9, uneven()), {1, {}}));
 }
 
+TEST_CASE("paper on the device: a map that turns is projected once, by the device",
+          "[gpu][compensated_ray_marching][paper]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const auto map = rough_map(64, 32), other = rough_map(32, 16, 3);
+  const auto lit_by = [](double turn, const auto& of) { return scene_of(cloud(60), 6, 0.9, rough_sky(turn, of)); };
+  const Given given = paper({{"iterations", "12"}});
+  const auto first = lit_by(0, map);
+  const auto on_cpu = cpu.prepare(first, {cpu.settings(), given}, {1, {}});
+  const auto on_device = device.prepare(first, {device.settings(), given}, {1, {}});
+  on_device->render(view_of(*first), {1, {}});
+  auto before = map;
+  for (const auto& [turn, of] : {std::pair(0.4, map), {2.0, map}, {2.0, other}, {2.5, other}, {1.0, map}}) {
+    const auto scene = lit_by(turn, of);
+    REQUIRE(on_cpu->next(scene, {1, {}}));
+    const gpu::Use use(*context);
+    const gpu::Traffic traffic = context->traffic();
+    REQUIRE(on_device->next(scene, {1, {}}));
+    const gpu::Traffic moved = context->traffic() - traffic;
+    if (of == before) CHECK(moved.bytes_up == 8 * 3 * 16);  // the light in four bands
+    // Beside it the map for what is seen behind the smoke, and the tables of its projection where it was not known.
+    const long texels = 4 * 3 * of->width * of->height, tables = 8 * (4 * of->width + 10 * of->height);
+    if (of != before) CHECK(moved.bytes_up == 8 * 3 * 16 + texels + (of == other ? tables : 0));
+    before = of;
+    compare(on_cpu->render(view_of(*scene), {1, {}}).film, on_device->render(view_of(*scene), {1, {}}).film);
+  }
+}
+
 TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ray_marching][paper]") {
   const auto scene = scene_of(puffs(), 3, 0.8, uneven());
   const auto reason = [&](const Given& given) {
@@ -308,6 +345,7 @@ TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ra
   CHECK(reason({}).empty());
   CHECK_THAT(reason({{"transmittance", "directional"}}), Contains("transmittance = directional"));
   CHECK_THAT(reason({{"solver", "lsqr"}}), Contains("solver = lsqr"));
+  CHECK_THAT(reason({{"residual_store", "grid"}}), Contains("residual_store = grid"));
 }
 
 TEST_CASE("paper on the device: solved to the end, and stopped where rounding steers",

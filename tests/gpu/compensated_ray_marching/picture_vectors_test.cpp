@@ -259,7 +259,7 @@ struct AtNodes {
 
  private:
   AtNodes(const scene::Scene& s, const compensated_ray_marching::Options& options)
-      : AtNodes(s, options, {s.lights, options.grid.levels}) {}
+      : AtNodes(s, options, {s.lights, compensated_ray_marching::EnvironmentBands(options.grid.levels)}) {}
   AtNodes(const scene::Scene& s, const compensated_ray_marching::Options& options,
           const compensated_ray_marching::IncomingLight& light)
       : grid(s, s.media[0], options, light, {1, {}}) {

@@ -8,6 +8,7 @@
 #include "scene/geometry/shapes.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
 using namespace airlight;
@@ -228,6 +229,18 @@ TEST_CASE("compensated march on the device: the next frame's light as if prepare
   REQUIRE(prepared->next(sun, {1, {}}));
   compare(picture(cpu, sun, small), prepared->render(view_of(*sun), {1, {}}).film);
   CHECK_FALSE(prepared->next(scene_of(puffs(), 5, 0.9, uneven()), {1, {}}));
+}
+
+TEST_CASE("compensated march on the device: a map that turns, and another, in the next frame",
+          "[gpu][compensated_ray_marching]") {
+  if (!gpu::test::device()) return;
+  const auto map = rough_map(64, 32);
+  const auto at = [&](double turn) { return scene_of(puffs(), 4, 0.9, rough_sky(turn, map)); };
+  const auto prepared = device.prepare(at(0), {device.settings(), small}, {1, {}});
+  for (const auto& scene : {at(0.4), at(2), scene_of(puffs(), 4, 0.9, rough_sky(2, rough_map(32, 16, 3))), at(0)}) {
+    REQUIRE(prepared->next(scene, {1, {}}));
+    compare(picture(cpu, scene, small), prepared->render(view_of(*scene), {1, {}}).film);
+  }
 }
 
 TEST_CASE("compensated march on the device: black smoke and phase functions at their ends stay finite",

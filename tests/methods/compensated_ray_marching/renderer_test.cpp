@@ -6,6 +6,7 @@
 #include "methods/compensated_ray_marching/gaussian_row.h"
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
+#include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
 using namespace airlight;
@@ -218,6 +219,24 @@ TEST_CASE("compensated march: the next frame's light as if prepared anew", "[com
     REQUIRE(prepared->next(sun, {1, {}}));
     CHECK(greatest_difference(prepared->render(view_of(*sun), {1, {}}).film, picture(method, sun, given), "mean") <
           1e-5);
+  }
+}
+
+TEST_CASE("compensated march: under a map that turns, the next frame's light as if prepared anew",
+          "[compensated_ray_marching]") {
+  const auto map = rough_map(64, 32);
+  const auto at = [&](double turn) { return scene_of(puffs(), 4, 0.9, rough_sky(turn, map)); };
+  for (const Given& given :
+       {Given{{"cells", "8"}, {"tolerance", "1e-6"}}, Given{{"variant", "paper"}, {"multiple", "none"}}}) {
+    const auto before = at(0);
+    const auto prepared = method.prepare(before, {method.settings(), given}, {1, {}});
+    for (const auto& scene : {at(0.4), at(2), scene_of(puffs(), 4, 0.9, rough_sky(2, rough_map(32, 16, 3))), before}) {
+      REQUIRE(prepared->next(scene, {1, {}}));
+      const scene::Film warm = prepared->render(view_of(*scene), {1, {}}).film, cold = picture(method, scene, given);
+      CAPTURE(given);
+      CHECK(relative_l2(warm, cold) < 3e-6);
+      if (scene != before) CHECK(relative_l2(warm, picture(method, before, given)) > 0.01);
+    }
   }
 }
 

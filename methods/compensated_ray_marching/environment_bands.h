@@ -1,0 +1,36 @@
+// Environments in bands of spherical harmonics. What costs, a map's projection, is kept where the map is the same, however it is turned.
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "scene/light.h"
+
+namespace airlight::compensated_ray_marching {
+
+class EnvironmentBands {
+ public:
+  // Of a map as it lies: order^2 coefficients of the map's own directions.
+  using Project = std::function<std::vector<Rgb>(const std::shared_ptr<const scene::EnvironmentMap>&)>;
+  explicit EnvironmentBands(int order);  // by project_environment
+  EnvironmentBands(int order, Project);
+
+  int order() const { return order_; }
+  // Without turn and scale. Until the next call.
+  const std::vector<Rgb>& upright(const std::shared_ptr<const scene::EnvironmentMap>&);
+  // Lights, environments all, together: order^2 coefficients of lookup directions of the world. Bands turn by themselves, so that those of a
+  // turned map are the upright map's, turned.
+  std::vector<Rgb> of(const std::vector<scene::Light>&);
+
+ private:
+  struct Projected {
+    std::shared_ptr<const scene::EnvironmentMap> map;
+    std::vector<Rgb> harmonics;
+  };
+
+  int order_;
+  Project project_;
+  std::vector<Projected> known_;  // the latest
+};
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,36 @@
+// What Gaussians leave of fitted smoke, as it is looked up between samples while rays are marched: Zhou et al. 2008, sections 5.2 and 5.6.
+#pragma once
+#include <variant>
+
+#include "scene/convert/perfect_hash.h"
+#include "scene/convert/residual.h"
+
+namespace airlight::compensated_ray_marching {
+
+// grid: decoded once, a float a sample. bricks: in 8 bits, those that hold something, with an apron. hash: in 8 bits, a perfect hash with
+// domain bits, as published; eight look-ups between samples. automatic: grid on a processor, bricks on a device.
+enum class ResidualStore { automatic, grid, bricks, hash };
+
+// Of either sign, trilinear between samples; 0 beyond the border, within half a voxel of which it is clamped where the grid's is. All stores
+// have the same, a grid to the rounding of floats.
+class StoredResidual {
+ public:
+  StoredResidual(const scene::Residual&, ResidualStore);
+
+  double at(const Point3&) const;  // density
+  // Density of a level, and where the samples lie: without values. Levels of bricks and hash have one sample more on every side: size().
+  double step() const { return step_; }
+  const scene::VoxelGrid& layout() const { return layout_; }
+  Eigen::Vector3i size() const { return layout_.size + Eigen::Vector3i::Constant(2); }
+  // Null: it is stored in another way.
+  const scene::ApronBricks* bricks() const { return std::get_if<scene::ApronBricks>(&store_); }
+  const scene::PerfectHash* hash() const { return std::get_if<scene::PerfectHash>(&store_); }
+  const char* name() const;  // "a grid", ...
+
+ private:
+  scene::VoxelGrid layout_;
+  double step_;
+  std::variant<scene::VoxelGrid, scene::ApronBricks, scene::PerfectHash> store_;
+};
+
+}  // namespace airlight::compensated_ray_marching

@@ -1,0 +1,217 @@
+// The march of `variant = paper` on the device through the oracle's Gaussians, slice by slice of its own: sums with all three weights, and
+// the integral that they tend to. Sources are the oracle's, towards the ray's origin by the shader of the centres.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gpu/compensated_ray_marching/centre_tables.h"
+#include "gpu/compensated_ray_marching/smoke_density.h"
+#include "gpu/view_uniforms.h"
+#include "scene/convert/residual.h"
+#include "scene/media/fitted.h"
+#include "tests/gpu/device.h"
+#include "tests/oracle_vectors.h"
+
+using namespace airlight;
+using namespace airlight::test;
+using namespace airlight::compensated_ray_marching;
+using gpu::Buffer;
+namespace at = gpu::smoke::at;
+
+namespace {
+
+constexpr double parity = 1e-4;  // row 30 of the stress list
+
+// Smoke of a vector; its residual in levels of 8 bits.
+scene::Medium medium_of(const json& in) {
+  scene::GaussianSum sum;
+  sum.cutoff = number(in.at("cut"));
+  for (const json& b : in.at("rbf_x_y_z_r_w")) sum.gaussians.push_back({vec(b), number(b[3]), number(b[4])});
+  scene::Medium medium;
+  medium.sigma_t = Rgb::Constant(number(in.at("sigma_t")));
+  medium.field = sum;
+  if (!in.contains("residual")) return medium;
+  const json& values = in.at("residual").at("values_x_y_z");
+  const int n = int(values.size());
+  scene::Residual residual;
+  residual.layout.size = Eigen::Vector3i::Constant(n);
+  residual.layout.voxel_size = 1.0 / n;
+  residual.layout.translation = Vec3::Constant(0.5 / n);
+  residual.layout.clamp_border = true;
+  std::vector<double> samples;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) samples.push_back(number(values[std::size_t(i)][std::size_t(j)][std::size_t(k)]));
+  const scene::ResidualLevels levels = scene::quantised(residual.layout.size, samples, {});
+  residual.step = levels.step;
+  residual.bricks = scene::bricks_of(levels.size, levels.values);
+  auto fitted = std::make_shared<scene::Fitted>();
+  fitted->gaussians = sum;
+  fitted->residual = std::make_shared<const scene::Residual>(residual);
+  fitted->grid = scene::decoded(residual.layout, sum, levels);
+  medium.field = scene::FittedPointer(fitted);
+  return medium;
+}
+
+scene::View along(const Ray& ray) {
+  const Vec3 up = std::abs(ray.direction.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX();
+  scene::View view{scene::look_at(ray.origin, ray.origin + ray.direction, up), 1, 1};
+  view.camera.kind =
+      scene::Camera::Kind::orthographic;  // which looks at all centres from one direction, as the oracle's rays do
+  view.camera.height = 1;
+  return view;
+}
+
+class MarchOnDevice {
+ public:
+  MarchOnDevice(gpu::Context& context, const json& in, ResidualStore store)
+      : context_(context),
+        medium_(medium_of(in)),
+        options_(of_paper(store)),
+        field_(medium_, options_),
+        density_(context, field_, middle_, true),
+        tables_(context, number(in.at("order")), Transmittance::series, 3, false),
+        axis_(vec(in.at("slice_axis"))) {
+    std::vector<double> centres;
+    for (const json& b : in.at("rbf_x_y_z_r_w"))
+      for (std::size_t k = 0; k < 5; ++k) centres.push_back(number(b[k]));
+    count_ = centres.size() / 5;
+    const std::size_t bands = in.at("source_sh_propagation")[0].size();
+    std::vector<double> single(3 * bands * count_);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t b = 0; b < bands; ++b)
+        for (std::size_t i = 0; i < count_; ++i)
+          single[(c * bands + b) * count_ + i] = number(in.at("source_sh_propagation")[i][b]);
+    centres_ = std::make_unique<Buffer>(context, "centres", centres);
+    single_ = std::make_unique<Buffer>(context, "single", single);
+    again_ = std::make_unique<Buffer>(context, "again", 8 * 3 * 4 * count_);
+    sources_ = std::make_unique<Buffer>(context, "sources", 16 * count_);
+  }
+
+  struct Marched {
+    double radiance, transmittance;
+  };
+  // From the ray's origin on, without what is behind.
+  Marched operator()(const Ray& ray, double thickness, int count, SliceWeight weight) {
+    const scene::View view = along(ray);
+    gpu::Program& towards = gpu::smoke::program(context_, "centre_towards", 64, 1, tables_.definitions());
+    tables_.bind(towards);
+    centres_->bind(at::centres);
+    single_->bind(at::single_bands);
+    again_->bind(at::again);
+    sources_->bind(at::centre_sources);
+    towards.set("gaussian_count", int(count_));
+    towards.set("perspective_", false);
+    towards.set_double("eye", view.camera.position);
+    towards.set_double("forward", view.camera.forward);
+    towards.dispatch(int(count_));
+    const double slope = std::abs(ray.direction.dot(axis_));
+    const Buffer ranges(context_, "ranges",
+                        std::vector<float>{0, float(thickness / slope), float(count), float(slope)}),
+        airlight(context_, "airlight", 12), column(context_, "column", 4);
+    gpu::Program& march = gpu::smoke::program(context_, "march", 8, 8, density_.definitions());
+    ranges.bind(at::ranges);
+    airlight.bind(at::airlight);
+    column.bind(at::column);
+    sources_->bind(at::centre_sources);
+    gpu::set_camera(march, view, middle_);
+    density_.bind(march);
+    density_.bind_residual(march);
+    march.set("least_source_density", field_.least_density());
+    march.set("sigma_t", medium_.sigma_t);
+    march.set("weight", int(weight));
+    for (int first = 0; first < count; first += density_.slices()) {
+      march.set("first_slice", first);
+      march.dispatch(1, 1);
+    }
+    return {airlight.download<float>().at(0), std::exp(-medium_.sigma_t[0] * column.download<float>().at(0))};
+  }
+  // The processor's, of the same levels.
+  CompensatedMarch on_processor(const json& in) const {
+    const auto* fitted = std::get_if<scene::FittedPointer>(&medium_.field);
+    MarchedSmoke smoke{fitted ? (*fitted)->gaussians : std::get<scene::GaussianSum>(medium_.field), {}, {}, {}};
+    smoke.extinction = medium_.sigma_t;
+    for (const json& list : in.at("source_sh_propagation")) {
+      smoke.source.emplace_back();
+      for (const json& c : list) smoke.source.back().push_back(Rgb::Constant(number(c)));
+    }
+    if (fitted) {
+      const auto& residual = (*fitted)->residual;
+      auto grid = std::make_shared<scene::VoxelGrid>(residual->layout);
+      for (const std::int8_t level : levels_of(residual->bricks)) grid->values.push_back(float(residual->step * level));
+      smoke.residual = grid;
+    }
+    return CompensatedMarch(smoke);
+  }
+  // Density that a residual in levels is off by, at most.
+  double rounded() const { return field_.residual() ? 0.5 * field_.residual()->step() : 0; }
+
+ private:
+  static Options of_paper(ResidualStore store) {
+    Options options;
+    options.variant = Options::Variant::paper;
+    options.paper.store = store;
+    return options;
+  }
+
+  gpu::Context& context_;
+  scene::Medium medium_;
+  Options options_;
+  SmokeField field_;
+  Point3 middle_{0.5, 0.5, 0.5};
+  gpu::smoke::SmokeDensity density_;
+  gpu::smoke::CentreTables tables_;
+  Vec3 axis_;
+  std::size_t count_ = 0;
+  std::unique_ptr<Buffer> centres_, single_, again_, sources_;
+};
+
+}  // namespace
+
+TEST_CASE("slices through Gaussians on the device add up to the oracle's, with all weights",
+          "[gpu][compensated_ray_marching]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  const gpu::Use use(*context);
+  int vectors = 0;
+  for (const json& v : vectors_of("compensated_ray_marching", "march_compensated")) {
+    const json &in = v.at("input"), &expected = v.at("expected");
+    MarchOnDevice march(*context, in, ResidualStore::bricks), by_hash(*context, in, ResidualStore::hash);
+    const double thickness = number(in.at("slice_thickness")), background = number(in.at("background"));
+    const int count = in.at("slices");
+    const CompensatedMarch processor = march.on_processor(in);
+    const Slices slices{vec(in.at("slice_axis")), thickness, count};
+    // What levels of 8 bits leave of a residual, along the diagonal of its box: a depth, and as much of the radiance behind it.
+    const double depth = number(in.at("sigma_t")) * std::sqrt(3) * march.rounded(), off = parity + depth;
+    for (std::size_t r = 0; r < in.at("rays").size(); ++r) {
+      const Ray ray{vec(in.at("rays")[r].at("origin")), vec(in.at("rays")[r].at("direction"))};
+      CAPTURE(v.at("id").get<std::string>(), r, depth);
+      const auto near = [&](double got, const char* name) {
+        const double truth = number(expected.at(name)[r]);
+        CAPTURE(name, got / truth - 1);
+        CHECK(std::abs(got - truth) <= off * truth);
+      };
+      const auto total = [&](const MarchOnDevice::Marched& m) { return m.radiance + m.transmittance * background; };
+      near(march(ray, thickness, count, SliceWeight::exact).transmittance, "slice_transmittance");
+      near(total(march(ray, thickness, count, SliceWeight::printed)), "slice_printed");
+      near(total(march(ray, thickness, count, SliceWeight::paper)), "slice_paper");
+      near(total(march(ray, thickness, count, SliceWeight::exact)), "slice_exact_weight");
+      for (const SliceWeight weight : {SliceWeight::printed, SliceWeight::paper, SliceWeight::exact}) {
+        const MarchOnDevice::Marched here = march(ray, thickness, count, weight);
+        const Marched there = processor.slices(ray, slices, weight);
+        const MarchOnDevice::Marched again = by_hash(ray, thickness, count, weight);
+        CHECK(again.radiance == here.radiance);
+        CHECK(again.transmittance == here.transmittance);
+        CHECK(std::abs(here.radiance - there.radiance[0]) <=
+              1e-5 * there.radiance[0] + 2 * gpu::test::injected_error());
+        CHECK(std::abs(here.transmittance - there.transmittance[0]) <=
+              1e-5 * there.transmittance[0] + 2 * gpu::test::injected_error());
+      }
+      const auto fine = march(ray, thickness / 16, 16 * count, SliceWeight::exact);
+      near(fine.transmittance, "transmittance");
+      near(total(fine), "radiance");
+    }
+    ++vectors;
+  }
+  CHECK(vectors == 3);
+}
