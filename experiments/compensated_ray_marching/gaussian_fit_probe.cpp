@@ -145,6 +145,7 @@ std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
       scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),
       scene::integer_setting("rounds", "12", 1, 1000, "at most, each followed by teleportation"),
       scene::integer_setting("iterations", "5", 1, 1000, "a round"),
+      scene::real_setting("tolerance", "2e-3", 0, 1, "rounds end where one gains less than this share"),
       scene::integer_setting("frames", "1", 1, 1000, "of a sequence"),
       scene::integer_setting("first", "0", 0, 100000, "frame of the files"),
       scene::integer_setting("step", "1", 1, 1000, "from frame to frame of the files"),
@@ -188,6 +189,7 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
   options.teleport = s.flag("teleport");
   options.rounds = int(s.integer("rounds"));
   options.iterations = int(s.integer("iterations"));
+  options.tolerance = s.real("tolerance");
   options.resent = s.flag("resent");
   options.threads = execution.threads;
   const auto step = [&] {
