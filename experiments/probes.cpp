@@ -2,6 +2,7 @@
 
 #include "experiments/compensated_ray_marching/fitted_picture_probe.h"
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
+#include "experiments/compensated_ray_marching/residual_decode_probe.h"
 #include "experiments/compensated_ray_marching/residual_probe.h"
 #include "experiments/compensated_ray_marching/smoke_flicker_probe.h"
 #include "experiments/find_component.h"
@@ -46,6 +47,7 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<LegendreFrame>());
     list.push_back(std::make_unique<LegendreFrameGpu>());
     list.push_back(std::make_unique<ResidualStores>());
+    list.push_back(std::make_unique<ResidualDecode>());
     list.push_back(std::make_unique<GaussianFitProbe>());
     list.push_back(std::make_unique<FittedPicture>());
     list.push_back(std::make_unique<SmokeFlicker>());

@@ -1,13 +1,21 @@
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
 #include "scene/convert/gaussian_fit.h"
 #include "scene/convert/gaussian_samples.h"
+#include "scene/convert/perfect_hash.h"
+#include "scene/convert/residual.h"
+#include "scene/data_folder.h"
 #include "scene/error.h"
+#include "scene/load/parts.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {
@@ -15,7 +23,7 @@ namespace {
 using scene::GaussianFit;
 using scene::VoxelGrid;
 
-enum class Smoke { noise, puff, scene };
+enum class Smoke { noise, puff, scene, data };
 
 // A frame of the smoke that the settings name.
 VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
@@ -23,10 +31,32 @@ VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame)
   if (s.choice<Smoke>("smoke") == Smoke::noise)
     return noise_smoke(int(s.integer("size")), time, int(s.integer("octaves")));
   if (s.choice<Smoke>("smoke") == Smoke::puff) return puff_smoke(int(s.integer("size")), time);
+  if (s.choice<Smoke>("smoke") == Smoke::data) {
+    const std::string name =
+        fmt::format("volumes/plume/plume_{:04}.vdb", s.integer("first") + frame * s.integer("step"));
+    const std::filesystem::path path = std::filesystem::path(scene::data_folder()) / name;
+    if (scene::data_folder().empty() || !std::filesystem::exists(path))
+      throw Unavailable(fmt::format("no data folder (--data) with {}", name));
+    return scene::read_vdb(path.string(), "density");
+  }
   ProbeInput one = input;
   if (s.integer("frames") > 1)
     one.overrides["medium.0.frame"] = std::to_string(s.integer("first") + frame * s.integer("step"));
   return grid_of_scene(one);
+}
+
+// Cube root of the volume of the box that all frames fill, as of `airlight fit` [m].
+double unit_of(const ProbeInput& input, const scene::Settings& s) {
+  Eigen::Array3d lo = Eigen::Array3d::Constant(infinity), hi = -lo;
+  double voxel = 0;
+  for (int frame = 0; frame < int(s.integer("frames")); ++frame) {
+    const VoxelGrid grid = smoke_at(input, s, frame);
+    voxel = grid.voxel_size;
+    lo = lo.min(grid.origin_index.cast<double>().array());
+    hi = hi.max((grid.origin_index + grid.size).cast<double>().array());
+    if (s.choice<Smoke>("smoke") == Smoke::noise || s.choice<Smoke>("smoke") == Smoke::puff) break;  // all alike
+  }
+  return voxel * std::cbrt((hi - lo).prod());
 }
 
 // What changes from one frame to the next, in the density and in what the fit leaves of it: sums of squares over the samples that either
@@ -68,10 +98,31 @@ class Flicker {
   double of_density_ = 0, of_error_ = 0;
 };
 
+// A frame's residual in a hash with tags and in bricks of 8^3: sizes [bytes] and times [s] to build them from its levels, frame by frame.
+struct Stores {
+  std::vector<double> hash_bytes, hash_seconds, brick_bytes, brick_seconds;
+  void add(const VoxelGrid& grid, const GaussianFit& fit) {
+    const std::vector<std::int8_t> levels = levels_of(scene::residual_of(grid, fit.sum, {}).bricks);
+    scene::Stopwatch watch;
+    const scene::PerfectHash hash = scene::perfect_hash(grid.size, scene::hashed_voxels(grid.size, levels));
+    hash_seconds.push_back(watch.lap());
+    hash_bytes.push_back(double(hash.bytes_with_tags()));
+    watch.lap();
+    const scene::ResidualBricks bricks = scene::bricks_of(grid.size, levels);
+    brick_seconds.push_back(watch.lap());
+    brick_bytes.push_back(double(bricks.bytes()));
+  }
+};
+
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return values.empty() ? 0 : sum / double(values.size());
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
 }
 
 }  // namespace
@@ -82,38 +133,63 @@ std::string GaussianFitProbe::about() const {
 
 std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
   return {
-      scene::choice_setting("smoke", "noise", {"noise", "puff", "scene"},
-                            "curl noise, a ball stirred by a curl, or the voxels of the [[scene]]"),
+      scene::choice_setting(
+          "smoke", "noise", {"noise", "puff", "scene", "data"},
+          "curl noise, a ball stirred by a curl, the voxels of the [[scene]], or volumes/plume of the data folder"),
       scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise and puff"),
       scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
       scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
+      scene::real_setting("least_width", "0.015", 1e-3, 0.08, "of the box"),
+      scene::real_setting("least_voxels", "0.7", 0.1, 8, "and no width below so many"),
       scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
       scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),
       scene::integer_setting("rounds", "12", 1, 1000, "at most, each followed by teleportation"),
       scene::integer_setting("iterations", "5", 1, 1000, "a round"),
+      scene::real_setting("tolerance", "2e-3", 0, 1, "rounds end where one gains less than this share"),
       scene::integer_setting("frames", "1", 1, 1000, "of a sequence"),
-      scene::integer_setting("first", "0", 0, 100000, "frame of the scene's files"),
-      scene::integer_setting("step", "1", 1, 1000, "from frame to frame of the scene's files"),
+      scene::integer_setting("first", "0", 0, 100000, "frame of the files"),
+      scene::integer_setting("step", "1", 1, 1000, "from frame to frame of the files"),
       scene::real_setting("rise", "0.02", 0, 1, "of noise and puff from frame to frame, m"),
       scene::flag_setting("warm", true, "a frame begins with the Gaussians of the one before"),
       scene::flag_setting("resent", true, "where the error grows, others are sent to another place in later frames"),
+      scene::flag_setting("stores", false, "residuals too, each frame's in a hash and in bricks"),
       scene::integer_setting("runs", "1", 1, 100, "of the same, for times")};
 }
 
 std::vector<std::string> GaussianFitProbe::figures() const {
-  return {"squared_percent", "relative_l2_percent", "rms_percent", "rms_filled_percent", "max_percent",
-          "filled_percent",  "evaluations",         "iterations",  "teleported",         "gaussians",
-          "median_width",    "at_bounds_percent",   "flicker",     "first_seconds",      "frame_seconds"};
+  return {"squared_percent",
+          "relative_l2_percent",
+          "rms_percent",
+          "rms_filled_percent",
+          "max_percent",
+          "filled_percent",
+          "evaluations",
+          "iterations",
+          "teleported",
+          "gaussians",
+          "median_width",
+          "at_least_percent",
+          "at_greatest_percent",
+          "flicker",
+          "first_seconds",
+          "frame_seconds",
+          "hash_kB",
+          "hash_ms",
+          "bricks_kB",
+          "bricks_ms"};
 }
 
 Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s,
                                const scene::Execution& execution) const {
   scene::FitOptions options;
   options.gaussians = int(s.integer("gaussians"));
+  options.widths.lo = s.real("least_width");
+  options.least_voxels = s.real("least_voxels");
   options.method = s.choice<scene::FitMethod>("method");
   options.teleport = s.flag("teleport");
   options.rounds = int(s.integer("rounds"));
   options.iterations = int(s.integer("iterations"));
+  options.tolerance = s.real("tolerance");
   options.resent = s.flag("resent");
   options.threads = execution.threads;
   const auto step = [&] {
@@ -124,13 +200,14 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
 
   std::vector<double> squared, rms, rms_filled, max, filled, evaluations, iterations, teleported, count, first, later;
   std::vector<double> widths;
-  double at_bounds = 0;
+  double at_least = 0, at_greatest = 0;
   Flicker flicker;
+  Stores stores;
   GaussianFit previous;
+  options.unit = unit_of(input, s);
   for (int frame = 0; frame < frames; ++frame) {
     step();
     const VoxelGrid grid = smoke_at(input, s, frame);
-    if (frame == 0) options.unit = s.choice<Smoke>("smoke") != Smoke::scene ? scene::fit_unit(grid) : 0;
     GaussianFit fit;
     for (int run = 0; run < runs; ++run) {
       fit = s.flag("warm") ? scene::next_fit(grid, previous, options) : scene::fit_gaussians(grid, options);
@@ -147,14 +224,15 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
     iterations.push_back(fit.iterations);
     teleported.push_back(fit.teleported);
     count.push_back(double(fit.sum.gaussians.size()));
-    const double unit = options.unit > 0 ? options.unit : scene::fit_unit(grid);
-    const double lo = std::max(options.widths.lo * unit, scene::least_fit_width * grid.voxel_size);
-    const double hi = std::max(options.widths.hi * unit, 2 * lo);
+    const double lo = std::max(options.widths.lo * options.unit, options.least_voxels * grid.voxel_size);
+    const double hi = std::max(options.widths.hi * options.unit, 2 * lo);
     for (const scene::Gaussian& g : fit.sum.gaussians) {
-      widths.push_back(g.width / unit);
-      at_bounds += g.width < 1.0001 * lo || g.width > 0.9999 * hi;
+      widths.push_back(g.width / options.unit);
+      at_least += g.width < 1.0001 * lo;
+      at_greatest += g.width > 0.9999 * hi;
     }
     if (frames > 1) flicker.add(grid, fit);
+    if (s.flag("stores")) stores.add(grid, fit);
   }
   Findings found;
   const auto percent = [&](const char* name, double value) { found.figures.push_back(exactly(name, 100 * value)); };
@@ -169,7 +247,8 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
   found.figures.push_back(exactly("teleported", mean_of(teleported)));
   found.figures.push_back(exactly("gaussians", mean_of(count)));
   if (!widths.empty()) {
-    percent("at_bounds_percent", at_bounds / double(widths.size()));
+    percent("at_least_percent", at_least / double(widths.size()));
+    percent("at_greatest_percent", at_greatest / double(widths.size()));
     std::nth_element(widths.begin(), widths.begin() + std::ptrdiff_t(widths.size() / 2), widths.end());
     found.figures.push_back(exactly("median_width", widths[widths.size() / 2]));
   }
@@ -177,6 +256,12 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
   if (!later.empty()) {
     found.figures.push_back(exactly("flicker", flicker.ratio()));
     found.figures.push_back(measured("frame_seconds", later));
+  }
+  if (s.flag("stores")) {
+    found.figures.push_back(exactly("hash_kB", 1e-3 * mean_of(stores.hash_bytes)));
+    found.figures.push_back(measured("hash_ms", scaled(stores.hash_seconds, 1e3)));
+    found.figures.push_back(exactly("bricks_kB", 1e-3 * mean_of(stores.brick_bytes)));
+    found.figures.push_back(measured("bricks_ms", scaled(stores.brick_seconds, 1e3)));
   }
   set_time(found, later.empty() ? first : later);
   return found;

@@ -44,7 +44,7 @@ class Frame {
         objective_(grid.size, grid.values.data(), 1 / greatest, fit_cutoff, options.threads) {
     const double unit = (options.unit > 0 ? options.unit : fit_unit(grid)) / grid.voxel_size;
     bounds_.centers = {Point3::Constant(-0.5), grid.size.cast<double>().array() - 0.5};
-    bounds_.widths.lo = std::max(options.widths.lo * unit, least_fit_width);
+    bounds_.widths.lo = std::max(options.widths.lo * unit, options.least_voxels);
     bounds_.widths.hi = std::max(options.widths.hi * unit, 2 * bounds_.widths.lo);
     bounds_.amplitudes = options.amplitudes;
   }
@@ -215,6 +215,7 @@ void check_fit_options(const FitOptions& o) {
   require(std::isfinite(o.unit) && o.unit >= 0, fmt::format("unit is {}, expected a length", o.unit));
   require(o.widths.lo > 0 && o.widths.hi > o.widths.lo && std::isfinite(o.widths.hi),
           "widths are empty, expected 0 < least < greatest");
+  require(o.least_voxels > 0 && std::isfinite(o.least_voxels), "least width is no number of voxels above 0");
   require(o.amplitudes.lo > 0 && o.amplitudes.hi > o.amplitudes.lo && std::isfinite(o.amplitudes.hi),
           "amplitudes are empty, expected 0 < least < greatest");
   require(o.rounds >= 0 && o.later_rounds >= 0 && o.iterations >= 1 && o.tolerance >= 0 && o.later_tolerance >= 0,

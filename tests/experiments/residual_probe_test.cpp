@@ -5,8 +5,14 @@
 #include <cmath>
 
 #include "experiments/compensated_ray_marching/fitted_picture_probe.h"
+#include "experiments/compensated_ray_marching/fitted_smoke.h"
+#include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/nano_grid.h"
+#include "experiments/compensated_ray_marching/residual_decode_probe.h"
+#include "scene/data_folder.h"
 #include "scene/error.h"
+#include "tests/gpu/device.h"
+#include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::experiments;
@@ -48,6 +54,50 @@ TEST_CASE("every store of a residual holds it and says how large it is", "[resid
   CHECK(kB["apron"] > kB["bricks"]);
   CHECK(kB["hash_tags"] > kB["hash_domain"]);
   CHECK(kB["nano_floats"] > kB["nano_eight_bits"]);
+}
+
+TEST_CASE("look-ups in a residual on the device are the processor's", "[residual][gpu]") {
+  if (!gpu::test::device()) return;
+  const ResidualDecode probe;
+  std::map<std::string, double> kB;
+  for (const char* const store : {"bricks", "hash_tags", "hash_domain"}) {
+    INFO(store);
+    const auto found = figures(probe, {},
+                               {{"store", store},
+                                {"smoke", "noise"},
+                                {"size", "24"},
+                                {"gaussians", "20"},
+                                {"lookups", "2000"},
+                                {"runs", "1"}});
+    kB[store] = found.at("device_kB");
+    CHECK(found.at("worst_between") <= 3 * 254 * 32 * std::exp2(-23));
+    for (const char* const time : {"level_ns", "between_ns", "between_random_ns"}) CHECK(found.at(time) > 0);
+  }
+  CHECK(kB["bricks"] > 0);
+  CHECK(kB["hash_tags"] > kB["hash_domain"]);
+}
+
+TEST_CASE("frames of a data folder as Gaussians, and their residuals' sizes", "[residual][gaussian_fit]") {
+  const GaussianFitProbe probe;
+  TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "volumes/plume");
+  const std::map<std::string, std::string> settings = {{"smoke", "data"}, {"first", "10"},     {"step", "2"},
+                                                       {"frames", "2"},   {"gaussians", "20"}, {"stores", "true"}};
+  scene::set_data_folder(folder.path().string());
+  CHECK_THROWS_AS(figures(probe, {}, settings), Unavailable);
+  for (const int frame : {10, 12}) {
+    scene::VoxelGrid grid = noise_smoke(16, 0.02 * frame);
+    grid.translation.setZero();
+    scene::write_vdb(folder.file("volumes/plume/plume_00" + std::to_string(frame) + ".vdb"), grid);
+  }
+  const auto found = figures(probe, {}, settings);
+  CHECK(found.at("squared_percent") > 0);
+  CHECK(found.at("squared_percent") < 20);
+  CHECK(found.at("relative_l2_percent") == Approx(10 * std::sqrt(found.at("squared_percent"))));
+  CHECK(found.at("hash_kB") > found.at("bricks_kB"));
+  CHECK(found.at("bricks_kB") > 0.5);
+  CHECK(found.at("bricks_kB") <= 1e-3 * (16 * 16 * 16 + 4 * 8));
+  scene::set_data_folder(AIRLIGHT_SOURCE_DIR "/experiments");  // for the tests that follow, a folder that stays
 }
 
 TEST_CASE("NanoVDB gives back the floats it was given, and eight bits nearly", "[residual]") {

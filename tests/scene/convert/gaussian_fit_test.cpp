@@ -339,6 +339,26 @@ TEST_CASE("grids at the edge of sense", "[gaussian_fit][convert]") {
   }
 }
 
+TEST_CASE("a single filled voxel takes the least width there is", "[gaussian_fit][convert]") {
+  VoxelGrid grid = smoke(12);
+  std::fill(grid.values.begin(), grid.values.end(), 0.0f);
+  grid.values[5 + 12 * (6 + 12 * 7)] = 1;
+  // By how much its samples, added up, exceed the integral of a Gaussian at a sample: what the bound is there for.
+  for (const auto& [voxels, excess] : {std::pair(least_fit_width, 1.05), {0.5, 1.6}, {0.35, 4.2}, {2.0, 1.0}}) {
+    FitOptions o = options(1);
+    o.widths.lo = 1e-3;
+    o.least_voxels = voxels;
+    const GaussianFit fit = fit_gaussians(grid, o);
+    REQUIRE(fit.sum.gaussians.size() == 1);
+    const double width = fit.sum.gaussians[0].width / grid.voxel_size;
+    CHECK(width >= voxels * (1 - 1e-12));
+    CHECK(width < voxels * (voxels < 0.5 ? 1.2 : 1.001));  // there samples hardly tell one width from another
+    double along = 0;
+    for (int i = -9; i <= 9; ++i) along += std::exp(-std::pow(i / voxels, 2));
+    CHECK(std::pow(along / (std::sqrt(pi) * voxels), 3) == Approx(excess).epsilon(0.01));
+  }
+}
+
 TEST_CASE("what is no density is refused with its voxel, and so are absurd numbers", "[gaussian_fit][convert]") {
   VoxelGrid grid = empty_grid(4, 5, 6);
   for (const float bad : {-1e-3f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
@@ -350,6 +370,9 @@ TEST_CASE("what is no density is refused with its voxel, and so are absurd numbe
   FitOptions o = options(5);
   o.unit = -1;
   CHECK_THROWS_AS(fit_gaussians(smoke(4), o), Error);
+  o = options(5);
+  o.least_voxels = 0;
+  CHECK_THROWS_WITH(fit_gaussians(smoke(4), o), Catch::Contains("voxels above 0"));
   CHECK_THROWS_WITH(fit_method_from("lbgfs"), Catch::Contains("lbfgs"));
   for (const std::string& name : fit_method_names())
     CHECK(fit_method_names()[std::size_t(fit_method_from(name))] == name);

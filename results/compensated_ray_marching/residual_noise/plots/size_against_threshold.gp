@@ -8,10 +8,12 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:2.3]
+set logscale x
+set format x "%g"
+set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [79.6637:883.638]
+set yrange [38.3273:921.001]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "size_against_threshold.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "hash, tags", \
