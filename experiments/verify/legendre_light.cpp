@@ -17,7 +17,7 @@
 namespace airlight::experiments::verification {
 namespace {
 
-constexpr double accuracy = 1e-11;  // relative, of light
+constexpr double accuracy = 1e-12;  // relative, of light
 
 // A field in two dimensions is one that is the same for all z: L_0 there is 1/sqrt(2).
 scene::LegendrePointer box_from(const Value& v) {

@@ -35,7 +35,7 @@ Vec3 padded(const json& v) {
   return {t.values[0], t.values[1], t.values.size() > 2 ? t.values[2] : 0};
 }
 
-bool flat(const json& v) { return v.value("d", 2) == 2; }
+bool flat(const json& v) { return !v.at("R")[0][0].is_array(); }
 
 // Of a medium that is the same for all z where the vector has two dimensions: L_0 there is 1/sqrt(2).
 std::shared_ptr<scene::Scene> scene_of(const json& v) {
@@ -106,6 +106,37 @@ TEST_CASE("legendre light on the device: rays of the vectors", "[gpu][legendre_f
       for (const double z : Tensor(v.at("v")).values)
         CHECK(eye.at(on_face(v.at("face"), y, z), -padded(v.at("omega_s"))) ==
               Approx(expected.values[at++]).margin(gate * most_of(expected)).epsilon(0));
+  }
+}
+
+// Each pixel a picture of one, with the vector's depth and background behind the medium.
+TEST_CASE("legendre light on the device: airlight of the vectors before a background", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  const gpu::LegendreLightGpu method;
+  for (const json& v : test::vectors_of("legendre_fluids", "airlight")) {
+    double most = 0;
+    for (const json& pixel : v.at("pixels")) most = std::max(most, test::number(pixel.at("total")));
+    for (const json& pixel : v.at("pixels")) {
+      CAPTURE(v.at("id"), pixel.dump());
+      auto scene = scene_of(v);
+      const Vec3 forward = -padded(v.at("omega_s"));
+      scene->camera = scene::look_at(padded(pixel.at("x")), padded(pixel.at("x")) + forward, Vec3::UnitY());
+      scene->camera.kind = scene::Camera::Kind::orthographic;
+      scene->camera.height = 1e-9;
+      scene::Backdrop behind{1, 1, {}, {float(test::number(pixel.at("depth")))}, true};
+      behind.radiance.assign(3, float(test::number(pixel.at("background"))));
+      scene->backdrops = {std::make_shared<const scene::Backdrop>(behind)};
+      finish(*scene);
+      const scene::Film film = test::picture(method, scene);
+      const auto check = [&](const char* layer, const char* name) {
+        CHECK(film.layer(layer)[0] == Approx(test::number(pixel.at(name))).margin(gate * most).epsilon(0));
+      };
+      check("airlight", "airlight");
+      check("surface", "attenuated");
+      check("mean", "total");
+      CHECK(film.layer("transmittance")[0] ==
+            Approx(std::exp(-test::number(pixel.at("tau_view")))).margin(gate).epsilon(0));
+    }
   }
 }
 

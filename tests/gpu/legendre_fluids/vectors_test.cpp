@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "gpu/legendre_fluids/fluid_on_device.h"
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/particles_on_device.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 #include "tests/oracle_vectors.h"
@@ -196,5 +198,80 @@ TEST_CASE("legendre fluids on the device: the form of advection, by velocities w
     CHECK(std::abs(rate.density[0]) < gate * rate.density.norm());
     const Array w = twin.now().velocity;
     CHECK(0.5 * twin.space().inner(w, w) == Approx(test::number(v.at("w_projected_energy"))).epsilon(1e-6));
+  }
+}
+
+// The velocity by what it carries in a microsecond, in double precision: u dt + O(dt^2). The rest from the coefficients that come back.
+TEST_CASE("legendre fluids on the device: values of the vectors at points, walls included", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "evaluate")) {
+    CAPTURE(v.at("id"));
+    Twin twin(v, {0, 0, false});
+    const std::size_t count = v.at("points").size();
+    scene::FlowProblem problem;
+    problem.dimensions = dimensions(v);
+    problem.box = {Point3::Constant(-1), Point3::Constant(1)};
+    problem.particles.push_back({int(count), {}, 0, Vec3::Zero(), scene::ParticleSet::Leaving::stay});
+    scene::ParticlePlaces places{{{}}, {std::vector<double>(count)}};
+    std::vector<Array> u, gradient, slope;
+    double most = 0, steepest = 0, steepest_r = 0;
+    for (const json& point : v.at("points")) {
+      const Array x = array_of(point.at("x"));
+      places.positions[0].emplace_back(x[0], x[1], x.size() > 2 ? x[2] : 0);
+      u.push_back(array_of(point.at("u")));
+      gradient.push_back(array_of(point.at("grad_u")));
+      slope.push_back(array_of(point.at("grad_r")));
+      most = std::max(most, u.back().cwiseAbs().maxCoeff());
+      steepest = std::max(steepest, gradient.back().cwiseAbs().maxCoeff());
+      steepest_r = std::max(steepest_r, slope.back().cwiseAbs().maxCoeff());
+    }
+    const std::vector<Point3> from = places.positions[0];
+    const double dt = 1e-6;
+    gpu::legendre::ParticlesOnDevice particles(gpu::Context::get(), *twin.device, problem, places);
+    twin.device->step(dt);
+    particles.step(dt);
+    particles.read(places);
+    const Fluid& fluid = twin.now();
+    const Array r = array_of(v.at("r"));  // a step of a microsecond is none, to single precision
+    for (std::size_t i = 0; i < count; ++i) {
+      const Components at{Array::Constant(1, from[i][0]), Array::Constant(1, from[i][1]),
+                          Array::Constant(1, from[i][2])};
+      const int d = dimensions(v);
+      for (int a = 0; a < d; ++a) {
+        CHECK((places.positions[0][i] - from[i])[a] / dt == Approx(u[i][a]).margin(gate * most).epsilon(0));
+        for (int b = 0; b < d; ++b)
+          CHECK(twin.space().sampled_slope(fluid.velocity, a, b, at)[0] ==
+                Approx(gradient[i][a * d + b]).margin(gate * steepest).epsilon(0));
+        CHECK(twin.space().scalar_sampled_slope(fluid.density, a, at)[0] ==
+              Approx(slope[i][a]).margin(gate * steepest_r).epsilon(0));
+      }
+      CHECK(twin.space().scalar_sampled(fluid.density, at)[0] ==
+            Approx(test::number(v.at("points")[i].at("r"))).margin(gate * r.cwiseAbs().maxCoeff()).epsilon(0));
+    }
+  }
+}
+
+// 16 coefficients are exact to 2e-10 at the end of it (specification, section 7): what is left is single precision.
+TEST_CASE("legendre fluids on the device: the vortices of the vectors", "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  for (const json& v : test::vectors_of("legendre_fluids", "taylor-green")) {
+    CAPTURE(v.at("id"));
+    auto problem = std::make_shared<scene::FlowProblem>();
+    problem->dimensions = 2;
+    problem->box = {Point3(-1, -1, 0), Point3(1, 1, 0)};
+    problem->viscosity = v.at("nu");
+    problem->velocity = scene::TaylorGreen{};
+    const gpu::LegendreFluidsGpu solver;
+    const auto flow = solver.start(problem, scene::Settings(solver.settings(), {{"n", "16"}}), {});
+    const double t = v.at("t");
+    const int steps = int(std::lround(t / 0.01));
+    for (int i = 0; i < steps; ++i) flow->step(t / steps);
+    const double greatest = std::exp(-2 * pi * pi * double(v.at("nu")) * t);
+    for (const json& point : v.at("points")) {
+      const Array x = array_of(point.at("x")), u = array_of(point.at("u"));
+      const Vec3 got = flow->velocity(Point3(x[0], x[1], 0));
+      for (int a = 0; a < 2; ++a) CHECK(got[a] == Approx(u[a]).margin(gate * greatest).epsilon(0));
+    }
+    CHECK(flow->totals().energy == Approx(test::number(v.at("energy"))).epsilon(2 * gate));  // it is quadratic
   }
 }

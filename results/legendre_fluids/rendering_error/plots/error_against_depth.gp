@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.0330347:75.6781]
 set logscale y
 set format y "%g"
-set yrange [1.18054e-09:3.17658]
+set yrange [6.5136e-10:3.28532]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_depth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, weight 1 4", \

@@ -1,7 +1,7 @@
-# Draws error_against_coefficients.rough__depth_1.svg and error_against_coefficients.rough__depth_1.png from error_against_coefficients.rough__depth_1.csv: run gnuplot on this file in its folder.
-data = "error_against_coefficients.rough__depth_1.csv"
+# Draws error_against_coefficients.rough__extinction_2.5.svg and error_against_coefficients.rough__extinction_2.5.png from error_against_coefficients.rough__extinction_2.5.csv: run gnuplot on this file in its folder.
+data = "error_against_coefficients.rough__extinction_2.5.csv"
 set datafile separator comma
-set title "rel_l2 against coefficients along an axis: rough, depth 1" noenhanced
+set title "rel_l2 against coefficients along an axis: rough, extinction 2.5" noenhanced
 set xlabel "coefficients along an axis" noenhanced
 set ylabel "rel_l2" noenhanced
 set key outside right center vertical Left reverse noenhanced
@@ -11,9 +11,9 @@ set tics nomirror
 set xrange [0:13.8]
 set logscale y
 set format y "%g"
-set yrange [0.00743631:0.0685083]
+set yrange [0.00523949:0.313239]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
-set output "error_against_coefficients.rough__depth_1.svg"
+set output "error_against_coefficients.rough__extinction_2.5.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, weight 1", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "paper, weight 3", \
@@ -21,7 +21,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "upwind", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
-set output "error_against_coefficients.rough__depth_1.png"
+set output "error_against_coefficients.rough__extinction_2.5.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, weight 1", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "paper, weight 3", \
