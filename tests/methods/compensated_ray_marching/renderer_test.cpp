@@ -7,6 +7,7 @@
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
+#include "tests/oracle_vectors.h"
 #include "tests/pictures.h"
 
 using namespace airlight;
@@ -89,6 +90,50 @@ TEST_CASE("compensated march: what scatters everything is not seen in an even li
   CAPTURE(coarse, fine);
   CHECK(coarse < 0.02);
   CHECK(fine < 0.7 * coarse);
+}
+
+TEST_CASE("compensated march: rays out of a ball of smoke under an even sky", "[compensated_ray_marching]") {
+  for (const json& v : vectors_of("compensated_ray_marching", "multiple_scattering_sphere")) {
+    const json &in = v.at("input"), &expected = v.at("expected");
+    const json& rbf = in.at("rbf_x_y_z_r_w").at(0);
+    const double r = number(rbf[3]);
+    const Point3 centre = vec(rbf);
+    auto s = std::make_shared<scene::Scene>();
+    scene::Medium smoke;
+    smoke.field = scene::GaussianSum{{{centre, r, number(rbf[4])}}, 0, number(in.at("cut"))};
+    smoke.sigma_t = Rgb::Constant(number(in.at("sigma_t")));
+    smoke.albedo = Rgb::Constant(number(in.at("albedo")));
+    smoke.phase = scene::HenyeyGreenstein{number(in.at("g"))};
+    s->media = {smoke};
+    s->lights = {scene::make_constant_environment(Rgb::Ones())};
+    s->width = s->height = 1;
+    finish(*s);
+    std::vector<double> errors;
+    for (const int cells : {3, 8}) {  // a radius; directions with them. At 4 and g = 0 errors cancel: 0.0007
+      const Given given{{"cells", std::to_string(6 * cells + 1)},
+                        {"levels", std::to_string(2 * cells)},
+                        {"ordinate_levels", std::to_string((cells + 1) / 2)},
+                        {"azimuths", std::to_string(2 * cells)},
+                        {"slices", "1024"},
+                        {"deepest_cell", "9"}};
+      const auto prepared = method.prepare(s, {method.settings(), given}, {0, {}});
+      double error = 0, size = 0;
+      for (std::size_t k = 0; k < in.at("impact_over_r").size(); ++k) {
+        const Point3 eye = centre + Vec3(number(in.at("impact_over_r")[k]) * r, 0, 1);
+        const scene::Film film =
+            prepared->render({scene::look_at(eye, eye - Vec3::UnitZ(), Vec3::UnitY()), 1, 1}, {1, {}}).film;
+        const double radiance = number(expected.at("exit_radiance")[k]),
+                     left = number(expected.at("exit_transmittance")[k]);
+        CHECK(std::abs(film.get("transmittance", 0, 0)[0] - left) <= 1e-4 * left);
+        error += std::pow(film.get("mean", 0, 0)[0] - radiance, 2);
+        size += radiance * radiance;
+      }
+      errors.push_back(std::sqrt(error / size));
+    }
+    CAPTURE(v.at("id").get<std::string>(), errors[0], errors[1]);
+    CHECK(errors[1] < (number(in.at("albedo")) < 0.95 ? 0.002 : 0.004));
+    CHECK(errors[1] < 0.4 * errors[0]);
+  }
 }
 
 TEST_CASE("compensated march: albedo 0, no light, thin and black smoke", "[compensated_ray_marching]") {

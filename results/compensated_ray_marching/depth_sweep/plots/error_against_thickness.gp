@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00250594:997.631]
+set xrange [0.000218258:1145.43]
 set logscale y
 set format y "%g"
 set yrange [0.00380743:6.079]
