@@ -67,6 +67,7 @@ class PreparedSmokeGpu final : public scene::Prepared {
   Context& context_;
   std::unique_ptr<Surroundings> surroundings_;
   std::unique_ptr<SmokeDensity> density_;
+  std::unique_ptr<SmokeColumns> columns_;           // of grid
   std::unique_ptr<SmokeSource> source_;             // of grid
   std::unique_ptr<CentreSourcesOnDevice> centres_;  // of paper
   Program *ranges_ = nullptr, *march_ = nullptr, *composition_ = nullptr, *dim_ = nullptr;
@@ -142,9 +143,9 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
   if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   if (!smoke_) return;
   if (surroundings_->surfaces()) dim_ = &program(context_, "smoke_dim", tile, tile, density_->definitions());
-  source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *incoming_);
-  grid_->aim(*incoming_, execution);
-  source_->light(*grid_, *incoming_, true, timer, execution);
+  columns_ = std::make_unique<SmokeColumns>(context_, *first_, *grid_, *density_, middle_);
+  source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *columns_);
+  source_->light(*incoming_, timer, execution);
 }
 
 void PreparedSmokeGpu::begin_centres(StageTimer& timer) {
@@ -182,10 +183,8 @@ std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution
   if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   times.push_back({"environment", watch.lap()});
   if (!smoke_) return times;
-  const bool aimed = grid_->aim(*incoming_, execution);
-  append(times, grid_->times());
   timer.restart();
-  source_->light(*grid_, *incoming_, aimed, timer, execution);
+  source_->light(*incoming_, timer, execution);
   append(times, timer.times());
   return times;
 }
@@ -253,7 +252,7 @@ void PreparedSmokeGpu::march(const View& view) const {
     p.set("least_source_density", smoke_->least_density());
   } else {
     source_->logarithms().bind(at::logarithms);
-    source_->set_grid(p, middle_);
+    set_grid(p, grid_->grid(), middle_);
   }
   p.set("sigma_t", smoke_->medium().sigma_t);
   p.set("weight", int(options_.weight));

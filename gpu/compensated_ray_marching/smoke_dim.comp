@@ -2,59 +2,10 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "wavelet_fog/lit.glsl"
-#include "common/error_function.glsl"
-#include "common/loops_cut.glsl"
 #include "compensated_ray_marching/smoke_density.glsl"
+#include "compensated_ray_marching/smoke_column.glsl"
 uniform dvec3 middle;  // of the smoke [m]
-uniform vec3 to_light, sigma_t;
-uniform float widths2;  // of Gaussians: where they end, in widths, squared
-
-#if GAUSSIANS
-// Zhou et al. 2007, Eq. 31 from a point to infinity [m].
-float column_from(vec3 origin) {
-  float sum = 0;
-  for (int i = 0; i < gaussian_count; ++i) {
-    Gaussian g = gaussians[i];
-    float nearest, aside;
-    vec2 part = within(g, widths2, origin, to_light, nearest, aside);
-    if (!(part.x < part.y && part.y > 0)) continue;
-    vec2 u = (vec2(max(part.x, 0), part.y) - nearest) / g.width;
-    sum += 0.886226925 * g.amplitude * g.width * exp(-aside) * (error_function(u.y) - error_function(u.x));
-  }
-  return sum;
-}
-#else
-// Between planes of samples density is a cubic along the ray: two Gauss points are exact [m].
-float column_from(vec3 origin) {
-  vec3 o = sample_at(origin), d = to_samples * to_light;
-  float begin = 0, end = 1e37, sum = 0;
-  vec3 next, pace;  // [m] to the next plane of each axis, and from one to the next
-  for (int a = 0; a < 3; ++a) {
-    float lo = -border, hi = samples_along[a] - 1 + border;
-    if (abs(d[a]) < 1e-20) {
-      if (o[a] < lo || o[a] > hi) return 0;
-      continue;
-    }
-    float p = (lo - o[a]) / d[a], q = (hi - o[a]) / d[a];
-    begin = max(begin, min(p, q));
-    end = min(end, max(p, q));
-  }
-  if (!(begin < end)) return 0;
-  for (int a = 0; a < 3; ++a) {
-    float here = o[a] + begin * d[a];
-    pace[a] = abs(d[a]) < 1e-20 ? 1e37 : 1 / abs(d[a]);
-    next[a] = abs(d[a]) < 1e-20 ? 1e37 : begin + (d[a] > 0 ? floor(here) + 1 - here : here - ceil(here) + 1) * pace[a];
-  }
-  while (begin < end) {
-    int a = next.x <= next.y && next.x <= next.z ? 0 : next.y <= next.z ? 1 : 2;
-    float until = min(next[a], end), half_ = 0.5 * (until - begin), mid = begin + half_, off = 0.577350269 * half_;
-    if (half_ > 0) sum += half_ * (density_at(origin + (mid - off) * to_light) + density_at(origin + (mid + off) * to_light));
-    begin = max(until, begin);
-    next[a] += pace[a];
-  }
-  return sum;
-}
-#endif
+uniform vec3 sigma_t;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

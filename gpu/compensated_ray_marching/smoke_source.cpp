@@ -24,7 +24,6 @@ constexpr int line = 64, tile = 8;  // invocations of a work group: along a list
 constexpr int groups_of_sums = 64, summing = 128;
 constexpr double least_tolerance = 3e-6;  // that single precision can keep
 constexpr int first_iterations = 8;       // told to the device before any is looked at
-constexpr float blocked = 1e37F;          // [m]
 
 struct WayData {
   int axis, forward;
@@ -55,20 +54,17 @@ std::vector<float> floats(const std::vector<std::vector<double>>& rows) {
 }  // namespace
 
 SmokeSource::SmokeSource(Context& context, const scene::Medium& medium, const Options& options, const LitGrid& grid,
-                         const IncomingLight& light)
+                         SmokeColumns& columns)
     : context_(context),
       medium_(medium),
       options_(options),
       multiple_(grid.single_only().empty()),
+      grid_(grid.grid()),
+      columns_(columns),
       cells_(int(grid.grid().cells.nodes())),
-      node_count_(int(grid.nodes().size())),
-      fixed_(int(light.fixed())),
-      corner_(grid.grid().corner),
-      cell_edge_(grid.grid().cells.cell[0]),
       moments_(compensated_ray_marching::phase_moments(medium.phase, options.order)),
       band_moments_(compensated_ray_marching::phase_moments(medium.phase, options.grid.levels)) {
   for (std::size_t a = 0; a < 3; ++a) cells_along_[Eigen::Index(a)] = grid.grid().cells.size[a];
-  nodes_ = std::make_unique<Buffer>(context_, "nodes", std::vector<int>(grid.nodes().begin(), grid.nodes().end()));
   densities_ = std::make_unique<Buffer>(context_, "densities",
                                         std::vector<float>(grid.densities().data(), grid.densities().data() + cells_));
   radiance_ = std::make_unique<Buffer>(context_, "source radiance", 16 * std::size_t(cells_));
@@ -96,7 +92,7 @@ SmokeSource::SmokeSource(Context& context, const scene::Medium& medium, const Op
   std::vector<WayData> ways;
   std::vector<std::vector<double>> harmonics, weighted;
   for (const Ordinate& d : ordinates) {
-    ways.push_back(way_of(d, cell_edge_));
+    ways.push_back(way_of(d, grid_.cells.cell[0]));
     harmonics.push_back(scene::evaluate_sh(options.order, d.direction));
     weighted.push_back(harmonics.back());
     for (double& value : weighted.back()) value *= d.weight;
@@ -155,15 +151,9 @@ void SmokeSource::arrange(bool grey) {
   buffer(means_, "means", cells * most * (3 + kept));
 }
 
-void SmokeSource::upload_columns(const LitGrid& grid) {
-  directions_ = int(grid.columns().size());
-  std::vector<float> values;
-  for (const auto& column : grid.columns())
-    for (const float c : column) values.push_back(std::min(c, blocked));
-  columns_ = std::make_unique<Buffer>(context_, "columns", values);
-}
-
 void SmokeSource::upload_directions(const IncomingLight& light) {
+  directions_ = int(light.directions().size());
+  fixed_ = int(light.fixed());
   std::vector<float> towards;
   std::vector<std::vector<double>> harmonics;
   for (const Vec3& d : light.directions()) {
@@ -184,10 +174,10 @@ void SmokeSource::set_scatterer(Program& p, const Group& g) const {
 
 void SmokeSource::scatter_once(const Group& g) {
   Program& p = *single_program_;
-  columns_->bind(at::columns);
+  columns_.values().bind(at::columns);
   powers_->bind(at::powers);
   harmonics_->bind(at::harmonics);
-  nodes_->bind(at::nodes);
+  columns_.nodes().bind(at::nodes);
   single_->bind(at::single);
   set_scatterer(p, g);
   p.set("albedo", medium_.albedo);
@@ -195,10 +185,10 @@ void SmokeSource::scatter_once(const Group& g) {
     const auto band = std::size_t(std::sqrt(double(b)));  // from towards the light to along it
     p.set(fmt::format("moment[{}]", b), (band % 2 ? -1 : 1) * moments_[band]);
   }
-  p.set("node_count", node_count_);
+  p.set("node_count", columns_.count());
   p.set("directions", directions_);
   p.set("cells", cells_);
-  p.dispatch(node_count_, g.lights);
+  p.dispatch(columns_.count(), g.lights);
 }
 
 void SmokeSource::iterate(const Group& g, int iteration) {
@@ -294,13 +284,11 @@ void SmokeSource::scatter_again(Group& g, bool cold, const scene::Execution& exe
   }
 }
 
-void SmokeSource::light(const LitGrid& grid, const IncomingLight& light, bool aimed, StageTimer& timer,
-                        const scene::Execution& execution) {
+void SmokeSource::light(const IncomingLight& light, StageTimer& timer, const scene::Execution& execution) {
+  timer.begin(light.directions().size() > light.fixed() ? "depths of directional lights" : "upload");
+  const bool moved = columns_.aim(light, execution);
   timer.begin("upload");
-  if (aimed || !columns_) {
-    upload_columns(grid);
-    upload_directions(light);
-  }
+  if (moved) upload_directions(light);
   std::vector<float> powers;
   for (const Rgb& p : light.power()) {
     for (int c = 0; c < 3; ++c) powers.push_back(float(p[c]));
@@ -318,26 +306,20 @@ void SmokeSource::light(const LitGrid& grid, const IncomingLight& light, bool ai
   for (Group& g : groups_) scatter_again(g, cold, execution);
 }
 
-void SmokeSource::set_grid(Program& p, const Point3& middle) const {
-  p.set("corner", Vec3(corner_ - middle));
-  p.set("cell_edge", cell_edge_);
-  p.set("cells_along", cells_along_);
-}
-
 void SmokeSource::towards(const scene::View& view, const Point3& middle) {
   greatest_->clear();
   Program& p = *towards_program_;
-  columns_->bind(at::columns);
+  columns_.values().bind(at::columns);
   powers_->bind(at::powers);
   towards_light_->bind(at::towards_light);
-  nodes_->bind(at::nodes);
-  (multiple_ ? *single_ : *nodes_).bind(at::single);
-  (multiple_ ? *result_ : *nodes_).bind(at::result);
+  columns_.nodes().bind(at::nodes);
+  (multiple_ ? *single_ : columns_.nodes()).bind(at::single);
+  (multiple_ ? *result_ : columns_.nodes()).bind(at::result);
   radiance_->bind(at::radiance);
   greatest_->bind(at::greatest);
   set_camera(p, view, middle);
-  set_grid(p, middle);
-  p.set("node_count", node_count_);
+  set_grid(p, grid_, middle);
+  p.set("node_count", columns_.count());
   p.set("directions", directions_);
   p.set("fixed_directions", fixed_);
   p.set("cells", cells_);
@@ -351,7 +333,7 @@ void SmokeSource::towards(const scene::View& view, const Point3& middle) {
   for (std::size_t c = 0; c < 3; ++c) p.set(fmt::format("light_of[{}]", c), light_of_[c]);
   p.set("sigma_t", medium_.sigma_t);
   p.set("albedo", medium_.albedo);
-  p.dispatch(node_count_);
+  p.dispatch(columns_.count());
   Program& logarithms = *logarithms_program_;
   logarithms_->bind(at::logarithms);
   logarithms.set("cells", cells_);

@@ -1,33 +1,29 @@
 // Source radiance at the nodes of a grid, on the device: single scattering, discrete ordinates for the rest, and what of both goes towards
-// the camera. Depths come from the processor, once; a new light changes what 128 directions (of 8 levels) bring.
+// the camera. A new light changes what 128 directions (of 8 levels) bring, and the columns towards those that moved.
 #pragma once
 #include <array>
 #include <memory>
 #include <optional>
 
-#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/compensated_ray_marching/smoke_columns.h"
 #include "gpu/timer.h"
-#include "methods/compensated_ray_marching/lit_grid.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu::smoke {
 
 class SmokeSource {
  public:
-  // Uploads nodes, densities, depths and directions. Throws Unavailable where the device has no room.
+  // Uploads densities and directions. The medium and the columns outlive this. Throws Unavailable where the device has no room.
   SmokeSource(Context&, const scene::Medium&, const compensated_ray_marching::Options&,
-              const compensated_ray_marching::LitGrid&, const compensated_ray_marching::IncomingLight&);
+              const compensated_ray_marching::LitGrid&, SmokeColumns&);
 
   // A light, or another: stages of the timer. Iterations begin with the light before, as many as it took are told to the device before
-  // they are looked at; `again`: whether the columns changed.
-  void light(const compensated_ray_marching::LitGrid&, const compensated_ray_marching::IncomingLight&, bool aimed,
-             StageTimer&, const scene::Execution&);
+  // they are looked at.
+  void light(const compensated_ray_marching::IncomingLight&, StageTimer&, const scene::Execution&);
 
   // Logarithms of the source radiance by cell, in logarithms().
   void towards(const scene::View&, const Point3& middle);
   const Buffer& logarithms() const { return *logarithms_; }
-  // corner, cell_edge, cells_along: of the nodes, relative to `middle`.
-  void set_grid(Program&, const Point3& middle) const;
 
   int iterations() const { return iterations_; }
   double error() const { return error_; }
@@ -39,7 +35,6 @@ class SmokeSource {
     int last = 0;               // iterations
   };
   void arrange(bool grey);
-  void upload_columns(const compensated_ray_marching::LitGrid&);
   void upload_directions(const compensated_ray_marching::IncomingLight&);
   void scatter_once(const Group&);
   void scatter_again(Group&, bool cold, const scene::Execution&);
@@ -54,17 +49,18 @@ class SmokeSource {
   const scene::Medium& medium_;
   compensated_ray_marching::Options options_;
   bool multiple_ = false, grey_ = false;
-  int cells_ = 0, node_count_ = 0, directions_ = 0, fixed_ = 0, ordinates_ = 0, lights_ = 0;
-  Vec3 cells_along_, corner_;
-  double cell_edge_ = 0;
+  compensated_ray_marching::NodeGrid grid_;
+  SmokeColumns& columns_;
+  int cells_ = 0, directions_ = 0, fixed_ = 0, ordinates_ = 0, lights_ = 0;
+  Vec3 cells_along_;
   std::vector<double> moments_, band_moments_;
   std::vector<Group> groups_;
   std::array<int, 3> light_of_{0, 0, 0};
   int iterations_ = 0;
   double error_ = 0;
-  std::unique_ptr<Buffer> nodes_, densities_, columns_, powers_, towards_light_, harmonics_, ordinate_harmonics_,
-      weighted_, ways_, open_, single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_,
-      radiance_, greatest_, logarithms_;
+  std::unique_ptr<Buffer> densities_, powers_, towards_light_, harmonics_, ordinate_harmonics_, weighted_, ways_, open_,
+      single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_, radiance_, greatest_,
+      logarithms_;
 };
 
 }  // namespace airlight::gpu::smoke

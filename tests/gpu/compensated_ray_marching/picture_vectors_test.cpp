@@ -230,6 +230,9 @@ void centre_on(scene::Scene& s, const Point3& x, double half_side) {
 // Source radiance at the nodes towards a camera, of both.
 struct AtNodes {
   compensated_ray_marching::LitGrid grid;
+  std::optional<compensated_ray_marching::SmokeField> field;
+  std::unique_ptr<gpu::smoke::SmokeDensity> density;
+  std::unique_ptr<gpu::smoke::SmokeColumns> columns;
   std::unique_ptr<gpu::smoke::SmokeSource> source;
 
   AtNodes(const scene::Scene& s, const Given& given)
@@ -266,9 +269,12 @@ struct AtNodes {
     gpu::Context& context = gpu::Context::get();
     gpu::StageTimer timer(context);
     timer.begin("light");
-    source = std::make_unique<gpu::smoke::SmokeSource>(context, s.media[0], options, grid, light);
+    field.emplace(s.media[0], options);
+    density = std::make_unique<gpu::smoke::SmokeDensity>(context, *field, Point3::Zero(), false);
+    columns = std::make_unique<gpu::smoke::SmokeColumns>(context, s, grid, *density, Point3::Zero());
+    source = std::make_unique<gpu::smoke::SmokeSource>(context, s.media[0], options, grid, *columns);
     grid.light(light, {1, {}});
-    source->light(grid, light, true, timer, {1, {}});
+    source->light(light, timer, {1, {}});
     timer.times();
   }
 };

@@ -243,6 +243,46 @@ TEST_CASE("compensated march on the device: a map that turns, and another, in th
   }
 }
 
+TEST_CASE("compensated march on the device: suns that move, come and go, for a bit a node",
+          "[gpu][compensated_ray_marching]") {
+  gpu::Context* context = gpu::test::device();
+  if (!context) return;
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = {9, 7, 8};
+  grid->voxel_size = 0.2;
+  grid->translation = {-0.8, -0.6, -0.7};
+  for (int i = 0; i < 9 * 7 * 8; ++i) grid->values.push_back(float(std::max(0.0, 0.4 + std::sin(0.37 * i))));
+  const scene::DirectionalLight high{Vec3(1, 2, 2).normalized(), Rgb(1, 2, 3)},
+      low{Vec3(-3, 1, 1).normalized(), Rgb(3, 1, 0)}, along{Vec3::UnitX(), Rgb(1, 1, 2)};
+  for (const scene::DensityField& field : {scene::DensityField(puffs()), scene::DensityField(scene::GridPointer(grid))})
+    for (const bool objects : {false, true}) {
+      const auto lit_by = [&](const std::vector<scene::DirectionalLight>& suns) {
+        auto scene = scene_of(field, 4, 0.9, scene::make_constant_environment(Rgb::Constant(0.2)));
+        for (const auto& sun : suns) scene->lights.push_back(sun);
+        if (objects) scene->surfaces = {{"ball", scene::Sphere{{0.6, 0.6, 0.5}, 0.25}, scene::Lambert{}}};
+        finish(*scene);
+        return scene;
+      };
+      const auto prepared = device.prepare(lit_by({high}), {device.settings(), small}, {1, {}});
+      std::size_t before = 1;
+      for (const auto& suns : std::vector<std::vector<scene::DirectionalLight>>{
+               {low}, {low}, {along, low}, {high, low}, {}, {low}, {high, along}, {high, along, low}}) {
+        const auto scene = lit_by(suns);
+        const gpu::Use use(*context);
+        const gpu::Traffic then = context->traffic();
+        REQUIRE(prepared->next(scene, {1, {}}));
+        const gpu::Traffic moved = context->traffic() - then;
+        CAPTURE(objects, suns.size(), field.index());
+        compare(picture(cpu, scene, small), prepared->render(view_of(*scene), {1, {}}).film);
+        // Of each direction where it is, its harmonics, its power: 20 floats and 4; where one moved, the nodes that it does not see.
+        const long directions = 128 + long(suns.size()), nodes = objects ? 12 * 12 * 12 / 8 : 0;
+        if (suns.size() <= before)
+          CHECK(moved.bytes_up <= 4 * 24 * directions + long(suns.size()) * (nodes + 4) + 4 * 3 * 4);
+        before = std::max(before, suns.size());
+      }
+    }
+}
+
 TEST_CASE("compensated march on the device: black smoke and phase functions at their ends stay finite",
           "[gpu][compensated_ray_marching]") {
   if (!gpu::test::device()) return;
