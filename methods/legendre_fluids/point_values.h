@@ -1,4 +1,4 @@
-// Values of Legendre series in three variables at eight points at once.
+// Values of Legendre series in three variables at eight points at once: the same bits by AVX2 and by AVX-512, whatever stands in other lanes.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
