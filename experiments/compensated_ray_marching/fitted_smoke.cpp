@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <tuple>
 
 #include "experiments/build_info.h"
 #include "scene/content_key.h"
@@ -66,6 +68,19 @@ scene::VoxelGrid stirred_smoke(int n, const Vec3& risen, Density&& density) {
   return grid;
 }
 
+scene::VoxelGrid stirred_noise(int n, double time, int octaves) {
+  const Vec3 risen = time * Vec3::UnitY();
+  return stirred_smoke(n, risen, [&](const Vec3& p) {
+    // A column that widens with its height.
+    const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
+    const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
+    double detail = 0;
+    for (int octave = 0; octave < octaves; ++octave)
+      detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
+    return std::max(0.0, ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12));
+  });
+}
+
 // Of all that a fit depends on.
 std::string key_of(const scene::VoxelGrid& grid, int count) {
   scene::load::ContentHash hash;
@@ -84,16 +99,13 @@ scene::VoxelGrid grid_of_scene(const ProbeInput& input) {
 }
 
 scene::VoxelGrid noise_smoke(int n, double time, int octaves) {
-  const Vec3 risen = time * Vec3::UnitY();
-  return stirred_smoke(n, risen, [&](const Vec3& p) {
-    // A column that widens with its height.
-    const double radius = 0.1 + 0.22 * p[1], off = std::hypot(p[0] - 0.5, p[2] - 0.5) / radius;
-    const double ends = std::clamp(8 * (p[1] - 0.06), 0.0, 1.0) * std::clamp(6 * (0.9 - p[1]), 0.0, 1.0);
-    double detail = 0;
-    for (int octave = 0; octave < octaves; ++octave)
-      detail += std::pow(0.5, octave) * noise(6 * std::pow(2.0, octave) * (p - risen), 10 + std::uint32_t(octave));
-    return std::max(0.0, ends * (std::exp(-1.5 * off * off) * (1 + 0.8 * detail) - 0.12));
-  });
+  // Row after row of an experiment asks for the same, which takes longer to make than to fit.
+  static std::mutex mutex;
+  static std::optional<std::pair<std::tuple<int, double, int>, scene::VoxelGrid>> last;
+  const std::tuple key(n, time, octaves);
+  const std::lock_guard lock(mutex);
+  if (!last || last->first != key) last.emplace(key, stirred_noise(n, time, octaves));
+  return last->second;
 }
 
 scene::VoxelGrid puff_smoke(int n, double time) {
