@@ -315,11 +315,16 @@ class Gallery(Tree):
         self.assertEqual(self.run_script("gallery")[0], 0)
         self.assertEqual(len(self.renders()), 2)
         self.write("experiments/gallery.toml", GALLERY.replace("K = 3", "K = 4"))
+        self.objects(1, "results/gallery/one.png was drawn of another entry", "--check")
         self.assertEqual(self.run_script("gallery")[0], 0)
+        self.assertEqual(self.run_script("gallery", "--check")[0], 0)
         self.assertEqual(["--set" in r and r[r.index("--set") + 1] for r in self.renders()[2:]], ["K=4"])
         self.write("experiments/scenes/a.toml", "[camera] # another\n")
+        self.assertEqual(self.run_script("gallery", "--check")[0], 0)
         self.assertEqual(self.run_script("gallery")[0], 0)
         self.assertEqual(len(self.renders()), 5)
+        self.write("experiments/scenes/a.toml", "[camera]\nvertical_fov = 1\n")
+        self.objects(1, "or other scenes", "--check")
 
     def test_panels_are_means_over_pixels(self):
         loader = importlib.machinery.SourceFileLoader("gallery", f"{self.root}/scripts/gallery")
