@@ -21,7 +21,7 @@ constexpr int first_iterations = 8;                  // told to the device befor
 enum Vector { right, solution, missed, slope, direction, along, vector_count };
 enum GradientStage { stage_begin, stage_miss, stage_step, stage_turn, stage_spread };
 struct SystemData {
-  double square, whole;
+  double square, whole, alpha, beta, diagonal, left;
   int done, iterations, negative, unused;
 };
 
@@ -104,7 +104,8 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   product_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "0"}});
   transposed_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "1"}});
   gradients_program_ = program_of("diffusion_gradients", summing, 1,
-                                  {{"STAGE_BEGIN", std::to_string(stage_begin)},
+                                  {{"LSQR", is_lsqr() ? "1" : "0"},
+                                   {"STAGE_BEGIN", std::to_string(stage_begin)},
                                    {"STAGE_MISS", std::to_string(stage_miss)},
                                    {"STAGE_STEP", std::to_string(stage_step)},
                                    {"STAGE_TURN", std::to_string(stage_turn)},
@@ -141,7 +142,7 @@ void CentreSourcesOnDevice::find_groups() {
     group.matrix->bind(at::matrix);
     group.row_scales->bind(at::row_scales);
     p.set("gaussian_count", count_);
-    p.set("scaled", solver == LeastSquaresSolver::cg_scaled);
+    p.set("scaled", solver == LeastSquaresSolver::cg_scaled || solver == LeastSquaresSolver::lsqr_scaled);
     p.set_double("transport", (1 - albedo * g) * sigma_t);
     p.set_double("absorption", (1 - albedo) * sigma_t);
     p.dispatch(lanes * count_);
@@ -220,9 +221,9 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
   int told = 0, next = std::min(g.last > 0 ? g.last : first_iterations, options_.iterations);
   for (bool done = false; !done;) {
     for (; told < next; ++told) {
-      product(g, false, direction, along);
+      product(g, false, is_lsqr() ? slope : direction, along);
       gradients(g, stage_step);
-      product(g, true, missed, slope);
+      product(g, true, missed, is_lsqr() ? along : slope);
       gradients(g, stage_turn);
     }
     const std::vector<SystemData> all = systems_->download<SystemData>();

@@ -44,6 +44,10 @@ class CentreSourcesOnDevice {
     int last = 0;     // iterations
     std::unique_ptr<Buffer> matrix, row_scales;
   };
+  bool is_lsqr() const {
+    using Solver = compensated_ray_marching::LeastSquaresSolver;
+    return options_.paper.solver == Solver::lsqr || options_.paper.solver == Solver::lsqr_scaled;
+  }
   void find_groups();
   void scatter_once();
   void scatter_again(Group&, const scene::Execution&);
