@@ -110,7 +110,7 @@ TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching]
   coloured->ambient_in_scatter = Rgb(0.1, 0.2, 0.3);
   finish(*coloured);
   for (const char* order : {"1", "2", "3", "4", "5", "6"})
-    for (const char* transmittance : {"ol", "hyb", "series"}) {
+    for (const char* transmittance : {"ol", "hyb", "series", "directional"}) {
       CAPTURE(order, transmittance);
       compare(coloured, paper({{"order", order}, {"transmittance", transmittance}, {"iterations", "12"}}));
     }
@@ -328,7 +328,12 @@ TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ra
     return reasons.empty() ? std::string() : reasons.front();
   };
   CHECK(reason({}).empty());
-  CHECK_THAT(reason({{"transmittance", "directional"}}), Contains("transmittance = directional"));
+  const auto with_ball = scene_of(puffs(), 3, 0.8, uneven());
+  with_ball->surfaces = {{"ball", scene::Sphere{{0.6, 0.6, 0.5}, 0.25}, scene::Lambert{}}};
+  finish(*with_ball);
+  const auto reasons = device.supports(*with_ball, {device.settings(), paper({{"transmittance", "directional"}})});
+  REQUIRE(reasons.size() == 1);
+  CHECK_THAT(reasons.front(), Contains("transmittance = directional"));
   CHECK_THAT(reason({{"residual_store", "grid"}}), Contains("residual_store = grid"));
 }
 
