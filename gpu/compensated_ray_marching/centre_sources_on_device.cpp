@@ -8,6 +8,7 @@
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/math/spherical_harmonics.h"
 
 namespace airlight::gpu::smoke {
 namespace {
@@ -22,7 +23,7 @@ constexpr int first_iterations = 8;                  // told to the device befor
 enum Vector { right, solution, missed, slope, direction, along, vector_count };
 enum GradientStage { stage_begin, stage_miss, stage_step, stage_turn, stage_spread };
 struct SystemData {
-  double square, whole;
+  double square, whole, alpha, beta, diagonal, left;
   int done, iterations, negative, unused;
 };
 
@@ -52,7 +53,8 @@ std::vector<double> objects_of(const std::vector<scene::Surface>& surfaces) {
 
 CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::GaussianSum& sum,
                                              const scene::Medium& medium, const std::vector<scene::Surface>& surfaces,
-                                             const Options& options, StageTimer& timer)
+                                             const Options& options, StageTimer& timer,
+                                             const scene::Execution& execution)
     : context_(context),
       medium_(medium),
       options_(options),
@@ -67,8 +69,11 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
     for (const double v : {g.center[0], g.center[1], g.center[2], g.width, g.amplitude}) values.push_back(v);
   centres_ = std::make_unique<Buffer>(context, "centres", values);
   spheres_ = std::make_unique<Buffer>(context, "spheres that cast shadows", objects_of(surfaces));
+  if (options.paper.transmittance == compensated_ray_marching::Transmittance::directional)
+    directions_ = compensated_ray_marching::transmittance_directions();
   const auto bands = std::size_t(options.order * options.order), n = std::size_t(count_);
-  light_bands_ = std::make_unique<Buffer>(context, "light in bands", 8 * 3 * bands);
+  const std::size_t parts = directions_.empty() ? bands : directions_.size();
+  light_bands_ = std::make_unique<Buffer>(context, "light in bands", 8 * 3 * parts);
   sources_ = std::make_unique<Buffer>(context, "sources of centres", 16 * n);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto same = std::find(extinctions_.begin(), extinctions_.end(), medium.sigma_t[Eigen::Index(c)]);
@@ -81,13 +86,35 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   };
   if (!surfaces.empty()) surfaces_program_ = program_of("centre_surfaces", lanes, 1);
   if (!scatters_) return;
-  passed_program_ = program_of("centre_passed", lanes, 1);
+  if (directions_.empty()) passed_program_ = program_of("centre_passed", lanes, 1);
   single_program_ = program_of("centre_single", lanes, 1);
   towards_program_ = program_of("centre_towards", lanes, 1);
-  passed_ = std::make_unique<Buffer>(context, "what passes to centres", 8 * n * bands * extinctions_.size());
+  passed_ = std::make_unique<Buffer>(context, "what passes to centres", 8 * n * parts * extinctions_.size());
   single_ = std::make_unique<Buffer>(context, "single scattering at centres", 8 * n * bands * 3);
   again_ = std::make_unique<Buffer>(context, "scattered again at centres", 8 * n * 4 * 3);
   timer.begin("passing light");
+  if (directions_.empty())
+    find_passed();
+  else
+    passed_->upload(passed_by_directions(sum, execution));
+  if (!single_only_.empty()) return;
+  matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
+  right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
+  again_program_ = program_of("diffusion_again", lanes, 1, {{"SUMS", "11"}});
+  product_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "0"}});
+  transposed_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "1"}});
+  gradients_program_ = program_of("diffusion_gradients", summing, 1,
+                                  {{"LSQR", is_lsqr() ? "1" : "0"},
+                                   {"STAGE_BEGIN", std::to_string(stage_begin)},
+                                   {"STAGE_MISS", std::to_string(stage_miss)},
+                                   {"STAGE_STEP", std::to_string(stage_step)},
+                                   {"STAGE_TURN", std::to_string(stage_turn)},
+                                   {"STAGE_SPREAD", std::to_string(stage_spread)}});
+  timer.begin("diffusion matrix");
+  find_groups();
+}
+
+void CentreSourcesOnDevice::find_passed() {
   Program& p = *passed_program_;
   tables_.bind(p);
   tables_.bind_terms();
@@ -99,20 +126,24 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   p.set("extinctions", int(extinctions_.size()));
   for (std::size_t e = 0; e < extinctions_.size(); ++e) p.set_double(at_index("extinction", e), extinctions_[e]);
   p.dispatch(lanes * count_);
-  if (!single_only_.empty()) return;
-  matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
-  right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
-  again_program_ = program_of("diffusion_again", lanes, 1, {{"SUMS", "11"}});
-  product_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "0"}});
-  transposed_program_ = program_of("diffusion_product", edge, edge, {{"TRANSPOSED", "1"}});
-  gradients_program_ = program_of("diffusion_gradients", summing, 1,
-                                  {{"STAGE_BEGIN", std::to_string(stage_begin)},
-                                   {"STAGE_MISS", std::to_string(stage_miss)},
-                                   {"STAGE_STEP", std::to_string(stage_step)},
-                                   {"STAGE_TURN", std::to_string(stage_turn)},
-                                   {"STAGE_SPREAD", std::to_string(stage_spread)}});
-  timer.begin("diffusion matrix");
-  find_groups();
+}
+
+// Once for a smoke, and in double precision, which error functions of shaders have not.
+std::vector<double> CentreSourcesOnDevice::passed_by_directions(const scene::GaussianSum& sum,
+                                                                const scene::Execution& execution) const {
+  scene::GaussianSum smoke = sum;
+  smoke.constant = 0;
+  const std::size_t n = smoke.gaussians.size(), parts = directions_.size();
+  std::vector<double> passed(n * parts * extinctions_.size());  // [extinction][direction][centre]
+  scene::parallel_rows(int(n), execution, [&](int i) {
+    for (std::size_t k = 0; k < parts; ++k) {
+      const Ray ray{smoke.gaussians[std::size_t(i)].center, directions_[k].direction};
+      const double column = density_integral(smoke, ray, {0, infinity});
+      for (std::size_t e = 0; e < extinctions_.size(); ++e)
+        passed[(e * parts + k) * n + std::size_t(i)] = std::exp(-extinctions_[e] * column);
+    }
+  });
+  return passed;
 }
 
 // Channels that scatter nothing have no system.
@@ -143,7 +174,7 @@ void CentreSourcesOnDevice::find_groups() {
     group.matrix->bind(at::matrix);
     group.row_scales->bind(at::row_scales);
     p.set("gaussian_count", count_);
-    p.set("scaled", solver == LeastSquaresSolver::cg_scaled);
+    p.set("scaled", solver == LeastSquaresSolver::cg_scaled || solver == LeastSquaresSolver::lsqr_scaled);
     p.set_double("transport", (1 - albedo * g) * sigma_t);
     p.set_double("absorption", (1 - albedo) * sigma_t);
     p.dispatch(lanes * count_);
@@ -222,9 +253,9 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
   int told = 0, next = std::min(g.last > 0 ? g.last : first_iterations, options_.iterations);
   for (bool done = false; !done;) {
     for (; told < next; ++told) {
-      product(g, false, direction, along);
+      product(g, false, is_lsqr() ? slope : direction, along);
       gradients(g, stage_step);
-      product(g, true, missed, slope);
+      product(g, true, missed, is_lsqr() ? along : slope);
       gradients(g, stage_turn);
     }
     const std::vector<SystemData> all = systems_->download<SystemData>();
@@ -264,14 +295,17 @@ void CentreSourcesOnDevice::light(const std::vector<Rgb>& light, StageTimer& tim
   residual_ = negative_share_ = 0;
   if (!scatters_ && !surfaces_program_) return;
   timer.begin("upload");
-  std::vector<double> bands;
+  std::vector<Rgb> parts = light;
+  if (!directions_.empty()) parts.clear();
+  for (const auto& d : directions_) parts.push_back(d.weight * scene::evaluate_sh(light, d.direction));
+  std::vector<double> values;
   bool grey = true;
   for (int c = 0; c < 3; ++c)
-    for (const Rgb& band : light) {
-      bands.push_back(band[c]);
-      grey = grey && band[c] == band[0];
+    for (const Rgb& part : parts) {
+      values.push_back(part[c]);
+      grey = grey && part[c] == part[0];
     }
-  light_bands_->upload(bands);
+  light_bands_->upload(values);
   if (!scatters_) return;
   timer.begin("single scattering");
   scatter_once();

@@ -15,9 +15,10 @@ namespace airlight::gpu::smoke {
 class CentreSourcesOnDevice {
  public:
   // `sum` and `medium` are of the same smoke, amplitudes above 0; the medium outlives this. Of the surfaces spheres cast shadows, planes
-  // none. Stages of the timer: what passes, the matrices. Throws Unavailable where the device has no room.
+  // none. Surfaces are refused by those who call where transmittances are directional. Stages of the timer: what passes, the matrices. Throws Unavailable where the device has no room.
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
-                        const std::vector<scene::Surface>&, const compensated_ray_marching::Options&, StageTimer&);
+                        const std::vector<scene::Surface>&, const compensated_ray_marching::Options&, StageTimer&,
+                        const scene::Execution&);
 
   // A light, or another, order^2 coefficients of lookup directions. Conjugate gradients begin with the radiance before; as many as it took
   // are told to the device before they are looked at.
@@ -46,6 +47,12 @@ class CentreSourcesOnDevice {
     int last = 0;     // iterations
     std::unique_ptr<Buffer> matrix, row_scales;
   };
+  bool is_lsqr() const {
+    using Solver = compensated_ray_marching::LeastSquaresSolver;
+    return options_.paper.solver == Solver::lsqr || options_.paper.solver == Solver::lsqr_scaled;
+  }
+  void find_passed();
+  std::vector<double> passed_by_directions(const scene::GaussianSum&, const scene::Execution&) const;
   void find_groups();
   void scatter_once();
   void scatter_again(Group&, const scene::Execution&);
@@ -60,6 +67,7 @@ class CentreSourcesOnDevice {
   int count_ = 0, objects_ = 0;
   bool scatters_ = false;
   CentreTables tables_;
+  std::vector<compensated_ray_marching::Ordinate> directions_;  // of `directional`
   std::vector<Group> groups_;
   std::vector<double> extinctions_;
   std::array<int, 3> extinction_of_{0, 0, 0};

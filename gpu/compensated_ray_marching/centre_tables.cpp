@@ -7,6 +7,7 @@
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/sphere_shadow.h"
 #include "scene/math/sh_product.h"
+#include "scene/math/spherical_harmonics.h"
 
 namespace airlight::gpu::smoke {
 namespace {
@@ -38,6 +39,18 @@ std::vector<TermData> terms_of(int order) {
     at += int(row.size());
   }
   for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+// Of directions in place of bands: what each adds to a coefficient.
+std::vector<TermData> terms_of(int order, const std::vector<compensated_ray_marching::Ordinate>& directions) {
+  const int bands = order * order, count = int(directions.size());
+  std::vector<TermData> all;
+  for (int b = 0; b < bands; ++b) all.push_back({bands + b * count, bands + (b + 1) * count, 0});
+  std::vector<std::vector<double>> harmonics;
+  for (const auto& d : directions) harmonics.push_back(scene::evaluate_sh(order, d.direction));
+  for (int b = 0; b < bands; ++b)
+    for (int k = 0; k < count; ++k) all.push_back({k, k, harmonics[std::size_t(k)][std::size_t(b)]});
   return all;
 }
 
@@ -84,9 +97,9 @@ CentreTables::CentreTables(Context& context, int order, Transmittance kind, doub
   number("EXPONENTIAL_LINEAR", std::size_t(Transmittance::paper_linear));
   number("EXPONENTIAL_SQUARED", std::size_t(Transmittance::paper_squared));
   number("EXPONENTIAL", std::size_t(kind));
-  const bool linear = kind != Transmittance::series;
-  definitions_["THRESHOLD"] = exact(kind == Transmittance::series ? compensated_ray_marching::series_threshold
-                                                                  : compensated_ray_marching::squaring_threshold);
+  const bool linear = kind == Transmittance::paper_linear || kind == Transmittance::paper_squared;
+  definitions_["THRESHOLD"] =
+      exact(linear ? compensated_ray_marching::squaring_threshold : compensated_ray_marching::series_threshold);
   begin("LOG_A_AT");
   if (linear) {
     const auto& exponential = compensated_ray_marching::linear_exponential(order);
@@ -116,7 +129,11 @@ CentreTables::CentreTables(Context& context, int order, Transmittance kind, doub
   definitions_["SHADOWS_PER_ANGLE"] = exact(double(last) / (0.5 * pi));
 
   tables_ = std::make_unique<Buffer>(context, "tables of sources", all);
-  terms_ = std::make_unique<Buffer>(context, "terms of products", terms_of(order));
+  std::vector<compensated_ray_marching::Ordinate> directions;
+  if (kind == Transmittance::directional) directions = compensated_ray_marching::transmittance_directions();
+  number("PARTS", directions.empty() ? size * size : directions.size());
+  terms_ = std::make_unique<Buffer>(context, "terms of products",
+                                    directions.empty() ? terms_of(order) : terms_of(order, directions));
 }
 
 void CentreTables::bind(Program& p) const {

@@ -7,7 +7,7 @@ namespace airlight::gpu::smoke {
 
 class CentreTables {
  public:
-  // Shadows of objects only where there are any.
+  // Shadows of objects only where there are any. Of `directional` products are of what is known by direction.
   CentreTables(Context&, int order, compensated_ray_marching::Transmittance, double cutoff, bool objects);
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&) const;  // centre_tables.glsl

@@ -44,7 +44,7 @@ class PreparedSmokeGpu final : public scene::Prepared {
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
   void begin_environments();
   void begin_grid(StageTimer&, const Execution&);
-  void begin_centres(StageTimer&);
+  void begin_centres(StageTimer&, const Execution&);
   std::vector<scene::StageTime> light(const Execution&);
   void march(const View&) const;
   void light_surfaces(const View&) const;
@@ -119,7 +119,7 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
     ranges_ = &program(context_, "ranges", tile, tile, density_->definitions());
     march_ = &program(context_, "march", tile, tile, density_->definitions());
   }
-  paper() ? begin_centres(timer) : begin_grid(timer, execution);
+  paper() ? begin_centres(timer, execution) : begin_grid(timer, execution);
   append(times_, timer.times());
   if (paper()) append(times_, light(execution));
 }
@@ -148,12 +148,12 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
   source_->light(*incoming_, timer, execution);
 }
 
-void PreparedSmokeGpu::begin_centres(StageTimer& timer) {
+void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& execution) {
   static const scene::GaussianSum no_smoke;
   static const scene::Medium clear;
-  centres_ =
-      std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
-                                              smoke_ ? smoke_->medium() : clear, scene_->surfaces, options_, timer);
+  centres_ = std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
+                                                     smoke_ ? smoke_->medium() : clear, scene_->surfaces, options_,
+                                                     timer, execution);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.

@@ -1,5 +1,5 @@
-// Conjugate gradients on the normal equations between products with the matrix: conjugate_gradients of diffusion_system.cpp, with its
-// iterations and its end. A system is a work group's.
+// Conjugate gradients on the normal equations, or LSQR, between products with the matrix: conjugate_gradients and lsqr of
+// diffusion_system.cpp, with their iterations and their end. A system is a work group's.
 layout(local_size_x = LOCAL_SIZE_X) in;
 uniform int gaussian_count;
 #include "compensated_ray_marching/diffusion_vectors.glsl"
@@ -26,6 +26,17 @@ double square_of(int vector) {
   return total(sum);
 }
 
+#if LSQR
+// Vector `to` becomes `from` less `factor` times what it was, of length 1 unless it is 0. Returns the length before.
+double normalised(int to, int from, double factor) {
+  for (int i = lane; i < gaussian_count; i += lanes) vectors[to + i] = vectors[from + i] - factor * vectors[to + i];
+  double length_ = sqrt(square_of(to));
+  if (length_ > 0)
+    for (int i = lane; i < gaussian_count; i += lanes) vectors[to + i] /= length_;
+  return length_;
+}
+#endif
+
 void main() {
   int z = int(gl_WorkGroupID.z), system = first_system + z;
   int right = vector_at(z, RIGHT), solution = vector_at(z, SOLUTION), missed = vector_at(z, MISSED), slope = vector_at(z, SLOPE),
@@ -41,11 +52,39 @@ void main() {
     return;
   }
   if (states[system].done != 0) return;
-  double square = states[system].square;
+  State now = states[system];
+#if LSQR
+  if (stage == STAGE_STEP) {
+    now.beta = normalised(missed, along, now.alpha);
+    if (lane == 0) states[system].beta = now.beta;
+    return;
+  }
+  double share;  // of the direction before
+  if (stage == STAGE_BEGIN) {  // the slope is the transposed matrix times what the start misses, not of length 1
+    now.whole = sqrt(square_of(along));
+    now.left = normalised(missed, missed, 0);
+    now.alpha = now.left > 0 ? normalised(slope, slope, 0) / now.left : 0;
+    now.diagonal = now.alpha;
+    now.square = now.alpha * now.left;
+    now.iterations = 0;
+    share = 0;
+  } else {
+    now.alpha = normalised(slope, along, now.beta);
+    double length_ = sqrt(now.diagonal * now.diagonal + now.beta * now.beta);
+    double cosine = now.diagonal / length_, sine = now.beta / length_, step_ = cosine * now.left / length_;
+    for (int i = lane; i < gaussian_count; i += lanes) vectors[solution + i] += step_ * vectors[direction + i];
+    share = -sine * now.alpha / length_;
+    now.left *= sine;
+    now.diagonal = -cosine * now.alpha;
+    now.square = now.left * now.alpha * abs(cosine);
+    ++now.iterations;
+  }
+  now.square *= now.square;
+#else
   if (stage == STAGE_STEP) {
     double length_ = square_of(along);
     if (length_ > 0) {
-      double step_ = square / length_;
+      double step_ = now.square / length_;
       for (int i = lane; i < gaussian_count; i += lanes) {
         vectors[solution + i] += step_ * vectors[direction + i];
         vectors[missed + i] -= step_ * vectors[along + i];
@@ -56,20 +95,23 @@ void main() {
     return;
   }
   // The slope is new: of the first iteration, where `along` is the transposed matrix times the right side, or of the next.
-  double next = square_of(slope), share = 0, whole = states[system].whole, negative = 0;
-  int iterations = 0;
+  double next = square_of(slope), share = 0;
   if (stage == STAGE_BEGIN) {
-    whole = sqrt(square_of(along));
-    if (!(whole > 0)) whole = 1;
+    now.whole = sqrt(square_of(along));
+    now.iterations = 0;
   } else {
-    share = next / square;
-    iterations = states[system].iterations + 1;
+    share = next / now.square;
+    ++now.iterations;
   }
+  now.square = next;
+#endif
+  if (!(now.whole > 0)) now.whole = 1;
+  double negative = 0;
   for (int i = lane; i < gaussian_count; i += lanes) {
     vectors[direction + i] = vectors[slope + i] + (share == 0 ? 0 : share * vectors[direction + i]);
     if (vectors[solution + i] < 0) negative += 1;
   }
-  negative = total(negative);
-  bool goes_on = iterations < most_iterations && sqrt(next) > tolerance * whole;
-  if (lane == 0) states[system] = State(next, whole, goes_on ? 0 : 1, iterations, int(negative), 0);
+  now.negative = int(total(negative));
+  now.done = now.iterations < most_iterations && sqrt(now.square) > tolerance * now.whole ? 0 : 1;
+  if (lane == 0) states[system] = now;
 }

@@ -92,12 +92,8 @@ void SmokeDensity::bind_residual(Program& p) const {
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   const bool paper = options.variant == Options::Variant::paper;
-  using compensated_ray_marching::LeastSquaresSolver;
-  const LeastSquaresSolver solver = options.paper.solver;
-  if (paper && options.paper.transmittance == compensated_ray_marching::Transmittance::directional)
-    reasons.push_back("transmittance = directional; shaders know ol, hyb, series");
-  if (paper && (solver == LeastSquaresSolver::lsqr || solver == LeastSquaresSolver::lsqr_scaled))
-    reasons.push_back("solver = lsqr; shaders know conjugate gradients");
+  if (paper && options.paper.transmittance == compensated_ray_marching::Transmittance::directional && scene.geometry)
+    reasons.push_back("surfaces; transmittance = directional lights them on the processor alone");
   if (paper && options.paper.store == compensated_ray_marching::ResidualStore::grid)
     reasons.push_back("residual_store = grid; shaders know bricks and hash");
   if (!paper && options.grid.multiple == Options::Grid::Multiple::p1)

@@ -45,7 +45,7 @@ void CentreSources::light(const std::vector<scene::Light>& lights, const scene::
   SourceLight light{bands_.of(lights), {}};
   light.radiance = [harmonics = light.harmonics](const Vec3& w) { return scene::evaluate_sh(harmonics, w); };
   radiance_.emplace(sum_, medium_.sigma_t, medium_.albedo, phase_moments(medium_.phase, options_.order),
-                    std::move(light), options_.paper.transmittance, ordinate_directions(8, 16, false), objects_);
+                    std::move(light), options_.paper.transmittance, transmittance_directions(), objects_);
   sources_.resize(sum_.gaussians.size());
   times_.push_back({"environment", watch.lap()});
   scene::parallel_rows(int(sources_.size()), execution,

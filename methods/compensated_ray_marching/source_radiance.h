@@ -30,6 +30,8 @@ const LinearExponential& linear_exponential(int order);
 const ShadowTable& shadow_table(int order, Transmittance);
 
 constexpr double squaring_threshold = 0.5;  // of paper_squared
+// Of `directional`.
+inline std::vector<Ordinate> transmittance_directions() { return ordinate_directions(8, 16, false); }
 
 class SourceRadiance {
  public:
@@ -38,7 +40,7 @@ class SourceRadiance {
   // directions: of `directional`, which alone asks the light for its radiance. Throws Error where light and phase function are not of one
   // order.
   SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, const Rgb& albedo, std::vector<double> phase,
-                 SourceLight light, Transmittance, std::vector<Ordinate> directions = ordinate_directions(8, 16, false),
+                 SourceLight light, Transmittance, std::vector<Ordinate> directions = transmittance_directions(),
                  std::vector<scene::Sphere> objects = {});
 
   // order^2 coefficients of J_ss, of propagation directions.

@@ -126,13 +126,14 @@ TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching]
   coloured->ambient_in_scatter = Rgb(0.1, 0.2, 0.3);
   finish(*coloured);
   for (const char* order : {"1", "2", "3", "4", "5", "6"})
-    for (const char* transmittance : {"ol", "hyb", "series"}) {
+    for (const char* transmittance : {"ol", "hyb", "series", "directional"}) {
       CAPTURE(order, transmittance);
       compare(coloured, paper({{"order", order}, {"transmittance", transmittance}, {"iterations", "12"}}));
     }
   for (Given more : {Given{{"multiple", "none"}}, Given{{"multiple", "corrected"}}, Given{{"iterations", "1"}},
-                     Given{{"solver", "cg_scaled"}}, Given{{"slice_weight", "exact"}, {"slices", "77"}},
-                     Given{{"slice_weight", "printed"}}, Given{{"tolerance", "0.5"}}}) {
+                     Given{{"solver", "cg_scaled"}}, Given{{"solver", "lsqr"}}, Given{{"solver", "lsqr_scaled"}},
+                     Given{{"slice_weight", "exact"}, {"slices", "77"}}, Given{{"slice_weight", "printed"}},
+                     Given{{"tolerance", "0.5"}}}) {
     more.insert({"iterations", "12"});
     CAPTURE(more);
     compare(coloured, paper(more));
@@ -343,8 +344,12 @@ TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ra
     return reasons.empty() ? std::string() : reasons.front();
   };
   CHECK(reason({}).empty());
-  CHECK_THAT(reason({{"transmittance", "directional"}}), Contains("transmittance = directional"));
-  CHECK_THAT(reason({{"solver", "lsqr"}}), Contains("solver = lsqr"));
+  const auto with_ball = scene_of(puffs(), 3, 0.8, uneven());
+  with_ball->surfaces = {{"ball", scene::Sphere{{0.6, 0.6, 0.5}, 0.25}, scene::Lambert{}}};
+  finish(*with_ball);
+  const auto reasons = device.supports(*with_ball, {device.settings(), paper({{"transmittance", "directional"}})});
+  REQUIRE(reasons.size() == 1);
+  CHECK_THAT(reasons.front(), Contains("transmittance = directional"));
   CHECK_THAT(reason({{"residual_store", "grid"}}), Contains("residual_store = grid"));
 }
 
@@ -358,7 +363,7 @@ TEST_CASE("paper on the device: solved to the end, and stopped where rounding st
     return scene;
   };
   const auto scene = lit(1);
-  for (const char* solver : {"cg", "cg_scaled"}) {
+  for (const char* solver : {"cg", "cg_scaled", "lsqr", "lsqr_scaled"}) {
     const Given given = paper({{"tolerance", "1e-8"}, {"iterations", "100000"}, {"solver", solver}});
     const scene::Rendering solved = render(device, scene, given);
     compare(picture(cpu, scene, given), solved.film);
