@@ -53,8 +53,8 @@ std::vector<double> objects_of(const std::vector<scene::Surface>& surfaces) {
 
 CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::GaussianSum& sum,
                                              const scene::Medium& medium, const std::vector<scene::Surface>& surfaces,
-                                             const Options& options, StageTimer& timer,
-                                             const scene::Execution& execution)
+                                             const SmokeDensity* density, const Point3& middle, const Options& options,
+                                             StageTimer& timer, const scene::Execution& execution)
     : context_(context),
       medium_(medium),
       options_(options),
@@ -84,7 +84,9 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
     more.insert(tables_.definitions().begin(), tables_.definitions().end());
     return &program(context_, file, x, y, more);
   };
-  if (!surfaces.empty()) surfaces_program_ = program_of("centre_surfaces", lanes, 1);
+  if (!surfaces.empty() && directions_.empty()) surfaces_program_ = program_of("centre_surfaces", lanes, 1);
+  if (!surfaces.empty() && !directions_.empty())
+    surfaces_by_directions_ = std::make_unique<SurfacesByDirections>(context, density, middle, directions_);
   if (!scatters_) return;
   if (directions_.empty()) passed_program_ = program_of("centre_passed", lanes, 1);
   single_program_ = program_of("centre_single", lanes, 1);
@@ -96,7 +98,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   if (directions_.empty())
     find_passed();
   else
-    passed_->upload(passed_by_directions(sum, execution));
+    passed_->upload(passed_by_directions(sum, spheres_of(surfaces), execution));
   if (!single_only_.empty()) return;
   matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
   right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
@@ -130,6 +132,7 @@ void CentreSourcesOnDevice::find_passed() {
 
 // Once for a smoke, and in double precision, which error functions of shaders have not.
 std::vector<double> CentreSourcesOnDevice::passed_by_directions(const scene::GaussianSum& sum,
+                                                                const std::vector<scene::Sphere>& objects,
                                                                 const scene::Execution& execution) const {
   scene::GaussianSum smoke = sum;
   smoke.constant = 0;
@@ -138,9 +141,11 @@ std::vector<double> CentreSourcesOnDevice::passed_by_directions(const scene::Gau
   scene::parallel_rows(int(n), execution, [&](int i) {
     for (std::size_t k = 0; k < parts; ++k) {
       const Ray ray{smoke.gaussians[std::size_t(i)].center, directions_[k].direction};
+      const double share = compensated_ray_marching::visible_share(objects, ray.origin, ray.direction,
+                                                                   std::sqrt(4 * pi / double(parts)));
       const double column = density_integral(smoke, ray, {0, infinity});
       for (std::size_t e = 0; e < extinctions_.size(); ++e)
-        passed[(e * parts + k) * n + std::size_t(i)] = std::exp(-extinctions_[e] * column);
+        passed[(e * parts + k) * n + std::size_t(i)] = share * std::exp(-extinctions_[e] * column);
     }
   });
   return passed;
@@ -293,7 +298,7 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
 void CentreSourcesOnDevice::light(const std::vector<Rgb>& light, StageTimer& timer, const scene::Execution& execution) {
   iterations_ = 0;
   residual_ = negative_share_ = 0;
-  if (!scatters_ && !surfaces_program_) return;
+  if (!scatters_ && !surfaces_program_ && !surfaces_by_directions_) return;
   timer.begin("upload");
   std::vector<Rgb> parts = light;
   if (!directions_.empty()) parts.clear();
@@ -337,6 +342,11 @@ void CentreSourcesOnDevice::towards(const scene::View& view) {
 
 void CentreSourcesOnDevice::light_surfaces(const scene::View& view, const SurfacesOnDevice& surfaces,
                                            const Buffer& primitives, const Buffer& lit) {
+  if (surfaces_by_directions_) {
+    surfaces_by_directions_->light(view, surfaces, medium_.sigma_t, *light_bands_, *spheres_, objects_, primitives,
+                                   lit);
+    return;
+  }
   Program& p = *surfaces_program_;
   tables_.bind(p);
   tables_.bind_terms();

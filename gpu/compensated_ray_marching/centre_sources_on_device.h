@@ -5,6 +5,7 @@
 #include <array>
 
 #include "gpu/compensated_ray_marching/centre_tables.h"
+#include "gpu/compensated_ray_marching/surfaces_by_directions.h"
 #include "gpu/raster/first_hits.h"
 #include "gpu/timer.h"
 #include "methods/compensated_ray_marching/options.h"
@@ -15,10 +16,11 @@ namespace airlight::gpu::smoke {
 class CentreSourcesOnDevice {
  public:
   // `sum` and `medium` are of the same smoke, amplitudes above 0; the medium outlives this. Of the surfaces spheres cast shadows, planes
-  // none. Surfaces are refused by those who call where transmittances are directional. Stages of the timer: what passes, the matrices. Throws Unavailable where the device has no room.
+  // none. The density is that of the march, for surfaces (null: no smoke), `middle` its middle; it outlives this. Stages of the timer: what
+  // passes, the matrices. Throws Unavailable where the device has no room.
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
-                        const std::vector<scene::Surface>&, const compensated_ray_marching::Options&, StageTimer&,
-                        const scene::Execution&);
+                        const std::vector<scene::Surface>&, const SmokeDensity*, const Point3& middle,
+                        const compensated_ray_marching::Options&, StageTimer&, const scene::Execution&);
 
   // A light, or another, order^2 coefficients of lookup directions. Conjugate gradients begin with the radiance before; as many as it took
   // are told to the device before they are looked at.
@@ -52,7 +54,8 @@ class CentreSourcesOnDevice {
     return options_.paper.solver == Solver::lsqr || options_.paper.solver == Solver::lsqr_scaled;
   }
   void find_passed();
-  std::vector<double> passed_by_directions(const scene::GaussianSum&, const scene::Execution&) const;
+  std::vector<double> passed_by_directions(const scene::GaussianSum&, const std::vector<scene::Sphere>&,
+                                           const scene::Execution&) const;
   void find_groups();
   void scatter_once();
   void scatter_again(Group&, const scene::Execution&);
@@ -77,6 +80,7 @@ class CentreSourcesOnDevice {
   Program *passed_program_ = nullptr, *single_program_ = nullptr, *matrix_program_ = nullptr, *right_program_ = nullptr,
           *product_program_ = nullptr, *transposed_program_ = nullptr, *gradients_program_ = nullptr,
           *again_program_ = nullptr, *towards_program_ = nullptr, *surfaces_program_ = nullptr;
+  std::unique_ptr<SurfacesByDirections> surfaces_by_directions_;
   std::unique_ptr<Buffer> centres_, spheres_, passed_, light_bands_, single_, again_, sources_, vectors_, systems_;
 };
 

@@ -152,8 +152,8 @@ void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& executi
   static const scene::GaussianSum no_smoke;
   static const scene::Medium clear;
   centres_ = std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
-                                                     smoke_ ? smoke_->medium() : clear, scene_->surfaces, options_,
-                                                     timer, execution);
+                                                     smoke_ ? smoke_->medium() : clear, scene_->surfaces,
+                                                     density_.get(), middle_, options_, timer, execution);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.

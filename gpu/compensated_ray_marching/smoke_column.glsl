@@ -1,7 +1,11 @@
 // How much smoke there is from a point to infinity in one direction, after smoke_density.glsl. Places relative to the middle of the smoke.
 #include "common/error_function.glsl"
 #include "common/loops_cut.glsl"
+#ifdef TO_LIGHT_OF_LANE
+vec3 to_light;
+#else
 uniform vec3 to_light;
+#endif
 uniform float widths2;  // of Gaussians: where they end, in widths, squared
 
 #if GAUSSIANS

@@ -92,8 +92,6 @@ void SmokeDensity::bind_residual(Program& p) const {
 std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   const bool paper = options.variant == Options::Variant::paper;
-  if (paper && options.paper.transmittance == compensated_ray_marching::Transmittance::directional && scene.geometry)
-    reasons.push_back("surfaces; transmittance = directional lights them on the processor alone");
   if (paper && options.paper.store == compensated_ray_marching::ResidualStore::grid)
     reasons.push_back("residual_store = grid; shaders know bricks and hash");
   if (!paper && options.grid.multiple == Options::Grid::Multiple::p1)
