@@ -32,8 +32,11 @@ GATES = "experiments/driver/gates.cpp", "experiments/gates_test.cpp"
 EXPOSURE = "experiments/driver/pictures.cpp", "experiments/pictures_test.cpp"
 TIGHTEN = "scripts/tighten", "scripts/scripts_test.py"
 FIGURES = "scripts/figures", "scripts/scripts_test.py"
+GALLERY = "scripts/gallery", "scripts/scripts_test.py"
 SMOKE_OPTIONS = "methods/compensated_ray_marching/options.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 SMOKE = "methods/compensated_ray_marching/marched_smoke.cpp", "methods/compensated_ray_marching/stress_test.cpp"
+SMOKE_KEPT = "methods/compensated_ray_marching/marched_smoke.cpp", "methods/compensated_ray_marching/renderer_test.cpp"
+CENTRES = "methods/compensated_ray_marching/centre_sources.cpp", "methods/compensated_ray_marching/renderer_test.cpp"
 SMOKE_PICTURE = "methods/compensated_ray_marching/picture.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
 CONFINED = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/confined_space_test.cpp"
@@ -127,6 +130,7 @@ MUTANTS = [
     bug("shares of the greatest", FIGURES, "Selection([sum(s.values)])", "Selection([max(s.values)])", "Figures.test_functions"),
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
     bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
+    bug("stale pictures go unseen", GALLERY, "if not absent and (b", "if absent and (b", "Gallery.test_renders_what_has_changed"),
     # Masks
     bug("pixels that touch a light compared", RUN, "scene::ball_mask(scene, judged->view)", "std::vector<unsigned char>()",
         "rows leave out balls and background"),
@@ -245,4 +249,10 @@ MUTANTS = [
         "compensated march, stress list: densities are seen beside extinction alone"),
     bug("sources below 0", SMOKE_PICTURE, "(weighted[std::size_t(k)] / of_gaussians).max(0)", "(weighted[std::size_t(k)] / of_gaussians)",
         "compensated march, stress list: pictures of both variants"),
+    bug("thin smoke scatters again", CENTRES, "most < options.tolerance", "most < 0",
+        "compensated march: paper leaves out what is less than the tolerance, and a residual of nothing"),
+    bug("columns without a width", CENTRES, "std::sqrt(pi) * g.width", "std::sqrt(pi)",
+        "compensated march: paper leaves out what is less than the tolerance, and a residual of nothing"),
+    bug("a residual of nothing", SMOKE_KEPT, "return level != 0;", "return level != -128;",
+        "compensated march: paper leaves out what is less than the tolerance, and a residual of nothing"),
 ]
