@@ -24,8 +24,8 @@ struct Scene {
   std::shared_ptr<const Geometry> geometry;                // null without surfaces
   std::vector<std::shared_ptr<const Backdrop>> backdrops;  // pictures with depth, particles: seen by this camera alone
   Rgb ambient_in_scatter =
-      Rgb::Zero();   // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
-  std::string hash;  // 32 hex digits of the content: equal hash, equal picture
+      Rgb::Zero();          // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
+  std::string hash;         // 32 hex digits of the content: equal hash, equal picture
   std::string matter_hash;  // of the media and surfaces alone
 };
 
