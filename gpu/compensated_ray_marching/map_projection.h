@@ -10,7 +10,8 @@ class MapProjection {
  public:
   MapProjection(Context&, int order);
 
-  // order^2 coefficients of the map's directions; waits for the device. Exact along the rows, relative error below 1e-12 across.
+  // order^2 coefficients of the map's directions; waits for the device. Closed forms are met to 1e-12, project_environment to what it
+  // promises.
   std::vector<Rgb> of(const scene::EnvironmentMap&, const Buffer& texels);
 
  private:

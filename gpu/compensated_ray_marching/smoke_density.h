@@ -10,8 +10,8 @@ namespace airlight::gpu::smoke {
 
 class SmokeDensity {
  public:
-  // Of a field that `reasons_against` has nothing against, its residual as bricks or hash; places on the device are relative to `middle` [m]. `paper`: the march also
-  // interpolates between the centres of the Gaussians, and adds their residual.
+  // Of a field that `reasons_against` has nothing against, its residual as bricks or hash; places on the device are relative to `middle`
+  // [m]. `paper`: the march also interpolates between the centres of the Gaussians, and adds their residual.
   SmokeDensity(Context&, const compensated_ray_marching::SmokeField&, const Point3& middle, bool paper);
 
   const Definitions& definitions() const { return definitions_; }

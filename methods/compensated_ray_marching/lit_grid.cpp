@@ -114,9 +114,9 @@ void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const sce
   columns_.resize(from);
   columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
   const auto* sum = std::get_if<scene::GaussianSum>(&medium_.field);
-  const bool whole = sum && GaussianColumns::knows(*sum) && std::holds_alternative<scene::Unbounded>(medium_.region);
-  const std::optional<GaussianColumns> gaussians =
-      whole ? std::optional<GaussianColumns>(*sum) : std::optional<GaussianColumns>();
+  std::optional<GaussianColumns> gaussians;
+  if (sum && GaussianColumns::knows(*sum) && std::holds_alternative<scene::Unbounded>(medium_.region))
+    gaussians.emplace(*sum);
   in_runs(execution, [&](std::size_t first, std::size_t count) {
     std::vector<Point3> points;
     for (std::size_t i = first; i < first + count; ++i) points.push_back(grid_.node(nodes_[i]));

@@ -1,5 +1,5 @@
-// Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): exact depths towards the light, in
-// fixed directions, for single scattering; discrete ordinates or diffusion for the rest.
+// Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): depths towards the light in
+// fixed directions, in closed form, for single scattering; discrete ordinates or diffusion for the rest.
 #pragma once
 #include <functional>
 #include <optional>

@@ -22,8 +22,8 @@ NodeGrid node_grid(const Box&, int cells);
 // Mean density over each cell [-]. threads: 0 is all.
 Eigen::ArrayXd mean_densities(const scene::Medium&, const NodeGrid&, int threads);
 
-// Where any of the 27 cells around has a density above `least`: every place between nodes that has one lies between those. In
-// blocks of 4^3: neighbours in the list are neighbours in space, which have much work in common.
+// Where any of the 27 cells around has a density above `least`: every place between nodes that has one lies between those.
+// In blocks of 4^3: neighbours in the list are neighbours in space, which have much work in common.
 std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid&, const Eigen::ArrayXd& densities, double least);
 
 // Trilinear between nodes, the nearest beyond them. values: one a node.

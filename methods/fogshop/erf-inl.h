@@ -1,6 +1,4 @@
-// The error function on vectors, included once per instruction set (the guard is Highway's).
-//
-// All three are x times a polynomial in z = scale x^2 - 1, which runs over [-1, 1] up to a cut, and +-1 beyond it.
+// Approximations of the error function on vectors, included once per instruction set (the guard is Highway's).
 #if defined(AIRLIGHT_FOGSHOP_ERF_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef AIRLIGHT_FOGSHOP_ERF_INL_H_
 #undef AIRLIGHT_FOGSHOP_ERF_INL_H_
@@ -11,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "methods/fogshop/kernels.h"
+#include "scene/math/erf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace airlight::fogshop::HWY_NAMESPACE {
@@ -52,24 +51,7 @@ struct ErfPolynomial<Erf::paper> {
 
 template <Erf kind, class D, class V = hn::Vec<D>>
 HWY_INLINE V Erf_(D d, V x) {
-  using P = ErfPolynomial<kind>;
-  constexpr int n = sizeof(P::coefficient) / sizeof(double);
-  const auto c = [&](int i) { return hn::Set(d, P::coefficient[i]); };
-  const V magnitude = hn::Abs(x);
-  const V xc = hn::Min(magnitude, hn::Set(d, P::cut));
-  const V z = hn::MulSub(hn::Mul(xc, xc), hn::Set(d, P::scale), hn::Set(d, 1.0));
-  // Even and odd powers apart: two chains of half the length.
-  const V zz = hn::Mul(z, z);
-  V upper = c(n - 1), lower = c(n - 2);
-  for (int i = n - 3; i >= 0; i -= 2) {
-    upper = hn::MulAdd(upper, zz, c(i));
-    if (i > 0) lower = hn::MulAdd(lower, zz, c(i - 1));
-  }
-  constexpr bool even = (n - 1) % 2 == 0;  // of the power that `upper` began with
-  const V sum = even ? hn::MulAdd(lower, z, upper) : hn::MulAdd(upper, z, lower);
-  const V one = hn::Set(d, 1.0);
-  const V value = hn::Min(hn::Mul(xc, sum), one);
-  return hn::CopySign(hn::IfThenElse(hn::Gt(magnitude, hn::Set(d, P::cut)), one, value), x);
+  return airlight::HWY_NAMESPACE::ErfBy<ErfPolynomial<kind>>(d, x);
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE

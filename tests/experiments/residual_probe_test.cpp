@@ -27,6 +27,11 @@ std::map<std::string, double> figures(const Probe& probe, const ProbeInput& inpu
   return values;
 }
 
+std::map<std::string, std::string> small_noise(const std::string& store) {
+  return {{"store", store},    {"smoke", "noise"},  {"size", "24"},
+          {"gaussians", "20"}, {"lookups", "2000"}, {"runs", "1"}};
+}
+
 }  // namespace
 
 TEST_CASE("every store of a residual holds it and says how large it is", "[residual]") {
@@ -35,13 +40,7 @@ TEST_CASE("every store of a residual holds it and says how large it is", "[resid
   for (const char* const store :
        {"raw", "bricks", "apron", "hash_tags", "hash_domain", "hash_sequence", "nano_floats", "nano_eight_bits"}) {
     INFO(store);
-    const auto found = figures(probe, {},
-                               {{"store", store},
-                                {"smoke", "noise"},
-                                {"size", "24"},
-                                {"gaussians", "20"},
-                                {"lookups", "2000"},
-                                {"runs", "1"}});
+    const auto found = figures(probe, {}, small_noise(store));
     kB[store] = found.at("kB");
     CHECK(found.at("of_raw") == Approx(1e3 * kB[store] / (24 * 24 * 24)));
     CHECK(found.at("nonzero_percent") > 1);
@@ -62,13 +61,7 @@ TEST_CASE("look-ups in a residual on the device are the processor's", "[residual
   std::map<std::string, double> kB;
   for (const char* const store : {"bricks", "hash_tags", "hash_domain"}) {
     INFO(store);
-    const auto found = figures(probe, {},
-                               {{"store", store},
-                                {"smoke", "noise"},
-                                {"size", "24"},
-                                {"gaussians", "20"},
-                                {"lookups", "2000"},
-                                {"runs", "1"}});
+    const auto found = figures(probe, {}, small_noise(store));
     kB[store] = found.at("device_kB");
     CHECK(found.at("worst_between") <= 3 * 254 * 32 * std::exp2(-23));
     for (const char* const time : {"level_ns", "between_ns", "between_random_ns"}) CHECK(found.at(time) > 0);

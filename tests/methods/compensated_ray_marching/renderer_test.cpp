@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
-#include "methods/compensated_ray_marching/gaussian_row.h"
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
@@ -389,21 +388,4 @@ TEST_CASE("compensated march: refusals name the reason", "[compensated_ray_march
   CHECK_THAT(reason(*scene, paper), Contains("surface 'box' is a mesh, expected sphere or plane"));
   // Cells that stay too deep however small they are.
   CHECK_THROWS_AS(picture(method, in_white(puffs(), 1e4)), scene::NotSupported);
-}
-
-TEST_CASE("Gaussians along a row of rays are their density", "[compensated_ray_marching]") {
-  const scene::GaussianSum sum = puffs();
-  const Ray ray{{-2, 0.15, 0.05}, Vec3(1, 0.02, 0.01).normalized()};
-  const Vec3 normal = ray.direction.cross(Vec3(0, 0, 1)).normalized();
-  const std::vector<Rgb> values{Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)};
-  const compensated_ray_marching::GaussianRow row(sum, &values, ray.origin, normal);
-  const compensated_ray_marching::RaySlices slices{0.1, 0.011, 380};
-  std::vector<double> density(380, 0.0);
-  std::vector<Rgb> weighted(380, Rgb::Zero());
-  row.add(ray, slices, density.data(), weighted.data());
-  for (int k = 0; k < slices.count; ++k) {
-    const double expected = scene::density(sum, ray.at(slices.middle(k)));
-    REQUIRE(std::abs(density[std::size_t(k)] - expected) < 1e-12);
-    REQUIRE(std::abs(weighted[std::size_t(k)].sum() - expected) < 1e-12);
-  }
 }

@@ -1,4 +1,4 @@
-// Smoke as Gaussians: objective and gradient, minimisers, bounds, odd grids, sequences.
+// Smoke as Gaussians: objective and gradient, minimisers, bounds, odd grids.
 #include "scene/convert/gaussian_fit.h"
 
 #include <catch2/catch.hpp>
@@ -14,36 +14,14 @@
 #include "scene/error.h"
 #include "scene/load/csv_table.h"
 #include "scene/scene.h"
+#include "tests/scene/convert/fitted_grids.h"
 #include "tests/temporary_folder.h"
 
 using namespace airlight;
 using namespace airlight::scene;
+using namespace airlight::test;
 
 namespace {
-
-VoxelGrid empty_grid(int nx, int ny, int nz) {
-  VoxelGrid grid;
-  grid.size = {nx, ny, nz};
-  grid.voxel_size = 0.05;
-  grid.origin_index = {3, -2, 1};
-  grid.translation = {0.7, 0, -0.3};
-  grid.values.assign(std::size_t(nx) * ny * nz, 0.0f);
-  return grid;
-}
-
-// Folded smoke: where two waves are both high, moving with time.
-VoxelGrid smoke(int n, double time = 0) {
-  VoxelGrid grid = empty_grid(n, n, n);
-  for (int k = 0; k < n; ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const double x = (i + 0.5) / n, y = (j + 0.5) / n, z = (k + 0.5) / n - 0.1 * time;
-        const double waves = std::sin(9 * x + 4 * std::sin(5 * z)) * std::sin(8 * y + 3 * std::sin(6 * x)) + 0.2;
-        const double column = std::exp(-20 * ((x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5)));
-        grid.values[std::size_t(i + n * (j + n * k))] = float(std::max(0.0, 2 * column * waves - 0.1));
-      }
-  return grid;
-}
 
 std::vector<Gaussian> some_gaussians(int n, double side) {
   std::vector<Gaussian> gaussians;
@@ -51,28 +29,6 @@ std::vector<Gaussian> some_gaussians(int n, double side) {
     gaussians.push_back({Point3(std::fmod(3.7313 * i, side), std::fmod(5.1117 * i, side), std::fmod(2.3331 * i, side)),
                          1 + 0.07 * i, 0.1 + 0.03 * i});
   return gaussians;
-}
-
-FitOptions options(int gaussians) {
-  FitOptions o;
-  o.gaussians = gaussians;
-  return o;
-}
-
-void check_bounds(const VoxelGrid& grid, const GaussianFit& fit) {
-  const double unit = fit_unit(grid), greatest = *std::max_element(grid.values.begin(), grid.values.end());
-  const double lo = std::max(0.015 * unit, least_fit_width * grid.voxel_size), hi = std::max(0.09 * unit, 2 * lo);
-  for (const Gaussian& g : fit.sum.gaussians) {
-    const Point3 s = world_to_sample(grid, g.center);
-    for (int axis = 0; axis < 3; ++axis) {
-      CHECK(s[axis] >= -0.5 - 1e-9);
-      CHECK(s[axis] <= grid.size[axis] - 0.5 + 1e-9);
-    }
-    CHECK(g.width >= lo * (1 - 1e-12));
-    CHECK(g.width <= hi * (1 + 1e-12));
-    CHECK(g.amplitude >= 0.01 * greatest * (1 - 1e-12));
-    CHECK(g.amplitude <= greatest * (1 + 1e-12));
-  }
 }
 
 double ratio_by_samples(const VoxelGrid& grid, const GaussianFit& fit) {
@@ -376,56 +332,6 @@ TEST_CASE("what is no density is refused with its voxel, and so are absurd numbe
   CHECK_THROWS_WITH(fit_method_from("lbgfs"), Catch::Contains("lbfgs"));
   for (const std::string& name : fit_method_names())
     CHECK(fit_method_names()[std::size_t(fit_method_from(name))] == name);
-}
-
-TEST_CASE("Gaussians keep who they are from frame to frame", "[gaussian_fit][convert]") {
-  FitOptions o = options(80);
-  const GaussianFit first = fit_gaussians(smoke(24), o);
-  for (const bool resent : {false, true}) {
-    o.resent = resent;
-    GaussianFit fit = first;
-    for (int frame = 1; frame < 4; ++frame) {
-      const GaussianFit next = next_fit(smoke(24, 0.3 * frame), fit, o);
-      CAPTURE(resent, frame, next.errors.squared_ratio, next.inserted, next.teleported);
-      CHECK(next.warm);
-      CHECK(next.first_ratio == first.errors.squared_ratio);
-      CHECK(next.deleted == 3);
-      CHECK(next.ids.size() == fit.ids.size() - 3 + std::size_t(next.inserted));
-      if (!resent) CHECK(next.teleported == 0);
-      CHECK(next.next_id == fit.next_id + next.inserted + next.teleported);
-      std::vector<int> ids = next.ids;
-      std::sort(ids.begin(), ids.end());
-      CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
-      // Whoever is in both frames has hardly moved.
-      int kept = 0;
-      for (std::size_t i = 0; i < next.ids.size(); ++i) {
-        const auto before = std::find(fit.ids.begin(), fit.ids.end(), next.ids[i]);
-        if (before == fit.ids.end()) continue;
-        ++kept;
-        const Gaussian& then = fit.sum.gaussians[std::size_t(before - fit.ids.begin())];
-        CHECK((then.center - next.sum.gaussians[i].center).norm() < 0.5 * fit_unit(smoke(24)));
-      }
-      CHECK(kept >= int(fit.ids.size()) - 3 - next.teleported);
-      check_bounds(smoke(24, 0.3 * frame), next);
-      fit = next;
-    }
-  }
-}
-
-TEST_CASE("an empty frame within a sequence", "[gaussian_fit][convert]") {
-  const FitOptions o = options(40);
-  const GaussianFit nothing = fit_gaussians(empty_grid(16, 16, 16), o);
-  const GaussianFit first = next_fit(smoke(16), nothing, o);
-  CHECK_FALSE(first.warm);
-  CHECK(first.first_ratio == first.errors.squared_ratio);
-  const GaussianFit gap = next_fit(empty_grid(16, 16, 16), first, o);
-  CHECK(gap.sum.gaussians.empty());
-  CHECK(gap.errors.squared_ratio == 0);
-  CHECK(gap.first_ratio == first.first_ratio);
-  CHECK(gap.next_id == first.next_id);
-  const GaussianFit again = next_fit(smoke(16, 0.1), first, o);
-  CHECK(again.warm);
-  CHECK(again.errors.squared_ratio < 2 * first.errors.squared_ratio);
 }
 
 TEST_CASE("a fit's table is a medium's table", "[gaussian_fit][convert]") {

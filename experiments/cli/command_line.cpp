@@ -1,0 +1,79 @@
+#include "experiments/cli/command_line.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scene/error.h"
+#include "scene/nearest.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// The command that was chosen, at any depth.
+const CLI::App& chosen(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : chosen(*commands.front());
+}
+
+// "airlight experiment run"
+std::string full_name(const CLI::App& command) {
+  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+}
+
+}  // namespace
+
+void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const std::string& doc) {
+  command
+      ->add_option_function<std::vector<std::string>>(
+          flag,
+          [&pairs, flag](const std::vector<std::string>& given) {
+            for (const std::string& text : given) {
+              const std::size_t equals = text.find('=');
+              const std::string name = trimmed(text.substr(0, equals));
+              if (equals == std::string::npos || name.empty())
+                throw Error(fmt::format("{} '{}': expected name=value", flag, text));
+              pairs[name] = trimmed(text.substr(equals + 1));
+            }
+          },
+          doc)
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+void refuse_extras(const CLI::App& app) {
+  const CLI::App& command = chosen(app);
+  const auto extras = app.remaining(true);
+  const auto commands = command_names(command);
+  if (!extras.empty()) {
+    const std::string& word = extras.front();
+    const bool option = word.size() > 1 && word[0] == '-';
+    const auto candidates = option ? option_names(command) : commands;
+    if (candidates.empty())
+      throw Error(fmt::format("unexpected argument '{}'; see {} --help", word, full_name(command)));
+    throw Error(fmt::format("unknown {} '{}'{}; see {} --help", option ? "option" : "command", word,
+                            scene::nearest_hint(word.substr(0, word.find('=')), candidates), full_name(command)));
+  }
+  if (!commands.empty()) throw Error(fmt::format("expected a command: {}", fmt::join(commands, ", ")));
+}
+
+}  // namespace airlight::experiments::cli
