@@ -90,13 +90,13 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
 
 void check_experiment(const Experiment& e, const RunOptions& options) {
   try {
+    for (const std::string& name : e.sequences)  // scenes cannot be looked at without
+      make_sequence(options.root, name, e.profile, e.timing.threads);
     if (e.kind == "numbers") {
       for (const SceneCase& c : e.scenes) input_key(c);
       return;
     }
     if (e.kind == "flow") return check_flows(e);
-    for (const std::string& name : e.sequences)  // scenes cannot be looked at without
-      make_sequence(options.root, name, e.profile, e.timing.threads);
     const Journal finished(journal_file(options.root, e), options.resume);
     std::set<const MethodCase*> tried;
     for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);

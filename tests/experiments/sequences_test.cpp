@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/driver/check.h"
 #include "experiments/driver/run.h"
 #include "scene/error.h"
 #include "tests/experiments/small_project.h"
@@ -104,6 +105,26 @@ TEST_CASE("an experiment makes the sequence that its scenes show", "[driver][flo
   project.list("n = 12");
   make_sequence(project.path(), "puff", "quick", 1);
   CHECK(airlight::read_bytes(project.frame(1).string()) != before);
+}
+
+// In a fresh clone all experiments are checked before the first runs.
+TEST_CASE("an experiment of numbers is checked where no sequence has been made", "[driver][flow]") {
+  const Frames project;
+  project.write("experiments/g/numbers.toml", R"(kind = "numbers"
+title = "Numbers"
+metrics = ["squared_percent"]
+[[scene]]
+name = "puff"
+file = "scenes/one.toml"
+overrides = { "medium.0.file" = "sequence:puff", "medium.0.frame" = 1 }
+[[method]]
+name = "fit"
+probe = "gaussian_fit"
+settings = { smoke = "scene", gaussians = 3 }
+)");
+  REQUIRE_FALSE(fs::exists(project.frame(1)));
+  check_experiment(read_experiment(project.path(), "g/numbers", "quick"), {project.path(), false, 1, false});
+  CHECK(fs::exists(project.frame(1)));
 }
 
 TEST_CASE("Gaussians are fitted to the frames of a sequence, and again where those or their number change",
