@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00590836:5.41938]
+set xrange [0.00291399:0.999393]
 set logscale y
 set format y "%g"
 set yrange [0.0142463:5.77719]

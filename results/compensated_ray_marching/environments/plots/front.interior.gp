@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00611225:3.43388]
+set xrange [0.00290544:0.999295]
 set logscale y
 set format y "%g"
 set yrange [0.0180248:5.88501]

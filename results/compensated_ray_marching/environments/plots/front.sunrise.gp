@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00603428:3.45682]
+set xrange [0.00292726:0.989897]
 set logscale y
 set format y "%g"
 set yrange [0.0166452:5.09414]

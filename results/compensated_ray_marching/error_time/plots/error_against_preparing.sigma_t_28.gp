@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00278218:5.35145]
+set xrange [0.002188:0.980434]
 set logscale y
 set format y "%g"
 set yrange [0.00962541:0.762486]

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00273763:5.49466]
+set xrange [0.00220488:0.80779]
 set logscale y
 set format y "%g"
-set yrange [0.00322753:5.89935]
+set yrange [0.00322754:5.89935]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_preparing.thin.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00269903:5.60745]
+set xrange [0.00135747:4.85689]
 set logscale y
 set format y "%g"
 set yrange [0.00433282:3.20335]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [87.0964:1148.15]
 set logscale y
 set format y "%g"
-set yrange [0.000725126:0.259669]
+set yrange [0.000740335:0.272716]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_gaussians.plume.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "Gaussians alone", \

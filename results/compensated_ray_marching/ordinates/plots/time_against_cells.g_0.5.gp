@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.79273:60.5502]
 set logscale y
 set format y "%g"
-set yrange [0.022944:9.42283]
+set yrange [0.018148:3.05077]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_cells.g_0.5.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.662025:1460.67]
 set logscale y
 set format y "%g"
-set yrange [0.000199864:0.0808395]
+set yrange [9.40627e-05:0.0552379]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_count.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0038254:0.8597]
+set xrange [0.00220471:0.600567]
 set logscale y
 set format y "%g"
 set yrange [3.12469e-05:0.486092]

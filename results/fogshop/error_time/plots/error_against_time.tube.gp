@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00435809:18.2863]
+set xrange [0.00210017:6.80978]
 set logscale y
 set format y "%g"
 set yrange [0.00222506:4.53589]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000518992:0.0206857]
+set xrange [0.000298029:0.0112578]
 set logscale y
 set format y "%g"
 set yrange [5.4609e-05:0.434055]

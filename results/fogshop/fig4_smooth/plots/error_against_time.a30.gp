@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000318624:0.0138671]
+set xrange [0.000171756:0.0044327]
 set logscale y
 set format y "%g"
 set yrange [7.69884e-05:1.07811]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000846947:0.045159]
+set xrange [0.000463637:0.026736]
 set logscale y
 set format y "%g"
 set yrange [8.77104e-05:1.38902]

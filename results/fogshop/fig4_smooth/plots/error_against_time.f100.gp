@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000494456:0.0251741]
+set xrange [0.000276028:0.0103594]
 set logscale y
 set format y "%g"
 set yrange [0.000137106:0.375714]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000486262:0.0194571]
+set xrange [0.000293857:0.01035]
 set logscale y
 set format y "%g"
 set yrange [0.000128982:0.184354]

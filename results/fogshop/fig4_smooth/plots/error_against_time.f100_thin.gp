@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000477832:0.0159013]
+set xrange [0.000236904:0.00838887]
 set logscale y
 set format y "%g"
 set yrange [3.11279e-05:0.0541759]

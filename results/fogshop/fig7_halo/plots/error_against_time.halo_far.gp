@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000248666:0.0248027]
+set xrange [0.000108552:0.0106342]
 set logscale y
 set format y "%g"
 set yrange [3.19286e-05:1.35993]

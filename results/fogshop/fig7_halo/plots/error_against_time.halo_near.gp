@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000269778:0.0267687]
+set xrange [0.000108657:0.0115589]
 set logscale y
 set format y "%g"
 set yrange [3.26755e-05:0.978676]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00064871:0.344133]
+set xrange [0.000288343:0.170581]
 set logscale y
 set format y "%g"
 set yrange [9.20308e-05:2.36266]

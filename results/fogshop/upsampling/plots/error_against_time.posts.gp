@@ -8,7 +8,7 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.0473763]
+set xrange [0:0.0193403]
 set logscale y
 set format y "%g"
 set yrange [0.00123028:0.105459]

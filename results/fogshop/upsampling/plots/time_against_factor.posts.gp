@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [0:4.6]
 set logscale y
 set format y "%g"
-set yrange [0.0111784:0.0765407]
+set yrange [0.00555025:0.0319536]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_factor.posts.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "bilinear", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.00218258:11454.3]
 set logscale y
 set format y "%g"
-set yrange [8.67629e-10:9.37221e-07]
+set yrange [8.67686e-10:9.36119e-07]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_depth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray, points 4", \

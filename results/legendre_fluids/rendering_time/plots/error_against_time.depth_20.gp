@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000248275:0.287847]
+set xrange [0.000117543:0.210554]
 set logscale y
 set format y "%g"
 set yrange [4.98946e-10:2.04104]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000182592:6.12768]
+set xrange [6.02191e-05:3.35795]
 set logscale y
 set format y "%g"
 set yrange [7.43065e-14:1.59021]

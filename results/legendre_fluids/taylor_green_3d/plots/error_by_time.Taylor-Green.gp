@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000520242:70.1854]
+set xrange [0.000545972:34.0074]
 set logscale y
 set format y "%g"
 set yrange [4.41789e-05:0.569421]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000856938:89.8925]
+set xrange [0.000911005:50.2335]
 set logscale y
 set format y "%g"
 set yrange [0.0068737:0.783409]

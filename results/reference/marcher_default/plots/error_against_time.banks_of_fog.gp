@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0401129:0.326498]
+set xrange [0.0247336:0.218364]
 set logscale y
 set format y "%g"
 set yrange [0.000487485:0.00517814]

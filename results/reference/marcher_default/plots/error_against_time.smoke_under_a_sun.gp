@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00362674:0.0289806]
+set xrange [0.00187086:0.0199771]
 set logscale y
 set format y "%g"
 set yrange [0.000299827:0.00825138]

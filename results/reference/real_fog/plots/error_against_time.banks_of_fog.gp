@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00480997:0.71757]
+set xrange [0.00304393:0.371562]
 set logscale y
 set format y "%g"
 set yrange [0.000382566:1.34551]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0115546:0.231106]
+set xrange [0.00691973:0.140794]
 set logscale y
 set format y "%g"
 set yrange [0.000398378:0.310176]

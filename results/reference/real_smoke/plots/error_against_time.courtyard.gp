@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.018659:2.79581]
+set xrange [0.0125385:1.78841]
 set logscale y
 set format y "%g"
 set yrange [0.0010397:0.0804113]

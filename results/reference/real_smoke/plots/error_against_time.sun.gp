@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00134204:0.784627]
+set xrange [0.000834453:0.62317]
 set logscale y
 set format y "%g"
 set yrange [0.00627454:0.48724]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0028071:0.0509048]
+set xrange [0.00143226:0.0331926]
 set logscale y
 set format y "%g"
 set yrange [0.000729506:0.0797742]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00321706:0.0547468]
+set xrange [0.00142749:0.0331796]
 set logscale y
 set format y "%g"
 set yrange [0.000622594:0.510085]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00338586:0.0516605]
+set xrange [0.00141834:0.0334217]
 set logscale y
 set format y "%g"
 set yrange [0.000447575:1.1745]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0027592:0.0583815]
+set xrange [0.00130497:0.0315402]
 set logscale y
 set format y "%g"
 set yrange [2.59712e-05:1.07455]

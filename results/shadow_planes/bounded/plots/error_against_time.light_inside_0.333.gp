@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00285469:0.0551858]
+set xrange [0.00130189:0.0315713]
 set logscale y
 set format y "%g"
 set yrange [2.73786e-05:1.27382]

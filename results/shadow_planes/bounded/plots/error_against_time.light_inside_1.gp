@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0030137:0.0550469]
+set xrange [0.00128736:0.0315084]
 set logscale y
 set format y "%g"
 set yrange [2.99511e-05:1.54471]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0029144:0.151661]
+set xrange [0.00135435:0.0761752]
 set logscale y
 set format y "%g"
 set yrange [0.00796516:1.00945]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000813981:0.274136]
+set xrange [0.000424125:0.128365]
 set logscale y
 set format y "%g"
 set yrange [1.03423e-08:0.195743]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000831731:0.234134]
+set xrange [0.000428004:0.106992]
 set logscale y
 set format y "%g"
 set yrange [4.2138e-09:0.157171]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000814545:0.240711]
+set xrange [0.000423085:0.0972048]
 set logscale y
 set format y "%g"
 set yrange [7.82929e-08:0.455253]

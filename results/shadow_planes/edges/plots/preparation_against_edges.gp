@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [61.8808:151668]
 set logscale y
 set format y "%g"
-set yrange [2.06813e-06:0.562269]
+set yrange [1.41695e-06:0.483684]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "preparation_against_edges.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "rule", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [2.89499e-08:2.27171e-06]
+set xrange [7.80742e-09:1.19495e-06]
 set logscale y
 set format y "%g"
 set yrange [1.3457e-16:1520.26]

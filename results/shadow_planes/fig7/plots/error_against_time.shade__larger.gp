@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00401071:1.68798]
+set xrange [0.00187254:0.809741]
 set logscale y
 set format y "%g"
 set yrange [2.04492e-08:0.474371]

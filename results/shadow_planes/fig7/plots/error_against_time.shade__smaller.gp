@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00262625:1.03547]
+set xrange [0.00121064:0.489055]
 set logscale y
 set format y "%g"
 set yrange [2.2513e-08:0.462596]

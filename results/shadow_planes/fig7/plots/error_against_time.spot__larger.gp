@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00566577:0.554511]
+set xrange [0.00246183:0.24232]
 set logscale y
 set format y "%g"
 set yrange [1.13108e-07:0.381163]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00354959:0.329119]
+set xrange [0.0014279:0.140371]
 set logscale y
 set format y "%g"
 set yrange [7.57855e-08:0.441133]

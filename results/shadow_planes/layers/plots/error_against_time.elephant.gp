@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00328389:0.41661]
+set xrange [0.00181681:0.166127]
 set logscale y
 set format y "%g"
 set yrange [1.59771e-08:0.846603]

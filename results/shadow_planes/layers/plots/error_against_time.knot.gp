@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00464478:0.297597]
+set xrange [0.00245967:0.167798]
 set logscale y
 set format y "%g"
 set yrange [4.63749e-09:0.651343]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000792963:0.538689]
+set xrange [0.000474507:0.190051]
 set logscale y
 set format y "%g"
 set yrange [6.43302e-08:1.64781]

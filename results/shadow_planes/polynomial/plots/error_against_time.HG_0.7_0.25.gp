@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000701077:0.207806]
+set xrange [0.000514066:0.10881]
 set logscale y
 set format y "%g"
 set yrange [1.32341e-08:1.86807]

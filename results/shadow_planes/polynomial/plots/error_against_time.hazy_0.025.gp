@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000668478:0.434758]
+set xrange [0.000430608:0.189854]
 set logscale y
 set format y "%g"
 set yrange [6.81114e-07:2.14041]

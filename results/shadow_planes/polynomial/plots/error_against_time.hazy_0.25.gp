@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000798188:0.223526]
+set xrange [0.000442677:0.106228]
 set logscale y
 set format y "%g"
 set yrange [6.92992e-07:1.87584]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000740505:0.336321]
+set xrange [0.000405834:0.191475]
 set logscale y
 set format y "%g"
 set yrange [4.22472e-08:0.781122]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000655405:0.198748]
+set xrange [0.000422435:0.107144]
 set logscale y
 set format y "%g"
 set yrange [3.68602e-09:1.67144]

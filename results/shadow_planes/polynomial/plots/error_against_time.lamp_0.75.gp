@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000607191:0.225179]
+set xrange [0.000419085:0.0972431]
 set logscale y
 set format y "%g"
 set yrange [9.48822e-06:1.47458]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000692461:0.131498]
+set xrange [0.000430443:0.0680433]
 set logscale y
 set format y "%g"
 set yrange [4.17838e-06:88.7333]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000704406:0.124111]
+set xrange [0.000445375:0.0500132]
 set logscale y
 set format y "%g"
 set yrange [4.50991e-07:5.109e+07]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00338086:0.396558]
+set xrange [0.00168006:0.19809]
 set logscale y
 set format y "%g"
 set yrange [7.33573e-07:0.0183341]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00283059:0.484962]
+set xrange [0.00178296:0.2026]
 set logscale y
 set format y "%g"
 set yrange [1.88202e-06:0.0291556]

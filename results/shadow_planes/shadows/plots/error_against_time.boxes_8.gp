@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00397344:0.422693]
+set xrange [0.00223881:0.212511]
 set logscale y
 set format y "%g"
 set yrange [1.90506e-06:0.0433514]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0159826:0.349139]
+set xrange [0.00905343:0.140174]
 set logscale y
 set format y "%g"
 set yrange [1.98383e-06:0.179455]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00438233:0.0698105]
+set xrange [0.00238325:0.0382298]
 set logscale y
 set format y "%g"
 set yrange [2.02722e-08:0.0262638]

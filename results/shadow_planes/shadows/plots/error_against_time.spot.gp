@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0182561:0.282301]
+set xrange [0.0112234:0.165249]
 set logscale y
 set format y "%g"
 set yrange [0.00974016:0.241984]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0595381:0.400004]
+set xrange [0.0159218:0.0867634]
 set logscale y
 set format y "%g"
 set yrange [0.0197843:0.210613]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0352354:0.358248]
+set xrange [0.00775235:0.0805595]
 set logscale y
 set format y "%g"
 set yrange [0.00117228:0.0105989]

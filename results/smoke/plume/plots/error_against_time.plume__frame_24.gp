@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0576136:0.326896]
+set xrange [0.0151435:0.0870166]
 set logscale y
 set format y "%g"
 set yrange [0.00114791:0.0111731]

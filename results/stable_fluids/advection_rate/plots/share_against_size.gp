@@ -9,7 +9,7 @@ set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
 set xrange [0:73.6]
-set yrange [0:0.126817]
+set yrange [0:0.177239]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "share_against_size.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \

@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [0:73.6]
 set logscale y
 set format y "%g"
-set yrange [12.0316:191.191]
+set yrange [7.72759:101.489]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_size.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00193784:0.263779]
+set xrange [0.000996371:0.122351]
 set logscale y
 set format y "%g"
 set yrange [0.00364112:0.0989536]

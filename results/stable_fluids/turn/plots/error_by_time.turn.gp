@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00233241:0.419878]
+set xrange [0.00104664:0.211862]
 set logscale y
 set format y "%g"
 set yrange [0.00989188:0.871629]

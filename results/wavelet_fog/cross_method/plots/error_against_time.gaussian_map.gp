@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00215101:0.05648]
+set xrange [0.000884149:0.033537]
 set logscale y
 set format y "%g"
 set yrange [6.43418e-08:0.00724265]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000394928:0.041452]
+set xrange [0.000188048:0.0179469]
 set logscale y
 set format y "%g"
 set yrange [2.02433e-08:4.29273e-05]

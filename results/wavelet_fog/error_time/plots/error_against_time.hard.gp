@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00238586:0.061845]
+set xrange [0.00119839:0.0291107]
 set logscale y
 set format y "%g"
 set yrange [1.60685e-08:0.104716]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00254277:0.0889579]
+set xrange [0.00119821:0.03519]
 set logscale y
 set format y "%g"
 set yrange [2.32632e-08:0.211856]

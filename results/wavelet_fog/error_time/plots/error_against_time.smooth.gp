@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00218169:0.0534235]
+set xrange [0.00121689:0.0248412]
 set logscale y
 set format y "%g"
 set yrange [2.84168e-08:0.0312088]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [13.5479:302.334]
 set logscale y
 set format y "%g"
-set yrange [0.000677199:0.0166887]
+set yrange [0.000479305:0.00887329]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_size_hard.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "hard, direct", \

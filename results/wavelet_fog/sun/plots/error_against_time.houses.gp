@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.018456:0.148894]
+set xrange [0.00808932:0.0650679]
 set logscale y
 set format y "%g"
 set yrange [4.13637e-06:0.00289155]

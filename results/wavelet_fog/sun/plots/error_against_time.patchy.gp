@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0150014:0.192094]
+set xrange [0.00815623:0.0640648]
 set logscale y
 set format y "%g"
 set yrange [2.03709e-06:0.00970149]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0250814:0.188657]
+set xrange [0.0129093:0.0822199]
 set logscale y
 set format y "%g"
 set yrange [1.0595e-07:0.00478748]

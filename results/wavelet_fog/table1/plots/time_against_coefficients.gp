@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [110565:6.48971e+06]
 set logscale y
 set format y "%g"
-set yrange [0.00190097:0.0236607]
+set yrange [0.000757484:0.0137138]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_coefficients.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "direct, Haar 16x16", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00216788:0.0169307]
+set xrange [0.00101517:0.00807148]
 set logscale y
 set format y "%g"
 set yrange [2.60875e-07:0.0334392]

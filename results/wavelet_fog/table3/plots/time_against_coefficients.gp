@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [122045:6.19702e+06]
 set logscale y
 set format y "%g"
-set yrange [0.00054611:0.0590431]
+set yrange [0.000298769:0.0368164]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_coefficients.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "before, linear 16x16", \
