@@ -74,6 +74,13 @@ double blob_at(const Blob& blob, const Point3& x) {
 
 }  // namespace
 
+Vec3 start_velocity(const FlowProblem& problem, const Point3& x) {
+  Vec3 sum = velocity_at(problem.velocity, problem.box, x);
+  for (int a = 0; a < problem.dimensions && problem.velocity_grid; ++a)
+    sum[a] += start_value((*problem.velocity_grid)[a], x);
+  return sum;
+}
+
 double start_velocity(const FlowProblem& problem, int axis, const Point3& x) {
   const double sum = velocity_at(problem.velocity, problem.box, x)[axis];
   return problem.velocity_grid ? sum + start_value((*problem.velocity_grid)[axis], x) : sum;

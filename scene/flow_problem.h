@@ -160,6 +160,7 @@ FlowProblem with_density(const FlowProblem&, int which);
 std::string density_name(const FlowProblem&, int which);
 
 // At the beginning, without what obstacles take away.
+Vec3 start_velocity(const FlowProblem&, const Point3&);
 double start_velocity(const FlowProblem&, int axis, const Point3&);
 double start_density(const FlowProblem&, const Point3&);
 double start_temperature(const FlowProblem&, const Point3&);

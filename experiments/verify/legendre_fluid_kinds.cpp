@@ -102,10 +102,12 @@ Check read_legendre_coefficients(const Value& v) {
       const Value term = v["field"][a][i];
       field[a].push_back({term["c"].number(), term["powers"].vector()});
     }
-  const Array u = space->from_function([&](int a, const Vec3& x) {
-    double sum = 0;
-    for (const Term& t : field[std::size_t(a)])
-      sum += t.factor * std::pow(x[0], t.powers[0]) * std::pow(x[1], t.powers[1]) * std::pow(x[2], t.powers[2]);
+  const Array u = space->from_function([&](const Vec3& x) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t a = 0; a < field.size(); ++a)
+      for (const Term& t : field[a])
+        sum[Eigen::Index(a)] +=
+            t.factor * std::pow(x[0], t.powers[0]) * std::pow(x[1], t.powers[1]) * std::pow(x[2], t.powers[2]);
     return sum;
   });
   Comparing out;
@@ -249,8 +251,8 @@ Check read_legendre_taylor_green(const Value& v) {
   }
   return {"", [=](VerifyProfile) {
             const ConfinedSpace space(2, 16);
-            Array u = space.project(space.from_function([](int a, const Vec3& x) {
-              return a == 0 ? std::sin(pi * x[0]) * std::cos(pi * x[1]) : -std::cos(pi * x[0]) * std::sin(pi * x[1]);
+            Array u = space.project(space.from_function([](const Vec3& x) {
+              return Vec3(std::sin(pi * x[0]) * std::cos(pi * x[1]), -std::cos(pi * x[0]) * std::sin(pi * x[1]), 0);
             }));
             const int steps = std::max(1, int(std::lround(time / 0.01)));
             const double dt = time / steps;

@@ -11,7 +11,7 @@ layout(std430, binding = AT_STATUS) buffer Status { uint status[]; };
 uniform int first_field, adds, stage, goes_on, ends, begins;
 uniform float dt;                                        // [s] of a step of Runge-Kutta
 uniform vec3 per_area;                                   // half size^-2 of each axis
-uniform float fades, filters_velocity, filters_carried;  // what decay leaves; rate times time
+uniform float fades, filters_velocity, filters_carried;  // what decay leaves, before the step or after it; rate times time
 #if SOURCES * SCALARS > 0
 layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; };
 uniform float amounts[SOURCES * SCALARS];  // of each source, of each of what is carried
@@ -20,7 +20,7 @@ uniform float amounts[SOURCES * SCALARS];  // of each source, of each of what is
 float added_by_sources(int field, int place) {
   float sum = 0;
 #if SOURCES * SCALARS > 0
-  if (begins == 0 || field < D) return 0;
+  if (field < D) return 0;
   for (int i = 0; i < SOURCES; ++i)
     sum += amounts[i * SCALARS + field - D] * regions[i * SIZE + place];
 #endif
@@ -51,7 +51,8 @@ void begin_gradient(int field, int slab) {
 // A coefficient of now, and what the rest of the step needs to know of it.
 float updated(int field, int slab, int j, int k, float more) {
   int place = slab * SLAB + j * NZ + k, at = field * SIZE + place;
-  float value = start[at] + added_by_sources(field, place);
+  float value = start[at];
+  if (begins != 0) value = (field < D ? 1 : fades) * value + added_by_sources(field, place);
   if (stage >= 0) {
     float rate = rates[at] + more, sum = stage == 0 ? 0 : rates[FIELDS * SIZE + at];
     sum += stage == 1 || stage == 2 ? 2 * rate : rate;
@@ -61,7 +62,7 @@ float updated(int field, int slab, int j, int k, float more) {
     value += more;
   }
   if (ends != 0) {
-    value *= left_over(field, slab, j, k);
+    value = (value + added_by_sources(field, place)) * left_over(field, slab, j, k);
     if ((floatBitsToUint(value) & 0x7f800000u) == 0x7f800000u) atomicOr(status[1], 1u);
   }
   if (stage < 0 || stage == 3) state[at] = value;

@@ -156,14 +156,41 @@ int FluidOnDevice::steps_in(double dt, const Status& status) const {
   return legendre_fluids::runge_kutta_steps(dt, space_.n(), status.speed, false);
 }
 
+void FluidOnDevice::set(const Acting& acting) {
+  for (std::size_t i = 0; i < acting.sources.size(); ++i)
+    for (std::size_t r = 0; r < carried_.size(); ++r)
+      expand_->set(indexed("amounts", i * carried_.size() + r), acting.sources[i][r]);
+  for (std::size_t i = 0; i < acting.pushes.size(); ++i) collect_->set(indexed("push_amounts", i), acting.pushes[i]);
+  for (std::size_t r = 0; r < carried_.size(); ++r)
+    collect_->set(indexed("weights", r), r < acting.weights.size() ? acting.weights[r] : Vec3(Vec3::Zero()));
+  expand_->set("fades", acting.fades);
+}
+
+bool FluidOnDevice::pushes(const Acting& acting) const {
+  const auto acts = [](const Vec3& v) { return !v.isZero(0); };
+  return moves_ && (std::any_of(acting.pushes.begin(), acting.pushes.end(), acts) ||
+                    std::any_of(acting.weights.begin(), acting.weights.end(), acts));
+}
+
+// Up to the pressure that expand adds.
+void FluidOnDevice::push() {
+  collect({0, velocities_}, ComesFrom::forces);
+  columns({0, velocities_}, false);
+}
+
 // How long a part of the step may be is asked before its first stage ends, or not at all: then all is one part.
 int FluidOnDevice::run(double dt, const StepForces& forces, bool looks) {
   const Fields all{0, fields_}, moving = this->moving(), diffusing = this->diffusing();
   const bool any = diffusing.count > 0, viscous = any && diffusing.first == 0;
-  const auto acts = [](const Vec3& v) { return !v.isZero(0); };
-  const bool pushes =
-      moves_ && (!forces.pushes.empty() || std::any_of(forces.weights.begin(), forces.weights.end(), acts));
-  expand(all, any ? GoesOn::to_modes : GoesOn::to_points, false, -1, 0, true);
+  const bool pushed = pushes(forces[0]), pushes = this->pushes(forces[1]);
+  const GoesOn first = any ? GoesOn::to_modes : GoesOn::to_points;
+  set(forces[0]);
+  expand(all, pushed ? GoesOn::nowhere : first, false, -1, 0, true);
+  if (pushed) {
+    push();
+    expand(all, first, true, -1, 0);
+  }
+  set(forces[1]);
   if (any) {
     spread_modes_back(diffusing, 0.5 * dt);
     expand(all, GoesOn::to_points, viscous, -1, 0);
@@ -184,10 +211,7 @@ int FluidOnDevice::run(double dt, const StepForces& forces, bool looks) {
     left = steps > 1 ? left - left / steps : 0;
   }
   if (any) spread_modes_back(diffusing, 0.5 * dt);
-  if (pushes) {
-    collect({0, velocities_}, ComesFrom::forces);
-    columns({0, velocities_}, false);
-  }
+  if (pushes) push();
   if (any || pushes) expand(all, GoesOn::nowhere, viscous || pushes, -1, 0, false, true);
   return parts;
 }
@@ -237,13 +261,6 @@ void FluidOnDevice::advect(Fluid& rates) {
 void FluidOnDevice::step(double dt, const StepForces& forces) {
   const Use use(context_);
   bind();
-  for (std::size_t i = 0; i < forces.sources.size(); ++i)
-    for (std::size_t r = 0; r < carried_.size(); ++r)
-      expand_->set(indexed("amounts", i * carried_.size() + r), forces.sources[i][r]);
-  for (std::size_t i = 0; i < forces.pushes.size(); ++i) collect_->set(indexed("push_amounts", i), forces.pushes[i]);
-  for (std::size_t r = 0; r < carried_.size(); ++r)
-    collect_->set(indexed("weights", r), r < forces.weights.size() ? forces.weights[r] : Vec3(Vec3::Zero()));
-  expand_->set("fades", forces.fades);
   expand_->set("filters_velocity", moves_ ? options_.filter_velocity * dt : 0.0);
   expand_->set("filters_carried", options_.filter_carried * dt);
   // A step is taken to be one part, if the last one was; where the speed then says otherwise it is taken again.

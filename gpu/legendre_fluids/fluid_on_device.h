@@ -4,6 +4,7 @@
 // points along x, where products are taken, and back, collect.comp slabs back to coefficients, columns.comp the pressure along x; the rest
 // of the pressure is done where the next begins.
 #pragma once
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -23,15 +24,15 @@ struct Regions {
   std::vector<Array> sources, pushes;
 };
 
-// What a step adds and takes beside the fluid's own motion.
-struct StepForces {
-  // Of what is carried, in the order of its fields: what sources add before the step, [source][field]; what 1 of it pushes [half sizes per
-  // second], after it.
+// What acts on the fluid before it moves in a step, or, in the opposite order, after it.
+struct Acting {
+  double fades = 1;  // what decay leaves
+  // Of what is carried, in the order of its fields: what sources add, [source][field]; what 1 of it pushes [half sizes per second].
   std::vector<std::vector<double>> sources;
   std::vector<Vec3> weights;
-  std::vector<Vec3> pushes;  // by force [half sizes per second], likewise
-  double fades = 1;          // what decay leaves
+  std::vector<Vec3> pushes;  // by force [half sizes per second]
 };
+using StepForces = std::array<Acting, 2>;
 
 class FluidOnDevice {
  public:
@@ -75,6 +76,9 @@ class FluidOnDevice {
   void collect(Fields, ComesFrom);
   void columns(Fields, bool diffuses, double dt = 0);
   void spread_modes_back(Fields, double dt);
+  void set(const Acting&);
+  bool pushes(const Acting&) const;
+  void push();
   int run(double dt, const StepForces&, bool looks);
   struct Status {
     double speed;  // greatest, of the last points() that measured [half sizes per second]

@@ -66,12 +66,17 @@ class LegendreFlowGpu final : public LegendreFlow {
   }
 
   StepForces forces(double dt) const {
-    StepForces f;
-    const std::vector<double> seconds = source_seconds(dt), push_seconds = this->push_seconds(dt);
+    const auto acting = this->acting(dt);
+    return {on_device(acting[0]), on_device(acting[1])};
+  }
+  legendre::Acting on_device(const Acting& acting) const {
+    legendre::Acting f;
+    const std::vector<double> seconds = source_seconds(acting.sources),
+                              push_seconds = this->push_seconds(acting.pushes);
     const std::size_t temperature = p_->densities.size() + 1;  // of Fluid::carried()
     for (const std::size_t which : device_.carried()) {
       const double lifts = which == temperature ? -p_->expansion : p_->weight;
-      f.weights.push_back(dt * lifts * p_->gravity.cwiseQuotient(box_.half));
+      f.weights.push_back(acting.pushes.length() * lifts * p_->gravity.cwiseQuotient(box_.half));
     }
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       const scene::Source& s = p_->sources[i];
@@ -83,7 +88,7 @@ class LegendreFlowGpu final : public LegendreFlow {
     }
     for (std::size_t i = 0; i < push_seconds.size(); ++i)
       f.pushes.push_back(push_seconds[i] * p_->pushes[i].acceleration.cwiseQuotient(box_.half));
-    f.fades = fluid_->faded(p_->decay * dt);
+    f.fades = fluid_->faded(p_->decay * acting.decay);
     return f;
   }
 

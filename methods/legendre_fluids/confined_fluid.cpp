@@ -44,7 +44,7 @@ ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Mate
   const Array& x = space_.nodes();
   const Array last = dimensions == 3 ? x : Array(Array::Zero(1));
   for (int a = 0; a < dimensions; ++a) {
-    const auto speed = [&](const Vec3& p) { return wind_->velocity(a, p); };
+    const auto speed = [&](const Vec3& p) { return wind_->velocity(p)[a]; };
     wind_at_points_[a] = values_on(x, x, last, speed);
     // The confined part is 0 on the sides.
     for (int side = 0; side < 2; ++side) {
@@ -83,7 +83,7 @@ Array ConfinedFluid::sampled(int component, const Components& positions) const {
   if (!wind_) return values;
   const Array last = space_.dimensions() == 3 ? positions[2] : Array(Array::Zero(1));
   const Array wind = values_on(positions[0], positions[1], last,
-                               [&](const Vec3& x) { return wind_->velocity(component, x) + gust(time)[component]; });
+                               [&](const Vec3& x) { return wind_->velocity(x)[component] + gust(time)[component]; });
   return confined() ? Array(values + wind) : wind;
 }
 
@@ -92,14 +92,14 @@ Array ConfinedFluid::sampled_slope(int component, int axis, const Components& po
   if (!wind_) return slopes;
   // Of a wind that is at most linear a difference is its slope.
   const Vec3 step = Vec3::Unit(axis);
-  const double slope = 0.5 * (wind_->velocity(component, step) - wind_->velocity(component, -step));
+  const double slope = 0.5 * (wind_->velocity(step) - wind_->velocity(-step))[component];
   return slopes.array() + slope;
 }
 
 double ConfinedFluid::at(int component, const Vec3& x) const {
   double value =
       confined() && space_.n() > 1 ? value_at(space_, space_.component(velocity, component), component, x) : 0;
-  return wind_ ? value + wind_->velocity(component, x) + gust(time)[component] : value;
+  return wind_ ? value + wind_->velocity(x)[component] + gust(time)[component] : value;
 }
 
 Array ConfinedFluid::at(int component, const std::vector<Vec3>& x) const {
@@ -113,7 +113,7 @@ Array ConfinedFluid::at(int component, const std::vector<Vec3>& x) const {
   }
   if (!wind_) return values;
   const double blows = gust(time)[component];
-  for (std::size_t i = 0; i < x.size(); ++i) values[Eigen::Index(i)] += wind_->velocity(component, x[i]) + blows;
+  for (std::size_t i = 0; i < x.size(); ++i) values[Eigen::Index(i)] += wind_->velocity(x[i])[component] + blows;
   return values;
 }
 

@@ -42,6 +42,7 @@ class ConfinedFluid : public Fluid {
   void advance(double dt) override;
   void push(const Components& change) override;
   void finish(double dt) override { filter(dt); }
+  bool halves() const override { return true; }
   Components at_points() const override;
   Array sampled(int component, const Components& positions) const override;
   Array sampled_slope(int component, int axis, const Components& positions) const override;

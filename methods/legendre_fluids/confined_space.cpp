@@ -27,7 +27,7 @@ void each(const TensorShape& shape, const Body& body) {
 }  // namespace
 
 ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
-    : d_(dimensions), n_(n), half_(half), points_(mirrored({n + 1, (3 * n + 1) / 2})) {
+    : d_(dimensions), n_(n), half_(half), points_(mirrored(scene::legendre_points(n + 1, (3 * n + 1) / 2))) {
   for (int a = 0; a < d_; ++a) offset_[a + 1] = offset_[a] + tensor_size(shape(a));
   phi_ = scene::legendre_integral(n).rightCols(n - 1);
   mass_ = phi_.transpose() * phi_;
@@ -46,6 +46,18 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
     free_modes_.bottomRightCorner(n - 1, n - 1) = free.eigenvectors();
     free_rates_.tail(n - 1) = free.eigenvalues();
   }
+  to_wall_modes_ = wall_modes_.transpose();
+  to_free_modes_ = free_modes_.transpose();
+  to_pressure_modes_ = pressure_modes_.transpose();
+  lifted_ = MatrixXd::Zero(n - 1, n);
+  lifted_.rightCols(n - 1) = wall_modes_ * wall_rates_.asDiagonal();
+  pressure_.resize(scalars());
+  each(shape(), [&](int at, const std::array<int, 3>& i) {
+    double rate = 0;
+    for (int a = 0; a < d_; ++a)
+      if (i[a] > 0) rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a]);
+    pressure_[at] = rate > 0 ? -1 / rate : 0;
+  });
   at_points_ = {points_.values.leftCols(n), points_.values * phi_};
   from_points_[0] = points_.analysis.topRows(n);
   if (n == 1) return;
@@ -96,21 +108,12 @@ Array ConfinedSpace::divergence(const Array& u) const {
 
 Array ConfinedSpace::project(const Array& u) const {
   if (n_ == 1) return u;
-  const MatrixXd back = pressure_modes_.transpose();
-  Array p = transformed(divergence(u), shape(), {&back, &back, &back});
-  each(shape(), [&](int at, const std::array<int, 3>& i) {
-    double rate = 0;
-    for (int a = 0; a < d_; ++a)
-      if (i[a] > 0) rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a]);
-    p[at] = rate > 0 ? -p[at] / rate : 0;
-  });
-  // Inverse mass times what p has from index 1 on, in modes.
-  MatrixXd lifted = MatrixXd::Zero(n_ - 1, n_);
-  lifted.rightCols(n_ - 1) = wall_modes_ * wall_rates_.asDiagonal();
+  const std::array<const MatrixXd*, 3> to{&to_pressure_modes_, &to_pressure_modes_, &to_pressure_modes_};
+  const Array p = transformed(divergence(u), shape(), to).cwiseProduct(pressure_);
   Array result = u;
   for (int a = 0; a < d_; ++a) {
     std::array<const MatrixXd*, 3> matrix{&pressure_modes_, &pressure_modes_, &pressure_modes_};
-    matrix[a] = &lifted;
+    matrix[a] = &lifted_;
     result.segment(offset_[a], offset_[a + 1] - offset_[a]) += transformed(p, shape(), matrix) / (half_[a] * half_[a]);
   }
   return result;
@@ -128,11 +131,11 @@ Array ConfinedSpace::weighted(const Array& u) const {
 double ConfinedSpace::inner(const Array& u, const Array& v) const { return weighted(u).dot(v); }
 
 Array ConfinedSpace::diffused_part(const Array& c, int component, double amount, Diffusion kind) const {
-  const MatrixXd to_free = free_modes_.transpose(), to_wall = wall_modes_.transpose();
-  std::array<const MatrixXd*, 3> to{&to_free, &to_free, &to_free}, from{&free_modes_, &free_modes_, &free_modes_};
+  std::array<const MatrixXd*, 3> to{&to_free_modes_, &to_free_modes_, &to_free_modes_};
+  std::array<const MatrixXd*, 3> from{&free_modes_, &free_modes_, &free_modes_};
   std::array<const Array*, 3> rates{&free_rates_, &free_rates_, &free_rates_};
   if (component >= 0) {
-    to[component] = &to_wall;
+    to[component] = &to_wall_modes_;
     from[component] = &wall_modes_;
     rates[component] = &wall_rates_;
   }

@@ -84,7 +84,7 @@ class ConfinedSpace {
   Array from_scalars(const Components& scalars) const;
 
   // L2 projection by quadrature of functions of the reference box [-1, 1]^d; the velocity one in half sizes per second.
-  Array from_function(const std::function<double(int axis, const Vec3&)>& u) const;
+  Array from_function(const std::function<Vec3(const Vec3&)>& u) const;
   // With `points` of an axis; 0: enough for what is smooth.
   Array scalar_from_function(const std::function<double(const Vec3&)>& r, int points = 0) const;
 
@@ -109,6 +109,9 @@ class ConfinedSpace {
   Eigen::MatrixXd wall_modes_, free_modes_;  // orthogonal: of the mass, n-1; of D^T D, n
   Array wall_rates_, free_rates_;            // the eigenvalues of -d^2/dx^2 along phi and along L
   Eigen::MatrixXd pressure_modes_;           // 1 and the wall modes: n
+  Eigen::MatrixXd to_wall_modes_, to_free_modes_, to_pressure_modes_;
+  Eigen::MatrixXd lifted_;  // inverse mass times what modes of pressure have from index 1 on
+  Array pressure_;          // of a divergence, in modes
   std::array<Eigen::MatrixXd, 2> at_points_, slope_at_points_, from_points_;  // [0] L, [1] phi
   AdvectionKernel kernel_;
   Eigen::MatrixXd from_scalar_;  // L to phi, L2 projection

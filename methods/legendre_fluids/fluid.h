@@ -11,7 +11,7 @@
 
 namespace airlight::legendre_fluids {
 
-using VelocityFunction = std::function<double(int axis, const Vec3& x)>;  // half sizes per second, x in [-1, 1]^d
+using VelocityFunction = std::function<Vec3(const Vec3& x)>;  // half sizes per second, x in [-1, 1]^d
 
 struct Material {
   double viscosity = 0, diffusivity = 0;  // [m^2/s]
@@ -33,10 +33,13 @@ class Fluid {
   std::vector<Array*> carried();
 
   virtual void begin(const VelocityFunction&) = 0;
-  // A step is advance, then push where there are forces, then finish. The first and the last throw scene::Unstable.
+  // A step is advance, push where there are forces, before and after or after alone, then finish. The first and the last throw
+  // scene::Unstable.
   virtual void advance(double dt) = 0;
   virtual void push(const Components& change) = 0;  // coefficients of L for each axis [half sizes per second], added
   virtual void finish(double dt) = 0;
+  // Do forces, sources and decay act for half of a step before the fluid moves (Strang)? Else sources act before, the others after.
+  virtual bool halves() const { return false; }
   // What is left of a quantity that decays, of the product of rate and time.
   virtual double faded(double amount) const { return std::exp(-amount); }
 

@@ -19,7 +19,8 @@ LegendreFlow::LegendreFlow(std::shared_ptr<const FlowProblem> problem, std::uniq
 
 void LegendreFlow::begin() {
   const ConfinedSpace& space = fluid_->space();
-  fluid_->begin([&](int a, const Vec3& x) { return scene::start_velocity(*p_, a, box_.outside(x)) / box_.half[a]; });
+  fluid_->begin(
+      [&](const Vec3& x) -> Vec3 { return scene::start_velocity(*p_, box_.outside(x)).cwiseQuotient(box_.half); });
   begin_densities();
   if (carries_temperature(*p_))
     fluid_->temperature =
@@ -81,44 +82,61 @@ void LegendreFlow::step(double dt) {
   settle();
 }
 
-void LegendreFlow::move(double dt) {
-  timed("sources", [&] { add_sources(dt); });
-  timed("advection and diffusion", [&] { fluid_->advance(dt); });
-  if (!p_->velocity_stays) timed("forces", [&] { push(dt); });
-  timed("projection and filter", [&] { fluid_->finish(dt); });
-  require_finite();
-  if (p_->decay > 0) fade(fluid_->faded(p_->decay * dt));
+std::array<LegendreFlow::Acting, 2> LegendreFlow::acting(double dt) const {
+  const Interval all{time_, time_ + dt}, none{time_, time_};
+  if (!fluid_->halves()) return {{{0, all, none}, {dt, none, all}}};
+  const double middle = time_ + 0.5 * dt;
+  const Interval first{all.lo, middle}, second{middle, all.hi};
+  return {{{0.5 * dt, first, first}, {0.5 * dt, second, second}}};
 }
 
-void LegendreFlow::fade(double factor) {
+void LegendreFlow::move(double dt) {
+  const auto [before, after] = acting(dt);
+  timed("sources", [&] {
+    fade(before.decay);
+    add_sources(before.sources);
+  });
+  timed("forces", [&] { push(before.pushes); });
+  require_finite();
+  timed("advection and diffusion", [&] { fluid_->advance(dt); });
+  timed("forces", [&] { push(after.pushes); });
+  timed("sources", [&] { add_sources(after.sources); });
+  timed("projection and filter", [&] { fluid_->finish(dt); });
+  require_finite();
+  fade(after.decay);
+}
+
+void LegendreFlow::fade(double seconds) {
+  if (!(p_->decay * seconds > 0)) return;
+  const double factor = fluid_->faded(p_->decay * seconds);
   fluid_->density *= factor;
   fluid_->temperature *= factor;
   for (Array& r : fluid_->others)
     if (mixing_ == Mixing::densities) r *= factor;
 }
 
-std::vector<double> LegendreFlow::source_seconds(double dt) const {
+std::vector<double> LegendreFlow::source_seconds(const Interval& time) const {
   std::vector<double> seconds;
   for (const scene::Source& s : p_->sources) {
-    const Interval part = intersect(s.time, {time_, time_ + dt});
+    const Interval part = intersect(s.time, time);
     seconds.push_back(part.empty() ? 0 : part.length());
   }
   return seconds;
 }
 
-std::vector<double> LegendreFlow::push_seconds(double dt) const {
+std::vector<double> LegendreFlow::push_seconds(const Interval& time) const {
   std::vector<double> seconds;
   for (const scene::Push& force : p_->pushes) {
-    const Interval part = intersect(force.time, {time_, time_ + dt});
-    // The integral of cos(2 pi f t) over the part of the step.
+    const Interval part = intersect(force.time, time);
+    // The integral of cos(2 pi f t) over the part of it.
     const double w = 2 * pi * force.frequency;
     seconds.push_back(part.empty() ? 0 : w > 0 ? (std::sin(w * part.hi) - std::sin(w * part.lo)) / w : part.length());
   }
   return seconds;
 }
 
-void LegendreFlow::add_sources(double dt) {
-  const std::vector<double> seconds = source_seconds(dt);
+void LegendreFlow::add_sources(const Interval& time) {
+  const std::vector<double> seconds = source_seconds(time);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     const scene::Source& s = p_->sources[i];
     if (!(seconds[i] > 0)) continue;
@@ -128,8 +146,10 @@ void LegendreFlow::add_sources(double dt) {
   }
 }
 
-void LegendreFlow::push(double dt) {
-  const std::vector<double> seconds = push_seconds(dt);
+void LegendreFlow::push(const Interval& time) {
+  const double dt = time.length();
+  if (p_->velocity_stays || !(dt > 0)) return;
+  const std::vector<double> seconds = push_seconds(time);
   Components change;
   bool any = false;
   for (int a = 0; a < p_->dimensions; ++a) {

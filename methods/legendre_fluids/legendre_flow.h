@@ -43,9 +43,16 @@ class LegendreFlow : public scene::Flow {
   // The fluid with its coefficients of now, for those who move them elsewhere than in the fluid.
   virtual Fluid& now() const { return *fluid_; }
 
-  // What the step from time() adds of each source [s], and of each force's acceleration [s]: 0 outside their times.
-  std::vector<double> source_seconds(double dt) const;
-  std::vector<double> push_seconds(double dt) const;
+  // What acts on the fluid before it moves in a step of dt [s], and after it in the opposite order: what decays [s], and the times in which
+  // sources and forces do.
+  struct Acting {
+    double decay;
+    Interval sources, pushes;
+  };
+  std::array<Acting, 2> acting(double dt) const;
+  // What a time adds of each source [s], and of each force's acceleration [s]: 0 outside their times.
+  std::vector<double> source_seconds(const Interval& time) const;
+  std::vector<double> push_seconds(const Interval& time) const;
   template <class Body>
   void timed(const std::string& stage, const Body& body) {
     scene::Stopwatch watch;
@@ -64,9 +71,9 @@ class LegendreFlow : public scene::Flow {
   void begin_densities();
   void settle();
   const Array& smoke(int which) const;
-  void fade(double factor);
-  void add_sources(double dt);
-  void push(double dt);
+  void fade(double seconds);
+  void add_sources(const Interval& time);
+  void push(const Interval& time);
   void require_finite() const;
   double carried_at(const Array& r, const Point3& x) const;
   std::string shape() const;

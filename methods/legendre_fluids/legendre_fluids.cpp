@@ -94,10 +94,10 @@ std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& probl
   }
   const Vec3 through = wind_of(*problem);
   if (wind.added)
-    wind.velocity = [=](int a, const Vec3&) { return through[a] / box.half[a]; };
+    wind.velocity = [=](const Vec3&) -> Vec3 { return through.cwiseQuotient(box.half); };
   else
-    wind.velocity = [=](int a, const Vec3& x) {
-      return scene::start_velocity(*problem, a, box.outside(x)) / box.half[a];
+    wind.velocity = [=](const Vec3& x) -> Vec3 {
+      return scene::start_velocity(*problem, box.outside(x)).cwiseQuotient(box.half);
     };
   for (int a = 0; a < problem->dimensions; ++a)
     for (int side = 0; side < 2; ++side) {

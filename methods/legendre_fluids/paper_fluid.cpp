@@ -78,7 +78,7 @@ void PaperFluid::project() {
 void PaperFluid::begin(const VelocityFunction& u) {
   Components start;
   for (int a = 0; a < space_.dimensions(); ++a)
-    start[a] = space_.scalar_from_function([&](const Vec3& x) { return u(a, x); });
+    start[a] = space_.scalar_from_function([&](const Vec3& x) { return u(x)[a]; });
   set_parts(start);
   if (material_.moves) project();
 }

@@ -9,38 +9,45 @@ using Eigen::MatrixXd;
 // Functions are no polynomials: points beyond what products need, so that theirs is not the error.
 int points_of_functions(int n) { return 2 * n + 16; }
 
-Array values_on(const Array& node, int dimensions, const std::function<double(const Vec3&)>& f) {
+// body(flat index, point) over the lattice of the nodes.
+template <class Body>
+void each_point(const Array& node, int dimensions, const Body& body) {
   const int m = int(node.size()), last = dimensions == 3 ? m : 1;
-  Array values(m * m * last);
   int at = 0;
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j)
-      for (int k = 0; k < last; ++k) values[at++] = f(Vec3(node[i], node[j], dimensions == 3 ? node[k] : 0));
-  return values;
+      for (int k = 0; k < last; ++k) body(at++, Vec3(node[i], node[j], dimensions == 3 ? node[k] : 0));
 }
 
 }  // namespace
 
-Array ConfinedSpace::from_function(const std::function<double(int, const Vec3&)>& u) const {
+Array ConfinedSpace::from_function(const std::function<Vec3(const Vec3&)>& u) const {
   if (n_ == 1) return Array();
-  const scene::LegendrePoints fine(n_ + 1, points_of_functions(n_));
+  const scene::LegendrePoints& fine = scene::legendre_points(n_ + 1, points_of_functions(n_));
   const MatrixXd free = fine.analysis.topRows(n_), wall = inverse_ * phi_.transpose() * fine.analysis;
   const int m = int(fine.node.size());
+  const TensorShape fine_shape{m, m, d_ == 3 ? m : 1};
   Components parts;
+  for (int a = 0; a < d_; ++a) parts[a].resize(scene::tensor_size(fine_shape));
+  each_point(fine.node, d_, [&](int at, const Vec3& x) {
+    const Vec3 v = u(x);
+    for (int a = 0; a < d_; ++a) parts[a][at] = v[a];
+  });
   for (int a = 0; a < d_; ++a) {
     std::array<const MatrixXd*, 3> matrix{&free, &free, &free};
     matrix[a] = &wall;
-    const Array values = values_on(fine.node, d_, [&](const Vec3& x) { return u(a, x); });
-    parts[a] = transformed(values, {m, m, d_ == 3 ? m : 1}, matrix);
+    parts[a] = transformed(parts[a], fine_shape, matrix);
   }
   return joined(parts);
 }
 
 Array ConfinedSpace::scalar_from_function(const std::function<double(const Vec3&)>& r, int points) const {
-  const scene::LegendrePoints fine(n_, points > 0 ? points : points_of_functions(n_));
+  const scene::LegendrePoints& fine = scene::legendre_points(n_, points > 0 ? points : points_of_functions(n_));
   const int m = int(fine.node.size());
-  return transformed(values_on(fine.node, d_, r), {m, m, d_ == 3 ? m : 1},
-                     {&fine.analysis, &fine.analysis, &fine.analysis});
+  const TensorShape fine_shape{m, m, d_ == 3 ? m : 1};
+  Array values(scene::tensor_size(fine_shape));
+  each_point(fine.node, d_, [&](int at, const Vec3& x) { values[at] = r(x); });
+  return transformed(values, fine_shape, {&fine.analysis, &fine.analysis, &fine.analysis});
 }
 
 Array ConfinedSpace::sampled(const Array& c, int component, int slope_axis, const Components& positions) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 
@@ -108,6 +109,13 @@ const LegendrePoints& legendre_points(int n) {
   return *all[i];
 }
 
+const LegendrePoints& legendre_points(int n, int m) {
+  static std::mutex mutex;
+  static std::map<std::pair<int, int>, LegendrePoints> all;
+  const std::lock_guard lock(mutex);
+  return all.try_emplace({n, m}, n, m).first->second;
+}
+
 Eigen::VectorXd along_axis(int axis, const Eigen::MatrixXd& matrix, const Eigen::VectorXd& array,
                            const TensorShape& shape) {
   Eigen::Index outer = 1, inner = 1;
@@ -140,7 +148,7 @@ Eigen::VectorXd legendre_product(const Eigen::VectorXd& f, const TensorShape& f_
     if (int(axis) >= dimensions) continue;
     // The integrand of a coefficient has degree f + g + kept - 3.
     const int m = (f_shape[axis] + g_shape[axis] + kept[axis] - 1) / 2;
-    const LegendrePoints points(kept[axis], m);
+    const LegendrePoints& points = legendre_points(kept[axis], m);
     f_values[axis] = legendre_values(f_shape[axis], points.node);
     g_values[axis] = legendre_values(g_shape[axis], points.node);
     analysis[axis] = points.analysis;

@@ -39,8 +39,9 @@ struct LegendrePoints {
   Eigen::MatrixXd analysis;        // n x m: times values, the L2 projection by quadrature
 };
 
-// Those of n = m, made when first asked for and kept. Thread safe.
+// Made when first asked for and kept; n alone: n = m, below 256. Thread safe.
 const LegendrePoints& legendre_points(int n);
+const LegendrePoints& legendre_points(int n, int m);
 
 // Number of entries along x, y, z.
 using TensorShape = std::array<int, 3>;

@@ -29,12 +29,16 @@ std::unique_ptr<PaperFluid> carried(int n, Truncation truncation, double time, c
   return fluid;
 }
 
-double confined_swirl(int a, const Vec3& x) { return a == 0 ? -x[1] * (1 - x[0] * x[0]) : x[0] * (1 - x[1] * x[1]); }
-double rotation(int a, const Vec3& x) { return a == 0 ? -x[1] : x[0]; }
+Vec3 confined_swirl(const Vec3& x) { return {-x[1] * (1 - x[0] * x[0]), x[0] * (1 - x[1] * x[1]), 0}; }
+Vec3 rotation(const Vec3& x) { return {-x[1], x[0], 0}; }
 
 // The swirl of the other tests, as a function.
 VelocityFunction smooth(const ConfinedSpace& space, const Array& u) {
-  return [&space, u](int a, const Vec3& x) { return value_at(space, space.component(u, a), a, x); };
+  return [&space, u](const Vec3& x) {
+    Vec3 v = Vec3::Zero();
+    for (int a = 0; a < space.dimensions(); ++a) v[a] = value_at(space, space.component(u, a), a, x);
+    return v;
+  };
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ inline double error(const Array& got, const Array& expected) {
 
 // Smooth and confined, without divergence, |u| at most 1: low modes, the same for every n.
 inline Array swirl(const ConfinedSpace& space, unsigned seed = 1) {
-  Array u = space.from_function([&](int a, const Vec3& x) {
+  const auto component = [&](int a, const Vec3& x) {
     std::mt19937 random(seed + 17 * unsigned(a));
     std::normal_distribution<double> normal;
     double sum = 0;
@@ -23,8 +23,12 @@ inline Array swirl(const ConfinedSpace& space, unsigned seed = 1) {
         for (int k = 0; k < (space.dimensions() == 3 ? 3 : 1); ++k)
           sum += normal(random) * std::pow(x[0], i) * std::pow(x[1], j) * (k ? std::pow(x[2], k) : 1);
     return (1 - x[a] * x[a]) * sum;
-  });
-  u = space.project(u);
+  };
+  const Array u = space.project(space.from_function([&](const Vec3& x) {
+    Vec3 v = Vec3::Zero();
+    for (int a = 0; a < space.dimensions(); ++a) v[a] = component(a, x);
+    return v;
+  }));
   const Components values = space.at_points(u);
   Array speed = Array::Zero(values[0].size());
   for (int a = 0; a < space.dimensions(); ++a) speed += values[a].cwiseAbs2();

@@ -9,7 +9,7 @@ set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
 set xrange [-0.06:2.06]
-set yrange [-2.75373:94.5448]
+set yrange [-2.74311:94.1801]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "energy.svg"
 plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "confetti"

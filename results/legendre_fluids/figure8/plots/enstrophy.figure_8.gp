@@ -9,7 +9,7 @@ set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
 set xrange [-0.06:2.06]
-set yrange [0:4.04047]
+set yrange [0:4.02934]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "enstrophy.figure_8.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin 6", \

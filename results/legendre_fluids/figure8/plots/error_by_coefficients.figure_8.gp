@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [0:27.6]
 set logscale y
 set format y "%g"
-set yrange [0.024303:0.552819]
+set yrange [0.0243936:0.553745]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_coefficients.figure_8.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \

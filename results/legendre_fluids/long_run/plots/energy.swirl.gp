@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [-3:103]
 set logscale y
 set format y "%g"
-set yrange [0.00491877:0.234238]
+set yrange [0.00420815:0.236316]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "energy.swirl.svg"
 plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin 6", \

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000104612:0.0492959]
+set xrange [0.00010277:0.0492495]
 set logscale y
 set format y "%g"
 set yrange [0.000121649:0.268792]

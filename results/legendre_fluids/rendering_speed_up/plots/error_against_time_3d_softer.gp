@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000108095:0.0481619]
+set xrange [0.000102552:0.0491561]
 set logscale y
 set format y "%g"
 set yrange [3.71293e-05:0.335826]

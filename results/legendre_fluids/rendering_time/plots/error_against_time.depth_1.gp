@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000122219:0.0994305]
+set xrange [0.000143353:0.100764]
 set logscale y
 set format y "%g"
 set yrange [1.06092e-08:0.15077]

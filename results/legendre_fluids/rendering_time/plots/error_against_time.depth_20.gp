@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000117543:0.210554]
+set xrange [0.000117197:0.21022]
 set logscale y
 set format y "%g"
 set yrange [4.98946e-10:2.04104]

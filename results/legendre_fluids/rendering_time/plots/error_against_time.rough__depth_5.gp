@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000135177:0.207437]
+set xrange [0.000133958:0.211941]
 set logscale y
 set format y "%g"
 set yrange [2.20263e-09:0.719956]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [3.59229:26.7239]
 set logscale y
 set format y "%g"
-set yrange [0.0105229:0.486651]
+set yrange [0.0104999:0.486507]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_coefficients.pushed.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [6.02191e-05:3.35795]
+set xrange [3.07659e-05:3.49544]
 set logscale y
 set format y "%g"
-set yrange [7.43065e-14:1.59021]
+set yrange [7.40352e-14:1.59054]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_time.Taylor-Green.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \

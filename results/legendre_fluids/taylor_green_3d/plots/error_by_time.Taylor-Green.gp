@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000545972:34.0074]
+set xrange [0.00018612:35.9986]
 set logscale y
 set format y "%g"
-set yrange [4.41789e-05:0.569421]
+set yrange [4.16228e-05:0.571345]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_time.Taylor-Green.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \

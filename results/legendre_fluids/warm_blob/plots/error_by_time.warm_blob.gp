@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000911005:50.2335]
+set xrange [0.000391347:53.9087]
 set logscale y
 set format y "%g"
-set yrange [0.0068737:0.783409]
+set yrange [0.00197064:0.840824]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_by_time.warm_blob.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "galerkin", \
