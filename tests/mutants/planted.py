@@ -40,6 +40,7 @@ CENTRES = "methods/compensated_ray_marching/centre_sources.cpp", "methods/compen
 SMOKE_PICTURE = "methods/compensated_ray_marching/picture.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 VERIFY = "experiments/verify/verify.cpp", "experiments/verify_test.cpp"
 CONFINED = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/confined_space_test.cpp"
+LEGENDRE_FLOW = "methods/legendre_fluids/legendre_flow.cpp", "methods/legendre_fluids/flow_test.cpp"
 BOXES = "methods/legendre_fluids/confined_space.cpp", "methods/legendre_fluids/flow_test.cpp"
 TIME_STEPS = "methods/legendre_fluids/time_steps.cpp", "methods/legendre_fluids/time_steps_test.cpp"
 LEGENDRE_LINE = "scene/media/legendre_line.cpp", "scene/media/legendre_box_test.cpp"
@@ -210,10 +211,12 @@ MUTANTS = [
     bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
         "a number out of tolerance is found"),
     # Legendre fluids
-    bug("the projection adds the gradient", CONFINED, "rate > 0 ? -p[at] / rate", "rate > 0 ? p[at] / rate",
+    bug("the projection adds the gradient", CONFINED, "rate > 0 ? -1 / rate", "rate > 0 ? 1 / rate",
         "legendre fluids: the projection holds in boxes that are no cubes, up to 32 coefficients"),
     bug("the pressure of a cube", CONFINED, "rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a])", "rate += wall_rates_[i[a] - 1]",
         "legendre fluids: the projection holds in boxes that are no cubes, up to 32 coefficients"),
+    bug("forces act after the flow", LEGENDRE_FLOW, "{{{0.5 * dt, first, first}, {0.5 * dt, second, second}}}",
+        "{{{0.5 * dt, first, none}, {0.5 * dt, second, all}}}", "legendre fluids: what acts on a flow is of second order in the step"),
     bug("air comes in where it goes out", CONFINED, "(side ? Array(-speed) : speed)", "(side ? speed : Array(-speed))",
         "legendre fluids: what comes in clear can only thin what is there"),
     bug("viscosity in half sizes", BOXES, "rate += (*rates[a])[i[a]] / (half_[a] * half_[a])", "rate += (*rates[a])[i[a]]",

@@ -38,6 +38,44 @@ double difference(const scene::Flow& a, const scene::Flow& b, const FlowProblem&
 
 }  // namespace
 
+TEST_CASE("legendre fluids: what acts on a flow is of second order in the step", "[legendre_fluids]") {
+  FlowProblem problem = warm_blob(2);
+  problem.weight = 0.05, problem.decay = 2;
+  scene::Source source;
+  source.region = scene::Sphere{Point3(0.5, 0.4, 0), 0.3};
+  source.density_rate = 3, source.temperature_rate = 100;
+  problem.sources.push_back(source);
+  scene::Push push;
+  push.region = scene::Sphere{Point3(0.4, 0.6, 0), 0.3};
+  push.acceleration = Vec3(2, 1, 0), push.frequency = 1;
+  problem.pushes.push_back(push);
+  const auto after = [&](int steps) {
+    auto flow = start(problem, {{"n", "10"}});
+    run(*flow, steps, 0.4 / steps);
+    return flow;
+  };
+  const auto fine = after(256), coarse = after(4), half = after(8);
+  for (const bool of_density : {false, true}) {
+    const double ratio =
+        difference(*coarse, *fine, problem, of_density) / difference(*half, *fine, problem, of_density);
+    CAPTURE(of_density, ratio);
+    CHECK(ratio > 3.7);
+    CHECK(ratio < 4.3);
+  }
+  // All the same everywhere, alone: the density is rate / decay (1 - exp(-decay t)).
+  FlowProblem still = box(2);
+  still.decay = 2;
+  source.region = Box{Point3(-1, -1, -1), Point3(2, 2, 1)}, source.temperature_rate = 0;
+  still.sources.push_back(source);
+  const auto error = [&](int steps) {
+    auto flow = start(still, {{"n", "3"}});
+    run(*flow, steps, 0.4 / steps);
+    return std::abs(flow->density(Point3(0.5, 0.5, 0)) / (1.5 * (1 - std::exp(-0.8))) - 1);
+  };
+  CHECK(error(8) == Approx(0.1 * 0.1 / 24).epsilon(0.01));  // (dt decay)^2 / 24 is what halves leave
+  CHECK(error(4) / error(8) == Approx(4).epsilon(0.02));
+}
+
 TEST_CASE("legendre fluids: Taylor-Green vortices agree with the closed form in boxes of any size",
           "[legendre_fluids]") {
   for (const double side : {1.0, 2.0}) {
