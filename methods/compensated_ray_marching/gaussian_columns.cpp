@@ -7,6 +7,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

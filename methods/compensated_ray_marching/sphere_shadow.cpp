@@ -1,6 +1,7 @@
 #include "methods/compensated_ray_marching/sphere_shadow.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -5,6 +5,7 @@
 #include <ceres/gradient_problem_solver.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <exception>
 
