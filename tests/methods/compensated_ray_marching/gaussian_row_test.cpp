@@ -1,6 +1,7 @@
 // Gaussians along the rays of a row against their sum, point by point.
 #include "methods/compensated_ray_marching/gaussian_row.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 

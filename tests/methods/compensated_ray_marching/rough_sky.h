@@ -1,5 +1,6 @@
 // A coloured map of light and dark texels, brighter on one side, turned about an axis that is none of the world's.
 #pragma once
+#include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
 
