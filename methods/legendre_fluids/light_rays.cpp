@@ -11,7 +11,7 @@ namespace {
 
 constexpr double edge_share = 1. / 4096;  // of the way between two shadow rays: how well an edge is known
 constexpr int most_halvings = 12;         // of a stretch where light has kinks
-constexpr int last_orders = 3;            // of a column's coefficients: what these are is what is missed beyond
+constexpr Eigen::Index last_orders = 3;   // of a column's coefficients: what these are is what is missed beyond
 constexpr double least_share = 4e-16;     // of where it is: a piece that rounding made
 constexpr double rounding_share = 0.01;   // of the tolerance, that polynomials of columns may cost
 constexpr double bent_share = 0.1;        // of the tolerance, that that may be
@@ -88,7 +88,8 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
     Eigen::VectorXd values(n);
     media[m].columns[light].along(ray, places.data(), int(n), values.data());
     columns[m] = analysis * values;
-    const double missed = columns[m].tail(last_orders).cwiseAbs().sum() * media[m].medium->sigma_t.maxCoeff();
+    const double missed =
+        columns[m].tail(std::min(last_orders, n)).cwiseAbs().sum() * media[m].medium->sigma_t.maxCoeff();
     if (media[m].field->negative() && halvings < most_halvings && missed > bent_share * rays.options_.tolerance) {
       const double half = 0.5 * (t.lo + t.hi);
       stretch({t.lo, half}, visible, halvings + 1);
