@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -143,7 +144,7 @@ Residual residual_from_bytes(const std::string& bytes) {
   const std::size_t expected = at + bits + brick_bytes * kept;
   if (end != expected) refuse(fmt::format("{} bytes, expected {}", bytes.size(), expected + key_length));
   r.bricks.values.resize(brick_bytes * kept);
-  std::memcpy(r.bricks.values.data(), bytes.data() + at + bits, r.bricks.values.size());
+  std::copy_n(bytes.data() + at + bits, r.bricks.values.size(), r.bricks.values.begin());
   for (const std::int8_t level : r.bricks.values)
     if (level == -128) refuse("it has a level of -128, expected -127 to 127");
   return r;
