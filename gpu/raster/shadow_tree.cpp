@@ -83,7 +83,8 @@ ShadowTree::Data ShadowTree::data(const scene::Scene& scene) {
   }
   for (int octant = 0; octant < 8; ++octant) link(occluders.nodes, octant, 0, data.nodes, data.words);
   static_assert(sizeof(OccluderTriangle) == 12 * sizeof(int));
-  std::memcpy(&data.words[node_words * data.nodes], occluders.triangles.data(), 48 * occluders.triangles.size());
+  if (!occluders.triangles.empty())
+    std::memcpy(&data.words[node_words * data.nodes], occluders.triangles.data(), 48 * occluders.triangles.size());
   return data;
 }
 

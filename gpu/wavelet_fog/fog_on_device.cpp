@@ -71,9 +71,13 @@ void add_rule(Definitions& definitions, const std::string& prefix, int points) {
 }
 
 std::vector<char> bytes_of(const std::vector<FogData>& media, const std::vector<double>& knots) {
-  std::vector<char> bytes(sizeof(FogData) * media.size() + sizeof(double) * knots.size());
-  std::memcpy(bytes.data(), media.data(), sizeof(FogData) * media.size());
-  std::memcpy(bytes.data() + sizeof(FogData) * media.size(), knots.data(), sizeof(double) * knots.size());
+  std::vector<char> bytes;
+  const auto add = [&](const auto& list) {
+    const char* from = reinterpret_cast<const char*>(list.data());
+    bytes.insert(bytes.end(), from, from + sizeof(list[0]) * list.size());
+  };
+  add(media);
+  add(knots);
   return bytes;
 }
 
