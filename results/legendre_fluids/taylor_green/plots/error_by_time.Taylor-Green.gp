@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [3.07659e-05:3.49544]
+set xrange [3.08526e-05:3.43798]
 set logscale y
 set format y "%g"
 set yrange [7.40352e-14:1.59054]
