@@ -5,6 +5,8 @@
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "scene/error.h"
+#include "scene/math/legendre.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "scene/stopwatch.h"
 

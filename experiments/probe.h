@@ -57,6 +57,12 @@ class Probe : public scene::Component {
 // A figure that is known exactly, or with an interval.
 inline Measure exactly(std::string name, double value) { return {std::move(name), value, value, value, 0, false}; }
 
+// Values in another unit, such as seconds times 1e3 for milliseconds.
+inline std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
 // The median of runs, with its interval by ranks.
 inline Measure measured(std::string name, const std::vector<double>& runs) {
   const Estimate e = median_estimate(runs);

@@ -27,7 +27,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<gpu::RayMarcherGpu>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::FogshopGpu>());
-    list.push_back(std::make_unique<shadow_planes::ShadowPlanes>());
+    list.push_back(std::make_unique<airlight::shadow_planes::ShadowPlanes>());
     list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
     list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
     list.push_back(std::make_unique<gpu::WaveletFogGpu>());

@@ -13,6 +13,7 @@
 #include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
 #include "scene/flow_particles.h"
+#include "scene/media/legendre_box.h"
 #include "scene/read_file.h"
 #include "scene/stopwatch.h"
 

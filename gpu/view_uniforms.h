@@ -8,6 +8,9 @@
 
 namespace airlight::gpu {
 
+// Work groups over a picture are squares of this many pixels to a side.
+inline constexpr int pixel_tile = 8;
+
 // Half the film's size: at distance 1, or in metres where the camera is orthographic.
 struct HalfFilm {
   double x, y;

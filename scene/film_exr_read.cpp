@@ -74,10 +74,6 @@ struct Layout {
   std::set<std::string> layers;
 };
 
-std::string channel_name(const std::string& layer, char letter) {
-  return layer == "mean" ? std::string(1, letter) : layer + "." + letter;
-}
-
 Layout check_layout(const std::string& path, const Imf::Header& header, std::size_t max_bytes) {
   Layout layout;
   layout.window = header.dataWindow();

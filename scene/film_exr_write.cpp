@@ -10,6 +10,7 @@
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/exr_header.h"
 #include "scene/exr_memory.h"
 #include "scene/film.h"
 
@@ -21,10 +22,6 @@ void check_name(const std::string& path, const std::string& what, const std::str
   const bool printable = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 32 && c != 127; });
   if (name.empty() || name.size() > 240 || !printable)
     throw Error(fmt::format("{}: the {} name '{}' cannot be stored in an EXR file", path, what, name.substr(0, 80)));
-}
-
-std::string channel_name(const std::string& layer, char letter) {
-  return layer == "mean" ? std::string(1, letter) : layer + "." + letter;
 }
 
 void encode(const std::string& path, const Film& film, MemoryStream& stream) {

@@ -5,6 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
+
 namespace airlight::scene {
 namespace {
 

@@ -13,6 +13,7 @@
 #include "scene/error.h"
 #include "scene/grey_image.h"
 #include "scene/load/ranges.h"
+#include "scene/media/voxel_grid.h"
 #include "scene/printable.h"
 
 namespace airlight::experiments::authoring {
@@ -49,9 +50,9 @@ std::string profile_of(const Operation& op) {
 
 std::string point(const Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
 
-class Run {
+class MapRun {
  public:
-  explicit Run(const std::string& path) : folder_(fs::path(path).parent_path()) {}
+  explicit MapRun(const std::string& path) : folder_(fs::path(path).parent_path()) {}
 
   // Reads an operation; what is taken back is never done.
   void line(Operation op, int number) {
@@ -180,7 +181,7 @@ bool draws_fogmap(const std::string& path) {
 }
 
 DrawnFogmap run_fogmap_script(const std::string& path, const std::function<void()>& check) {
-  Run run(path);
+  MapRun run(path);
   for_each_operation(path, check, [&](Operation op, int line) {
     run.line(std::move(op), line);
     return true;

@@ -144,7 +144,7 @@ class Run {
       const auto plane = op.table("plane");
       if (!plane) op.fail("missing key 'plane', expected an object of normal and d");
       plane->allow({"normal", "d"});
-      const Canvas canvas{plane->direction("normal"), plane->number("d", any_number)};
+      const fogshop::authoring::Canvas canvas{plane->direction("normal"), plane->number("d", any_number)};
       for (const ScreenPoint& p : screen_points(op, "screen"))
         if (const auto point = unproject(view, p, canvas)) brush.stroke.push_back(*point);
       if (brush.stroke.empty()) op.fail("no point of 'screen' meets the plane, expected at least one");

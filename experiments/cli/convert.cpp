@@ -11,6 +11,8 @@
 #include "scene/error.h"
 #include "scene/film.h"
 #include "scene/grey_image.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::cli {

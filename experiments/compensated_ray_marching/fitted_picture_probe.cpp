@@ -8,6 +8,7 @@
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/residual_file.h"
 #include "scene/error.h"
+#include "scene/media/fitted.h"
 
 namespace airlight::experiments {
 namespace {

@@ -120,11 +120,6 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? 0 : sum / double(values.size());
 }
 
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value *= factor;
-  return values;
-}
-
 }  // namespace
 
 std::string GaussianFitProbe::about() const {

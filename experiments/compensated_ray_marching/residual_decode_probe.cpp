@@ -21,15 +21,15 @@ using gpu::compensated::ResidualOnDevice;
 using Levels = std::vector<std::int8_t>;
 using Points = std::vector<Eigen::Vector4f>;  // in samples; the last is not read
 
-enum class Store { bricks, hash_tags, hash_domain };
+enum class DeviceStore { bricks, hash_tags, hash_domain };
 
-std::unique_ptr<ResidualOnDevice> store_of(gpu::Context& context, Store store, const Vector3i& size,
+std::unique_ptr<ResidualOnDevice> store_of(gpu::Context& context, DeviceStore store, const Vector3i& size,
                                            const Levels& levels) {
-  if (store == Store::bricks)
+  if (store == DeviceStore::bricks)
     return std::make_unique<ResidualOnDevice>(context, size, scene::apron_bricks_of(size, levels));
   return std::make_unique<ResidualOnDevice>(
       context, size, scene::perfect_hash(size, scene::hashed_voxels(size, levels)),
-      store == Store::hash_tags ? ResidualOnDevice::Membership::tags : ResidualOnDevice::Membership::domain);
+      store == DeviceStore::hash_tags ? ResidualOnDevice::Membership::tags : ResidualOnDevice::Membership::domain);
 }
 
 Points random_points(const Vector3i& size, int count) {
@@ -155,7 +155,7 @@ Findings ResidualDecode::run(const ProbeInput& input, const scene::Settings& s,
       scene::residual_of(grid, gaussians_for(grid, int(s.integer("gaussians")), execution), options);
   const Vector3i size = residual.layout.size;
   const Levels levels = levels_of(residual.bricks);
-  const auto store = store_of(context, s.choice<Store>("store"), size, levels);
+  const auto store = store_of(context, s.choice<DeviceStore>("store"), size, levels);
   const int lookups = int(s.integer("lookups"));
   const Points random = random_points(size, lookups);
   const Decoder decoder(context, *store, int(s.integer("runs")));

@@ -183,11 +183,6 @@ Measured measure_store(const Task& task, const scene::Settings& s, scene::Perfec
   throw Error("residual_stores: no such store");
 }
 
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value *= factor;
-  return values;
-}
-
 double relative_l2(const scene::VoxelGrid& original, const scene::VoxelGrid& other) {
   double error = 0, norm = 0;
   for (std::size_t i = 0; i < original.values.size(); ++i) {

@@ -27,7 +27,7 @@ namespace {
 using ProblemPointer = std::shared_ptr<const scene::FlowProblem>;
 
 // What all rows of a problem share.
-struct Judged {
+struct JudgedFlow {
   ProblemPointer problem;
   std::vector<FlowMetric> metrics;      // in the order of the experiment's
   std::vector<int> frames;              // at which they are taken, one for each
@@ -36,8 +36,8 @@ struct Judged {
   std::string reference_key;
 };
 
-Judged plan_problem(const Experiment& e, const SceneCase& c) {
-  Judged judged;
+JudgedFlow plan_problem(const Experiment& e, const SceneCase& c) {
+  JudgedFlow judged;
   judged.problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(c.file.string(), c.overrides));
   const scene::FlowProblem& problem = *judged.problem;
   const int last = int(std::lround(problem.duration * problem.frame_rate));
@@ -54,7 +54,7 @@ Judged plan_problem(const Experiment& e, const SceneCase& c) {
 }
 
 // Frames at which samples are looked at.
-std::vector<int> sampled_frames(const Judged& judged, bool (*looks)(const FlowMetric&)) {
+std::vector<int> sampled_frames(const JudgedFlow& judged, bool (*looks)(const FlowMetric&)) {
   std::vector<int> frames;
   for (std::size_t i = 0; i < judged.metrics.size(); ++i)
     if (looks(judged.metrics[i])) frames.push_back(judged.frames[i]);
@@ -110,7 +110,7 @@ Solve reference_of(const Experiment& e) {
 }
 
 // Its samples, from the store where it was solved before.
-void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
+void judge_by_reference(RowKeeper& keeper, const SceneCase& c, JudgedFlow& judged) {
   const Experiment& e = keeper.experiment();
   const Solve solve = reference_of(e);
   const std::vector<int> frames = sampled_frames(judged, needs_reference);
@@ -152,7 +152,7 @@ std::vector<Point3> mirrored(std::vector<Point3> points, const Box& box, int axi
 // Takes the figures as the flow passes their frames.
 class Witness {
  public:
-  Witness(const Experiment& e, const Judged& judged) : e_(e), judged_(judged) {}
+  Witness(const Experiment& e, const JudgedFlow& judged) : e_(e), judged_(judged) {}
 
   void at_frame(int frame, const scene::Flow& flow) {
     moment_.totals.push_back(flow.totals());
@@ -194,14 +194,14 @@ class Witness {
   }
 
   const Experiment& e_;
-  const Judged& judged_;
+  const JudgedFlow& judged_;
   FlowMoment moment_;
   std::vector<Measure> figures_;
   Columns columns_;
 };
 
 // The figures are those of the first run; the timed ones look at nothing.
-MadeRow make_row(const Experiment& e, std::shared_ptr<const Judged> judged, const Solve& solve, Row row,
+MadeRow make_row(const Experiment& e, std::shared_ptr<const JudgedFlow> judged, const Solve& solve, Row row,
                  const scene::Execution& execution) {
   row.device = solve.solver.device();
   Witness witness(e, *judged);
@@ -236,7 +236,7 @@ Outcome run_flows(Experiment experiment, const RunOptions& options) {
   RowKeeper keeper(std::move(experiment), options);
   return keeper.run([&](const SceneCase& c) {
     const Experiment& e = keeper.experiment();
-    const auto judged = std::make_shared<Judged>(plan_problem(e, c));
+    const auto judged = std::make_shared<JudgedFlow>(plan_problem(e, c));
     if (!e.reference.renderer.empty()) judge_by_reference(keeper, c, *judged);
     std::vector<RowPlan> rows;
     for (const MethodCase& m : e.methods) {
@@ -263,7 +263,7 @@ Outcome run_flows(Experiment experiment, const RunOptions& options) {
 
 void check_flows(const Experiment& e) {
   for (const SceneCase& c : e.scenes) {
-    const Judged judged = plan_problem(e, c);
+    const JudgedFlow judged = plan_problem(e, c);
     if (e.reference.renderer.empty()) continue;
     const Solve solve = reference_of(e);
     const auto reasons = solve.solver.supports(*judged.problem, solve.settings);

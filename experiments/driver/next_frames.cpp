@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "scene/media/fogmap.h"
+#include "scene/media/spline_map.h"
+
 namespace airlight::experiments {
 namespace {
 

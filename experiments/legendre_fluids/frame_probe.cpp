@@ -10,6 +10,7 @@
 #include "methods/legendre_fluids/light.h"
 #include "scene/error.h"
 #include "scene/flow_particles.h"
+#include "scene/media/legendre_box.h"
 #include "scene/particles.h"
 #include "scene/scene.h"
 #include "scene/stopwatch.h"

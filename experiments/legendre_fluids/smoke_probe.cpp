@@ -4,6 +4,8 @@
 #include "experiments/legendre_fluids/fluid_probes.h"
 #include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
+#include "scene/math/legendre.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {

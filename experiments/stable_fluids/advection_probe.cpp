@@ -68,7 +68,7 @@ Velocity<Real> eddies(const Lattice& l) {
 }
 
 template <class Real>
-Findings measure(const scene::Settings& s) {
+Findings measure_advection(const scene::Settings& s) {
   const Advection how{s.choice<Scheme>("scheme"), s.choice<Interpolation>("interpolation"),
                       s.choice<Limiter>("limiter"), int(s.integer("trace"))};
   const bool component = s.text("of") == "velocity";
@@ -138,7 +138,9 @@ std::vector<std::string> AdvectionRate::figures() const {
 Findings AdvectionRate::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
   if (s.integer("trace") == 3) throw Error("trace = 3: expected 1, 2 or 4");
   Findings found;
-  with_threads(execution, [&] { found = s.text("precision") == "double" ? measure<double>(s) : measure<float>(s); });
+  with_threads(execution, [&] {
+    found = s.text("precision") == "double" ? measure_advection<double>(s) : measure_advection<float>(s);
+  });
   return found;
 }
 

@@ -42,7 +42,7 @@ std::vector<scene::Surface> obstacles_of(const std::string& name) {
 }
 
 template <class Real>
-Findings measure(const scene::Settings& s) {
+Findings measure_pressure(const scene::Settings& s) {
   scene::FlowProblem problem = unit_cube(scene::Side::Kind::free_slip);
   const Lattice l = make_lattice(problem, int(s.integer("n")));
   problem.obstacles = obstacles_of(s.text("obstacle"));
@@ -106,7 +106,9 @@ Findings PressureSolvers::run(const ProbeInput&, const scene::Settings& s, const
   if (s.text("obstacle") != "none" && s.text("solver") == "transforms")
     throw Error("solver = transforms solves in boxes without obstacles only");
   Findings found;
-  with_threads(execution, [&] { found = s.text("precision") == "double" ? measure<double>(s) : measure<float>(s); });
+  with_threads(execution, [&] {
+    found = s.text("precision") == "double" ? measure_pressure<double>(s) : measure_pressure<float>(s);
+  });
   return found;
 }
 

@@ -88,7 +88,7 @@ class Bare {
 };
 
 template <class Real>
-Findings measure(const scene::Settings& s) {
+Findings measure_transforms(const scene::Settings& s) {
   const auto sides = s.text("sides") == "periodic" ? scene::Side::Kind::periodic
                      : s.text("sides") == "open"   ? scene::Side::Kind::open
                                                    : scene::Side::Kind::free_slip;
@@ -143,7 +143,9 @@ Findings TransformsRate::run(const ProbeInput&, const scene::Settings& s, const 
   scene::Execution execution = given;
   execution.threads = 1;
   Findings found;
-  with_threads(execution, [&] { found = s.text("precision") == "double" ? measure<double>(s) : measure<float>(s); });
+  with_threads(execution, [&] {
+    found = s.text("precision") == "double" ? measure_transforms<double>(s) : measure_transforms<float>(s);
+  });
   return found;
 }
 

@@ -6,7 +6,10 @@
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
 #include "scene/math/legendre_range.h"
+#include "scene/media/fogmap.h"
 #include "scene/media/legendre_line.h"
+#include "scene/media/spline_map.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::experiments::verification {
 namespace {

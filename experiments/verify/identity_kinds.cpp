@@ -9,6 +9,7 @@
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"
 #include "reference/deterministic/airlight.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::experiments::verification {
 namespace {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace legendre_fluids;
 
-constexpr double gate = 1e-12;  // of the vectors: relative to the largest entry
+constexpr double fluid_gate = 1e-12;  // of the vectors: relative to the largest entry
 
 std::shared_ptr<const ConfinedSpace> space_of(const Value& v) {
   const int d = v.has("d") ? v["d"].integer_in(2, 3) : 2;
@@ -51,12 +51,12 @@ Array acceleration(const ConfinedSpace& space, const Array& u) {
 class Comparing {
  public:
   void arrays(const std::string& name, const Array& expected, const Array& got) {
-    for (Comparison& c : largest_differences(name, expected, got, gate)) out_.comparisons.push_back(std::move(c));
+    for (Comparison& c : largest_differences(name, expected, got, fluid_gate)) out_.comparisons.push_back(std::move(c));
   }
   void number(const Value& v, const std::string& field, double got) {
-    if (v.has(field)) out_.comparisons.push_back(relative(field, v[field].number(), got, gate, gate));
+    if (v.has(field)) out_.comparisons.push_back(relative(field, v[field].number(), got, fluid_gate, fluid_gate));
   }
-  void zero(const std::string& name, double got) { out_.comparisons.push_back(absolute(name, 0, got, gate)); }
+  void zero(const std::string& name, double got) { out_.comparisons.push_back(absolute(name, 0, got, fluid_gate)); }
   Check done() const {
     return {"", [out = out_](VerifyProfile) { return out; }};
   }

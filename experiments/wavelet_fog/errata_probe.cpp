@@ -16,8 +16,6 @@ using fog::Levels;
 using scene::MapLine;
 using scene::SplineMap;
 
-const char* const families[] = {"haar", "cdf22", "cdf33"};  // by degree
-
 // Eq. 10 and 11 print psi-psi twice; the first (beta) is phi-psi. Relative L2 error of K after one level.
 Figures psi_psi_twice(const Setup& s) {
   const fog::Bands bands = split(s.map, s.family);

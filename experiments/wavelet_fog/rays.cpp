@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/media/fogmap.h"
 
 namespace airlight::experiments {
 

@@ -7,6 +7,9 @@
 
 namespace airlight::experiments {
 
+// Wavelet families by the degree of a map.
+inline constexpr const char* families[] = {"haar", "cdf22", "cdf33"};
+
 struct MapRays {
   scene::SplineMap map;
   std::vector<scene::MapLine> lines;  // unit speed [cells]

@@ -13,8 +13,6 @@ namespace fog = airlight::wavelet_fog;
 constexpr double near_object = 20, far_object = 80;  // [cells]
 enum class Depth { paper, tele, dist, direct };
 
-const char* const families[] = {"haar", "cdf22", "cdf33"};  // by degree
-
 struct Reading {
   Depth depth;
   double mu, near;

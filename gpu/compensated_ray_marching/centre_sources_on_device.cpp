@@ -17,7 +17,7 @@ using compensated_ray_marching::LeastSquaresSolver;
 using compensated_ray_marching::Options;
 
 constexpr int lanes = 64, edge = 16, summing = 256;  // invocations of a work group
-constexpr int first_iterations = 8;                  // told to the device before any is looked at
+constexpr int first_centre_iterations = 8;           // told to the device before any is looked at
 
 // diffusion_vectors.glsl and diffusion_gradients.comp.
 enum Vector { right, solution, missed, slope, direction, along, vector_count };
@@ -255,7 +255,7 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
   product(g, true, missed, slope);
   product(g, true, right, along);
   gradients(g, stage_begin);
-  int told = 0, next = std::min(g.last > 0 ? g.last : first_iterations, options_.iterations);
+  int told = 0, next = std::min(g.last > 0 ? g.last : first_centre_iterations, options_.iterations);
   for (bool done = false; !done;) {
     for (; told < next; ++told) {
       product(g, false, is_lsqr() ? slope : direction, along);

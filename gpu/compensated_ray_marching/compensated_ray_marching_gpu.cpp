@@ -28,8 +28,6 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-constexpr int tile = 8;  // of rays, both ways
-
 class PreparedSmokeGpu final : public scene::Prepared {
  public:
   PreparedSmokeGpu(std::shared_ptr<const Scene>, const Options&, std::string settings, const Execution&);
@@ -116,8 +114,8 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
     middle_ = box.center();
     slice_ = box.size().maxCoeff() / options_.slices;
     density_ = std::make_unique<SmokeDensity>(context_, *smoke_, middle_, paper());
-    ranges_ = &program(context_, "ranges", tile, tile, density_->definitions());
-    march_ = &program(context_, "march", tile, tile, density_->definitions());
+    ranges_ = &program(context_, "ranges", pixel_tile, pixel_tile, density_->definitions());
+    march_ = &program(context_, "march", pixel_tile, pixel_tile, density_->definitions());
   }
   paper() ? begin_centres(timer, execution) : begin_grid(timer, execution);
   append(times_, timer.times());
@@ -142,7 +140,8 @@ void PreparedSmokeGpu::begin_environments() {
 void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution) {
   if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   if (!smoke_) return;
-  if (surroundings_->surfaces()) dim_ = &program(context_, "smoke_dim", tile, tile, density_->definitions());
+  if (surroundings_->surfaces())
+    dim_ = &program(context_, "smoke_dim", pixel_tile, pixel_tile, density_->definitions());
   columns_ = std::make_unique<SmokeColumns>(context_, *first_, *grid_, *density_, middle_);
   source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *columns_);
   source_->light(*incoming_, timer, execution);

@@ -10,7 +10,7 @@
 namespace airlight::gpu::smoke {
 namespace {
 
-constexpr int lanes = 64;  // invocations of a work group
+constexpr int projection_lanes = 64;  // invocations of a work group
 
 int pairs(int order) { return order * (order + 1) / 2; }  // (l, m) with m >= 0, at l (l + 1) / 2 + m
 
@@ -51,8 +51,8 @@ std::vector<double> weights_of_rows(int order, int width, int height) {
 MapProjection::MapProjection(Context& context, int order)
     : context_(context),
       order_(order),
-      rows_(program(context, "map_rows", lanes, 1, {})),
-      bands_(program(context, "map_bands", lanes, 1, {})) {}
+      rows_(program(context, "map_rows", projection_lanes, 1, {})),
+      bands_(program(context, "map_bands", projection_lanes, 1, {})) {}
 
 void MapProjection::prepare(int width, int height) {
   if (width == width_ && height == height_) return;
@@ -78,11 +78,11 @@ std::vector<Rgb> MapProjection::of(const scene::EnvironmentMap& map, const Buffe
   fourier_->bind(at::fourier);
   rows_.set("width", map.width);
   rows_.set("height", map.height);
-  rows_.dispatch(lanes * map.height, order_);
+  rows_.dispatch(projection_lanes * map.height, order_);
   row_weights_->bind(at::row_weights);
   projected_->bind(at::projected);
   bands_.set("height", map.height);
-  bands_.dispatch(lanes * pairs(order_));
+  bands_.dispatch(projection_lanes * pairs(order_));
 
   // About the map's pole y, azimuths from +z towards +x: its axes (z, x, y) are those of the harmonics. The rows begin there and turn the
   // other way.

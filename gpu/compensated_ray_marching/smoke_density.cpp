@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/media/fitted.h"
 #include "scene/media/voxel.h"
 
 namespace airlight::gpu::smoke {

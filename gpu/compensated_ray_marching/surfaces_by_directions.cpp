@@ -7,7 +7,7 @@
 namespace airlight::gpu::smoke {
 namespace {
 
-constexpr int lanes = 64;  // invocations of a work group
+constexpr int direction_lanes = 64;  // invocations of a work group
 
 std::vector<float> towards(const std::vector<compensated_ray_marching::Ordinate>& directions) {
   std::vector<float> values;
@@ -23,7 +23,7 @@ SurfacesByDirections::SurfacesByDirections(Context& context, const SmokeDensity*
     : density_(density),
       middle_(middle),
       directions_(int(directions.size())),
-      program_(program(context, "surfaces_by_directions", lanes, 1,
+      program_(program(context, "surfaces_by_directions", direction_lanes, 1,
                        density ? density->definitions() : Definitions{{"GAUSSIANS", "1"}})),
       towards_(context, "directions", towards(directions)) {}
 
@@ -51,7 +51,7 @@ void SurfacesByDirections::light(const scene::View& view, const SurfacesOnDevice
   p.set("sigma_t", sigma_t);
   p.set("widths2", density_ ? density_->widths2() : 0.0);
   p.set("loop_count", 3);
-  p.dispatch(lanes * view.width, view.height);
+  p.dispatch(direction_lanes * view.width, view.height);
 }
 
 }  // namespace airlight::gpu::smoke

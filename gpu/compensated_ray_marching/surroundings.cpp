@@ -3,11 +3,7 @@
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu::smoke {
-namespace {
-
-constexpr int tile = 8;  // of rays, both ways
-
-}  // namespace
+namespace {}  // namespace
 
 Surroundings::Surroundings(Context& context, const scene::Scene& scene) : context_(context) {
   set_environments(scene);
@@ -19,7 +15,7 @@ void Surroundings::set_environments(const scene::Scene& scene) {
   environments_ = std::make_unique<EnvironmentLights>(context_, scene);
   behind_.clear();
   for (int l = 0; l < environments_->count(); ++l)
-    behind_.push_back(&program(context_, "smoke_behind", tile, tile, environments_->definitions(l)));
+    behind_.push_back(&program(context_, "smoke_behind", pixel_tile, pixel_tile, environments_->definitions(l)));
 }
 
 void Surroundings::become(const scene::Scene& scene) {

@@ -14,6 +14,7 @@
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/error.h"
 #include "scene/light_on_ray.h"
+#include "scene/media/spline_map.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {

@@ -1,11 +1,16 @@
 // What host and shaders of this method must agree about, said once.
 #pragma once
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
 
 #include "gpu/program.h"
 
 namespace airlight::gpu::legendre {
+
+// Name of an entry of a uniform array.
+inline std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
 // Storage blocks, AT_... in shaders. What no shader has at the same time shares a number.
 namespace at {

@@ -82,8 +82,6 @@ class Rule {
   Definitions& definitions_;
 };
 
-std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
-
 }  // namespace
 
 std::vector<std::string> reasons_against(const LitMedia& media) {

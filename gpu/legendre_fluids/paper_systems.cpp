@@ -22,8 +22,6 @@ constexpr double squared = 1e-2;                               // of the toleran
 constexpr double more_steps = 1.25;                            // than were enough
 
 std::string three(const TensorShape& n) { return fmt::format("ivec3({}, {}, {})", n[0], n[1], n[2]); }
-std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
-
 void add_rows(const Eigen::MatrixXd& m, std::vector<double>& at_end) {
   for (Eigen::Index r = 0; r < m.rows(); ++r)
     for (Eigen::Index c = 0; c < m.cols(); ++c) at_end.push_back(m(r, c));

@@ -5,11 +5,7 @@
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu {
-namespace {
-
-constexpr int tile = 8;
-
-}  // namespace
+namespace {}  // namespace
 
 Backdrops::Picture::Picture(Context& context, const scene::Backdrop& backdrop)
     : width(backdrop.width),
@@ -20,8 +16,8 @@ Backdrops::Picture::Picture(Context& context, const scene::Backdrop& backdrop)
 
 Backdrops::Backdrops(Context& context, const scene::Scene& scene)
     : scene_(scene),
-      program_(context.program("raster/backdrop.comp",
-                               {{"LOCAL_SIZE_X", std::to_string(tile)}, {"LOCAL_SIZE_Y", std::to_string(tile)}})) {
+      program_(context.program("raster/backdrop.comp", {{"LOCAL_SIZE_X", std::to_string(pixel_tile)},
+                                                        {"LOCAL_SIZE_Y", std::to_string(pixel_tile)}})) {
   const Use use(context);
   for (const auto& backdrop : scene.backdrops) pictures_.push_back(std::make_unique<Picture>(context, *backdrop));
 }

@@ -8,7 +8,6 @@
 namespace airlight::gpu {
 namespace {
 
-constexpr int tile = 8;
 // llvmpipe ends loops after 65535 iterations (gpu/README.md): 28 at most from leaf to leaf, those over 16 nodes and twice
 // four triangles among them; the rest is for solids.
 constexpr int leaves_at_once = 2150, most_solids = 5000;
@@ -29,8 +28,8 @@ FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_ball
                                     context.renderer(), most_solids));
     dispatches_ = std::max(1, (most_leaves(tree_.nodes()) + leaves_at_once - 1) / leaves_at_once);
   }
-  program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(tile)},
-                                                         {"LOCAL_SIZE_Y", std::to_string(tile)},
+  program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(pixel_tile)},
+                                                         {"LOCAL_SIZE_Y", std::to_string(pixel_tile)},
                                                          {"RESUMES", dispatches_ > 1 ? "1" : "0"}});
 }
 

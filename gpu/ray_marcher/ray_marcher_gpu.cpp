@@ -13,6 +13,9 @@
 #include "scene/background.h"
 #include "scene/error.h"
 #include "scene/light_on_ray.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {

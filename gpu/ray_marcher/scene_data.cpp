@@ -5,6 +5,9 @@
 
 #include "reference/ray_marcher/shapes.h"
 #include "scene/error.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 
 namespace airlight::gpu::marcher {
 namespace {

@@ -19,7 +19,6 @@ using scene::IndexRange;
 using wavelet_fog::Options;
 using Variant = Options::Variant;
 
-constexpr int tile = 8;
 constexpr double most_iterations = 40000;  // of a ray in one dispatch where loops are ended after 65535
 
 const scene::Fogmap& fogmap(const scene::Medium& medium) { return *std::get<scene::FogmapPointer>(medium.field); }
@@ -93,17 +92,17 @@ FogOnDevice::FogOnDevice(Context& context, const scene::Medium& medium, const Op
   write(medium);
   grids_.upload(fogmap(medium).map.coefficients());
   Definitions all = definitions();
-  camera_rays_ = &program(context_, "columns", tile, tile, all);
+  camera_rays_ = &program(context_, "columns", pixel_tile, pixel_tile, all);
   if (options_.variant == Variant::polar) {
     Definitions steps = all;
     steps["SKIPS"] = "0";
-    table_steps_ = &program(context_, "polar_steps", tile, tile, steps);
+    table_steps_ = &program(context_, "polar_steps", pixel_tile, pixel_tile, steps);
     table_sums_ = &program(context_, "polar_sums", 64);
   }
   if (!light_rays) return;
   all["LIGHT_RAYS"] = "1";
   if (options_.variant == Variant::polar) all["VARIANT"] = std::to_string(int(Variant::skip));
-  light_rays_ = &program(context_, "columns", tile, tile, all);
+  light_rays_ = &program(context_, "columns", pixel_tile, pixel_tile, all);
 }
 
 Definitions FogOnDevice::definitions() const {
@@ -174,7 +173,7 @@ void FogOnDevice::add_blocks(bool errors) {
   const auto stage = [&](const char* number) -> Program& {
     Definitions definitions = degree;
     definitions["STAGE"] = number;
-    return program(context_, "blocks", tile, tile, definitions);
+    return program(context_, "blocks", pixel_tile, pixel_tile, definitions);
   };
   const auto look = [&](int from, int less, int to) {
     grids_.pass(

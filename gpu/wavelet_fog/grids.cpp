@@ -12,7 +12,7 @@ namespace {
 
 using scene::IndexRange;
 
-constexpr int tile = 8, row_group = 64;
+constexpr int filter_tile = 8, row_group = 64;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void Grids::pass(Program& program, std::function<void(Program&)> set, const Inde
 }
 
 void Grids::filter(bool up, int from, int axis, const Taps& taps, int to, int added, double sign) {
-  Program& p = program(context_, "filter", tile, tile,
+  Program& p = program(context_, "filter", filter_tile, filter_tile,
                        {{"UP", up ? "1" : "0"},
                         {"AXIS", std::to_string(axis)},
                         {"TAPS", std::to_string(taps.values.size())},

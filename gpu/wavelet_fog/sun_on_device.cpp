@@ -8,11 +8,12 @@
 
 #include "gpu/view_uniforms.h"
 #include "methods/wavelet_fog/sun_scattering.h"
+#include "scene/media/fogmap.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {
 
-constexpr int tile = 8, pack_group = 64;
+constexpr int pack_group = 64;
 constexpr int edges_kept = 8;                   // of a ray, between two rounds
 constexpr std::size_t strip_bytes = 64u << 20;  // of rays at once
 // Iterations of loops in a round, about: eight rays share llvmpipe's limit. Devices without one stop for edges alone.
@@ -83,7 +84,7 @@ void SunOnDevice::compile() {
     Definitions steps = fog->definitions();
     steps["VARIANT"] = "-1";
     steps["SKIPS"] = "0";
-    steps_.push_back(&program(context_, "sun_steps", tile, tile, steps));
+    steps_.push_back(&program(context_, "sun_steps", pixel_tile, pixel_tile, steps));
   }
   sums_ = &program(context_, "sun_sums", 64);
   definitions["SKIPS"] = "1";
@@ -97,16 +98,16 @@ void SunOnDevice::compile() {
     add_rule(definitions, "", degree + 1);
     add_rule(definitions, "FALL_", degree + 3);
   }
-  start_ = &program(context_, "sun_start", tile, tile, definitions);
+  start_ = &program(context_, "sun_start", pixel_tile, pixel_tile, definitions);
   points_ = std::max(options_.sun_points, degree + 1);
-  if (surfaces_) shadows_ = &program(context_, "sun_shadows", tile, tile, definitions);
+  if (surfaces_) shadows_ = &program(context_, "sun_shadows", pixel_tile, pixel_tile, definitions);
   const auto rule = wavelet_fog::SunScattering::rule_of(points_);
   definitions["SUN_POINTS"] = std::to_string(points_);
   definitions["SUN_NODES"] = listed(rule.node);
   definitions["SUN_WEIGHTS"] = listed(rule.weight);
   definitions["SUN_UPTO"] = listed(rule.upto);
   definitions["LEAST_WAY"] = fmt::format("{:e}LF", wavelet_fog::SunMap::least_way);
-  light_ = &program(context_, "sun", tile, tile, definitions);
+  light_ = &program(context_, "sun", pixel_tile, pixel_tile, definitions);
 }
 
 void SunOnDevice::write() {

@@ -12,7 +12,6 @@
 namespace airlight::gpu::fogmaps {
 namespace {
 
-constexpr int tile = 8;
 constexpr int most_nodes =
     12000;  // of the tree, with up to four triangles each: 65535 iterations of loops (gpu/README.md)
 
@@ -59,12 +58,12 @@ SurfaceLight::SurfaceLight(Context& context, const scene::Scene& scene, const Fi
       reflectances_(context, "tables of reflectances", tables.values),
       environments_(context, scene) {
   for (int i = 0; i < environments_.count(); ++i)
-    backgrounds_.push_back(&program(context, "background", tile, tile, environments_.definitions(i)));
+    backgrounds_.push_back(&program(context, "background", pixel_tile, pixel_tile, environments_.definitions(i)));
   if (!reflects_) return;
   if (context.software() && first_hits->tree().nodes() > most_nodes)
     throw Unavailable(fmt::format("gpu: {} nodes in the tree of surfaces, {} takes {} at most",
                                   first_hits->tree().nodes(), context.renderer(), most_nodes));
-  surfaces_ = &program(context, "surfaces", tile, tile);
+  surfaces_ = &program(context, "surfaces", pixel_tile, pixel_tile);
   if (const Box box = scene.geometry->bounds(); !box.empty())
     magnitude_ = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
   for (const scene::Surface& surface : scene.surfaces)

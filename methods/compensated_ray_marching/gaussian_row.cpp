@@ -6,13 +6,13 @@
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr double nothing_beyond = 6;  // widths: 2e-16 of the amplitude
+constexpr double nothing_beyond_in_row = 6;  // widths: 2e-16 of the amplitude
 
 }  // namespace
 
 GaussianRow::GaussianRow(const scene::GaussianSum& sum, const std::vector<Rgb>* values, const Point3& point,
                          const Vec3& normal)
-    : near_(sum), cut2_(std::pow(std::min(sum.cutoff, nothing_beyond), 2)) {
+    : near_(sum), cut2_(std::pow(std::min(sum.cutoff, nothing_beyond_in_row), 2)) {
   near_.gaussians.clear();
   for (std::size_t i = 0; i < sum.gaussians.size(); ++i) {
     const scene::Gaussian& g = sum.gaussians[i];

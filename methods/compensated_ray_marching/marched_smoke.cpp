@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "scene/media/fitted.h"
+
 namespace airlight::compensated_ray_marching {
 namespace {
 
-constexpr double least_share = 1e-10;  // of the greatest amplitude: below it no one knows the source
+constexpr double least_source_share = 1e-10;  // of the greatest amplitude: below it no one knows the source
 
 }  // namespace
 
@@ -34,7 +36,7 @@ SmokeField::SmokeField(const scene::Medium& medium, const Options& options) : gi
   if (sum && std::holds_alternative<scene::Unbounded>(this->medium().region)) gaussians_ = sum;
   if (!gaussians_) return;
   for (const scene::Gaussian& g : gaussians_->gaussians)
-    least_density_ = std::max(least_density_, least_share * g.amplitude);
+    least_density_ = std::max(least_density_, least_source_share * g.amplitude);
   least_density_ = std::max(least_density_, double(std::numeric_limits<float>::min()));
 }
 

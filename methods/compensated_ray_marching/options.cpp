@@ -9,6 +9,7 @@
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/media/fitted.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {

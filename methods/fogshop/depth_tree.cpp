@@ -10,7 +10,7 @@
 namespace airlight::fogshop {
 namespace {
 
-constexpr int deepest = 24;  // levels
+constexpr int deepest_level = 24;  // levels
 
 struct Node {
   Point3 center;
@@ -81,7 +81,7 @@ class DepthTreeMaker {
     while (!open.empty()) {
       std::vector<char> ends(open.size());
       scene::parallel_rows(int(open.size()), execution_, [&](int k) { ends[k] = resolve_some(open[k]); });
-      if (open.front().level == deepest || (open.front().level > 0 && crowded(open, ends))) {
+      if (open.front().level == deepest_level || (open.front().level > 0 && crowded(open, ends))) {
         scene::parallel_rows(int(open.size()), execution_, [&](int k) {
           if (!ends[k]) resolve_rest(open[k], losses_of(gaussians_, open[k]));
         });

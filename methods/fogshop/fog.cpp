@@ -6,6 +6,10 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::fogshop {
 namespace {

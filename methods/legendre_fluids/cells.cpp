@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/media/legendre_box.h"
+
 namespace airlight::legendre_fluids {
 
 Cells::Cells(const ReferenceBox& reference, const Point3& corner, int along_longest)

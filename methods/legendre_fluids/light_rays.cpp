@@ -10,7 +10,7 @@ namespace airlight::legendre_fluids {
 namespace {
 
 constexpr double edge_share = 1. / 4096;  // of the way between two shadow rays: how well an edge is known
-constexpr int most_halvings = 12;         // of a stretch where light has kinks
+constexpr int most_kink_halvings = 12;    // of a stretch where light has kinks
 constexpr Eigen::Index last_orders = 3;   // of a column's coefficients: what these are is what is missed beyond
 constexpr double least_share = 4e-16;     // of where it is: a piece that rounding made
 constexpr double rounding_share = 0.01;   // of the tolerance, that polynomials of columns may cost
@@ -90,7 +90,7 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
     columns[m] = analysis * values;
     const double missed =
         columns[m].tail(std::min(last_orders, n)).cwiseAbs().sum() * media[m].medium->sigma_t.maxCoeff();
-    if (media[m].field->negative() && halvings < most_halvings && missed > bent_share * rays.options_.tolerance) {
+    if (media[m].field->negative() && halvings < most_kink_halvings && missed > bent_share * rays.options_.tolerance) {
       const double half = 0.5 * (t.lo + t.hi);
       stretch({t.lo, half}, visible, halvings + 1);
       return stretch({half, t.hi}, visible, halvings + 1);

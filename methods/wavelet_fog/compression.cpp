@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/math/bspline.h"
+#include "scene/media/fogmap.h"
 
 namespace airlight::wavelet_fog {
 namespace {

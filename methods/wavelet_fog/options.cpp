@@ -4,6 +4,7 @@
 
 #include "methods/wavelet_fog/sun_map.h"
 #include "scene/error.h"
+#include "scene/media/fogmap.h"
 
 namespace airlight::wavelet_fog {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "methods/wavelet_fog/interpolation.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/spline_map.h"
 
 namespace airlight::wavelet_fog {
 namespace {

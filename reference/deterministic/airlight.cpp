@@ -9,6 +9,10 @@
 #include "reference/deterministic/light_plane.h"
 #include "reference/deterministic/shadow.h"
 #include "scene/math/quadrature.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::deterministic {
 namespace {

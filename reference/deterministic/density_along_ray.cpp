@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
 #include "scene/media/legendre_line.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::deterministic {
 namespace {

@@ -5,6 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
+
 namespace airlight::deterministic {
 namespace {
 

@@ -8,6 +8,10 @@
 #include "reference/path_tracer/sampling.h"
 #include "scene/error.h"
 #include "scene/math/elementary.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::path_tracer {
 namespace {

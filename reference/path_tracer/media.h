@@ -11,6 +11,7 @@
 #include "reference/path_tracer/supergrid.h"
 #include "scene/math/random.h"
 #include "scene/media/medium.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::path_tracer {
 

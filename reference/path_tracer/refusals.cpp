@@ -7,6 +7,10 @@
 
 #include "scene/geometry/brdf_table.h"
 #include "scene/math/random.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::path_tracer {
 namespace {

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "reference/ray_marcher/depth.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 
 namespace airlight::ray_marcher {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/media/spline_map.h"
 
 namespace airlight::scene {
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "scene/media/fogmap.h"
 #include "scene/media/medium.h"
 
 namespace airlight::scene {

@@ -9,6 +9,7 @@
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/legendre_range.h"
+#include "scene/media/legendre_box.h"
 
 namespace airlight::scene {
 namespace {

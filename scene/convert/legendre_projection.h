@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "scene/math/legendre.h"
 #include "scene/media/medium.h"
 
 namespace airlight::scene {

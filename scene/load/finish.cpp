@@ -5,6 +5,9 @@
 #include "scene/convert/residual_file.h"
 #include "scene/light_on_surface.h"
 #include "scene/load/hash_parts.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {

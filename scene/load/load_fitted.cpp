@@ -4,6 +4,7 @@
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
+#include "scene/media/fitted.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -10,6 +10,8 @@
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 #include "scene/load/transform.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/spline_map.h"
 
 namespace airlight::scene::load {
 namespace {

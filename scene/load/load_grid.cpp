@@ -6,6 +6,7 @@
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 #include "scene/load/transform.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::scene::load {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // A file of a few bytes can span any number of voxels: these take a gigabyte.
 constexpr std::size_t most_voxels = std::size_t(1) << 28;
 
-VoxelGrid read_file(const TableReader& reader, const std::string& folder) {
+VoxelGrid read_voxels(const TableReader& reader, const std::string& folder) {
   const std::string path = find_asset(reader, "file", name_of_frame(reader), folder);
   const std::string name = reader.text("grid", "density");
   try {
@@ -23,7 +24,7 @@ VoxelGrid read_file(const TableReader& reader, const std::string& folder) {
   }
 }
 
-VoxelGrid read_inline(const TableReader& reader) {
+VoxelGrid read_inline_voxels(const TableReader& reader) {
   VoxelGrid grid;
   const auto size = reader.integers("size", 3, 1, 1 << 20);
   grid.size = {int(size[0]), int(size[1]), int(size[2])};
@@ -48,7 +49,7 @@ GridPointer read_grid(TableReader& reader, const std::string& folder) {
     reader.allow(medium_keys_and({"file", "frame", "grid", "clamp_border", "transform"}));
   else
     reader.allow(medium_keys_and({"size", "voxel_size", "origin", "values", "clamp_border", "transform"}));
-  VoxelGrid grid = from_file ? read_file(reader, folder) : read_inline(reader);
+  VoxelGrid grid = from_file ? read_voxels(reader, folder) : read_inline_voxels(reader);
   grid.clamp_border = reader.flag("clamp_border", grid.clamp_border);
   // world = outer(rotation * (voxel_size * index) + translation)
   const Similarity outer = read_transform(reader, "transform");

@@ -8,17 +8,19 @@
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 #include "scene/load/transform.h"
+#include "scene/math/legendre.h"
+#include "scene/media/legendre_box.h"
 
 namespace airlight::scene::load {
 namespace {
 
-constexpr std::string_view header = "i,j,k,coefficient";
+constexpr std::string_view legendre_header = "i,j,k,coefficient";
 
 constexpr Range coefficient = either_sign(density_range);
 
 // Rows in any order; coefficients that are not named are 0.
 Eigen::VectorXd read_csv(const std::string& path, const TensorShape& shape) {
-  CsvTable table(path, header);
+  CsvTable table(path, legendre_header);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(tensor_size(shape));
   std::vector<bool> given(std::size_t(values.size()));
   while (table.next()) {

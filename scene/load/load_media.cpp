@@ -3,6 +3,10 @@
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 #include "scene/load/transform.h"
+#include "scene/media/fitted.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "scene/load/table_reader.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/voxel_grid.h"
 
 namespace airlight::scene::load {
 namespace {

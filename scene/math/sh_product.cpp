@@ -14,7 +14,7 @@
 namespace airlight::scene {
 namespace {
 
-constexpr int greatest_order = 12;
+constexpr int greatest_product_order = 12;
 
 // Integrals over azimuth of three of the functions 1, cos(m phi), sin(|m| phi). The trapezoidal rule is exact.
 class Azimuth {
@@ -46,8 +46,8 @@ struct Index {
 }  // namespace
 
 TripleProduct::TripleProduct(int order) : order_(order) {
-  if (order < 1 || order > greatest_order)
-    throw Error(fmt::format("products of harmonics of order {}, expected 1 to {}", order, greatest_order));
+  if (order < 1 || order > greatest_product_order)
+    throw Error(fmt::format("products of harmonics of order {}, expected 1 to {}", order, greatest_product_order));
   // The parts that depend on theta, at the nodes of a rule for polynomials of degree 3 (order - 1).
   const int nodes = (3 * order) / 2 + 1, size = order * order;
   const GaussLegendre rule = gauss_legendre(nodes);
@@ -114,8 +114,8 @@ std::vector<double> TripleProduct::operator()(const std::vector<double>& f, cons
 
 const TripleProduct& triple_product(int order) {
   static std::mutex mutex;
-  static std::array<std::unique_ptr<const TripleProduct>, greatest_order + 1> kept;
-  if (order < 1 || order > greatest_order) TripleProduct refused(order);  // throws
+  static std::array<std::unique_ptr<const TripleProduct>, greatest_product_order + 1> kept;
+  if (order < 1 || order > greatest_product_order) TripleProduct refused(order);  // throws
   const std::lock_guard lock(mutex);
   if (!kept[order]) kept[order] = std::make_unique<const TripleProduct>(order);
   return *kept[order];

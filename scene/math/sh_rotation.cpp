@@ -14,7 +14,7 @@
 namespace airlight::scene {
 namespace {
 
-constexpr int greatest_order = 12;
+constexpr int greatest_turned_order = 12;
 
 // <Y_i, Y_j(X^-1 .)> by a rule that is exact for polynomials of twice the highest degree.
 ShQuarterTurn quarter_turn(int order) {
@@ -71,9 +71,9 @@ std::vector<Rgb> quarter_turned(const std::vector<Rgb>& f, const ShQuarterTurn& 
 
 const ShQuarterTurn& sh_quarter_turn(int order) {
   static std::mutex mutex;
-  static std::array<std::unique_ptr<const ShQuarterTurn>, greatest_order + 1> kept;
-  if (order < 1 || order > greatest_order)
-    throw Error(fmt::format("a rotation of harmonics of order {}, expected 1 to {}", order, greatest_order));
+  static std::array<std::unique_ptr<const ShQuarterTurn>, greatest_turned_order + 1> kept;
+  if (order < 1 || order > greatest_turned_order)
+    throw Error(fmt::format("a rotation of harmonics of order {}, expected 1 to {}", order, greatest_turned_order));
   const std::lock_guard lock(mutex);
   if (!kept[order]) kept[order] = std::make_unique<const ShQuarterTurn>(quarter_turn(order));
   return *kept[order];

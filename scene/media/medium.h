@@ -11,15 +11,17 @@
 #include <vector>
 
 #include "scene/kinds.h"
-#include "scene/media/fitted.h"
-#include "scene/media/fogmap.h"
 #include "scene/media/gaussian_sum.h"
-#include "scene/media/legendre_box.h"
 #include "scene/media/region.h"
-#include "scene/media/voxel_grid.h"
 #include "scene/phase.h"
 
 namespace airlight::scene {
+
+// Fields that a scene shares. Whoever looks inside one includes its header; most files that see a medium do not.
+struct Fitted;
+struct Fogmap;
+class LegendreBox;
+struct VoxelGrid;
 
 struct Homogeneous {
   double density = 1;  // [-], >= 0

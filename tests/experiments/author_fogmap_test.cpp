@@ -7,6 +7,7 @@
 #include "experiments/authoring/fogmap_script.h"
 #include "scene/error.h"
 #include "scene/grey_image.h"
+#include "scene/media/fogmap.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 

@@ -1,6 +1,8 @@
 // `airlight convert` of media: what it prints is a medium that loads.
 #include <catch2/catch.hpp>
 
+#include "scene/math/legendre.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "tests/experiments/run_program.h"
 

@@ -8,6 +8,7 @@
 
 #include "experiments/solvers.h"
 #include "scene/error.h"
+#include "scene/media/legendre_box.h"
 #include "tests/experiments/rising_smoke.h"
 
 using namespace airlight;

@@ -5,6 +5,9 @@
 
 #include "experiments/renderers.h"
 #include "scene/convert/residual.h"
+#include "scene/math/legendre.h"
+#include "scene/media/fitted.h"
+#include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 
 using namespace airlight;

@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "reference/path_tracer/sampling.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/stress/stress.h"
 
 using namespace airlight;

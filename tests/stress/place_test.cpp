@@ -1,6 +1,7 @@
 // Stress cases 15 to 17 and 20: rays within faces, scenes of all sizes and far away, triangles that are none.
 #include "scene/geometry/clean_mesh.h"
 #include "scene/geometry/shapes.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/stress/stress.h"
 
 using namespace airlight;

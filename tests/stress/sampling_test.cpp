@@ -7,6 +7,7 @@
 #include "reference/path_tracer/accumulation.h"
 #include "reference/path_tracer/surface_sampling.h"
 #include "scene/math/elementary.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/stress/stress.h"
 #include "tests/temporary_folder.h"
 

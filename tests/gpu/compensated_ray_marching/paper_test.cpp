@@ -8,6 +8,7 @@
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "scene/math/random.h"
+#include "scene/media/fitted.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"

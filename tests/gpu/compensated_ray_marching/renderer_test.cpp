@@ -6,6 +6,7 @@
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
+#include "scene/media/fitted.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"

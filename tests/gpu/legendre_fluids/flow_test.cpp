@@ -5,6 +5,7 @@
 #include "gpu/legendre_fluids/fluid_on_device.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
+#include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 

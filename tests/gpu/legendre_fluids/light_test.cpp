@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "scene/error.h"
+#include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
 using namespace airlight;

@@ -1,5 +1,7 @@
 // Fogmaps on the GPU against those on the CPU: same settings, same picture to single precision. Bounds are within 3 times of what
 // is measured.
+#include "scene/media/fogmap.h"
+#include "scene/media/spline_map.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
 using namespace airlight;

@@ -10,6 +10,7 @@
 
 #include "gpu/wavelet_fog/wavelet_fog_gpu.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/media/spline_map.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"

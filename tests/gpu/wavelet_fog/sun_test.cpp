@@ -1,6 +1,7 @@
 // Light of suns that fogmaps scatter, on the GPU as on the CPU.
 #include "experiments/equality.h"
 #include "reference/path_tracer/renderer.h"
+#include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 #include "tests/methods/wavelet_fog/sun_scenes.h"
 

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "methods/wavelet_fog/authoring/canvas.h"
+#include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
 using namespace airlight;

@@ -5,6 +5,7 @@
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
+#include "scene/media/fitted.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/oracle_vectors.h"
 #include "tests/pictures.h"

@@ -4,6 +4,7 @@
 
 #include "reference/exact_flows/exact_flows.h"
 #include "reference/stable_fluids/stable_fluids.h"
+#include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/flows.h"
 
 using namespace airlight;

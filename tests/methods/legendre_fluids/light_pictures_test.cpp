@@ -8,6 +8,7 @@
 #include "methods/legendre_fluids/light.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
+#include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
 using namespace airlight;

@@ -7,6 +7,7 @@
 
 #include "methods/legendre_fluids/light.h"
 #include "reference/deterministic/renderer.h"
+#include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
 using namespace airlight;

@@ -7,6 +7,7 @@
 
 #include "methods/wavelet_fog/options.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/media/fogmap.h"
 #include "tests/pictures.h"
 
 using namespace airlight;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/spline_map.h"
 #include "tests/pictures.h"
 
 using namespace airlight;

@@ -1,5 +1,6 @@
 // Scenes for the layer of the sun: one sun over one map, cameras inside and outside, with houses in its way.
 #pragma once
+#include "scene/media/spline_map.h"
 #include "tests/pictures.h"
 
 namespace airlight::test {

@@ -8,6 +8,7 @@
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
+#include "scene/media/fogmap.h"
 #include "tests/methods/wavelet_fog/sun_scenes.h"
 
 using namespace airlight;

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/media/voxel_grid.h"
+
 using namespace airlight;
 using namespace airlight::scene;
 using deterministic::Accuracy;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/deterministic/airlight.h"
+#include "scene/media/voxel_grid.h"
 
 using namespace airlight;
 using namespace airlight::scene;

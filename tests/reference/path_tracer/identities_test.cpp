@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "reference/path_tracer/sampling.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 using namespace airlight;

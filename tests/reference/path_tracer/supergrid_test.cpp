@@ -4,6 +4,7 @@
 
 #include "reference/path_tracer/media.h"
 #include "scene/math/random.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 using namespace airlight;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/deterministic/airlight.h"
+#include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 using namespace airlight;

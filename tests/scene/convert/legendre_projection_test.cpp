@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "tests/scene/media/legendre_fields.h"
 #include "tests/temporary_folder.h"

@@ -1,4 +1,6 @@
 // The keys of a fitted grid: Gaussians and residual as files.
+#include "scene/media/fitted.h"
+
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>

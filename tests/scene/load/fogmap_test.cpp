@@ -1,4 +1,6 @@
 // What a fogmap may be read from, and what is refused: each rule of input of the method's specification.
+#include "scene/media/fogmap.h"
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -9,6 +11,7 @@
 #include <cmath>
 
 #include "scene/grey_image.h"
+#include "scene/media/spline_map.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 

@@ -1,7 +1,10 @@
 // The keys of a Legendre box, and its tables of coefficients.
+#include "scene/math/legendre.h"
+
 #include <catch2/catch.hpp>
 
 #include "scene/error.h"
+#include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 

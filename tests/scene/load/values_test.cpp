@@ -4,6 +4,7 @@
 #include <random>
 
 #include "scene/error.h"
+#include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 
 using namespace airlight;

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "scene/math/legendre.h"
 #include "scene/math/random.h"
 #include "scene/media/medium.h"
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/media/voxel_grid.h"
 #include "tests/scene/media/legendre_fields.h"
 #include "tests/scene/media/random_points.h"
 
