@@ -33,6 +33,8 @@ EXPOSURE = "experiments/driver/pictures.cpp", "experiments/pictures_test.cpp"
 TIGHTEN = "scripts/tighten", "scripts/scripts_test.py"
 FIGURES = "scripts/figures", "scripts/scripts_test.py"
 GALLERY = "scripts/gallery", "scripts/scripts_test.py"
+SETUP = "scripts/setup", "scripts/options_test.py"
+BUILD = "scripts/build", "scripts/options_test.py"
 SMOKE_OPTIONS = "methods/compensated_ray_marching/options.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 SMOKE = "methods/compensated_ray_marching/marched_smoke.cpp", "methods/compensated_ray_marching/stress_test.cpp"
 SMOKE_KEPT = "methods/compensated_ray_marching/marched_smoke.cpp", "methods/compensated_ray_marching/renderer_test.cpp"
@@ -132,6 +134,12 @@ MUTANTS = [
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
     bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
     bug("stale pictures go unseen", GALLERY, "if not absent and (b", "if absent and (b", "Gallery.test_renders_what_has_changed"),
+    # What a first-time user meets
+    bug("setup --check goes on to install", SETUP, "--check) check=1", "--check) check=", "Setup.test_check_lists_and_installs_nothing"),
+    bug("setup installs without asking", SETUP, '[ -z "$yes" ]; then', '[ -n "$yes" ]; then', "Setup.test_on_a_terminal_it_asks_once"),
+    bug("setup accepts any processor", SETUP, "avx2 bmi2 fma; do", "bmi2 fma; do", "Setup.test_a_processor_without_avx2"),
+    bug("more jobs than memory", BUILD, '"$fit" -lt "$jobs"', '"$fit" -gt "$jobs"', "Build.test_fewer_jobs_where_memory_is_short"),
+    bug("errors of a build in a pipe are lost", BUILD, "printf '%s\\n' \"$line\"", ":", "Build.test_progress_in_a_pipe"),
     # Masks
     bug("pixels that touch a light compared", RUN, "scene::ball_mask(scene, judged->view)", "std::vector<unsigned char>()",
         "rows leave out balls and background"),
