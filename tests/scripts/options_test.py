@@ -239,10 +239,10 @@ class Build(Machine):
         self.assertRegex(out, r"built in \d s: airlight_tests\n$")
 
     def test_fewer_jobs_where_memory_is_short(self):
-        self.memory(7000)
+        self.memory(5000)
         call, out = self.built()
         self.assertTrue(call.endswith("--parallel 3"), call)
-        self.assertIn("7000 MB of memory are free and a job takes up to 2000 MB: 3 at a time instead of 8\n", out)
+        self.assertIn("5000 MB of memory are free and a job takes up to 1500 MB: 3 at a time instead of 8\n", out)
         self.assertTrue(self.built("--jobs", "5")[0].endswith("--parallel 3"))
         call, out = self.built("--jobs", "2")
         self.assertTrue(call.endswith("--parallel 2"))
