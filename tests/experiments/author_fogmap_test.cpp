@@ -11,6 +11,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace author_fogmap_test {
+
 using namespace airlight;
 using namespace airlight::experiments::authoring;
 using Catch::Contains;
@@ -122,3 +124,5 @@ TEST_CASE("scripts give the committed fogmaps", "[authoring][wavelet_fog][scenes
   }
   CHECK(scripts >= 3);
 }
+
+}  // namespace author_fogmap_test

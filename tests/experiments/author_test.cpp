@@ -12,6 +12,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace author_test {
+
 using airlight::Error;
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
@@ -295,3 +297,5 @@ TEST_CASE("bad scripts are one line with the place, and leave nothing", "[author
   CHECK(call("none.jsonl -o other.toml") == 2);
   CHECK_THAT(read_bytes(folder.file("err.txt")), Contains("no camera"));
 }
+
+}  // namespace author_test

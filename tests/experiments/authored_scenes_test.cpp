@@ -7,6 +7,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace authored_scenes_test {
+
 using namespace airlight;
 using namespace airlight::experiments::authoring;
 
@@ -84,3 +86,5 @@ TEST_CASE("airbrushed fog of the scenes is on the right side of their surfaces",
     CHECK(Box{Point3(-1.3, 0, -1.3), Point3(1.3, 2.1, 1.3)}.contains(g.center));
   }
 }
+
+}  // namespace authored_scenes_test

@@ -8,6 +8,8 @@
 #include "experiments/renderers.h"
 #include "scene/scene.h"
 
+namespace backdrop_test {
+
 using namespace airlight;
 using Catch::Contains;
 
@@ -219,3 +221,5 @@ TEST_CASE("a view through another camera than the scene's is refused where there
   CHECK_THROWS_WITH(renderer.prepare(scene, scene::Settings(renderer.settings(), {}, name), {})->render(view, {}),
                     Contains("own camera"));
 }
+
+}  // namespace backdrop_test

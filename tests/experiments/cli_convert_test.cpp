@@ -6,6 +6,8 @@
 #include "scene/scene.h"
 #include "tests/experiments/run_program.h"
 
+namespace cli_convert_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -53,3 +55,5 @@ TEST_CASE("a voxel grid and a medium of a scene become Legendre boxes", "[cli][l
   CHECK(run("convert ball.toml ball.csv --medium 1 --coefficients 33", folder).code == 2);
   CHECK_THAT(run("convert ball.toml ball.exr --medium 1", folder).err, Catch::Contains("expected a name in .csv"));
 }
+
+}  // namespace cli_convert_test

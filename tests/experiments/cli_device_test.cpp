@@ -6,6 +6,8 @@
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 
+namespace cli_device_test {
+
 using namespace airlight::test;
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
@@ -110,3 +112,5 @@ TEST_CASE("the device: the option is stronger than the variable, and an old driv
   CHECK(render.code == 3);
   CHECK(render.error_lines() == 1);
 }
+
+}  // namespace cli_device_test

@@ -9,6 +9,8 @@
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 
+namespace cli_experiment_test {
+
 using namespace airlight::test;
 using airlight::read_bytes;
 using Catch::Contains;
@@ -175,3 +177,5 @@ TEST_CASE("gates see a shader that was changed by hand", "[cli]") {
   CHECK(changed.err == "airlight: gate failed: g/e: one, marcher: rel_l2\n");
   CHECK(run("gates --root .", project).out == first.out);
 }
+
+}  // namespace cli_experiment_test

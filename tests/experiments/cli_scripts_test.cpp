@@ -6,6 +6,8 @@
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 
+namespace cli_scripts_test {
+
 using namespace airlight::test;
 using Catch::Contains;
 namespace fs = std::filesystem;
@@ -56,3 +58,5 @@ TEST_CASE("reproduce and test fail where a gate does, and name it", "[cli]") {
   CHECK_FALSE(fs::exists(good.path() / "results"));
   CHECK_THAT(again.out, !Contains("ok       ") && Contains("skipped  g/e: one, GPU: rel_l2"));
 }
+
+}  // namespace cli_scripts_test

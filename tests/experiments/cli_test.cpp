@@ -12,6 +12,8 @@
 #include "scene/scene.h"
 #include "tests/experiments/run_program.h"
 
+namespace cli_test {
+
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
 using airlight::test::Result;
@@ -197,3 +199,5 @@ TEST_CASE("Ctrl-C stops a render and leaves nothing half-written", "[cli]") {
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     CHECK_THAT(file.path().filename().string(), !Contains("a.exr"));
 }
+
+}  // namespace cli_test

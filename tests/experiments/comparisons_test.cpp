@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace comparisons_test {
+
 using namespace airlight::experiments;
 
 namespace {
@@ -158,3 +160,5 @@ TEST_CASE("durations choose their unit", "[comparisons]") {
   CHECK(duration(1) == "1 s");
   CHECK(duration(75.26) == "75.3 s");
 }
+
+}  // namespace comparisons_test

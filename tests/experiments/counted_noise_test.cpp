@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "tests/experiments/noisy_films.h"
 
+namespace counted_noise_test {
+
 using namespace airlight::experiments;
 using namespace airlight::test;
 using airlight::scene::Film;
@@ -178,3 +180,5 @@ TEST_CASE("counted noise: one pixel by hand", "[metrics]") {
   CHECK(counted("bias").high - counted("bias").value == Approx(1.959963985 * 0.3 / 7).epsilon(1e-6));
   CHECK(counted("bias").floor == Approx(0.3 / 7).epsilon(1e-6));
 }
+
+}  // namespace counted_noise_test

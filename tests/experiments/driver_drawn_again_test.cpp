@@ -6,6 +6,8 @@
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/drawn_again.h"
 
+namespace driver_drawn_again_test {
+
 using namespace airlight::experiments;
 
 namespace {
@@ -144,3 +146,5 @@ TEST_CASE("a loaded machine is named in the conditions", "[driver]") {
   outcome.rows.resize(1);
   CHECK(load_warning(outcome).empty());
 }
+
+}  // namespace driver_drawn_again_test

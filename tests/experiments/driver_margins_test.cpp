@@ -4,6 +4,8 @@
 
 #include "experiments/driver/margins.h"
 
+namespace driver_margins_test {
+
 using namespace airlight::experiments;
 using Catch::Contains;
 
@@ -68,3 +70,5 @@ TEST_CASE("margins are listed with the loosest first, and counted", "[driver]") 
                  Contains("\n0.5,at_most,0.1,0.2,0.2,0.2,deterministic,FAILED,g/e,failed,,\"8, and \"\"more\"\"\",,"
                           "e.toml:12:1\n"));
 }
+
+}  // namespace driver_margins_test

@@ -7,6 +7,8 @@
 #include "scene/renderer.h"
 #include "tests/experiments/small_project.h"
 
+namespace driver_noise_test {
+
 using namespace airlight::experiments;
 
 namespace {
@@ -159,3 +161,5 @@ TEST_CASE("rows leave out balls and background", "[driver]") {
   std::vector<unsigned char> all(covered.size(), 1);
   CHECK(found(outcome.rows[0], "foreground.rel_l2").value != measured("foreground.rel_l2", Masks{balls, all}));
 }
+
+}  // namespace driver_noise_test

@@ -6,6 +6,8 @@
 #include "scene/content_key.h"
 #include "tests/experiments/small_project.h"
 
+namespace driver_test {
+
 using namespace airlight::experiments;
 using namespace airlight::test;
 using airlight::read_bytes;
@@ -212,3 +214,5 @@ TEST_CASE("a parameter that was edited is that of the kept rows", "[driver]") {
   CHECK(second.parameter == 5);
   CHECK(second.seconds.value == first.seconds.value);  // it was kept
 }
+
+}  // namespace driver_test

@@ -8,6 +8,8 @@
 #include "experiments/statistics.h"
 #include "tests/experiments/noisy_films.h"
 
+namespace equality_test {
+
 using namespace airlight::experiments;
 using namespace airlight::test;
 
@@ -248,3 +250,5 @@ TEST_CASE("shared random numbers scatter too little", "[equality]") {
   const Equality biased = compare_equal(constant(32, 24, 1.01), normal_noise(32, 24, 0.05, 1), "mean", {}, 1e-4);
   CHECK_THAT(text(biased), Catch::StartsWith("different: "));
 }
+
+}  // namespace equality_test

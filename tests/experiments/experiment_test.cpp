@@ -5,6 +5,8 @@
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
+namespace experiment_test {
+
 using namespace airlight::experiments;
 using airlight::TemporaryFolder;
 using Catch::Contains;
@@ -179,3 +181,5 @@ TEST_CASE("bounds by row come before the gates of the file, and belong to one", 
   CHECK_THROWS_WITH(gates(header + "one 0.5,marcher,16,rel_l2,,0.05,,1\n"),
                     Contains("e.bounds.csv:2: no [[gate]] covers one 0.5, marcher 16: rel_l2"));
 }
+
+}  // namespace experiment_test

@@ -8,6 +8,8 @@
 #include "scene/film.h"
 #include "tests/experiments/run_program.h"
 
+namespace finite_test {
+
 using namespace airlight;
 using airlight::test::Result;
 using airlight::test::run;
@@ -78,3 +80,5 @@ TEST_CASE("an experiment keeps no row and no reference that is not finite", "[dr
       CHECK_FALSE(std::filesystem::exists(folder.path() / "results"));
     }
 }
+
+}  // namespace finite_test

@@ -10,6 +10,8 @@
 #include "scene/read_file.h"
 #include "tests/temporary_folder.h"
 
+namespace fit_sequence_test {
+
 using namespace airlight;
 using namespace airlight::experiments;
 using scene::VoxelGrid;
@@ -199,3 +201,5 @@ TEST_CASE("what a fit cannot go on with is told", "[fit_sequence]") {
     CHECK_FALSE(what(other).empty());
   }
 }
+
+}  // namespace fit_sequence_test

@@ -9,6 +9,8 @@
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
+namespace flows_test {
+
 using namespace airlight;
 using namespace airlight::experiments;
 using Catch::Contains;
@@ -256,3 +258,5 @@ TEST_CASE("closed forms are refused by name where there is none", "[flow]") {
   CHECK_THAT(why("[[source]]\nregion = { type = \"sphere\", center = [0.5, 0.5, 0], radius = 0.2 }\ndensity = 1\n"),
              Contains("sources"));
 }
+
+}  // namespace flows_test

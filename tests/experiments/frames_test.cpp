@@ -7,6 +7,8 @@
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 
+namespace frames_test {
+
 using namespace airlight;
 using namespace airlight::experiments;
 using namespace airlight::test;
@@ -151,3 +153,5 @@ runs = 3
   CHECK(moving.stages[0].first == "silhouettes");
   CHECK_THAT(outcome.rows[1].note, Catch::Contains("its lights cannot move"));
 }
+
+}  // namespace frames_test

@@ -9,6 +9,8 @@
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
 
+namespace gates_test {
+
 using namespace airlight::experiments;
 using airlight::test::not_rendered;
 using airlight::test::row;
@@ -161,3 +163,5 @@ TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {
                        Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;") &&
                        Catch::Contains("<skipped message=\"c is skipped: no &lt;gpu&gt;\"/>"));
 }
+
+}  // namespace gates_test

@@ -7,6 +7,8 @@
 #include "experiments/statistics.h"
 #include "scene/error.h"
 
+namespace hand_worked_metrics_test {
+
 using namespace airlight::experiments;
 using airlight::scene::Film;
 using Catch::Contains;
@@ -223,3 +225,5 @@ TEST_CASE("a pixel without a contributing sample is not exact", "[metrics]") {
   reference.layers["se"][0] = -1;
   CHECK_THROWS_WITH(one("bias", image, reference), Contains("below 0"));
 }
+
+}  // namespace hand_worked_metrics_test

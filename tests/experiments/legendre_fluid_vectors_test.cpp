@@ -6,6 +6,8 @@
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
+namespace legendre_fluid_vectors_test {
+
 using namespace airlight;
 using experiments::verify;
 using experiments::VerifyProfile;
@@ -54,3 +56,5 @@ TEST_CASE("legendre fluids: vectors of other shapes are refused by name", "[lege
   CHECK_THAT(complaint("\"n\": 2", "\"n\": 99"), Catch::Contains("32"));
   CHECK_THAT(complaint("[[0, 1], [1, 4]]", "[1, 1]"), Catch::Contains("2 coefficients"));
 }
+
+}  // namespace legendre_fluid_vectors_test

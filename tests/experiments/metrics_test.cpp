@@ -8,6 +8,8 @@
 #include "scene/error.h"
 #include "tests/experiments/noisy_films.h"
 
+namespace metrics_test {
+
 using namespace airlight::experiments;
 using airlight::Error;
 using airlight::scene::Film;
@@ -213,3 +215,5 @@ TEST_CASE("equal images pass the z-tests, biased ones do not", "[metrics]") {
   const Equality same = compare_equal(other, other, "mean", {}, 1e-4);
   CHECK_FALSE(same.equal);
 }
+
+}  // namespace metrics_test

@@ -11,6 +11,8 @@
 #include "tests/experiments/run_program.h"
 #include "tests/temporary_folder.h"
 
+namespace numbers_test {
+
 using namespace airlight::experiments;
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
@@ -192,3 +194,5 @@ at_most = 1
   CHECK_FALSE(outcome.gates[0].passed);
   CHECK_FALSE(outcome.gates[0].skipped);
 }
+
+}  // namespace numbers_test

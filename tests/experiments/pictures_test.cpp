@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace pictures_test {
+
 using namespace airlight::experiments;
 using airlight::scene::Film;
 
@@ -17,3 +19,5 @@ TEST_CASE("a picture's exposure shows its 99 % quantile as 0.8", "[driver]") {
   dark.add("mean");
   CHECK(exposure_of(dark, "mean") == 0);
 }
+
+}  // namespace pictures_test

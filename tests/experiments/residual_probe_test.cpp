@@ -14,6 +14,8 @@
 #include "tests/gpu/device.h"
 #include "tests/temporary_folder.h"
 
+namespace residual_probe_test {
+
 using namespace airlight;
 using namespace airlight::experiments;
 
@@ -129,3 +131,5 @@ TEST_CASE("pictures of fitted smoke are nearer with the residual", "[residual]")
   CHECK(picture("kept", "path_tracer").at("noise") > 0);
   CHECK_THROWS_WITH(figures(probe, {}, {}), "fitted_picture: a [[scene]] with voxels is needed");
 }
+
+}  // namespace residual_probe_test

@@ -9,6 +9,8 @@
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
 
+namespace rows_test {
+
 using namespace airlight::experiments;
 using airlight::test::row;
 
@@ -113,3 +115,5 @@ TEST_CASE("journals forget damaged lines alone", "[driver]") {
   CHECK_FALSE(Journal(file, true).find("key b"));
   CHECK(Journal(file, true).find("key a"));
 }
+
+}  // namespace rows_test

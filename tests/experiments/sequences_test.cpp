@@ -8,6 +8,8 @@
 #include "scene/error.h"
 #include "tests/experiments/small_project.h"
 
+namespace sequences_test {
+
 using namespace airlight::experiments;
 using airlight::Error;
 using Catch::Contains;
@@ -183,3 +185,5 @@ TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow
   project.write("experiments/sequences.toml", "puff = 3\n");
   CHECK_THROWS_WITH(project.read(), Contains("expected a table [puff]"));
 }
+
+}  // namespace sequences_test

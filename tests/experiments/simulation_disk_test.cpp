@@ -6,6 +6,8 @@
 #include "scene/media/start_grids.h"
 #include "tests/experiments/rising_smoke.h"
 
+namespace simulation_disk_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -106,3 +108,5 @@ TEST_CASE("a simulation into a folder that takes no files stops with a line", "[
     WARN("test skipped: root may write anywhere, and no file system can be mounted here");
   }
 }
+
+}  // namespace simulation_disk_test

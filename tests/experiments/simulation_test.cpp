@@ -11,6 +11,8 @@
 #include "scene/media/legendre_box.h"
 #include "tests/experiments/rising_smoke.h"
 
+namespace simulation_test {
+
 using namespace airlight;
 using namespace airlight::experiments;
 using airlight::test::files_of;
@@ -245,3 +247,5 @@ count = 3
   CHECK(frames_there(simulation(broken)) == 0);
   CHECK_THROWS_WITH(simulate(simulation(broken), {}), Contains("is gone"));
 }
+
+}  // namespace simulation_test

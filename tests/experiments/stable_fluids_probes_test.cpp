@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "tests/experiments/run_program.h"
 
+namespace stable_fluids_probes_test {
+
 using namespace airlight::experiments;
 using Catch::Contains;
 
@@ -181,3 +183,5 @@ TEST_CASE("advection_rate: bytes that are counted", "[stable_fluids][probes]") {
   CHECK(figure(one, "share") > 0);
   CHECK_THROWS_WITH(run("advection_rate", {{"trace", "3"}}), Contains("expected 1, 2 or 4"));
 }
+
+}  // namespace stable_fluids_probes_test

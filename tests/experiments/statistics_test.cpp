@@ -7,6 +7,8 @@
 
 #include "experiments/front.h"
 
+namespace statistics_test {
+
 using namespace airlight::experiments;
 
 namespace {
@@ -177,3 +179,5 @@ TEST_CASE("jackknife intervals of a mean cover it", "[statistics]") {
   }
   CHECK(std::abs(outside - 100) <= 45);
 }
+
+}  // namespace statistics_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace timing_test {
+
 using namespace airlight::experiments;
 
 TEST_CASE("timed runs follow the rule", "[driver]") {
@@ -156,3 +158,5 @@ TEST_CASE("a median and its ranks by hand", "[statistics]") {
   CHECK_THROWS(median({}));
   CHECK_THROWS(median_ranks(0));
 }
+
+}  // namespace timing_test

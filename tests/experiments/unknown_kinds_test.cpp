@@ -10,6 +10,8 @@
 #include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 
+namespace unknown_kinds_test {
+
 using namespace airlight;
 
 namespace {
@@ -157,3 +159,5 @@ TEST_CASE("a fitted grid is rendered by whoever renders grids, to the same bits,
   CHECK(refused == 8);
   CHECK(rendered >= 3);
 }
+
+}  // namespace unknown_kinds_test

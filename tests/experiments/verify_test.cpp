@@ -11,6 +11,8 @@
 #include "scene/math/types.h"
 #include "tests/temporary_folder.h"
 
+namespace verify_test {
+
 using namespace airlight;
 using airlight::experiments::verify;
 using airlight::experiments::VerifyProfile;
@@ -288,3 +290,5 @@ TEST_CASE("a kind that no file has is refused", "[verify]") {
   CHECK_THROWS_AS(verify({vectors + "fogshop.json"}, "airlight_scenes", VerifyProfile::quick, out), Error);
   CHECK_THROWS_AS(verify({vectors + "absent.json"}, "", VerifyProfile::quick, out), Error);
 }
+
+}  // namespace verify_test

@@ -10,6 +10,8 @@
 #include "experiments/verify/verify.h"
 #include "tests/temporary_folder.h"
 
+namespace verify_tolerances_test {
+
 using namespace airlight;
 using airlight::experiments::verify;
 using airlight::experiments::VerifyProfile;
@@ -117,3 +119,5 @@ TEST_CASE("numbers of compensated ray marching are compared at the vectors' own 
     CHECK(kind.out >= kind.vectors);
   }
 }
+
+}  // namespace verify_tolerances_test

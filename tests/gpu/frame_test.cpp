@@ -9,6 +9,8 @@
 #include "tests/gpu/device.h"
 #include "tests/gpu/shader_folder.h"
 
+namespace frame_test {
+
 using namespace airlight;
 using namespace airlight::gpu;
 
@@ -104,3 +106,5 @@ TEST_CASE("a frame's buffers follow their size and hold poison where asked", "[g
   buffers.get("a", 128).clear();
   for (const float value : buffers.get("a", 128).download<float>()) CHECK(value == 0);
 }
+
+}  // namespace frame_test

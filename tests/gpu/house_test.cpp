@@ -15,6 +15,8 @@
 #include "tests/gpu/device.h"
 #include "tests/gpu/shader_folder.h"
 
+namespace house_test {
+
 using namespace airlight;
 using namespace airlight::gpu;
 using test::ShaderFolder;
@@ -233,3 +235,5 @@ TEST_CASE("stages are timed by the device", "[gpu]") {
   CHECK(times[0].seconds > 1e-7);
   CHECK(times[1].seconds < times[0].seconds);
 }
+
+}  // namespace house_test

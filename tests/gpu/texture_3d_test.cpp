@@ -6,6 +6,8 @@
 #include "scene/error.h"
 #include "tests/gpu/device.h"
 
+namespace texture_3d_test {
+
 using namespace airlight;
 using namespace airlight::gpu;
 
@@ -57,3 +59,5 @@ TEST_CASE("a texture that is too large, or has no room, is refused in one line",
   Texture3D small(*context, "small", {2, 2, 2});
   CHECK_THROWS_WITH(small.upload(std::vector<float>(9)), Catch::Contains("holds 32 bytes, 36 were given"));
 }
+
+}  // namespace texture_3d_test

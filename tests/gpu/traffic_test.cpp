@@ -11,6 +11,8 @@
 #include "tests/gpu/device.h"
 #include "tests/pictures.h"
 
+namespace traffic_test {
+
 using namespace airlight;
 using test::Given;
 using test::scene_named;
@@ -107,3 +109,5 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
     }
   }
 }
+
+}  // namespace traffic_test

@@ -7,7 +7,7 @@ mutants.py BUILD --list               what there is: name, file and line, test; 
 mutants.py BUILD --survey FILE --tests A_test.cpp,B_test.cpp [--only FROM-TO] [--skip TEST]
                                       plants what chance finds in FILE (signs, constants, comparisons, terms), lists survivors
 
-BUILD is a build folder that is up to date. Nothing in the source or in BUILD is changed: the planted source is compiled
+BUILD is an up-to-date build folder of a preset that compiles file by file: build/develop, not build/release. Nothing in the source or in BUILD is changed: the planted source is compiled
 beside it and linked before the libraries. Exit code 0: all were found; 1: some survived, or a test fails without a bug;
 2: one cannot be planted (its line has changed) or does not compile.
 """
@@ -45,7 +45,9 @@ class Builder:
 
     def compile(self, file, overlay):
         """The object of a source file, with the files of `overlay` before those of the tree."""
-        c = self.commands[os.path.join(self.root, file)]
+        c = self.commands.get(os.path.join(self.root, file))
+        if not c:
+            raise Cannot(f"is not compiled by itself in {self.build}; use a build of preset develop")
         words = shlex.split(c.get("command") or "")
         words = [w for i, w in enumerate(words) if w not in ("-MD",) and not
                  (w in ("-MT", "-MF") or (i and words[i - 1] in ("-MT", "-MF")))]

@@ -256,7 +256,7 @@ MUTANTS = [
         "compensated march, stress list: narrow phase functions keep the light's mean, and are warned of"),
     bug("albedo 0 is singular", SMOKE_OPTIONS, "(medium.albedo == 1 && medium.sigma_t > 0)", "(medium.albedo == 0 && medium.sigma_t > 0)",
         "compensated march, stress list: albedo 1 is refused where the system is singular"),
-    bug("no density is small beside 1", SMOKE, "least_share * g.amplitude", "least_share",
+    bug("no density is small beside 1", SMOKE, "least_source_share * g.amplitude", "least_source_share",
         "compensated march, stress list: densities are seen beside extinction alone"),
     bug("sources below 0", SMOKE_PICTURE, "(weighted[std::size_t(k)] / of_gaussians).max(0)", "(weighted[std::size_t(k)] / of_gaussians)",
         "compensated march, stress list: pictures of both variants"),

@@ -13,6 +13,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace backdrop_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -217,3 +219,5 @@ TEST_CASE("a backdrop that cannot be read is refused in one line", "[backdrop][l
   CHECK_THAT(said("p.png", depth + "along = 'z'\n"), Contains("along"));
   CHECK_THAT(said("p.png", "depth = 'film.exr'\nchannel = 'Z'\n"), Contains("no channel 'Z'"));
 }
+
+}  // namespace backdrop_test

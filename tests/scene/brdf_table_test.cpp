@@ -14,6 +14,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace brdf_table_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -218,3 +220,5 @@ TEST_CASE("scenes with a tabulated material", "[load]") {
   says(what("{ type = 'tabulated', file = '../data/knot1.off' }"), {"s.toml:7:", "knot1.off:1:", "polar angles"});
   says(what("{ type = 'tabulated', file = '../data/synthetic_satin.brdf', albedo = 1 }"), {"albedo", "unknown key"});
 }
+
+}  // namespace brdf_table_test

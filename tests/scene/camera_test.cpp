@@ -6,6 +6,8 @@
 
 #include "scene/error.h"
 
+namespace camera_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -56,3 +58,5 @@ TEST_CASE("orthographic rays are parallel and as far apart as the film is large"
   CHECK((top_left.origin - Point3(-2, 4, 3)).norm() < 1e-14);
   CHECK((bottom_right.origin - Point3(4, 0, 3)).norm() < 1e-14);
 }
+
+}  // namespace camera_test

@@ -12,6 +12,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/temporary_folder.h"
 
+namespace environment_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -396,3 +398,5 @@ TEST_CASE("the maps of the experiments are read right", "[environment]") {
     CHECK(estimate == Approx(environment_power(light)).epsilon(2e-3));
   }
 }
+
+}  // namespace environment_test

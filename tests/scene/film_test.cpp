@@ -18,6 +18,8 @@
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
+namespace film_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
@@ -285,3 +287,5 @@ TEST_CASE("previews are sRGB with an exposure", "[film]") {
   CHECK(pixels_of(2) == std::vector<int>{255, 13, 0, 255, 255, 188, 255, 0, 255, 0, 0, 0});
   CHECK_THROWS_AS(write_png(folder.file("x.png"), film, "airlight"), Error);
 }
+
+}  // namespace film_test

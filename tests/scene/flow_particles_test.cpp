@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace flow_particles_test {
+
 using namespace airlight;
 using Catch::Contains;
 
@@ -153,3 +155,5 @@ TEST_CASE("sets of particles are read with the flow, and refused in one line", "
   CHECK_THROWS_WITH(read("[[particles]]\ncount = 5\nregion = { type = 'sphere', center = [9, 9, 9], radius = 1 }\n"),
                     Contains("outside the box"));
 }
+
+}  // namespace flow_particles_test

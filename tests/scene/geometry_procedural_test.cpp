@@ -9,6 +9,8 @@
 #include "scene/scene.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace geometry_procedural_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -170,3 +172,5 @@ TEST_CASE("procedural shapes of a scene file", "[scene]") {
   refused("type = \"prism\"\nsides = 2\nradius = 0.5\nheight = 2", "sides = 2");
   refused("type = \"city\"\nboxes = 9\ncolumns = 3\nlot = 1\nstreet = 1\nheights = [3, 2]", "[least, greatest]");
 }
+
+}  // namespace geometry_procedural_test

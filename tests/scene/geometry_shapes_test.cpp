@@ -4,6 +4,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace geometry_shapes_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -26,3 +28,5 @@ TEST_CASE("procedural meshes are closed and oriented", "[geometry]") {
   CHECK_THROWS_AS(make_height_field({3, 2, Point3::Zero(), 1, 1, {0, 1, 2}}), Error);
   CHECK_THROWS_AS(make_height_field({2, 2, Point3::Zero(), 1, 1, {0, 1, 2, std::nan("")}}), Error);
 }
+
+}  // namespace geometry_shapes_test

@@ -5,6 +5,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace geometry_surface_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -64,3 +66,5 @@ TEST_CASE("reflectance is reciprocal and zero below the horizon", "[geometry][su
       CHECK((brdf(material, n, -in, -out) == 0).all());
     }
 }
+
+}  // namespace geometry_surface_test

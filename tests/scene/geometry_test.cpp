@@ -7,6 +7,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace geometry_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -188,3 +190,5 @@ TEST_CASE("threads get the same hits", "[geometry]") {
   CHECK(a.size() > 2000);
   CHECK(std::equal(a.begin(), a.end(), b.begin(), same_bits));
 }
+
+}  // namespace geometry_test

@@ -6,6 +6,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace geometry_watertight_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -143,3 +145,5 @@ TEST_CASE("degenerate, sliver and duplicate triangles", "[geometry]") {
   const Geometry card({surface_of(TriangleMesh{mesh.vertices, {{0, 1, 2}, {0, 2, 1}}, 0})});
   CHECK(card.all_hits({Point3(0.25, 0.25, 3), -Vec3::UnitZ()}).size() == 2);
 }
+
+}  // namespace geometry_watertight_test

@@ -10,6 +10,8 @@
 #include "scene/film.h"
 #include "tests/temporary_folder.h"
 
+namespace grey_image_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
@@ -93,3 +95,5 @@ TEST_CASE("grey images: what is wrong is named", "[grey_image]") {
   CHECK(read_grey_image(folder.file("film.exr"), "G", 6).values == std::vector<double>(6, 0));
   CHECK_THROWS_AS(write_grey_image(folder.file("big.png"), {1, 1, {1.5}, ""}), Error);
 }
+
+}  // namespace grey_image_test

@@ -5,6 +5,8 @@
 
 #include "scene/scene.h"
 
+namespace light_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -89,3 +91,5 @@ TEST_CASE("rays end on the nearest ball of a light", "[light]") {
   scene.lights.pop_back();
   CHECK_FALSE(ray_end(scene, {{0.5 + 1e-9, 0, 1e6}, ahead}).on_ball);
 }
+
+}  // namespace light_test

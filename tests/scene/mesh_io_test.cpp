@@ -8,7 +8,10 @@
 #include <random>
 
 #include "scene/error.h"
+#include "tests/scene/geometry_scenes.h"
 #include "tests/temporary_folder.h"
+
+namespace mesh_io_test {
 
 using namespace airlight;
 using namespace airlight::scene;
@@ -17,13 +20,6 @@ using Catch::Contains;
 namespace {
 
 const std::string data_folder = AIRLIGHT_SOURCE_DIR "/experiments/data/";
-
-double volume(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles)
-    sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return sum;
-}
 
 // Each directed edge once, and its opposite once.
 bool closed(const TriangleMesh& mesh) {
@@ -383,3 +379,5 @@ TEST_CASE("damaged meshes are refused or harmless", "[geometry][mesh_io]") {
     }
   CHECK(refused > trials / 2);
 }
+
+}  // namespace mesh_io_test

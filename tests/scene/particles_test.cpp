@@ -10,6 +10,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace particles_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -146,3 +148,5 @@ TEST_CASE("particles are read from the rows of their set, and refused in one lin
   CHECK_THAT(said(""), Contains("file, count"));
   CHECK_THAT(message(camera + "[[particles]]\ntype = 'cube'\n"), Contains("disc"));
 }
+
+}  // namespace particles_test

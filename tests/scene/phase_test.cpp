@@ -6,6 +6,8 @@
 
 #include "scene/math/types.h"
 
+namespace phase_test {
+
 using namespace airlight::scene;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_CASE("cosines stay in range for the extreme uniforms", "[phase]") {
       CHECK(c <= 1);
     }
 }
+
+}  // namespace phase_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace printable_test {
+
 using airlight::scene::printable;
 
 TEST_CASE("text from outside becomes printable", "[printable]") {
@@ -38,3 +40,5 @@ TEST_CASE("text from outside is cut between characters", "[printable]") {
                   7) == "ab\xc3\xa9...");
   CHECK(printable(std::string(1000, 'x'), 60).size() == 60);
 }
+
+}  // namespace printable_test

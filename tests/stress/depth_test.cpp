@@ -2,6 +2,8 @@
 #include "tests/oracle_vectors.h"
 #include "tests/stress/stress.h"
 
+namespace depth_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -162,3 +164,5 @@ TEST_CASE("stress 14: camera deep in a medium, 50 optical depths from what it se
     CHECK(film.get("transmittance", 1, 1)[0] == Approx(std::exp(-50.0)).epsilon(1e-5));
   }
 }
+
+}  // namespace depth_test

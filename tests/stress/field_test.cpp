@@ -7,6 +7,8 @@
 #include "scene/stopwatch.h"
 #include "tests/stress/stress.h"
 
+namespace field_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -290,3 +292,5 @@ TEST_CASE("stress 26: paths through 1e5 Gaussians in one cell", "[stress]") {
   // adapts it would be hundreds of times.
   CHECK(e.counters.lookups < 100 * (e.counters.collisions + e.counters.paths));
 }
+
+}  // namespace field_test

@@ -11,6 +11,8 @@
 #include "tests/stress/shapes.h"
 #include "tests/stress/stress.h"
 
+namespace light_on_surface_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -119,3 +121,5 @@ TEST_CASE("light on a surface: between surfaces back to back it is refused", "[s
   s->lights.push_back(scene::PointLight{{0, 1, 0}, Rgb::Ones(), 0});
   CHECK_THROWS_WITH(finish(*s), Catch::Contains("light 0: lies on 2 faces") && Catch::Contains("expected a light off"));
 }
+
+}  // namespace light_on_surface_test

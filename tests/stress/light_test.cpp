@@ -5,6 +5,8 @@
 #include "scene/media/voxel_grid.h"
 #include "tests/stress/stress.h"
 
+namespace light_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -223,3 +225,5 @@ TEST_CASE("stress 28: spot cones of 1e-4 rad and of 180 degrees", "[stress]") {
   flux.error *= pi / I;
   check_equal(1 - direct, flux, 0.03);
 }
+
+}  // namespace light_test

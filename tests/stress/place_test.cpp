@@ -4,6 +4,8 @@
 #include "scene/media/voxel_grid.h"
 #include "tests/stress/stress.h"
 
+namespace place_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -165,3 +167,5 @@ TEST_CASE("stress 20: zero-area, duplicate and sliver triangles", "[stress]") {
     CHECK(a.layer("mean") == b.layer("mean"));
   }
 }
+
+}  // namespace place_test

@@ -11,6 +11,8 @@
 #include "tests/stress/stress.h"
 #include "tests/temporary_folder.h"
 
+namespace sampling_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -160,3 +162,5 @@ TEST_CASE("stress 32: uniforms 0 and 1 - ulp at every sampler", "[stress]") {
       }
     }
 }
+
+}  // namespace sampling_test

@@ -3,6 +3,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "tests/stress/stress.h"
 
+namespace scattering_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -111,3 +113,5 @@ TEST_CASE("stress 09: g = 1e-12 and 1e-5 are isotropic within 3 g", "[stress]") 
     check_equal(b.total.mean[0], a.total.mean[0], std::hypot(a.total.error[0], b.total.error[0]), 0.1);
   }
 }
+
+}  // namespace scattering_test

@@ -9,6 +9,8 @@
 #include "experiments/renderers.h"
 #include "scene/atomic_file.h"
 
+namespace sweep_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -69,3 +71,5 @@ TEST_CASE("stress: the whole sweep", "[.][whole_sweep]") {
   const char* step = std::getenv("AIRLIGHT_SWEEP_STEP");
   run(step ? std::atoi(step) : 3, renderers, std::getenv("AIRLIGHT_SWEEP"));
 }
+
+}  // namespace sweep_test

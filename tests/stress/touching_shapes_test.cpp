@@ -9,6 +9,8 @@
 #include "tests/stress/shapes.h"
 #include "tests/stress/stress.h"
 
+namespace touching_shapes_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -139,3 +141,5 @@ TEST_CASE("stress: camera and light on one spot of every shape", "[stress][touch
     if (both.refused.empty()) CHECK(all_finite(both.film));
   });
 }
+
+}  // namespace touching_shapes_test

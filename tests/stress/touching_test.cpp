@@ -12,6 +12,8 @@
 #include "tests/gpu/device.h"
 #include "tests/stress/stress.h"
 
+namespace touching_test {
+
 using namespace airlight;
 using namespace airlight::stress;
 
@@ -147,3 +149,5 @@ TEST_CASE("stress: a light on a surface lights the side that its normal faces", 
     }
   }
 }
+
+}  // namespace touching_test

@@ -14,6 +14,8 @@
 #include "tests/gpu/shader_folder.h"
 #include "tests/oracle_vectors.h"
 
+namespace centre_vectors_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -365,3 +367,5 @@ TEST_CASE("the diffusion system on the device is the oracle's", "[gpu][compensat
     }
   }
 }
+
+}  // namespace centre_vectors_test

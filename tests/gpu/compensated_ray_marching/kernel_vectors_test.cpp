@@ -13,6 +13,8 @@
 #include "tests/gpu/shader_folder.h"
 #include "tests/oracle_vectors.h"
 
+namespace kernel_vectors_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Eigen::Vector3i;
@@ -246,3 +248,5 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums", "[gp
     }
   }
 }
+
+}  // namespace kernel_vectors_test

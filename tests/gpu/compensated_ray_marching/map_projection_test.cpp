@@ -8,6 +8,8 @@
 #include "tests/gpu/device.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 
+namespace map_projection_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using gpu::Buffer;
@@ -82,3 +84,5 @@ TEST_CASE("even maps and single columns on the device, in closed form", "[gpu][c
   CHECK(std::abs(lit[2][0] + length * std::cos(longitude)) < 1e-12);
   CHECK(std::abs(lit[1][0]) < 1e-12);
 }
+
+}  // namespace map_projection_test

@@ -12,6 +12,8 @@
 #include "tests/gpu/device.h"
 #include "tests/oracle_vectors.h"
 
+namespace march_vectors_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -215,3 +217,5 @@ TEST_CASE("slices through Gaussians on the device add up to the oracle's, with a
   }
   CHECK(vectors == 3);
 }
+
+}  // namespace march_vectors_test

@@ -14,6 +14,8 @@
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
+namespace paper_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -379,3 +381,5 @@ TEST_CASE("paper on the device: solved to the end, and stopped where rounding st
   CHECK(steered < 0.01);
   CHECK(off < 10 * steered);
 }
+
+}  // namespace paper_test

@@ -12,6 +12,8 @@
 #include "tests/oracle_vectors.h"
 #include "tests/pictures.h"
 
+namespace picture_vectors_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -387,3 +389,5 @@ TEST_CASE("a ball of smoke with all orders on the device goes where the oracle i
     CHECK(mean_errors[1] < 0.2 * mean_errors[0]);
   }
 }
+
+}  // namespace picture_vectors_test

@@ -12,6 +12,8 @@
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
+namespace renderer_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -314,3 +316,5 @@ TEST_CASE("compensated march on the device: refusals name the reason", "[gpu][co
   scene->media[0].field = scene::Homogeneous{};
   CHECK_THAT(reason(*scene), Contains("is homogeneous, expected gaussians or grid or fitted"));
 }
+
+}  // namespace renderer_test

@@ -7,6 +7,8 @@
 #include "scene/math/random.h"
 #include "tests/gpu/device.h"
 
+namespace residual_test {
+
 using namespace airlight;
 using namespace airlight::gpu;
 using namespace airlight::gpu::compensated;
@@ -64,7 +66,7 @@ double worst_between(Context& context, const ResidualOnDevice& residual, const V
 }  // namespace
 
 TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[gpu][residual]") {
-  Context* context = test::device();
+  Context* context = gpu::test::device();
   if (!context) return;
   const Use use(*context);
   std::uint32_t set = 0;
@@ -86,7 +88,7 @@ TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[
 }
 
 TEST_CASE("a frame of a sequence decodes on the device, tags wider than 24 bits", "[gpu][residual]") {
-  Context* context = test::device();
+  Context* context = gpu::test::device();
   if (!context) return;
   const Use use(*context);
   const Vector3i size(90, 90, 90);  // 270^3 > 2^24
@@ -101,3 +103,5 @@ TEST_CASE("a frame of a sequence decodes on the device, tags wider than 24 bits"
       CHECK(wrong_levels(*context, residual, size, frames[std::size_t(frame)]) == 0);
     }
 }
+
+}  // namespace residual_test

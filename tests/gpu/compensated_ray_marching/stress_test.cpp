@@ -7,6 +7,8 @@
 #include "tests/gpu/device.h"
 #include "tests/methods/compensated_ray_marching/stress_scenes.h"
 
+namespace stress_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -57,3 +59,5 @@ TEST_CASE("compensated march on the device, stress list: the processor's picture
   CHECK(compared == rows);
   CHECK(deep == (paper ? std::set<std::string>{"directional", "hyb", "ol", "series"} : std::set<std::string>{"ol"}));
 }
+
+}  // namespace stress_test

@@ -13,6 +13,8 @@
 #include "tests/pictures.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace depth_tree_test {
+
 using namespace airlight;
 using gpu::test::quantile;
 using scene::Scene;
@@ -83,3 +85,5 @@ TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[g
     CHECK(most(truth.film, b.film) < 9.9e-6);  // eps_T bounds it by 1e-4
   }
 }
+
+}  // namespace depth_tree_test

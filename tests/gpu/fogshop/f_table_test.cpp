@@ -12,6 +12,8 @@
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"
 
+namespace f_table_test {
+
 using namespace airlight;
 using gpu::test::quantile;
 using Pairs = std::map<std::string, std::string>;
@@ -119,3 +121,5 @@ TEST_CASE("fogshop: a table of F that nothing reads is not made", "[gpu]") {
   CHECK_FALSE(made(scene, {{"variant", "paper"}}));
   CHECK(dispatches("table") == dispatches("exact"));
 }
+
+}  // namespace f_table_test

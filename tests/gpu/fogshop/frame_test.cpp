@@ -8,6 +8,8 @@
 #include "tests/gpu/device.h"
 #include "tests/gpu/shader_folder.h"
 
+namespace frame_test {
+
 using namespace airlight;
 using Pairs = std::map<std::string, std::string>;
 
@@ -86,3 +88,5 @@ void main() { values[gl_GlobalInvocationID.x] = tangent(values[gl_GlobalInvocati
     worst = std::max(worst, std::abs(got[i] / std::tan(double(angles[i])) - 1));
   CHECK(worst < 2.5e-7);
 }
+
+}  // namespace frame_test

@@ -11,6 +11,8 @@
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"
 
+namespace parity_test {
+
 using namespace airlight;
 using gpu::test::p99;
 using Pairs = std::map<std::string, std::string>;
@@ -212,3 +214,5 @@ TEST_CASE("fogshop: noise, GPU agrees with CPU", "[gpu]") {
       CHECK(p99(a, b, "transmittance") < 1.4e-5);
     }
 }
+
+}  // namespace parity_test

@@ -10,6 +10,8 @@
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"
 
+namespace sky_volume_test {
+
 using namespace airlight;
 using gpu::test::quantile;
 using Pairs = std::map<std::string, std::string>;
@@ -151,3 +153,5 @@ TEST_CASE("fogshop: a sky volume that nothing needs costs no dispatch", "[gpu]")
   finish(*scene);
   CHECK_THROWS_AS(dispatches(scene), Error);
 }
+
+}  // namespace sky_volume_test

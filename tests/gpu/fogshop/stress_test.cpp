@@ -12,6 +12,8 @@
 #include "tests/methods/fogshop/ray_model.h"
 #include "tests/methods/fogshop/stress_cases.h"
 
+namespace stress_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact;
@@ -212,3 +214,5 @@ void main() {
       CHECK(std::abs(got[i] / expected - 1) <= 1e-6);
   }
 }
+
+}  // namespace stress_test

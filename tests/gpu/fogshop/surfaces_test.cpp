@@ -15,6 +15,8 @@
 #include "tests/pictures.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace surfaces_test {
+
 using namespace airlight;
 using Pairs = std::map<std::string, std::string>;
 using scene::Scene;
@@ -201,3 +203,5 @@ TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "
     CHECK(gpu::test::quantile(pair.a, b, "surface", 1) < 2e-6);
   }
 }
+
+}  // namespace surfaces_test

@@ -12,6 +12,8 @@
 #include "tests/methods/legendre_fluids/light_scenes.h"
 #include "tests/temporary_folder.h"
 
+namespace draw_flow_test {
+
 using namespace airlight;
 using namespace legendre_fluids::testing;
 
@@ -221,3 +223,5 @@ TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "
     flow->step(0.05);
   }
 }
+
+}  // namespace draw_flow_test

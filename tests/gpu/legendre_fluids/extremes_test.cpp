@@ -10,6 +10,8 @@
 #include "tests/gpu/p99.h"
 #include "tests/methods/legendre_fluids/extreme_scenes.h"
 
+namespace extremes_test {
+
 using namespace airlight;
 using namespace legendre_fluids::testing;
 using Catch::Contains;
@@ -108,3 +110,5 @@ TEST_CASE("legendre light on the device, extremes: every row by rays and by the 
   scene->media[0].field = random_density({32, 32, 32}, 1, 3);
   CHECK_THAT(on_device.supports(*scene, {on_device.settings(), {}}).at(0), Contains("32768 coefficients"));
 }
+
+}  // namespace extremes_test

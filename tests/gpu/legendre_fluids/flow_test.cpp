@@ -9,6 +9,8 @@
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 
+namespace flow_test {
+
 using namespace airlight;
 using Catch::Contains;
 using scene::FlowProblem;
@@ -221,3 +223,5 @@ TEST_CASE("legendre fluids on the device: what shaders do not know is refused by
   problem.confinement = 1;
   CHECK_THAT(objections(problem, {}).at(0), Contains("confinement"));
 }
+
+}  // namespace flow_test

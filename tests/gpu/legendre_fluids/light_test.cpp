@@ -11,6 +11,8 @@
 #include "tests/gpu/p99.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace light_test {
+
 using namespace airlight;
 using namespace legendre_fluids::testing;
 using Catch::Contains;
@@ -183,3 +185,5 @@ TEST_CASE("legendre light on the device: what shaders do not know is refused by 
   scene->media[0].field = random_density({20, 20, 20}, 1);
   CHECK_THAT(objections(*scene).at(0), Contains("8000"));
 }
+
+}  // namespace light_test

@@ -7,6 +7,8 @@
 #include "tests/methods/legendre_fluids/light_scenes.h"
 #include "tests/oracle_vectors.h"
 
+namespace light_vectors_test {
+
 using namespace airlight;
 using namespace legendre_fluids::testing;
 using test::Given;
@@ -188,3 +190,5 @@ TEST_CASE("legendre light on the device: upwind systems of the vectors, and thei
       }
   }
 }
+
+}  // namespace light_vectors_test

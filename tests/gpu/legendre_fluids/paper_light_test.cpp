@@ -10,6 +10,8 @@
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace paper_light_test {
+
 using namespace airlight;
 using namespace legendre_fluids::testing;
 using Catch::Contains;
@@ -231,3 +233,5 @@ TEST_CASE("legendre light on the device: what the paper's systems refuse there",
   scene->camera.kind = scene::Camera::Kind::perspective;
   CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("orthographic"));
 }
+
+}  // namespace paper_light_test

@@ -10,6 +10,8 @@
 #include "scene/flow_particles.h"
 #include "tests/gpu/device.h"
 
+namespace particles_test {
+
 using namespace airlight;
 using Leaving = scene::ParticleSet::Leaving;
 using Given = std::map<std::string, std::string>;
@@ -166,3 +168,5 @@ TEST_CASE("particles on the device move without the processor, and go on from a 
   CHECK(same.state() == particles.state());
   CHECK_FALSE(same.ride(*start<legendre_fluids::LegendreFluids>(problem, {{"n", "6"}})));
 }
+
+}  // namespace particles_test

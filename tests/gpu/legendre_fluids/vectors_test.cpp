@@ -9,6 +9,8 @@
 #include "tests/methods/legendre_fluids/swirl.h"
 #include "tests/oracle_vectors.h"
 
+namespace vectors_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using gpu::legendre::FluidOnDevice;
@@ -275,3 +277,5 @@ TEST_CASE("legendre fluids on the device: the vortices of the vectors", "[gpu][l
     CHECK(flow->totals().energy == Approx(test::number(v.at("energy"))).epsilon(2 * gate));  // it is quadratic
   }
 }
+
+}  // namespace vectors_test

@@ -7,6 +7,8 @@
 #include "reference/ray_marcher/ray_marcher.h"
 #include "tests/gpu/device.h"
 
+namespace backdrops_test {
+
 using namespace airlight;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("Legendre light: the device sees backdrops and particles as the proces
   if (!gpu::test::device()) return;
   compare(legendre_fluids::LegendreLight(), gpu::LegendreLightGpu(), with_backdrops(sun, ""), {});
 }
+
+}  // namespace backdrops_test

@@ -8,6 +8,8 @@
 #include "tests/gpu/raster/hits_against_embree.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace first_hits_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 using scene::Camera;
@@ -248,3 +250,5 @@ TEST_CASE("first hits of blocks of pixels", "[gpu][raster]") {
     CHECK(differ <= (way == Way::tree ? 0 : 1));
   }
 }
+
+}  // namespace first_hits_test

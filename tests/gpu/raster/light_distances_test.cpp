@@ -6,6 +6,8 @@
 #include "tests/gpu/raster/hits_against_embree.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace light_distances_test {
+
 using namespace airlight;
 using gpu::LightDistances;
 
@@ -65,3 +67,5 @@ TEST_CASE("lights see what Embree sees", "[gpu][raster]") {
   CHECK(moved >= 0);  // only texels that were seen to lie on an edge differ
   CHECK(moved < 40);  // of 41472
 }
+
+}  // namespace light_distances_test

@@ -10,6 +10,8 @@
 #include "tests/gpu/device.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace times_test {
+
 using namespace airlight;
 
 TEST_CASE("times of the raster pass", "[.][times]") {
@@ -65,3 +67,5 @@ TEST_CASE("times of first hits", "[.][times]") {
                  traced.surfaces().triangles(), 1e3 * seconds[0][2], 1e3 * seconds[1][2]);
     }
 }
+
+}  // namespace times_test

@@ -4,6 +4,8 @@
 
 #include "tests/gpu/ray_marcher/pictures.h"
 
+namespace frame_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -60,3 +62,5 @@ TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]"
     CHECK(frame.film.layers == render_gpu(scene, look(), given).film.layers);
   }
 }
+
+}  // namespace frame_test

@@ -11,6 +11,8 @@
 #include "scene/error.h"
 #include "tests/gpu/ray_marcher/pictures.h"
 
+namespace parity_test {
+
 using namespace airlight;
 using gpu::test::p99;
 using namespace airlight::ray_marcher;
@@ -293,3 +295,5 @@ TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
       CHECK(gpu.counters.at("shadow_steps") == Approx(cpu.counters.at("shadow_steps")).epsilon(0.05));
     }
 }
+
+}  // namespace parity_test

@@ -9,6 +9,8 @@
 #include "tests/methods/shadow_planes/special_scenes.h"
 #include "tests/pictures.h"
 
+namespace counts_test {
+
 using namespace airlight;
 using shadow_planes::origin_in_general_position;
 
@@ -106,3 +108,5 @@ TEST_CASE("shadow planes: surfaces between light and origins are counted alike",
   CHECK(all.points > 14000);
   CHECK(all.crossed > 3000);
 }
+
+}  // namespace counts_test

@@ -3,6 +3,8 @@
 
 #include "tests/gpu/shadow_planes/pictures.h"
 
+namespace frame_test {
+
 using namespace airlight;
 using gpu::test::Pairs;
 using gpu::test::scene_of;
@@ -97,3 +99,5 @@ TEST_CASE("shadow planes: no pass reads what none has written", "[gpu][shadow_pl
     CHECK(poisoned == expected);
   }
 }
+
+}  // namespace frame_test

@@ -10,6 +10,8 @@
 #include "tests/gpu/shader_folder.h"
 #include "tests/gpu/shadow_planes/pictures.h"
 
+namespace limits_test {
+
 using namespace airlight;
 using gpu::test::compare;
 using gpu::test::Pairs;
@@ -134,3 +136,5 @@ void main() {
     if (places[i][1] > 1e20f) CHECK(int(corners[2]) % (levels + 2) == levels + 1);  // the vertex at infinity
   }
 }
+
+}  // namespace limits_test

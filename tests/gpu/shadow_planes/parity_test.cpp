@@ -9,6 +9,8 @@
 #include "tests/gpu/shadow_planes/pictures.h"
 #include "tests/methods/shadow_planes/special_scenes.h"
 
+namespace parity_test {
+
 using namespace airlight;
 using gpu::test::compare;
 using gpu::test::Pairs;
@@ -256,3 +258,5 @@ TEST_CASE("shadow planes: the frame buffer of 8 bits on the GPU", "[gpu][shadow_
     CHECK(beyond_a_step == 0);
   }
 }
+
+}  // namespace parity_test

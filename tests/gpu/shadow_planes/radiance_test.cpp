@@ -11,6 +11,8 @@
 #include "tests/gpu/shader_folder.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
+namespace radiance_test {
+
 using namespace airlight;
 using namespace shadow_planes_test;
 
@@ -88,3 +90,5 @@ TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][sh
   INFO(worst);
   CHECK(worst < 1e-4);
 }
+
+}  // namespace radiance_test

@@ -13,6 +13,8 @@
 #include "tests/methods/shadow_planes/rule_cases.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
+namespace rule_test {
+
 using namespace airlight;
 using namespace shadow_planes_test;
 using shadow_planes::LitPart;
@@ -102,3 +104,5 @@ TEST_CASE("shadow planes: the polynomial on the device", "[gpu][shadow_planes]")
           CHECK(got == Approx(expected).epsilon(2e-5));
         }
 }
+
+}  // namespace rule_test

@@ -8,6 +8,8 @@
 #include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
+namespace frame_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 
@@ -186,3 +188,5 @@ TEST_CASE("wavelet fog: what the GPU refuses, it names", "[gpu][wavelet_fog]") {
   scene->media[0].field = scene::Homogeneous{};
   CHECK(refused({}));
 }
+
+}  // namespace frame_test

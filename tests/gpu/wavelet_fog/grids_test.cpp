@@ -11,6 +11,8 @@
 #include "tests/gpu/device.h"
 #include "tests/oracle_vectors.h"
 
+namespace grids_test {
+
 using namespace airlight;
 using namespace airlight::gpu::fogmaps;
 using wavelet_fog::Coefficients;
@@ -160,3 +162,5 @@ TEST_CASE("wavelets on the GPU: the oracle's decomposition", "[gpu][wavelet_fog]
   }
   CHECK(bands >= 4);
 }
+
+}  // namespace grids_test

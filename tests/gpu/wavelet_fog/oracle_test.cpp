@@ -4,6 +4,8 @@
 #include "tests/gpu/wavelet_fog/pictures.h"
 #include "tests/oracle_vectors.h"
 
+namespace oracle_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 using test::json;
@@ -106,3 +108,5 @@ TEST_CASE("wavelet fog: the oracle's levels on the GPU", "[gpu][wavelet_fog]") {
     CHECK(looked_at >= 8);
   }
 }
+
+}  // namespace oracle_test

@@ -4,6 +4,8 @@
 #include "scene/media/spline_map.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
+namespace parity_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 
@@ -72,3 +74,5 @@ TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CP
   valley->media.push_back(second);
   compare(valley, {}, 1.7e-6);
 }
+
+}  // namespace parity_test

@@ -5,6 +5,8 @@
 #include "tests/gpu/wavelet_fog/pictures.h"
 #include "tests/methods/wavelet_fog/sun_scenes.h"
 
+namespace sun_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 
@@ -210,3 +212,5 @@ TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU
   wide->name = "strips";
   compare(wide, {{"sun", "true"}}, 3e-6);
 }
+
+}  // namespace sun_test

@@ -6,6 +6,8 @@
 #include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 
+namespace times_test {
+
 using namespace airlight;
 using namespace airlight::gpu::test;
 
@@ -70,3 +72,5 @@ TEST_CASE("wavelet fog: times of variants on the GPU", "[.times]") {
       }
     }
 }
+
+}  // namespace times_test

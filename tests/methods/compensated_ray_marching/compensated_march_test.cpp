@@ -6,6 +6,8 @@
 #include "scene/error.h"
 #include "tests/oracle_vectors.h"
 
+namespace compensated_march_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -117,3 +119,5 @@ TEST_CASE("compensated march: extremes", "[compensated_ray_marching]") {
   smoke.source.pop_back();
   CHECK_THROWS_AS(CompensatedMarch(smoke), Error);
 }
+
+}  // namespace compensated_march_test

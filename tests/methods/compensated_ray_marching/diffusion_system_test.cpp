@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "tests/oracle_vectors.h"
 
+namespace diffusion_system_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -144,3 +146,5 @@ TEST_CASE("diffusion at the centres: extremes", "[compensated_ray_marching]") {
     CHECK(found.x.allFinite());
   }
 }
+
+}  // namespace diffusion_system_test

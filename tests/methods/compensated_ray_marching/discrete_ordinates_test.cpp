@@ -10,6 +10,8 @@
 #include "tests/methods/compensated_ray_marching/slab.h"
 #include "tests/oracle_vectors.h"
 
+namespace discrete_ordinates_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -378,3 +380,5 @@ TEST_CASE("discrete ordinates: what does not fit is refused", "[compensated_ray_
   CHECK_THROWS_AS(uniform(grid, 1, 0.5, 0).solve(crm::Moments::Zero(8, 15)), Error);
   CHECK_THROWS_AS(uniform(grid, 1, 0.5, 0).solve(crm::Moments::Constant(8, 16, infinity)), Error);
 }
+
+}  // namespace discrete_ordinates_test

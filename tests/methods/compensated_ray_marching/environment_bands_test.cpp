@@ -7,6 +7,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 
+namespace environment_bands_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using compensated_ray_marching::EnvironmentBands;
@@ -91,3 +93,5 @@ TEST_CASE("light from fixed directions is the turned map's, in bands, of a map t
   }
   CHECK(count == 1);
 }
+
+}  // namespace environment_bands_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+namespace gaussian_columns_test {
+
 using namespace airlight;
 using namespace airlight::compensated_ray_marching;
 
@@ -84,3 +86,5 @@ TEST_CASE("columns of Gaussians: sums that are clamped or have no end are not kn
   sum.gaussians.push_back({Point3::Ones(), 1, -0.1});
   CHECK(!GaussianColumns::knows(sum));
 }
+
+}  // namespace gaussian_columns_test

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace gaussian_row_test {
+
 using namespace airlight;
 using namespace airlight::compensated_ray_marching;
 
@@ -25,3 +27,5 @@ TEST_CASE("Gaussians along a row of rays are their density", "[compensated_ray_m
     REQUIRE(std::abs(weighted[std::size_t(k)].sum() - expected) < 1e-12);
   }
 }
+
+}  // namespace gaussian_row_test

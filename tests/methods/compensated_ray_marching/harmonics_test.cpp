@@ -8,6 +8,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/oracle_vectors.h"
 
+namespace harmonics_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -200,3 +202,5 @@ TEST_CASE("exponentials of depths of a thousand are finite", "[compensated_ray_m
       for (const double value : e) CHECK(std::isfinite(value));
   }
 }
+
+}  // namespace harmonics_test

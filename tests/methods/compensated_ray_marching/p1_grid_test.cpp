@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "tests/oracle_vectors.h"
 
+namespace p1_grid_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -211,3 +213,5 @@ TEST_CASE("diffusion on a grid: extremes, and what is refused", "[compensated_ra
   CHECK_THROWS_AS(p1.solve(Moments::Zero(64, 5), 2), Error);
   CHECK_THROWS_AS(p1.solve(Moments::Constant(64, 4, infinity), 2), Error);
 }
+
+}  // namespace p1_grid_test

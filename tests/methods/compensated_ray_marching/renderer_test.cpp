@@ -10,6 +10,8 @@
 #include "tests/oracle_vectors.h"
 #include "tests/pictures.h"
 
+namespace renderer_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -390,3 +392,5 @@ TEST_CASE("compensated march: refusals name the reason", "[compensated_ray_march
   // Cells that stay too deep however small they are.
   CHECK_THROWS_AS(picture(method, in_white(puffs(), 1e4)), scene::NotSupported);
 }
+
+}  // namespace renderer_test

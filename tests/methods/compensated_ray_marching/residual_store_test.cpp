@@ -6,6 +6,8 @@
 
 #include "scene/math/random.h"
 
+namespace residual_store_test {
+
 using namespace airlight;
 using namespace airlight::compensated_ray_marching;
 
@@ -66,3 +68,5 @@ TEST_CASE("stores of a residual: without any level", "[compensated_ray_marching]
     for (const double s : {-0.5, 0.0, 1.3, 3.0})
       CHECK(StoredResidual(residual, store).at(sample_to_world(residual.layout, Point3(s, s, s))) == 0);
 }
+
+}  // namespace residual_store_test

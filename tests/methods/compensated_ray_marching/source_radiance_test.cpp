@@ -6,6 +6,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/oracle_vectors.h"
 
+namespace source_radiance_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
@@ -128,3 +130,5 @@ TEST_CASE("source radiance: coloured smoke is each colour by itself; at a centre
       CHECK(value.isFinite().all());
   }
 }
+
+}  // namespace source_radiance_test

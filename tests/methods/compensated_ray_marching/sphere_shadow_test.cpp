@@ -10,6 +10,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 
+namespace sphere_shadow_test {
+
 using namespace airlight;
 using namespace airlight::compensated_ray_marching;
 
@@ -181,3 +183,5 @@ TEST_CASE("shadows of spheres: what is refused", "[compensated_ray_marching]") {
   CHECK_THROWS_AS(ShadowTable(4, series(), 1), Error);
   CHECK_THROWS_AS(ShadowTable(4, series(), 256, 0), Error);
 }
+
+}  // namespace sphere_shadow_test

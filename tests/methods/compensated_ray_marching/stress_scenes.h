@@ -8,6 +8,7 @@
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/residual.h"
 #include "scene/math/spherical_harmonics.h"
+#include "scene/media/fitted.h"
 #include "tests/pictures.h"
 
 namespace airlight::test {

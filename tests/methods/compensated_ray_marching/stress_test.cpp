@@ -6,6 +6,8 @@
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "tests/methods/compensated_ray_marching/stress_scenes.h"
 
+namespace stress_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -165,3 +167,5 @@ TEST_CASE("compensated march, stress list: an empty frame in between", "[stress]
     CHECK(nothing->render(view_of(*empty), {1, {}}).film.layer("mean") == picture(method, empty, given).layer("mean"));
   }
 }
+
+}  // namespace stress_test

@@ -6,6 +6,8 @@
 #include "scene/geometry/mesh_io.h"
 #include "scene/geometry/shapes.h"
 
+namespace airbrush_test {
+
 using namespace airlight;
 using namespace airlight::fogshop::authoring;
 
@@ -116,3 +118,5 @@ TEST_CASE("an airbrush in free air diffuses as Brownian motion", "[fogshop][auth
   }
   CHECK(std::abs(found - expected) < 4 * std::sqrt(variance));
 }
+
+}  // namespace airbrush_test

@@ -9,6 +9,8 @@
 #include "scene/error.h"
 #include "scene/media/gaussian_sum.h"
 
+namespace authoring_test {
+
 using namespace airlight;
 using namespace airlight::fogshop::authoring;
 
@@ -262,3 +264,5 @@ TEST_CASE("undo restores the list exactly", "[fogshop][authoring]") {
   CHECK(list.all().empty());
   CHECK_FALSE(list.undo());
 }
+
+}  // namespace authoring_test

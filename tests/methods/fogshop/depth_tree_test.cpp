@@ -13,6 +13,8 @@
 #include "tests/methods/fogshop/sky.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace depth_tree_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 
@@ -192,3 +194,5 @@ TEST_CASE("a tree without a surface near the fog has no cells", "[fogshop]") {
     CHECK(tree({1e5, 1, 0}) == Approx(average_depth_of(g, {1e5, 1, 0})).epsilon(1e-3));
   }
 }
+
+}  // namespace depth_tree_test

@@ -11,6 +11,8 @@
 #include "scene/error.h"
 #include "tests/pictures.h"
 
+namespace domain_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 
@@ -130,3 +132,5 @@ TEST_CASE("no scene of the experiments is refused for its widths", "[fogshop][do
   }
   CHECK(seen > 40);
 }
+
+}  // namespace domain_test

@@ -10,6 +10,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "tests/methods/fogshop/sky.h"
 
+namespace environment_reference_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using namespace airlight::fogshop::test;
@@ -126,3 +128,5 @@ TEST_CASE("airlight of the sky by slices and grid, by path tracing", "[fogshop]"
   REQUIRE(why.size() == 1);
   CHECK(why[0].find("constant") != std::string::npos);
 }
+
+}  // namespace environment_reference_test

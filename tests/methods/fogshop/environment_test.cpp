@@ -10,6 +10,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/methods/fogshop/sky.h"
 
+namespace environment_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using namespace airlight::fogshop::test;
@@ -299,3 +301,5 @@ TEST_CASE("point lights and environments add, on any number of threads", "[fogsh
         }
   }
 }
+
+}  // namespace environment_test

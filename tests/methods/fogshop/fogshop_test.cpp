@@ -9,6 +9,8 @@
 #include "scene/scene.h"
 #include "tests/pictures.h"
 
+namespace fogshop_test {
+
 using namespace airlight;
 using scene::Film;
 using scene::Scene;
@@ -346,3 +348,5 @@ TEST_CASE("fogshop: equal albedos cost nothing", "[fogshop]") {
   const auto prepared = method.prepare(std::make_shared<const Scene>(two), settings({}), {});
   CHECK(kept(prepared->stages(), "colours of scattering"));
 }
+
+}  // namespace fogshop_test

@@ -13,6 +13,8 @@
 #include "scene/math/sh_product.h"
 #include "scene/math/spherical_harmonics.h"
 
+namespace harmonic_reflection_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using scene::triple_product;
@@ -209,3 +211,5 @@ TEST_CASE("a furnace of harmonics", "[fogshop]") {
   CHECK_THROWS_AS(triple_product(3)(light(3), std::vector<double>(4, 0.0)), Error);
   CHECK_THROWS_AS(reflectance_harmonics(scene::Lambert{}, normal, to_view, 13), Error);
 }
+
+}  // namespace harmonic_reflection_test

@@ -6,6 +6,8 @@
 
 #include "tests/methods/fogshop/vectors.h"
 
+namespace homogeneous_airlight_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::relative_error;
@@ -84,3 +86,5 @@ TEST_CASE("homogeneous airlight of two segments adds", "[fogshop]") {
     CHECK(relative_error(parts, whole) <= 2e-12 + 1e-15 / closeness);
   }
 }
+
+}  // namespace homogeneous_airlight_test

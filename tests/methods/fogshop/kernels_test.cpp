@@ -7,6 +7,8 @@
 #include "methods/fogshop/paper_airlight.h"
 #include "tests/methods/fogshop/vectors.h"
 
+namespace kernels_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::relative_error;
@@ -160,3 +162,5 @@ TEST_CASE("bare loops compute", "[fogshop]") {
       CHECK(bare_loop(what, erf, 4096, 1) != once);
     }
 }
+
+}  // namespace kernels_test

@@ -7,6 +7,8 @@
 #include "methods/fogshop/fogshop.h"
 #include "tests/pictures.h"
 
+namespace low_resolution_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using Pairs = std::map<std::string, std::string>;
@@ -151,3 +153,5 @@ TEST_CASE("low resolution: same bits on one thread and on two, sizes that no fac
     CHECK(one.counters.at("pixels_low") == 11 * 8);
   }
 }
+
+}  // namespace low_resolution_test

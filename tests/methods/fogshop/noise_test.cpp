@@ -6,6 +6,8 @@
 #include "methods/fogshop/fogshop.h"
 #include "tests/pictures.h"
 
+namespace noise_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using Pairs = std::map<std::string, std::string>;
@@ -101,3 +103,5 @@ TEST_CASE("no noise, no trace; the same bits on one thread and on two", "[fogsho
     CHECK(render("a30", noisy).layers != plain.layers);
   }
 }
+
+}  // namespace noise_test

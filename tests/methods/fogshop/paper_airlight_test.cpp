@@ -4,6 +4,8 @@
 
 #include "tests/methods/fogshop/vectors.h"
 
+namespace paper_airlight_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::relative_error;
@@ -56,3 +58,5 @@ TEST_CASE("the paper's table of F", "[fogshop]") {
   const LightFromRay light{4, 3};
   CHECK(relative_error(table.homogeneous_airlight(light, 9, 0.2), homogeneous_airlight(light, 9, 0.2)) <= 1e-3);
 }
+
+}  // namespace paper_airlight_test

@@ -10,6 +10,8 @@
 #include "scene/math/spherical_harmonics.h"
 #include "tests/pictures.h"
 
+namespace radiance_transfer_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 
@@ -176,3 +178,5 @@ TEST_CASE("the transfer is made where it is needed", "[fogshop]") {
   finish(scene);
   CHECK_FALSE(kept(scene, {{"reflectance", "npsfT"}, {"prt", "true"}}));
 }
+
+}  // namespace radiance_transfer_test

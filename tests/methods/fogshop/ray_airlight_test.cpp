@@ -6,6 +6,8 @@
 #include "tests/methods/fogshop/ray_model.h"
 #include "tests/methods/fogshop/vectors.h"
 
+namespace ray_airlight_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact;
@@ -146,3 +148,5 @@ TEST_CASE("the light map converges", "[fogshop]") {
     CHECK(fine <= coarse / 12);  // 16 for smooth depths
   }
 }
+
+}  // namespace ray_airlight_test

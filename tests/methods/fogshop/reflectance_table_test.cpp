@@ -14,6 +14,8 @@
 #include "scene/scene.h"
 #include "tests/pictures.h"
 
+namespace reflectance_table_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 
@@ -107,3 +109,5 @@ TEST_CASE("a tabulated floor reflects scattered light", "[fogshop]") {
     }
   CHECK_FALSE(method.supports(scene, scene::Settings(method.settings(), {{"reflectance", "sun"}})).empty());
 }
+
+}  // namespace reflectance_table_test

@@ -13,6 +13,8 @@
 #include "tests/methods/fogshop/exact_reflection.h"
 #include "tests/pictures.h"
 
+namespace scattered_reflection_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact_reflection;
@@ -132,3 +134,5 @@ TEST_CASE("a floor reflects what constant fog scatters onto it", "[fogshop]") {
     }
   CHECK(printed_error > 0.1);  // the fixed PSF is for T = 1; here T goes from 0.3 to 1.5
 }
+
+}  // namespace scattered_reflection_test

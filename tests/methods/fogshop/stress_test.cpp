@@ -5,6 +5,8 @@
 #include "tests/methods/fogshop/stress_cases.h"
 #include "tests/methods/fogshop/vectors.h"
 
+namespace stress_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact;
@@ -27,3 +29,5 @@ TEST_CASE("airlight of one Gaussian, stress table", "[fogshop]") {
       CHECK(relative_error(got[0], c.expected) <= 1e-7);
     }
 }
+
+}  // namespace stress_test

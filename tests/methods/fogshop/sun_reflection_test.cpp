@@ -10,6 +10,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "tests/methods/fogshop/exact_reflection.h"
 
+namespace sun_reflection_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact_reflection;
@@ -66,3 +68,5 @@ TEST_CASE("Sun et al.'s form: exponent 0 is Lambert", "[fogshop]") {
         Approx(sun.reflect(lambert, normal, to_view, to_light, 0.8)[0]).epsilon(1e-12));
   CHECK((sun.reflect(lambert, normal, -to_view, to_light, 0.8) == 0).all());
 }
+
+}  // namespace sun_reflection_test

@@ -10,6 +10,8 @@
 #include "scene/math/special_functions.h"
 #include "scene/math/types.h"
 
+namespace surface_psf_test {
+
 using namespace airlight;
 using namespace airlight::fogshop;
 
@@ -96,3 +98,5 @@ TEST_CASE("the average depth falls as the fog moves away", "[fogshop]") {
     CHECK(average_depth(u) == Approx(mean).epsilon(1e-12));
   }
 }
+
+}  // namespace surface_psf_test

@@ -5,6 +5,8 @@
 #include "methods/legendre_fluids/confined_fluid.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 
+namespace confined_space_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using namespace airlight::legendre_fluids::testing;
@@ -105,3 +107,5 @@ TEST_CASE("legendre fluids: filters keep the divergence and the mass", "[legendr
   CHECK(fluid.energy() < energy);
   CHECK(fluid.counters().at("energy filtered") == Approx(energy - fluid.energy()));
 }
+
+}  // namespace confined_space_test

@@ -7,6 +7,8 @@
 #include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/flows.h"
 
+namespace densities_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids::testing;
 using Catch::Contains;
@@ -164,3 +166,5 @@ TEST_CASE("legendre fluids: a wind that changes carries a blob as far as its int
   CHECK_THROWS_WITH(start<stable_fluids::StableFluids>(problem, {}), Contains("a gust"));
   CHECK_THROWS_WITH(start<exact_flows::ExactFlows>(problem, {}), Contains("a gust"));
 }
+
+}  // namespace densities_test

@@ -7,6 +7,8 @@
 #include "tests/methods/legendre_fluids/extreme_scenes.h"
 #include "tests/methods/legendre_fluids/flows.h"
 
+namespace extremes_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids::testing;
 using Catch::Contains;
@@ -177,3 +179,5 @@ TEST_CASE("legendre light, extremes: a medium of depth 1e-6 sends a millionth", 
   for (std::size_t i = 0; i < small.size(); ++i)
     CHECK(double(small[i]) == Approx(1e6 * double(less[i])).epsilon(1e-5).margin(1e-18));
 }
+
+}  // namespace extremes_test

@@ -6,6 +6,8 @@
 #include "reference/stable_fluids/stable_fluids.h"
 #include "tests/methods/legendre_fluids/flows.h"
 
+namespace flow_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids::testing;
 using Catch::Contains;
@@ -261,3 +263,5 @@ TEST_CASE("legendre fluids: one coefficient is a fluid at rest, long steps are d
   CHECK(fast->counters().at("Runge-Kutta steps") > 30);
   CHECK(fast->totals().greatest_speed < 12);
 }
+
+}  // namespace flow_test

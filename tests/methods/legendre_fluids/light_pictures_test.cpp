@@ -11,6 +11,8 @@
 #include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace light_pictures_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::legendre_fluids::testing;
@@ -153,3 +155,5 @@ TEST_CASE("legendre light: threads change nothing; layers add up", "[legendre_fl
   const scene::Film truth = picture(*deterministic::make_renderer(), scene, {{"relative_tolerance", "1e-7"}}, 0);
   CHECK(relative_l2(film, truth, "ambient") <= 1e-6);
 }
+
+}  // namespace light_pictures_test

@@ -10,6 +10,8 @@
 #include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace light_rays_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::legendre_fluids::testing;
@@ -149,3 +151,5 @@ TEST_CASE("legendre light: what rays cannot do is refused by name", "[legendre_f
   scene.lights = {scene::PointLight{}};
   refused("light 0 is point");
 }
+
+}  // namespace light_rays_test

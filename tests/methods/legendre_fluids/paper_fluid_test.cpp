@@ -9,6 +9,8 @@
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 
+namespace paper_fluid_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using namespace airlight::legendre_fluids::testing;
@@ -167,3 +169,5 @@ TEST_CASE("legendre fluids, paper: the solver says after how many steps, and ref
   CHECK(solver.supports(problem, settings({{"n", "40"}, {"variant", "paper_repaired"}})).empty());
   CHECK_THAT(solver.supports(problem, settings({{"time_step", "cayley"}})).at(0), Catch::Contains("cayley"));
 }
+
+}  // namespace paper_fluid_test

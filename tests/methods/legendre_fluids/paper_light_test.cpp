@@ -10,6 +10,8 @@
 #include "scene/error.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace paper_light_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using namespace airlight::legendre_fluids::testing;
@@ -176,3 +178,5 @@ TEST_CASE("legendre light: what the systems cannot do is refused by name", "[leg
   scene.ambient_in_scatter = Rgb::Ones();
   refused(paper("upwind", 6), "ambient_in_scatter");
 }
+
+}  // namespace paper_light_test

@@ -11,6 +11,8 @@
 #include "scene/particles.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
+namespace paper_view_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using namespace airlight::legendre_fluids::testing;
@@ -273,3 +275,5 @@ TEST_CASE("legendre light: what the systems cannot see is refused by name", "[le
   const auto prepared = method.prepare(scene, {method.settings(), paper(4)}, {});
   CHECK_THROWS_WITH(prepared->render(view, {}), Contains("belongs to the scene's own camera"));
 }
+
+}  // namespace paper_view_test

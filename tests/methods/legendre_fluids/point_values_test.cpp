@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+namespace point_values_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 
@@ -65,3 +67,5 @@ TEST_CASE("legendre light: series have the same bits by AVX2 and by what this ma
   hwy::GetChosenTarget().DeInit();
   for (std::size_t i = 0; i < widest.size(); ++i) CHECK((widest[i].array() == narrow[i].array()).all());
 }
+
+}  // namespace point_values_test

@@ -6,6 +6,8 @@
 
 #include "tests/methods/legendre_fluids/swirl.h"
 
+namespace time_steps_test {
+
 using namespace airlight;
 using namespace airlight::legendre_fluids;
 using namespace airlight::legendre_fluids::testing;
@@ -94,3 +96,5 @@ TEST_CASE("legendre fluids: Taylor-Green in a free-slip box", "[legendre_fluids]
     CHECK(std::sqrt(squares / all) < bound);
   }
 }
+
+}  // namespace time_steps_test

@@ -6,6 +6,8 @@
 #include "methods/shadow_planes/bounded_media.h"
 #include "scene/math/gauss_legendre.h"
 
+namespace bounded_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -63,3 +65,5 @@ TEST_CASE("shadow planes: media that tint one another", "[shadow_planes]") {
       CHECK(((got - expected).abs() < 1e-7 * expected).all());
     }
 }
+
+}  // namespace bounded_test

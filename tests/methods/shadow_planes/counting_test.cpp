@@ -10,6 +10,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 
+namespace counting_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -169,3 +171,5 @@ TEST_CASE("shadow planes: triangles without area and seams cast no shadow of the
   for (const SilhouetteEdge& edge : silhouette(whole, {3, 4, 5})) CHECK(edge.multiplicity == 2);
   CHECK(silhouette(whole, {0.1, 0.2, 0.3}).empty());  // from inside there is none
 }
+
+}  // namespace counting_test

@@ -8,6 +8,8 @@
 #include "scene/geometry/shapes.h"
 #include "scene/renderer.h"
 
+namespace edge_fan_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -82,3 +84,5 @@ TEST_CASE("shadow planes: a ray along the fan's line", "[shadow_planes]") {
   fan.of_ray({camera.position, Vec3(0.3, 0, -1).normalized()}, edges);
   CHECK(edges.size() < shadows.edges().size());
 }
+
+}  // namespace edge_fan_test

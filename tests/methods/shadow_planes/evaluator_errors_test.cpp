@@ -9,6 +9,8 @@
 #include "scene/math/quadrature.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
+namespace evaluator_errors_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using namespace airlight::experiments::shadow_planes;
@@ -136,3 +138,5 @@ TEST_CASE("shadow planes: errors of the polynomial over angles", "[shadow_planes
       CHECK(median < line.medians[d] * 3);
     }
 }
+
+}  // namespace evaluator_errors_test

@@ -13,6 +13,8 @@
 #include "tests/methods/shadow_planes/rule_cases.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
+namespace evaluators_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using namespace shadow_planes_test;
@@ -178,3 +180,5 @@ TEST_CASE("shadow planes: phase functions have mean one", "[shadow_planes]") {
             Approx(mean * 4 * pi * scene::phase_value(p, c)).epsilon(1e-13));
     }
 }
+
+}  // namespace evaluators_test

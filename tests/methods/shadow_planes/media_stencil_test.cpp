@@ -7,6 +7,8 @@
 #include "tests/methods/shadow_planes/vectors.h"
 #include "tests/methods/shadow_planes/vertex_scenes.h"
 
+namespace media_stencil_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using namespace shadow_planes_test;
@@ -118,3 +120,5 @@ TEST_CASE("shadow planes: planes in front of a medium change nothing", "[shadow_
     CHECK(b.counters.at("lit_parts") == a.counters.at("lit_parts"));  // none is drawn
   }
 }
+
+}  // namespace media_stencil_test

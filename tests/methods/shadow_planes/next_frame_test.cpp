@@ -6,6 +6,8 @@
 #include "methods/shadow_planes/shadow_planes.h"
 #include "tests/gpu/device.h"
 
+namespace next_frame_test {
+
 using namespace airlight;
 
 namespace {
@@ -67,3 +69,5 @@ TEST_CASE("shadow planes: a light that moves, on the device", "[gpu][shadow_plan
   check(gpu::ShadowPlanesGpu(), {});
   check(gpu::ShadowPlanesGpu(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
 }
+
+}  // namespace next_frame_test

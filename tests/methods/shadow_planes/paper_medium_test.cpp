@@ -8,6 +8,8 @@
 #include "methods/shadow_planes/polynomial.h"
 #include "scene/math/gauss_legendre.h"
 
+namespace paper_medium_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -135,3 +137,5 @@ TEST_CASE("shadow planes: the paper's media close to the light", "[shadow_planes
           CHECK(std::abs(got - expected) <= 1e-12 * expected);
         }
 }
+
+}  // namespace paper_medium_test

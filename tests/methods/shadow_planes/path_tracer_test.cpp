@@ -9,6 +9,8 @@
 #include "reference/path_tracer/renderer.h"
 #include "tests/pictures.h"
 
+namespace path_tracer_test {
+
 using namespace airlight;
 using airlight::test::picture;
 
@@ -50,3 +52,5 @@ TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
     CHECK_FALSE(experiments::compare_equal(darker, b, "mean", ball_mask(*scene, view_of(*scene)), alpha).equal);
   }
 }
+
+}  // namespace path_tracer_test

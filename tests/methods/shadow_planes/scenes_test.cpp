@@ -3,6 +3,8 @@
 
 #include "methods/shadow_planes/shadow_volumes.h"
 
+namespace scenes_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -73,3 +75,5 @@ TEST_CASE("shadow planes: the ball of Figure 7 has 32 edges in its silhouette", 
   // All within the spot's cone: its shadow lies in the light.
   for (const SilhouetteEdge& edge : edges) CHECK(-edge.a.normalized()[1] > std::cos(0.43));
 }
+
+}  // namespace scenes_test

@@ -9,6 +9,8 @@
 #include "scene/scene.h"
 #include "tests/pictures.h"
 
+namespace shadow_planes_test {
+
 using namespace airlight;
 using Given = std::map<std::string, std::string>;
 using airlight::test::render;
@@ -173,3 +175,5 @@ TEST_CASE("shadow planes: what a scene has not is left out", "[shadow_planes]") 
   scene->lights.emplace_back(scene::DirectionalLight{});
   CHECK_FALSE(method.supports(*scene, {method.settings(), {}}).empty());
 }
+
+}  // namespace shadow_planes_test

@@ -5,6 +5,8 @@
 #include "methods/shadow_planes/shadow_volumes.h"
 #include "tests/methods/shadow_planes/vectors.h"
 
+namespace shadow_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using namespace shadow_planes_test;
@@ -47,3 +49,5 @@ TEST_CASE("shadow planes: vectors of shadows", "[shadow_planes]") {
   }
   CHECK(count == 7);
 }
+
+}  // namespace shadow_test

@@ -6,6 +6,8 @@
 #include "methods/shadow_planes/shadow_volumes.h"
 #include "tests/methods/shadow_planes/special_scenes.h"
 
+namespace silhouette_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 
@@ -65,3 +67,5 @@ TEST_CASE("shadow planes: edges of many faces count every one", "[shadow_planes]
   }
   CHECK(shadows_of(book(both), light).count({-3, -0.5, 0}) == 6);
 }
+
+}  // namespace silhouette_test

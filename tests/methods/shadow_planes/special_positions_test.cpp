@@ -8,6 +8,8 @@
 #include "tests/methods/shadow_planes/special_scenes.h"
 #include "tests/pictures.h"
 
+namespace special_positions_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using airlight::test::picture;
@@ -68,3 +70,5 @@ TEST_CASE("shadow planes: a light on a surface is before it", "[shadow_planes]")
     CHECK(hides(-2 * up, 2, Vec3(-up)));
   }
 }
+
+}  // namespace special_positions_test

@@ -7,6 +7,8 @@
 #include "methods/shadow_planes/plane_mesh.h"
 #include "tests/methods/shadow_planes/vertex_scenes.h"
 
+namespace vertices_test {
+
 using namespace airlight;
 using namespace airlight::shadow_planes;
 using namespace shadow_planes_test;
@@ -222,3 +224,5 @@ TEST_CASE("shadow planes: at vertices, what there is not and extremes", "[shadow
   scene->media[0].region = scene::Slab{};
   CHECK_FALSE(reason(*scene, {{"bounded", "paper"}}).empty());
 }
+
+}  // namespace vertices_test

@@ -6,6 +6,8 @@
 #include "scene/media/fogmap.h"
 #include "tests/methods/wavelet_fog/maps.h"
 
+namespace acceptance_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::wavelet_fog;
@@ -255,3 +257,5 @@ TEST_CASE("wavelet fog: bound keeps its tolerance, on any map", "[wavelet_fog]")
 TEST_CASE("wavelet fog: bound keeps its tolerance on a million rays", "[.][wavelet_fog_long]") {
   CHECK(worst_share(1000000) > 0.05);
 }
+
+}  // namespace acceptance_test

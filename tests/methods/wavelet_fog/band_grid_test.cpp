@@ -10,6 +10,8 @@
 #include "scene/media/fogmap.h"
 #include "tests/pictures.h"
 
+namespace band_grid_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::wavelet_fog;
@@ -232,3 +234,5 @@ TEST_CASE("wavelet fog: settings that contradict each other are refused by name"
   for (const auto& [name, value] : out_of_range)
     CHECK_THROWS_WITH(scene::Settings(method.settings(), {{name, value}}), Catch::Contains(name));
 }
+
+}  // namespace band_grid_test

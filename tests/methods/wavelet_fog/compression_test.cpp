@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace compression_test {
+
 using namespace airlight;
 using namespace airlight::wavelet_fog;
 
@@ -65,3 +67,5 @@ TEST_CASE("wavelet fog: of equal weights the same coefficients are kept every ti
     CHECK(compress(c, family("haar"), 4, 0.01).map.values == first.map.values);
   }
 }
+
+}  // namespace compression_test

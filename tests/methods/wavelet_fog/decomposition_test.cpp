@@ -10,6 +10,8 @@
 #include "methods/wavelet_fog/blocks.h"
 #include "methods/wavelet_fog/options.h"
 
+namespace decomposition_test {
+
 using namespace airlight;
 using namespace airlight::wavelet_fog;
 
@@ -126,3 +128,5 @@ TEST_CASE("wavelet fog: skipping is exact, bounds keep their tolerance", "[wavel
     CHECK(worst > 1e-3);  // coarse grids were read
   }
 }
+
+}  // namespace decomposition_test

@@ -10,6 +10,8 @@
 #include "tests/pictures.h"
 #include "tests/temporary_folder.h"
 
+namespace large_map_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -66,3 +68,5 @@ TEST_CASE("wavelet fog: a map of 8192 x 8192 within 2 GiB and a minute", "[.][wa
   CHECK(most <= 1);
   CHECK(most - least > 0.5);
 }
+
+}  // namespace large_map_test

@@ -8,6 +8,8 @@
 #include "scene/media/spline_map.h"
 #include "tests/pictures.h"
 
+namespace next_frame_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -99,3 +101,5 @@ TEST_CASE("wavelet fog: a next frame that a variant cannot draw is refused, and 
   CHECK_FALSE(prepared->next(of_another_size(first), {1, {}}));  // three levels of 3 x 2
   CHECK(prepared->render(view_of(*first), {1, {}}).film.layer("transmittance") == before.layer("transmittance"));
 }
+
+}  // namespace next_frame_test

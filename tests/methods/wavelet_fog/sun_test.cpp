@@ -11,6 +11,8 @@
 #include "scene/media/fogmap.h"
 #include "tests/methods/wavelet_fog/sun_scenes.h"
 
+namespace sun_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -204,3 +206,5 @@ TEST_CASE("sun: what it cannot do is refused by name, what is not there left out
     if (stage.name == "airlight") CHECK((!stage.kept && stage.reason == "no directional light shines"));
   CHECK(prepared->render(view_of(*scene), {1, {}}).film.layers.count("airlight") == 0);
 }
+
+}  // namespace sun_test

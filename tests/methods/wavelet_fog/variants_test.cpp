@@ -10,6 +10,8 @@
 #include "reference/ray_marcher/ray_marcher.h"
 #include "tests/pictures.h"
 
+namespace variants_test {
+
 using namespace airlight;
 using namespace airlight::test;
 
@@ -120,3 +122,5 @@ TEST_CASE("references agree on light scattered in a fogmap", "[fogmap][path_trac
     CHECK(relative_l2(marched, truth, "airlight") <= 2e-3);
   }
 }
+
+}  // namespace variants_test

@@ -5,6 +5,8 @@
 
 #include "scene/media/voxel_grid.h"
 
+namespace airlight_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using deterministic::Accuracy;
@@ -153,3 +155,5 @@ TEST_CASE("many faint Gaussians add up", "[deterministic]") {
   CHECK(value(scene_of({many}, lights), along_z, 10, {1e-6}) ==
         Approx(value(scene_of({one}, lights), along_z, 10)).epsilon(1e-6));
 }
+
+}  // namespace airlight_test

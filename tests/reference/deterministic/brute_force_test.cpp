@@ -6,6 +6,8 @@
 #include "reference/deterministic/airlight.h"
 #include "scene/media/voxel_grid.h"
 
+namespace brute_force_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -105,3 +107,5 @@ TEST_CASE("overlapping coloured media agree with brute force", "[deterministic]"
     for (int c = 0; c < 3; ++c) CHECK(got.radiance[c] == Approx(brute[c]).epsilon(2e-5));
   }
 }
+
+}  // namespace brute_force_test

@@ -8,6 +8,8 @@
 #include "reference/deterministic/renderer.h"
 #include "scene/error.h"
 
+namespace limits_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -73,3 +75,5 @@ TEST_CASE("quadrature: the estimate of its work is right to an order of magnitud
     CHECK(deterministic::terms_of_ray(scene) > 0.1 * terms);
   }
 }
+
+}  // namespace limits_test

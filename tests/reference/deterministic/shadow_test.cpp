@@ -8,6 +8,8 @@
 #include "reference/deterministic/surface_light.h"
 #include "scene/geometry/shapes.h"
 
+namespace shadow_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -163,3 +165,5 @@ TEST_CASE("a spot of a ten-thousandth of a radian is not missed", "[deterministi
     CHECK(deterministic::airlight(s, along_z, 10).radiance[0] == Approx(2e-9 / (4 * pi) * 2 * angle / 3).epsilon(1e-7));
   }
 }
+
+}  // namespace shadow_test

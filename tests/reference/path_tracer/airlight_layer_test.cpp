@@ -7,6 +7,8 @@
 #include "reference/path_tracer/renderer.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace airlight_layer_test {
+
 using namespace airlight;
 
 namespace {
@@ -47,3 +49,5 @@ TEST_CASE("the airlight layer beside a reflecting floor is the quadrature's", "[
   CHECK(error < 0.01 * truth);
   CHECK(std::abs(mean - truth) < 7.5 * error);
 }
+
+}  // namespace airlight_layer_test

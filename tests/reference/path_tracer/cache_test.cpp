@@ -9,6 +9,8 @@
 #include "tests/reference/path_tracer/scenes.h"
 #include "tests/temporary_folder.h"
 
+namespace cache_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -156,3 +158,5 @@ TEST_CASE("a target error stops tiles one by one", "[path_tracer]") {
   for (const double n : counts) CHECK(std::exp2(std::round(std::log2(n))) == n);
   CHECK(*counts.begin() == 64);
 }
+
+}  // namespace cache_test

@@ -8,6 +8,8 @@
 #include "reference/path_tracer/refusals.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace certainty_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -178,3 +180,5 @@ TEST_CASE("work without end is refused in one line", "[path_tracer]") {
   options.paths = Options::Paths::scattered_to_surface;
   CHECK(refusals(*endless, options).empty());
 }
+
+}  // namespace certainty_test

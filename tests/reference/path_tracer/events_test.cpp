@@ -5,6 +5,8 @@
 #include "reference/path_tracer/refusals.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace events_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -90,3 +92,5 @@ TEST_CASE("a cap on events and paths of a lit surface exclude one another", "[pa
   options.paths = Options::Paths::lit_surface;
   CHECK_THAT(refusals(*scene_with(0.5), options).at(0), Catch::Contains("max_events"));
 }
+
+}  // namespace events_test

@@ -5,6 +5,8 @@
 #include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace identities_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -198,3 +200,5 @@ TEST_CASE("without albedo there is no scattered light", "[path_tracer]") {
   for (int m = 1; m <= 5; ++m) CHECK(e.orders[m].mean[0] == 0);
   CHECK(e.airlight[0] == 0);
 }
+
+}  // namespace identities_test

@@ -12,6 +12,8 @@
 #include "tests/reference/path_tracer/scenes.h"
 #include "tests/temporary_folder.h"
 
+namespace invariance_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -322,3 +324,5 @@ TEST_CASE("layers of a film fit together", "[path_tracer]") {
       CHECK(film.get("order.0", x, y)[0] == Approx(film.get("transmittance", x, y)[0]).epsilon(1e-6));
     }
 }
+
+}  // namespace invariance_test

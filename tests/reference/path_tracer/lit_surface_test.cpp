@@ -7,6 +7,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace lit_surface_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -133,3 +135,5 @@ TEST_CASE("a Gaussian scatters light onto a floor", "[path_tracer]") {
   CHECK(got.error[0] < 0.01 * expected);
   CHECK(std::abs(got.mean[0] - expected) < threshold(1e-6, 1) * got.error[0]);
 }
+
+}  // namespace lit_surface_test

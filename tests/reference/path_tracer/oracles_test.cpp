@@ -11,6 +11,8 @@
 #include "tests/oracle_vectors.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace oracles_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -201,3 +203,5 @@ TEST_CASE("slab orders and exit radiance", "[path_tracer][oracle]") {
       }
   }
 }
+
+}  // namespace oracles_test

@@ -5,6 +5,8 @@
 #include "scene/error.h"
 #include "tests/temporary_folder.h"
 
+namespace range_file_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 
@@ -43,3 +45,5 @@ TEST_CASE("sample files that cannot be are refused before they are believed", "[
   refused(with([](TallyNode& n) { n.count = 65; }), malformed);
   refused(with([](TallyNode& n) { n.index = std::uint64_t(1) << 60; }), malformed);  // its end lies beyond 2^64
 }
+
+}  // namespace range_file_test

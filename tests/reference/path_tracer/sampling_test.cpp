@@ -5,6 +5,8 @@
 #include "reference/path_tracer/surface_sampling.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace sampling_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -89,3 +91,5 @@ TEST_CASE("reflections are sampled as their density says", "[path_tracer]") {
     CHECK(std::abs(angle - 2 * pi * (1 - std::sqrt(0.5))) < 4.5 * angle_error);
   }
 }
+
+}  // namespace sampling_test

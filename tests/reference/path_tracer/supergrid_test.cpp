@@ -7,6 +7,8 @@
 #include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace supergrid_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -105,3 +107,5 @@ TEST_CASE("majorants of media bound them everywhere, also beyond the grid", "[pa
     CHECK(looked > 1000);
   }
 }
+
+}  // namespace supergrid_test

@@ -8,6 +8,8 @@
 #include "scene/error.h"
 #include "scene/math/random.h"
 
+namespace tally_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 
@@ -105,3 +107,5 @@ TEST_CASE("a sample that is not finite is noticed", "[path_tracer]") {
   sample.add(1, 0, Rgb(1, std::nan(""), 1));
   CHECK_FALSE(add_sample(layout, sample, 0, sums.data()));
 }
+
+}  // namespace tally_test

@@ -7,6 +7,8 @@
 #include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 
+namespace thin_media_test {
+
 using namespace airlight;
 using namespace airlight::path_tracer;
 using namespace airlight::path_tracer::test;
@@ -187,3 +189,5 @@ TEST_CASE("the second scattering after a forced one", "[path_tracer]") {
     }
   }
 }
+
+}  // namespace thin_media_test

@@ -7,6 +7,8 @@
 #include "tests/pictures.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace convergence_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 using airlight::test::relative_l2;
@@ -263,3 +265,5 @@ TEST_CASE("ray marcher: stages say what is kept and why", "[ray_marcher]") {
                         {scene::make_constant_environment(Rgb::Ones())})) ==
         "camera_rays camera_march shadows scattering empty_space_skipping environment_directions surfaces ");
 }
+
+}  // namespace convergence_test

@@ -5,6 +5,8 @@
 #include "reference/deterministic/airlight.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace default_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -37,3 +39,5 @@ TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
     CHECK_THAT(prepared->stages()[0].reason, Catch::Contains(scene->geometry ? "within 8 %" : "within 1.5 %"));
   }
 }
+
+}  // namespace default_test

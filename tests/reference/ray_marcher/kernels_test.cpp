@@ -6,6 +6,8 @@
 
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace kernels_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -94,3 +96,5 @@ TEST_CASE("ray marcher: scaling by a power of two changes no bit", "[ray_marcher
     }
   }
 }
+
+}  // namespace kernels_test

@@ -6,6 +6,8 @@
 #include "reference/ray_marcher/tile.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace limits_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -72,3 +74,5 @@ TEST_CASE("ray marcher: memory does not grow with the steps of a tile", "[ray_ma
       for (int c = 0; c < 3; ++c) CHECK(all.get("airlight", x, y)[c] == float(pixels[0].airlight[c]));
     }
 }
+
+}  // namespace limits_test

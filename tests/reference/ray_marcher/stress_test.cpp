@@ -4,6 +4,8 @@
 
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace stress_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -129,3 +131,5 @@ TEST_CASE("ray marcher: a scene far from the origin looks the same", "[ray_march
       CHECK(far_film.layer("mean")[i] == Approx(near_film.layer("mean")[i]).epsilon(2e-5).margin(1e-9));
   }
 }
+
+}  // namespace stress_test

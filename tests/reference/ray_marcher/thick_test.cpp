@@ -6,6 +6,8 @@
 #include "reference/ray_marcher/depth.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace thick_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
@@ -132,3 +134,5 @@ TEST_CASE("quadrature: two lights on a thick ball", "[deterministic]") {
     }
   }
 }
+
+}  // namespace thick_test

@@ -6,6 +6,8 @@
 #include "tests/oracle_vectors.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
 
+namespace vectors_test {
+
 using namespace airlight;
 using namespace airlight::ray_marcher;
 using airlight::test::json;
@@ -110,3 +112,5 @@ TEST_CASE("ray marcher: sums of Gaussians: oracle vectors are reached at order 2
   std::nth_element(slopes.begin(), slopes.begin() + 30, slopes.end());
   CHECK(slopes[30] == Approx(2).margin(0.02));
 }
+
+}  // namespace vectors_test

@@ -8,6 +8,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
 
+namespace advection_test {
+
 using namespace airlight;
 using namespace airlight::stable_fluids;
 using testing::box_problem;
@@ -114,3 +116,5 @@ TEST_CASE("stable fluids: nothing gets through an obstacle of one cell", "[stabl
       CHECK(flow->totals().mass > 0.005);
     }
 }
+
+}  // namespace advection_test

@@ -7,6 +7,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
 
+namespace flow_test {
+
 using namespace airlight;
 using namespace airlight::stable_fluids;
 using Catch::Contains;
@@ -369,3 +371,5 @@ TEST_CASE("stable fluids: a residual that rounding holds up is a line, long befo
   CHECK_THROWS_WITH(flow->step(0.02), Contains("the pressure's residual falls no further than") &&
                                           Contains("expected at most 1e-12: rounding, where precision is float"));
 }
+
+}  // namespace flow_test

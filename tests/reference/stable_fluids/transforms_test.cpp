@@ -9,6 +9,8 @@
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
 
+namespace transforms_test {
+
 using namespace airlight;
 using namespace airlight::stable_fluids;
 using testing::box_problem;
@@ -197,3 +199,5 @@ TEST_CASE("stable fluids: a flow that cannot be balanced is refused with its flu
   problem.obstacles = {{"ball", scene::Sphere{Point3(0.5, 0.5, 0), 0.6}, {}}};
   CHECK(message().find("has no open side") != std::string::npos);
 }
+
+}  // namespace transforms_test

@@ -4,6 +4,8 @@
 #include "scene/convert/gaussian_fit.h"
 #include "tests/scene/convert/fitted_grids.h"
 
+namespace fitted_sequence_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using namespace airlight::test;
@@ -57,3 +59,5 @@ TEST_CASE("an empty frame within a sequence", "[gaussian_fit][convert]") {
   CHECK(again.warm);
   CHECK(again.errors.squared_ratio < 2 * first.errors.squared_ratio);
 }
+
+}  // namespace fitted_sequence_test

@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "scene/math/types.h"
 
+namespace fogmap_columns_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -69,3 +71,5 @@ TEST_CASE("a medium without an end has no columns", "[fogmap][convert]") {
   sum.constant = 0.5;
   CHECK_THROWS_AS(ground_pixels(sum, 8), Error);
 }
+
+}  // namespace fogmap_columns_test

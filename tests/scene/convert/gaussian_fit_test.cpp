@@ -17,6 +17,8 @@
 #include "tests/scene/convert/fitted_grids.h"
 #include "tests/temporary_folder.h"
 
+namespace gaussian_fit_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using namespace airlight::test;
@@ -349,3 +351,5 @@ TEST_CASE("a fit's table is a medium's table", "[gaussian_fit][convert]") {
     CHECK(sum.gaussians[i].amplitude == fit.sum.gaussians[i].amplitude);
   }
 }
+
+}  // namespace gaussian_fit_test

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace gaussian_samples_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -95,3 +97,5 @@ TEST_CASE("Gaussians outside, of no amplitude or narrower than a sample", "[gaus
   CHECK(gaussian_samples(sum, grid)[0] == 0.5);
   CHECK(gaussian_samples(sum, VoxelGrid()).empty());
 }
+
+}  // namespace gaussian_samples_test

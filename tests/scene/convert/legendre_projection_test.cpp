@@ -12,6 +12,8 @@
 #include "tests/scene/media/legendre_fields.h"
 #include "tests/temporary_folder.h"
 
+namespace legendre_projection_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -185,3 +187,5 @@ TEST_CASE("what has no projection is refused", "[legendre][convert]") {
   options.cells = 0;
   CHECK_THROWS_AS(project_to_legendre(column(), options), Error);
 }
+
+}  // namespace legendre_projection_test

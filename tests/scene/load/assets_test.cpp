@@ -10,6 +10,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace assets_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using test::camera;
@@ -131,3 +133,5 @@ TEST_CASE("a scene file that cannot be read says why", "[load]") {
   CHECK(what(std::string(AIRLIGHT_SOURCE_DIR) + "/experiments/data/courtyard.exr").find("expected a text file") !=
         std::string::npos);
 }
+
+}  // namespace assets_test

@@ -3,6 +3,8 @@
 
 #include "tests/scene/load/message.h"
 
+namespace bad_input_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using test::camera;
@@ -297,3 +299,5 @@ TEST_CASE("bad surfaces", "[load]") {
       },
       camera + "[[surface]]\n");
 }
+
+}  // namespace bad_input_test

@@ -11,6 +11,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace fitted_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -158,3 +160,5 @@ TEST_CASE("bad fitted grids name their place", "[load][residual]") {
       Contains("with_residual"));
   CHECK_THAT(files.message(sequence + "frame = 5\n"), Contains("g_0005.csv"));
 }
+
+}  // namespace fitted_test

@@ -6,6 +6,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace flow_start_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
@@ -221,3 +223,5 @@ TEST_CASE("what no flow can begin with is refused with file, grid and voxel", "[
   }
   CHECK(noticed > 200);
 }
+
+}  // namespace flow_start_test

@@ -5,6 +5,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace flow_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
@@ -248,3 +250,5 @@ TEST_CASE("flow problems: every value replaced by one of another type is refused
   CHECK(taken == 1);
   CHECK(refused > 400);
 }
+
+}  // namespace flow_test

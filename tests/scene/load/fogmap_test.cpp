@@ -15,6 +15,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace fogmap_test {
+
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
@@ -192,3 +194,5 @@ TEST_CASE("fogmaps: EXR of halfs and floats, channel Y, the only one, or named",
   scene::write_grey_image(folder.file("map.exr"), {2, 1, {1e-3, std::nan("")}, ""});
   CHECK_THAT(message(text(""), folder.path().string()), Contains("column 1, row 0: nan"));
 }
+
+}  // namespace fogmap_test

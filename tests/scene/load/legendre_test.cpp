@@ -8,6 +8,8 @@
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
+namespace legendre_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -98,3 +100,5 @@ TEST_CASE("bad tables of coefficients name their line and column", "[load][legen
     CHECK(what.find("c.csv" + expected) != std::string::npos);
   }
 }
+
+}  // namespace legendre_test

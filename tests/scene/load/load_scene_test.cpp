@@ -3,6 +3,8 @@
 #include "scene/error.h"
 #include "scene/scene.h"
 
+namespace load_scene_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -115,3 +117,5 @@ TEST_CASE("the hash is of the content", "[load]") {
   CHECK(parse_scene(fog, "a.toml", "", {{"light.0.radius", "0.1"}}).hash != hash);
   CHECK(parse_scene(fog, "a.toml", "", {{"medium.0.phase", "{type = 'rayleigh'}"}}).hash != hash);
 }
+
+}  // namespace load_scene_test

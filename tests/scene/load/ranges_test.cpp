@@ -10,6 +10,8 @@
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
+namespace ranges_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 using Catch::Contains;
@@ -196,3 +198,5 @@ TEST_CASE("the documentation states the ranges of the loader", "[load]") {
   CHECK_THAT(text, Contains("`exponent` n from 0 to 1e6"));
   CHECK(load::exponent_range.greatest == 1e6);
 }
+
+}  // namespace ranges_test

@@ -9,6 +9,8 @@
 #include "scene/flow_problem.h"
 #include "scene/scene.h"
 
+namespace readme_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -180,3 +182,5 @@ TEST_CASE("every flow of the experiments loads", "[load][flow]") {
   }
   CHECK(count >= 8);
 }
+
+}  // namespace readme_test

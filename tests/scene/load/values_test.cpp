@@ -7,6 +7,8 @@
 #include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 
+namespace values_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -205,3 +207,5 @@ TEST_CASE("damaged scene texts are scenes or errors", "[load]") {
   }
   CHECK(refused > 1500);
 }
+
+}  // namespace values_test

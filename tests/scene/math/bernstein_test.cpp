@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+namespace bernstein_test {
+
 using namespace airlight;
 
 namespace {
@@ -51,3 +53,5 @@ TEST_CASE("the positive part of a polynomial", "[media]") {
   // outside.
   CHECK(integral([](double s) { return (s - 0.25) * (s - 0.75); }) == Approx(1.0 / 24).margin(1e-13));
 }
+
+}  // namespace bernstein_test

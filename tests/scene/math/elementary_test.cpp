@@ -5,6 +5,8 @@
 
 #include "scene/math/random.h"
 
+namespace elementary_test {
+
 using namespace airlight;
 
 namespace {
@@ -68,3 +70,5 @@ TEST_CASE("elementary functions at the ends of their ranges", "[elementary]") {
   CHECK(elementary::atan2(1.0, 0.0) == pi / 2);
   CHECK(elementary::atan2(-1.0, -infinity) == -pi);
 }
+
+}  // namespace elementary_test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace exponential_integral_test {
+
 using airlight::scene::scaled_exponential_integral;
 
 // Expected values: 40-digit arithmetic, rounded to 17 digits. Both sides of the switch from series to fraction at
@@ -60,3 +62,5 @@ TEST_CASE("scaled exponential integral of what is no number is none", "[fogshop]
   for (const std::complex<double> z : {std::complex<double>(nan, 1), {1, nan}, {nan, nan}})
     CHECK(std::isnan(scaled_exponential_integral(z).imag()));
 }
+
+}  // namespace exponential_integral_test

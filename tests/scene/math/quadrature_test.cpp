@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace quadrature_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -87,3 +89,5 @@ TEST_CASE("equal angles reach to infinity and to the foot", "[quadrature]") {
   CHECK(EquiangularMap(2, infinity, 0).x(0.5) == Approx(4.0));
   CHECK(std::isinf(EquiangularMap(0, 1, 0).density()));
 }
+
+}  // namespace quadrature_test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+namespace random_test {
+
 using namespace airlight;
 
 TEST_CASE("uniforms stay strictly inside (0, 1)", "[random]") {
@@ -61,3 +63,5 @@ TEST_CASE("uniforms have the mean and variance of uniforms", "[random]") {
   CHECK(std::abs(fine2) / std::sqrt(2 * n / 180.0) < 4.5);
   CHECK(std::abs(coarse2) / std::sqrt(4 * n / 180.0) < 4.5);
 }
+
+}  // namespace random_test

@@ -8,6 +8,8 @@
 #include "scene/error.h"
 #include "scene/math/spherical_harmonics.h"
 
+namespace sh_rotation_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -53,3 +55,5 @@ TEST_CASE("a quarter turn of harmonics is orthogonal and sparse", "[math]") {
   CHECK_THROWS_AS(turned_sh(std::vector<Rgb>(7, Rgb::Zero()), Mat3::Identity()), Error);
   CHECK_THROWS_AS(turned_sh(std::vector<Rgb>(169, Rgb::Zero()), Mat3::Identity()), Error);
 }
+
+}  // namespace sh_rotation_test

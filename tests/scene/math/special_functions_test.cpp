@@ -6,6 +6,8 @@
 #include "scene/math/exp_erfc.h"
 #include "scene/math/types.h"
 
+namespace special_functions_test {
+
 using namespace airlight;
 
 // Values in 30 digits from an arbitrary-precision program.
@@ -109,3 +111,5 @@ TEST_CASE("exp(-u) for single numbers and packs", "[media]") {
   CHECK(exp_minus(infinity) == 0);
   CHECK(exp_minus(708.0) == 0);
 }
+
+}  // namespace special_functions_test

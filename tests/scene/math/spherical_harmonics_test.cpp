@@ -7,6 +7,8 @@
 #include "scene/error.h"
 #include "scene/math/gauss_legendre.h"
 
+namespace spherical_harmonics_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -87,3 +89,5 @@ TEST_CASE("Gauss-Legendre rules are exact for polynomials", "[spherical_harmonic
     }
   }
 }
+
+}  // namespace spherical_harmonics_test

@@ -7,6 +7,8 @@
 
 #include "scene/math/gauss_legendre.h"
 
+namespace fogmap_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -136,3 +138,5 @@ TEST_CASE("fogmaps: upright rays, edges and endless heights", "[media][fogmap]")
   CHECK(density(fog, {2, 0, 1}) == 0);
   CHECK(density_integral(fog, {{1, 0, 1}, Vec3::UnitX()}, {0, 0}) == 0);
 }
+
+}  // namespace fogmap_test

@@ -7,6 +7,8 @@
 
 #include "scene/media/gaussian_sum.h"
 
+namespace gaussian_line_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -190,3 +192,5 @@ TEST_CASE("line integrals of one Gaussian: stress table", "[media]") {
     CHECK(std::abs(got - c.value) <= std::max(6e-13 * c.value, 1e-300));
   }
 }
+
+}  // namespace gaussian_line_test

@@ -6,6 +6,8 @@
 
 #include "tests/scene/media/random_points.h"
 
+namespace gaussian_sum_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -257,3 +259,5 @@ TEST_CASE("support of a sum", "[media]") {
   CHECK(support(cut).hi[1] == Approx(3));
   CHECK(support(GaussianSum{}).empty());
 }
+
+}  // namespace gaussian_sum_test

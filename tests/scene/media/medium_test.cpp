@@ -7,6 +7,8 @@
 #include "tests/scene/media/legendre_fields.h"
 #include "tests/scene/media/random_points.h"
 
+namespace medium_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -204,3 +206,5 @@ TEST_CASE("a field that a renderer does not know is refused by name", "[media]")
   CHECK(unknown_field<Homogeneous>(media, 1) == "medium 'puff' is gaussians, expected homogeneous");
   CHECK(unknown_field<Homogeneous, GaussianSum>(media, 1).empty());
 }
+
+}  // namespace medium_test

@@ -5,6 +5,8 @@
 
 #include "tests/scene/media/random_points.h"
 
+namespace region_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -94,3 +96,5 @@ TEST_CASE("boxes around regions", "[media]") {
   CHECK(slab.hi[1] == -1);
   CHECK(slab.hi[0] == infinity);
 }
+
+}  // namespace region_test

@@ -10,6 +10,8 @@
 #include "tests/scene/media/random_points.h"
 #include "tests/temporary_folder.h"
 
+namespace vdb_io_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 namespace fs = std::filesystem;
@@ -289,3 +291,5 @@ TEST_CASE("writing OpenVDB leaves all or nothing", "[media][vdb]") {
   CHECK(read_vdb(path).size[0] == 4);
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator{}) == 1);
 }
+
+}  // namespace vdb_io_test

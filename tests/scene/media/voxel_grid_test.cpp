@@ -5,6 +5,8 @@
 
 #include "tests/scene/media/random_points.h"
 
+namespace voxel_grid_test {
+
 using namespace airlight;
 using namespace airlight::scene;
 
@@ -332,3 +334,5 @@ TEST_CASE("stress 17: a grid far away from the origin", "[media]") {
           Approx(density_integral(grid, ray, {0, 4})).margin(1e-8));
   }
 }
+
+}  // namespace voxel_grid_test
