@@ -90,6 +90,16 @@ TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[exper
   CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/f"}), Contains("nearest: g/e"));
 }
 
+// By the edit distance alone g/rate would be nearer.
+TEST_CASE("of the names that may be meant one that begins with the word comes first", "[experiment]") {
+  const TemporaryFolder folder;
+  for (const char* name : {"fig4_smooth", "fig5_teapots", "rate"})
+    folder.write(std::string("experiments/g/") + name + ".toml", "");
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/fig4"}), Contains("(nearest: g/fig4_smooth)"));
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/fig4_smoth"}), Contains("(nearest: g/fig4_smooth)"));
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/rat"}), Contains("(nearest: g/rate)"));
+}
+
 TEST_CASE("overrides go along with the values of a sweep", "[experiment]") {
   const std::string swept = "values = [0.5, 2]";
   const std::string along = ", with = { \"film.width\" = [4, 5], \"camera.position\" = [[0, 1, 2], [3, 4, 5]] }";
