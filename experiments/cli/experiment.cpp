@@ -29,12 +29,22 @@ std::string gates_text(const std::vector<GateResult>& gates) {
                      counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "");
 }
 
+Folders folders_of(const ExperimentOptions& options) {
+  return {project_root(options.root), options.results, options.cache};
+}
+
+// As a user would type it.
+std::string shown(const Folders& folders, const std::string& name) {
+  return ((folders.default_results() ? "results" : folders.results) / name).string();
+}
+
 // All of them, before the first is computed. Only those with gates where these are all that is asked for.
-std::vector<Experiment> read_and_check(const ExperimentOptions& options, const std::filesystem::path& root,
-                                       bool resume) {
+std::vector<Experiment> read_and_check(const ExperimentOptions& options, const Folders& folders, bool resume) {
+  check_writable(folders.results, "--results names another folder");
+  check_writable(folders.cache, "--cache names another folder");
   std::vector<Experiment> experiments;
-  for (const std::string& id : choose_experiments(root, options.names)) {
-    Experiment e = read_experiment(root, id, options.profile);
+  for (const std::string& id : choose_experiments(folders.root, options.names)) {
+    Experiment e = read_experiment(folders, id, options.profile);
     if (options.gates_only && e.gates.empty()) continue;
     if (options.in_tests && !e.in_tests) continue;
     if (options.threads > 0) e.timing.threads = options.threads;
@@ -42,7 +52,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const s
   }
   for (const Experiment& e : experiments) {
     try {
-      check_experiment(e, {root, resume, options.threads, false, false});
+      check_experiment(e, {folders, resume, options.threads, false, false});
     } catch (const Error& error) {
       if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells
     }
@@ -74,18 +84,20 @@ int list_experiments(const ExperimentOptions& options) {
 
 int run_experiments(const ExperimentOptions& options) {
   check_profile(options);
-  const auto root = project_root(options.root);
-  const std::vector<Experiment> experiments = read_and_check(options, root, options.resume);
+  const Folders folders = folders_of(options);
+  const std::vector<Experiment> experiments = read_and_check(options, folders, options.resume);
   std::optional<Error> failure;
   std::vector<GateResult> gates;
   for (const Experiment& e : experiments) {
     fmt::print("{} ({})\n", e.id, e.profile);
     std::fflush(stdout);
     try {
-      const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true, true});
-      fmt::print("  {} rows in {:.1f} s, {}: results/{}/table.md\n", outcome.rows.size(), outcome.seconds,
-                 gates_text(outcome.gates), results_name(e.id, e.profile));
+      const Outcome outcome = run_experiment(e, {folders, options.resume, options.threads, true, true});
+      fmt::print("  {} rows in {:.1f} s, {}: {}/table.md\n", outcome.rows.size(), outcome.seconds,
+                 gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
+    } catch (const scene::CannotWrite&) {
+      throw;  // nor could the others be kept
     } catch (const Error& error) {
       // The others are worth having.
       say(fmt::format("{}: {}", e.id, error.what()));
@@ -97,11 +109,11 @@ int run_experiments(const ExperimentOptions& options) {
 }
 
 int plot_experiments(const ExperimentOptions& options) {
-  const auto root = project_root(options.root);
-  for (const std::string& id : choose_experiments(root, options.names)) {
+  const Folders folders = folders_of(options);
+  for (const std::string& id : choose_experiments(folders.root, options.names)) {
     for (const std::string profile : {"quick", "paper"}) {
       const std::string name = results_name(id, profile);
-      const auto folder = root / "results" / name / "plots";
+      const auto folder = folders.results / name / "plots";
       std::vector<std::string> scripts;
       if (!std::filesystem::is_directory(folder)) continue;
       for (const auto& file : std::filesystem::directory_iterator(folder))
@@ -115,14 +127,16 @@ int plot_experiments(const ExperimentOptions& options) {
 
 int gates(const ExperimentOptions& options) {
   check_profile(options);
-  const auto root = project_root(options.root);
+  const Folders folders = folders_of(options);
   std::vector<GateResult> results;
   // What an earlier run of this very program finished is not computed again.
-  for (const Experiment& e : read_and_check(options, root, true)) {
+  for (const Experiment& e : read_and_check(options, folders, true)) {
     const std::size_t before = results.size();
     try {
-      const Outcome outcome = run_experiment(e, {root, true, options.threads, false, true});
+      const Outcome outcome = run_experiment(e, {folders, true, options.threads, false, true});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
+    } catch (const scene::CannotWrite&) {
+      throw;  // says nothing about accuracy
     } catch (const Error& error) {
       const bool skipped = dynamic_cast<const NoDevice*>(&error) && !gpu::Context::device_was_chosen();
       results.push_back(

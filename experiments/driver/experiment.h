@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/folders.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {
@@ -103,9 +104,9 @@ struct Experiment {
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,
 // names that refer to one another, and that every gate has a row and a figure to judge, are checked here; scenes by
 // check_experiment.
-Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
+Experiment read_experiment(const Folders&, const std::string& id, const std::string& profile);
 
-// Where a profile's results lie below results/, and its pictures below results/images/: "group/name" for quick,
+// Where a profile's results lie below the results folder, and its pictures below its images/: "group/name" for quick,
 // "group/name.paper" for paper, so that neither overwrites the other.
 std::string results_name(const std::string& id, const std::string& profile);
 

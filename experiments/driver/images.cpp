@@ -133,7 +133,7 @@ Outcome run_images(Experiment experiment, const RunOptions& options) {
   for (const std::string& name : keeper.experiment().sequences) {
     Row history;
     history.method = name;
-    history.columns = sequence_history(options.root, name, keeper.experiment().profile);
+    history.columns = sequence_history(options.folders, name, keeper.experiment().profile);
     keeper.add_history(std::move(history));
   }
   return keeper.run([&](const SceneCase& c) {

@@ -46,10 +46,9 @@ struct RowKeeper::Held {
 
 RowKeeper::RowKeeper(Experiment experiment, const RunOptions& options)
     : options_(options),
-      results_(options.root / "results"),
-      store_(results_ / "cache", experiments::say),
+      store_(options.folders.cache, experiments::say),
       name_(results_name(experiment.id, experiment.profile)),
-      journal_(journal_file(options.root, experiment), options.resume) {
+      journal_(journal_file(options.folders, experiment), options.resume) {
   outcome_.experiment = std::move(experiment);
   if (options.resume) return;
   journal_.begin_anew();
@@ -67,6 +66,8 @@ Outcome RowKeeper::run(const Plan& plan) {
     } catch (const scene::Interrupted&) {
       stopped = true;
       break;
+    } catch (const scene::CannotWrite&) {
+      throw;  // nor could the tables be written
     } catch (const Error& error) {
       // A scene that cannot be judged takes nothing from the others.
       if (!failure) failure = error;
@@ -100,6 +101,8 @@ void RowKeeper::measure(std::vector<RowPlan> plans) {
       check_interrupted();
       try {
         make(plans[i], i, group, rows);
+      } catch (const scene::CannotWrite&) {
+        throw;
       } catch (const Error& e) {
         error = e;
       }
@@ -117,10 +120,15 @@ void RowKeeper::measure(std::vector<RowPlan> plans) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Pictures may have been deleted since: then the row is made again.
+bool RowKeeper::has_picture(const Row& row) const {
+  return row.image.empty() || fs::exists(images() / (row.image + ".exr"));
+}
+
 void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
                      std::vector<std::optional<Row>>& rows) {
   Row row = plan.row;
-  if (const Row* finished = journal_.find(row.key)) {
+  if (const Row* finished = journal_.find(row.key); finished && has_picture(*finished)) {
     rows[place] = *finished;
     rows[place]->parameter = row.parameter;  // only where it is plotted
     say(*finished, "kept");
@@ -196,7 +204,7 @@ void RowKeeper::say(const Row& row, const char* how) const {
 }
 
 void RowKeeper::write() const {
-  const fs::path folder = results_ / name_;
+  const fs::path folder = options_.folders.results / name_;
   make_folder(folder);
   const auto plots = draw_plots(outcome_, folder);
   bool changed = made_rows_;

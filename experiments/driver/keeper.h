@@ -36,9 +36,9 @@ class RowKeeper {
 
   const Experiment& experiment() const { return outcome_.experiment; }
   const scene::ContentStore& store() const { return store_; }
-  // Below results/: where the tables lie, and below results/images the pictures.
+  // Below the results folder: where the tables lie, and below its images/ the pictures.
   const std::string& name() const { return name_; }
-  std::filesystem::path images() const { return results_ / "images"; }
+  std::filesystem::path images() const { return options_.folders.results / "images"; }
   void add_history(Row history) { outcome_.histories.push_back(std::move(history)); }
   void add(const ReferenceInfo& reference) { outcome_.references.push_back(reference); }
 
@@ -48,6 +48,7 @@ class RowKeeper {
  private:
   struct Held;  // a row that was made, and waits for its timed runs
   std::size_t row_count() const;
+  bool has_picture(const Row&) const;
   void measure(std::vector<RowPlan>);
   void make(RowPlan&, std::size_t place, std::vector<Held>&, std::vector<std::optional<Row>>&);
   void time_group(std::vector<Held>&, std::vector<std::optional<Row>>&);
@@ -56,7 +57,6 @@ class RowKeeper {
   void write() const;
 
   RunOptions options_;
-  std::filesystem::path results_;
   scene::ContentStore store_;
   std::string name_;
   Journal journal_;

@@ -27,10 +27,10 @@ namespace {
 
 class Reader {
  public:
-  Reader(const fs::path& root, const std::string& id, const std::string& profile) : root_(root) {
+  Reader(const Folders& folders, const std::string& id, const std::string& profile) : folders_(folders) {
     experiment_.id = id;
     experiment_.profile = profile;
-    file_ = (root / "experiments" / (id + ".toml")).string();
+    file_ = (folders.root / "experiments" / (id + ".toml")).string();
     toml_ = scene::load::parse_toml(scene::read_whole_file(file_, scene::load::most_toml_bytes), file_);
   }
 
@@ -185,14 +185,14 @@ class Reader {
     for (auto& [table, reader] : lists(top, "scene")) {
       reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
       SceneCase scene;
-      scene.file = root_ / "experiments" / reader.text("file");
+      scene.file = folders_.root / "experiments" / reader.text("file");
       scene.name = reader.text("name", scene.file.stem().string());
       scene.overrides = of_profile;
       for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
       if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
       const bool wanted = in_profile(*table, reader);
       if (wanted)
-        name_sequences(root_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
+        name_sequences(folders_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
                        experiment_.sequences);
       std::vector<SceneCase> cases{scene};
       if (auto sweep = reader.table("sweep")) {
@@ -394,7 +394,7 @@ class Reader {
     }
   }
 
-  fs::path root_;
+  Folders folders_;
   std::string file_;
   toml::table toml_;
   Experiment experiment_;
@@ -402,8 +402,8 @@ class Reader {
 
 }  // namespace
 
-Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
-  return Reader(root, id, profile).read();
+Experiment read_experiment(const Folders& folders, const std::string& id, const std::string& profile) {
+  return Reader(folders, id, profile).read();
 }
 
 }  // namespace airlight::experiments

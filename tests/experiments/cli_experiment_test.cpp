@@ -63,6 +63,38 @@ TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   CHECK_THAT(run("gates --root .", project).out, Contains("g/slow: one") && Contains("0 of 2 gates ok"));
 }
 
+TEST_CASE("tables and caches go where the options say, and nowhere else", "[cli]") {
+  const Project project;
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
+  const Result run_there = run("experiment run --root . --results there --cache kept", project);
+  CAPTURE(run_there.err);
+  CHECK(run_there.code == 0);
+  CHECK_THAT(run_there.out, Contains("1 of 1 gates ok: there/g/good/table.md"));
+  CHECK(run("gates --root . --results gates --cache kept", project).code == 0);
+  for (const char* file :
+       {"there/g/good/run.json", "there/images/g/good/one/reference.exr", "gates/g/good/run.json", "kept/references"})
+    CHECK(project.has(file));
+  CHECK_FALSE(project.has("results"));
+}
+
+// A folder that cannot be written to says nothing about accuracy. The second cannot be made even by root.
+TEST_CASE("what cannot be written is an error of one line, not a failed gate", "[cli]") {
+  const Project project;
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
+  project.write("file", "");
+  for (const char* command : {"gates --root . --junit report.xml", "experiment run --root ."})
+    for (const char* folder : {"--results file", "--results file/below", "--results /proc/none", "--cache file"}) {
+      const Result refused = run(std::string(command) + " " + folder, project);
+      CAPTURE(command, folder, refused.out, refused.err);
+      CHECK(refused.code == 2);
+      CHECK(refused.error_lines() == 1);
+      CHECK_THAT(refused.err,
+                 Catch::StartsWith("airlight: ") && Contains(std::string(folder).substr(folder[2] == 'r' ? 10 : 8)));
+      CHECK_THAT(refused.out, !Contains("FAILED") && !Contains("gates ok"));
+      CHECK_FALSE(project.has("report.xml"));
+    }
+}
+
 // Gates and runs that find all their rows leave the record of the run that made them, with its date and duration.
 TEST_CASE("a record tells of the run that made its rows", "[cli]") {
   const Project project;
