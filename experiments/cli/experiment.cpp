@@ -5,6 +5,7 @@
 
 #include "experiments/cli/commands.h"
 #include "experiments/driver/check.h"
+#include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
 #include "experiments/driver/margins.h"
 #include "experiments/driver/plots.h"
@@ -88,6 +89,7 @@ int run_experiments(const ExperimentOptions& options) {
   const std::vector<Experiment> experiments = read_and_check(options, folders, options.resume);
   std::optional<Error> failure;
   std::vector<GateResult> gates;
+  std::vector<std::string> summaries;
   for (const Experiment& e : experiments) {
     fmt::print("{} ({})\n", e.id, e.profile);
     std::fflush(stdout);
@@ -96,6 +98,7 @@ int run_experiments(const ExperimentOptions& options) {
       fmt::print("  {} rows in {:.1f} s, {}: {}/table.md\n", outcome.rows.size(), outcome.seconds,
                  gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
+      if (!e.summary.empty()) summaries.push_back(summary_text(outcome));
     } catch (const scene::CannotWrite&) {
       throw;  // nor could the others be kept
     } catch (const Error& error) {
@@ -105,6 +108,7 @@ int run_experiments(const ExperimentOptions& options) {
     }
   }
   const int code = name_failures(gates);
+  for (const std::string& summary : summaries) fmt::print("{}\n", summary);
   return failure ? failure->exit_code() : code;
 }
 

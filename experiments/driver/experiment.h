@@ -78,11 +78,14 @@ struct SpeedUpCase {
 
 struct ExpectedCase {
   std::string what, paper, scene, method, setting, metric;
+  std::string baseline;  // not empty: how many times faster than this the method is at equal error of the metric
+  std::string unit;      // that the figure is printed in (expected.h); empty: the usual one
 };
 
 struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
+  std::string summary;  // one sentence for people; {1} stands for the figure of the first [[expected]]
   std::string kind;     // "images", "numbers" or "flow"
   std::string profile;  // "quick" or "paper"
   std::vector<SceneCase> scenes;

@@ -53,6 +53,25 @@ TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
   CHECK(run("experiment run --root . --resume", project).code == 1);  // kept rows are judged, too
 }
 
+// Last of all, after the gates.
+TEST_CASE("experiment run ends with the summaries", "[cli]") {
+  const Project project;
+  const std::string expected =
+      "[[expected]]\nwhat = \"w\"\npaper = \"p\"\nscene = \"one\"\nmethod = \"marcher\"\nmetric = \"bias\"\n";
+  const auto text = [&](const std::string& summary) {
+    std::string e = steps_experiment("0.5", summary);
+    e.replace(e.find("[\"rel_l2\"]"), 10, "[\"rel_l2\", \"bias\"]");
+    return e + expected;
+  };
+  project.write("experiments/g/a.toml", text("summary = \"The marcher is off by {1}.\"\n"));
+  project.write("experiments/g/b.toml", text(""));
+  const Result both = run("experiment run --root .", project);
+  CAPTURE(both.out, both.err);
+  CHECK(both.code == 0);
+  const std::size_t last = both.out.rfind('\n', both.out.size() - 2) + 1;
+  CHECK_THAT(both.out.substr(last), Catch::Matches("The marcher is off by -?[0-9.e-]+ %[.]\n"));
+}
+
 TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   const Project project;
   project.write("experiments/g/bad.toml", steps_experiment("1e-12", "in_tests = true\n"));
