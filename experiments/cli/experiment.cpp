@@ -10,7 +10,10 @@
 #include "experiments/driver/margins.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
+#include "experiments/driver/run_progress.h"
 #include "experiments/folders.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
 #include "experiments/say.h"
 #include "gpu/context.h"
 #include "scene/atomic_file.h"
@@ -51,7 +54,11 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     if (options.threads > 0) e.timing.threads = options.threads;
     experiments.push_back(std::move(e));
   }
-  for (const Experiment& e : experiments) {
+  Progress progress("checking the experiments");
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.update(double(i) / double(experiments.size()));
+    check_interrupted();
     try {
       check_experiment(e, {folders, resume, options.threads, false, false});
     } catch (const Error& error) {
@@ -90,11 +97,13 @@ int run_experiments(const ExperimentOptions& options) {
   std::optional<Error> failure;
   std::vector<GateResult> gates;
   std::vector<std::string> summaries;
-  for (const Experiment& e : experiments) {
-    fmt::print("{} ({})\n", e.id, e.profile);
-    std::fflush(stdout);
+  RunProgress progress(planned_work(experiments, folders.root / "results"));
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.begin(i);
     try {
-      const Outcome outcome = run_experiment(e, {folders, options.resume, options.threads, true, true});
+      const Outcome outcome = run_experiment(e, {folders, options.resume, options.threads, true, true, &progress});
+      const ProgressHidden hidden;
       fmt::print("  {} rows in {:.1f} s, {}: {}/table.md\n", outcome.rows.size(), outcome.seconds,
                  gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
@@ -107,6 +116,7 @@ int run_experiments(const ExperimentOptions& options) {
       if (!failure || error.exit_code() < failure->exit_code()) failure = error;
     }
   }
+  progress.end();
   const int code = name_failures(gates);
   for (const std::string& summary : summaries) fmt::print("{}\n", summary);
   return failure ? failure->exit_code() : code;
@@ -134,10 +144,14 @@ int gates(const ExperimentOptions& options) {
   const Folders folders = folders_of(options);
   std::vector<GateResult> results;
   // What an earlier run of this very program finished is not computed again.
-  for (const Experiment& e : read_and_check(options, folders, true)) {
+  const std::vector<Experiment> experiments = read_and_check(options, folders, true);
+  RunProgress progress(planned_work(experiments, folders.root / "results"), RunProgress::standard_streams(false));
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.begin(i);
     const std::size_t before = results.size();
     try {
-      const Outcome outcome = run_experiment(e, {folders, true, options.threads, false, true});
+      const Outcome outcome = run_experiment(e, {folders, true, options.threads, false, true, &progress});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const scene::CannotWrite&) {
       throw;  // says nothing about accuracy
@@ -146,10 +160,12 @@ int gates(const ExperimentOptions& options) {
       results.push_back(
           {e.id, fmt::format("{} {}: {}", e.id, skipped ? "is skipped" : "fails", error.what()), false, skipped});
     }
-    for (std::size_t i = before; !options.margins && i < results.size(); ++i)
-      fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
+    const ProgressHidden hidden;
+    for (std::size_t k = before; !options.margins && k < results.size(); ++k)
+      fmt::print("{:7}  {}\n", word(results[k]), results[k].text);
     std::fflush(stdout);
   }
+  progress.end();
   if (options.margins) fmt::print("{}", margins_text(results));
   if (!options.margins_csv.empty()) scene::write_file_atomically(options.margins_csv, margins_csv(results));
   if (!options.junit.empty()) write_junit(options.junit, results);

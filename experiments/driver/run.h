@@ -7,12 +7,15 @@
 
 namespace airlight::experiments {
 
+class RunProgress;
+
 struct RunOptions {
   Folders folders;
   bool resume = false;
-  int threads = 0;       // 0: what the experiment says
-  bool talk = true;      // one line per row on standard output
-  bool checked = false;  // check_experiment has found no fault
+  int threads = 0;                  // 0: what the experiment says
+  bool talk = true;                 // one line per row on standard output
+  bool checked = false;             // check_experiment has found no fault
+  RunProgress* progress = nullptr;  // where this experiment has begun; null: of its own
 };
 
 // Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.

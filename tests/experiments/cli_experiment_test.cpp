@@ -50,6 +50,8 @@ TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
   CHECK(both.code == 1);
   CHECK(both.err == "airlight: gate failed: g/bad: one, marcher: rel_l2\n");
   CHECK_THAT(both.out, Contains("0 of 1 gates ok: results/g/bad/table.md"));
+  CHECK_THAT(both.out, Catch::StartsWith("[1 of 2] g/bad (quick): ") && Contains("\n[2 of 2] g/good (quick): ") &&
+                           Contains(" left\n"));
   CHECK(run("experiment run --root . --resume", project).code == 1);  // kept rows are judged, too
 }
 
