@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
 
 #include "experiments/cli/commands.h"
+#include "experiments/driver/agreement.h"
 #include "experiments/driver/check.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
@@ -68,6 +70,44 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
   return experiments;
 }
 
+// How runs into a folder of their own compare with the committed tables.
+class Agreements {
+ public:
+  explicit Agreements(const Folders& folders) : folders_(folders) {}
+
+  // One line, and the same counted for the end.
+  void tell(const Outcome& outcome) {
+    if (folders_.default_results()) return;  // nothing is left to compare with
+    const std::string name = results_name(outcome.experiment.id, outcome.experiment.profile);
+    try {
+      const auto agreement = agreement_with(folders_.root / "results", outcome);
+      if (!agreement) {
+        ++without_;
+        fmt::print("  there is no committed table to compare with\n");
+        return;
+      }
+      ++compared_;
+      if (!agreement->agrees()) differ_.push_back(name);
+      fmt::print("  {}\n", text(*agreement, "results/" + name));
+    } catch (const Error& error) {
+      ++without_;
+      say(error.what());
+    }
+  }
+
+  void tell_all() const {
+    if (compared_ + without_ == 0) return;
+    fmt::print("{} of {} experiments agree with the committed tables{}{}\n", compared_ - differ_.size(), compared_,
+               differ_.empty() ? "" : fmt::format("; differs: {}", fmt::join(differ_, ", ")),
+               without_ == 0 ? "" : fmt::format("; {} without a committed table", without_));
+  }
+
+ private:
+  const Folders& folders_;
+  std::size_t compared_ = 0, without_ = 0;
+  std::vector<std::string> differ_;
+};
+
 // 1 if a gate failed, 0 if none did.
 int name_failures(const std::vector<GateResult>& gates) {
   for (const GateResult& gate : gates)
@@ -97,6 +137,7 @@ int run_experiments(const ExperimentOptions& options) {
   std::optional<Error> failure;
   std::vector<GateResult> gates;
   std::vector<std::string> summaries;
+  Agreements agreements(folders);
   RunProgress progress(planned_work(experiments, folders.root / "results"));
   for (std::size_t i = 0; i < experiments.size(); ++i) {
     const Experiment& e = experiments[i];
@@ -106,6 +147,7 @@ int run_experiments(const ExperimentOptions& options) {
       const ProgressHidden hidden;
       fmt::print("  {} rows in {:.1f} s, {}: {}/table.md\n", outcome.rows.size(), outcome.seconds,
                  gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
+      agreements.tell(outcome);
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
       if (!e.summary.empty()) summaries.push_back(summary_text(outcome));
     } catch (const scene::CannotWrite&) {
@@ -118,6 +160,7 @@ int run_experiments(const ExperimentOptions& options) {
   }
   progress.end();
   const int code = name_failures(gates);
+  agreements.tell_all();
   for (const std::string& summary : summaries) fmt::print("{}\n", summary);
   return failure ? failure->exit_code() : code;
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "experiments/probes.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
@@ -34,11 +35,6 @@ std::optional<Found> find_figure(const Outcome& outcome, const ExpectedCase& e) 
     return Found{*figure, below, &row};
   }
   return std::nullopt;
-}
-
-// Is `word` one of the words of a name like "frame_seconds"?
-bool has_word(const std::string& name, const std::string& word) {
-  return ("_" + name + "_").find("_" + word + "_") != std::string::npos;
 }
 
 // What the figure is in: s, ms, ns, percent; "share" of 1; "times", a ratio; empty for all else.

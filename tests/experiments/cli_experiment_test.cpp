@@ -98,6 +98,30 @@ TEST_CASE("tables and caches go where the options say, and nowhere else", "[cli]
   CHECK_FALSE(project.has("results"));
 }
 
+TEST_CASE("a run into another folder says whether it agrees with the committed tables", "[cli]") {
+  const Project project;
+  project.write("experiments/g/e.toml", steps_experiment("0.5"));
+  project.write("experiments/g/new.toml", steps_experiment("0.5"));
+  REQUIRE(run("experiment run g/e --root .", project).code == 0);
+  const auto there = [&] { return run("experiment run --root . --results there", project).out; };
+  const std::string agrees = there();
+  CHECK_THAT(agrees, Contains("\n  agrees with results/g/e: 1 of 1 figure; times ") &&
+                         Contains("\n  there is no committed table to compare with\n") &&
+                         Catch::EndsWith(
+                             "\n1 of 1 experiments agree with the committed tables; 1 without a committed table\n"));
+  std::string record = read_bytes(project.file("results/g/e/run.json"));
+  const std::size_t at = record.find("\"value\": ") + 9;
+  record.replace(at, record.find_first_of(",\n", at) - at, "0.75");
+  for (const char* end : {"low", "high"}) {
+    const std::size_t from = record.find("\"" + std::string(end) + "\": ") + std::string(end).size() + 4;
+    record.replace(from, record.find_first_of(",\n", from) - from, "0.75");
+  }
+  project.write("results/g/e/run.json", record);
+  CHECK_THAT(there(), Contains("\n  DIFFERS from results/g/e: rel_l2 of one, marcher: ") &&
+                          Contains(", committed 0.75 (1 of 1 figure)") &&
+                          Contains("\n0 of 1 experiments agree with the committed tables; differs: g/e; 1 without"));
+}
+
 // A folder that cannot be written to says nothing about accuracy. The second cannot be made even by root.
 TEST_CASE("what cannot be written is an error of one line, not a failed gate", "[cli]") {
   const Project project;
