@@ -139,15 +139,16 @@ Agreement compare_tables(const std::vector<Row>& ours, const std::vector<Row>& c
 
 std::string text(const Agreement& a, const std::string& name) {
   std::vector<std::string> parts;
+  if (a.figures == 0) parts.push_back(fmt::format("has no figures to compare with {} but times", name));
   const std::size_t wrong = a.differ.size() + a.apart.size();
   const std::string count =
       fmt::format("{} of {}", a.agrees() ? a.figures - wrong : wrong, counted(a.figures, "figure"));
-  if (a.agrees()) {
+  if (a.figures > 0 && a.agrees()) {
     parts.push_back(fmt::format("agrees with {}: {}", name, count));
     if (!a.apart.empty())
       parts.push_back(fmt::format("{} of {} differ by more than their noise, no more than chance explains",
                                   a.apart.size(), counted(a.noisy, "noisy figure")));
-  } else {
+  } else if (a.figures > 0) {
     std::vector<Difference> all = a.differ;
     all.insert(all.end(), a.apart.begin(), a.apart.end());
     parts.push_back(fmt::format("DIFFERS from {}: {} ({})", name, some_of(all), count));
@@ -165,7 +166,8 @@ std::optional<std::vector<Row>> recorded_rows(const std::filesystem::path& file)
   if (!std::filesystem::exists(file)) return std::nullopt;
   std::vector<Row> rows;
   try {
-    for (nlohmann::json row : read_json(file.string()).at("rows")) {
+    const nlohmann::json record = read_json(file.string());
+    for (nlohmann::json row : record.at("rows")) {
       row["times"] = nlohmann::json::array();  // a record leaves them out
       rows.push_back(row_from_json(row));
     }
