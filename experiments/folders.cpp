@@ -1,9 +1,13 @@
 #include "experiments/folders.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 
+#include "scene/atomic_file.h"
 #include "scene/error.h"
 
 namespace airlight::experiments {
@@ -16,6 +20,17 @@ bool is_root(const fs::path& folder) {
 }
 
 }  // namespace
+
+Folders::Folders(fs::path project, fs::path results_folder, fs::path cache_folder)
+    : root(std::move(project)), results(std::move(results_folder)), cache(std::move(cache_folder)) {
+  if (results.empty()) results = root / "results";
+  if (cache.empty()) cache = root / "results" / "cache";
+  rows = (default_results() ? cache : results) / "rows";
+}
+
+bool Folders::default_results() const {
+  return fs::weakly_canonical(results) == fs::weakly_canonical(root / "results");
+}
 
 fs::path project_root(const std::string& given) {
   if (!given.empty()) {
@@ -34,7 +49,18 @@ fs::path project_root(const std::string& given) {
 void make_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (failure) throw Error(fmt::format("{}: cannot make this folder: {}", folder.string(), failure.message()));
+  if (failure)
+    throw scene::CannotWrite(fmt::format("{}: cannot make this folder: {}", folder.string(), failure.message()));
+}
+
+void check_writable(const fs::path& folder, const std::string& remedy) {
+  std::error_code ignored;
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there, ignored) && there.has_relative_path()) there = there.parent_path();
+  const int reason = !fs::is_directory(there, ignored) ? ENOTDIR : access(there.c_str(), W_OK | X_OK) != 0 ? errno : 0;
+  if (reason != 0)
+    throw scene::CannotWrite(fmt::format("{}: cannot write into {}: {}; {}", folder.string(), there.string(),
+                                         std::strerror(reason), remedy));
 }
 
 }  // namespace airlight::experiments

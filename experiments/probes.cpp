@@ -1,5 +1,7 @@
 #include "experiments/probes.h"
 
+#include <algorithm>
+
 #include "experiments/compensated_ray_marching/fitted_picture_probe.h"
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/residual_decode_probe.h"
@@ -54,6 +56,17 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     return list;
   }();
   return probes;
+}
+
+bool has_word(const std::string& name, const std::string& word) {
+  return ("_" + name + "_").find("_" + word + "_") != std::string::npos;
+}
+
+bool is_speed(const Probe& probe, const std::string& figure) {
+  for (const char* unit : {"seconds", "ms", "ns", "second"})
+    if (has_word(figure, unit)) return true;
+  const auto speeds = probe.speeds();
+  return std::find(speeds.begin(), speeds.end(), figure) != speeds.end();
 }
 
 const Probe& find_probe(const std::string& name, const std::string& where) {

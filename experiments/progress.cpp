@@ -1,9 +1,8 @@
 #include "experiments/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
-
-#include <cstdio>
 
 #include "experiments/interrupt.h"
 
@@ -16,27 +15,48 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} h {:02.0f} min", std::floor(seconds / 3600), std::fmod(seconds, 3600) / 60);
 }
 
+// One line for the whole program: whoever draws last is seen.
+std::recursive_mutex line_mutex;
+std::FILE* line_is_on = nullptr;
+
 }  // namespace
+
+void draw_progress(std::FILE* terminal, const std::string& line) {
+  const std::lock_guard lock(line_mutex);
+  winsize size{};
+  const bool known = ioctl(fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  fmt::print(terminal, "\r\033[K{}", known ? line.substr(0, size.ws_col - 1u) : line);
+  std::fflush(terminal);
+  line_is_on = terminal;
+}
+
+ProgressHidden::ProgressHidden() : lock_(line_mutex) {
+  if (!line_is_on) return;
+  std::fputs("\r\033[K", line_is_on);
+  std::fflush(line_is_on);
+  line_is_on = nullptr;
+}
 
 Progress::Progress(std::string what)
     : what_(std::move(what)), terminal_(isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (shown_) std::fputs("\r\033[K", stderr);
+  if (shown_) const ProgressHidden hidden;
 }
 
 void Progress::update(double fraction) {
-  if (!terminal_) return;
   const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
-  if (std::chrono::duration<double>(now - last_).count() < 0.1) return;
+  if (std::chrono::duration<double>(now - last_).count() < (terminal_ ? 0.1 : 30)) return;
   last_ = now;
-  shown_ = true;
+  shown_ = terminal_;
   const double spent = std::chrono::duration<double>(now - start_).count();
   std::string line = fmt::format("{}: {:.0f} %", what_, 100 * fraction);
   if (fraction > 0.01 && spent > 1) line += fmt::format(", {} left", duration(spent * (1 - fraction) / fraction));
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  if (terminal_)
+    draw_progress(stderr, line);
+  else
+    fmt::print(stderr, "airlight: {}\n", line);
 }
 
 scene::Execution Progress::execution(int threads) {

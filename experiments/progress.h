@@ -1,13 +1,26 @@
-// A line on standard error that says how far a job is and how long it will take; nothing where standard error is not a
-// terminal.
+// A line on standard error that says how far a job is and how long it will take. On a terminal it is written over again;
+// elsewhere it is said every half minute.
 #pragma once
 #include <chrono>
+#include <cstdio>
 #include <mutex>
 #include <string>
 
 #include "scene/renderer.h"
 
 namespace airlight::experiments {
+
+// Writes the line of progress on the terminal, cut to its width, in place of the one that is there.
+void draw_progress(std::FILE* terminal, const std::string& line);
+
+// Takes that line away for as long as this lives, so that other lines can be written where it was.
+class ProgressHidden {
+ public:
+  ProgressHidden();
+
+ private:
+  std::unique_lock<std::recursive_mutex> lock_;
+};
 
 class Progress {
  public:

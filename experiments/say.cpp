@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/progress.h"
 #include "scene/printable.h"
 
 namespace airlight::experiments {
@@ -11,6 +12,7 @@ void say(const std::string& line) {
   std::string text = scene::printable(line);
   // What was found comes first and what was expected last; between two characters of UTF-8.
   if (text.size() > most) text = scene::printable(text, most - end) + scene::printable(text.substr(text.size() - end));
+  const ProgressHidden hidden;
   fmt::print(stderr, "airlight: {}\n", text);
 }
 

@@ -16,7 +16,7 @@ namespace airlight::scene {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw Error(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
+  throw CannotWrite(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
 }
 
 // Returns 0 or an errno.

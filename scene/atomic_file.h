@@ -3,11 +3,19 @@
 #include <string>
 #include <string_view>
 
+#include "scene/error.h"
+
 namespace airlight::scene {
+
+// A file or folder cannot be written: no permission, a read-only file system, a full disk. Exit code 2.
+class CannotWrite : public Error {
+ public:
+  explicit CannotWrite(const std::string& line) : Error(line) {}
+};
 
 // Writes `bytes` to a file without a name (where the system has none: to a temporary name beside `path`), flushes them
 // to the disk and gives it its name. Whatever fails (no such folder, read-only, disk full), the old file stays as it
-// was, no temporary is left, and the Error is one line with the path and the system's reason. A symbolic link is
+// was, no temporary is left, and CannotWrite is one line with the path and the system's reason. A symbolic link is
 // followed. Something that is not a regular file (a pipe, a device) is written to directly.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 

@@ -35,7 +35,8 @@ void ContentStore::keep(const std::string& name, const std::function<void(const 
   const fs::path file = folder_ / name;
   std::error_code failure;
   fs::create_directories(file.parent_path(), failure);
-  if (failure) throw Error(fmt::format("{}: cannot be created: {}", file.parent_path().string(), failure.message()));
+  if (failure)
+    throw CannotWrite(fmt::format("{}: cannot be created: {}", file.parent_path().string(), failure.message()));
   const fs::path part =
       file.parent_path() / fmt::format("{}.{}.part{}", file.stem().string(), getpid(), file.extension().string());
   try {
@@ -46,7 +47,7 @@ void ContentStore::keep(const std::string& name, const std::function<void(const 
     write_file_atomically(checksum_of(file).string(), checksum);
   } catch (const fs::filesystem_error& error) {
     fs::remove(part, failure);
-    throw Error(fmt::format("{}: {}", file.string(), error.code().message()));
+    throw CannotWrite(fmt::format("{}: {}", file.string(), error.code().message()));
   } catch (...) {
     fs::remove(part, failure);
     throw;

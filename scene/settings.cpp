@@ -32,6 +32,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+// A word that was not typed to its end.
+bool is_beginning(const std::string& word, const std::string& candidate) {
+  return !word.empty() && candidate.starts_with(word);
+}
+
 template <class T>
 bool parse_number(const std::string& text, T& value) {
   const char* end = text.data() + text.size();
@@ -70,16 +75,19 @@ void check(const SettingSpec& spec, const std::string& text, const std::string& 
 
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string start = word.substr(0, most);
-  const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(start, a) < edit_distance(start, b);
-  });
+  const auto distance = [&](const std::string& candidate) {
+    return std::pair(!is_beginning(start, candidate), edit_distance(start, candidate));
+  };
+  const auto best = std::min_element(candidates.begin(), candidates.end(),
+                                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
   return best == candidates.end() ? std::string() : *best;
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string start = word.substr(0, most), best = nearest(start, candidates);
   const std::size_t distance = edit_distance(start, best);
-  const bool near = distance <= 1 || 2 * distance <= std::max(start.size(), best.size()) || start.rfind(best, 0) == 0;
+  const bool near = distance <= 1 || 2 * distance <= std::max(start.size(), best.size()) || is_beginning(start, best) ||
+                    start.starts_with(best);
   return best.empty() || !near ? "" : fmt::format(" (nearest: {})", best);
 }
 

@@ -62,7 +62,7 @@ class Settings {
   std::map<std::string, std::string> values_;
 };
 
-// The candidate with the smallest edit distance to `word`; empty if there are none.
+// A candidate that begins with `word`, else the one with the smallest edit distance; empty if there are none.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace airlight::scene

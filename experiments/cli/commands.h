@@ -96,6 +96,7 @@ int doctor();
 
 struct ExperimentOptions {
   std::string root, profile = "quick", junit, margins_csv;
+  std::string results, cache;  // folders; empty: results and results/cache below root
   std::vector<std::string> names;
   bool resume = false;
   bool gates_only = false;  // experiments without gates are left out

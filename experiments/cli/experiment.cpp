@@ -1,15 +1,21 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
 
 #include "experiments/cli/commands.h"
+#include "experiments/driver/agreement.h"
 #include "experiments/driver/check.h"
+#include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
 #include "experiments/driver/margins.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
+#include "experiments/driver/run_progress.h"
 #include "experiments/folders.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
 #include "experiments/say.h"
 #include "gpu/context.h"
 #include "scene/atomic_file.h"
@@ -29,26 +35,78 @@ std::string gates_text(const std::vector<GateResult>& gates) {
                      counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "");
 }
 
+Folders folders_of(const ExperimentOptions& options) {
+  return {project_root(options.root), options.results, options.cache};
+}
+
+// As a user would type it.
+std::string shown(const Folders& folders, const std::string& name) {
+  return ((folders.default_results() ? "results" : folders.results) / name).string();
+}
+
 // All of them, before the first is computed. Only those with gates where these are all that is asked for.
-std::vector<Experiment> read_and_check(const ExperimentOptions& options, const std::filesystem::path& root,
-                                       bool resume) {
+std::vector<Experiment> read_and_check(const ExperimentOptions& options, const Folders& folders, bool resume) {
+  check_writable(folders.results, "--results names another folder");
+  check_writable(folders.cache, "--cache names another folder");
   std::vector<Experiment> experiments;
-  for (const std::string& id : choose_experiments(root, options.names)) {
-    Experiment e = read_experiment(root, id, options.profile);
+  for (const std::string& id : choose_experiments(folders.root, options.names)) {
+    Experiment e = read_experiment(folders, id, options.profile);
     if (options.gates_only && e.gates.empty()) continue;
     if (options.in_tests && !e.in_tests) continue;
     if (options.threads > 0) e.timing.threads = options.threads;
     experiments.push_back(std::move(e));
   }
-  for (const Experiment& e : experiments) {
+  Progress progress("checking the experiments");
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.update(double(i) / double(experiments.size()));
+    check_interrupted();
     try {
-      check_experiment(e, {root, resume, options.threads, false, false});
+      check_experiment(e, {folders, resume, options.threads, false, false});
     } catch (const Error& error) {
       if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells
     }
   }
   return experiments;
 }
+
+// How runs into a folder of their own compare with the committed tables.
+class Agreements {
+ public:
+  explicit Agreements(const Folders& folders) : folders_(folders) {}
+
+  // One line, and the same counted for the end.
+  void tell(const Outcome& outcome) {
+    if (folders_.default_results()) return;  // nothing is left to compare with
+    const std::string name = results_name(outcome.experiment.id, outcome.experiment.profile);
+    try {
+      const auto agreement = agreement_with(folders_.root / "results", outcome);
+      if (!agreement) {
+        ++without_;
+        fmt::print("  there is no committed table to compare with\n");
+        return;
+      }
+      ++compared_;
+      if (!agreement->agrees()) differ_.push_back(name);
+      fmt::print("  {}\n", text(*agreement, "results/" + name));
+    } catch (const Error& error) {
+      ++without_;
+      say(error.what());
+    }
+  }
+
+  void tell_all() const {
+    if (compared_ + without_ == 0) return;
+    fmt::print("{} of {} experiments agree with the committed tables{}{}\n", compared_ - differ_.size(), compared_,
+               differ_.empty() ? "" : fmt::format("; differs: {}", fmt::join(differ_, ", ")),
+               without_ == 0 ? "" : fmt::format("; {} without a committed table", without_));
+  }
+
+ private:
+  const Folders& folders_;
+  std::size_t compared_ = 0, without_ = 0;
+  std::vector<std::string> differ_;
+};
 
 // 1 if a gate failed, 0 if none did.
 int name_failures(const std::vector<GateResult>& gates) {
@@ -74,34 +132,45 @@ int list_experiments(const ExperimentOptions& options) {
 
 int run_experiments(const ExperimentOptions& options) {
   check_profile(options);
-  const auto root = project_root(options.root);
-  const std::vector<Experiment> experiments = read_and_check(options, root, options.resume);
+  const Folders folders = folders_of(options);
+  const std::vector<Experiment> experiments = read_and_check(options, folders, options.resume);
   std::optional<Error> failure;
   std::vector<GateResult> gates;
-  for (const Experiment& e : experiments) {
-    fmt::print("{} ({})\n", e.id, e.profile);
-    std::fflush(stdout);
+  std::vector<std::string> summaries;
+  Agreements agreements(folders);
+  RunProgress progress(planned_work(experiments, folders.root / "results"));
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.begin(i);
     try {
-      const Outcome outcome = run_experiment(e, {root, options.resume, options.threads, true, true});
-      fmt::print("  {} rows in {:.1f} s, {}: results/{}/table.md\n", outcome.rows.size(), outcome.seconds,
-                 gates_text(outcome.gates), results_name(e.id, e.profile));
+      const Outcome outcome = run_experiment(e, {folders, options.resume, options.threads, true, true, &progress});
+      const ProgressHidden hidden;
+      fmt::print("  {} rows in {:.1f} s, {}: {}/table.md\n", outcome.rows.size(), outcome.seconds,
+                 gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
+      agreements.tell(outcome);
       gates.insert(gates.end(), outcome.gates.begin(), outcome.gates.end());
+      if (!e.summary.empty()) summaries.push_back(summary_text(outcome));
+    } catch (const scene::CannotWrite&) {
+      throw;  // nor could the others be kept
     } catch (const Error& error) {
       // The others are worth having.
       say(fmt::format("{}: {}", e.id, error.what()));
       if (!failure || error.exit_code() < failure->exit_code()) failure = error;
     }
   }
+  progress.end();
   const int code = name_failures(gates);
+  agreements.tell_all();
+  for (const std::string& summary : summaries) fmt::print("{}\n", summary);
   return failure ? failure->exit_code() : code;
 }
 
 int plot_experiments(const ExperimentOptions& options) {
-  const auto root = project_root(options.root);
-  for (const std::string& id : choose_experiments(root, options.names)) {
+  const Folders folders = folders_of(options);
+  for (const std::string& id : choose_experiments(folders.root, options.names)) {
     for (const std::string profile : {"quick", "paper"}) {
       const std::string name = results_name(id, profile);
-      const auto folder = root / "results" / name / "plots";
+      const auto folder = folders.results / name / "plots";
       std::vector<std::string> scripts;
       if (!std::filesystem::is_directory(folder)) continue;
       for (const auto& file : std::filesystem::directory_iterator(folder))
@@ -115,23 +184,31 @@ int plot_experiments(const ExperimentOptions& options) {
 
 int gates(const ExperimentOptions& options) {
   check_profile(options);
-  const auto root = project_root(options.root);
+  const Folders folders = folders_of(options);
   std::vector<GateResult> results;
   // What an earlier run of this very program finished is not computed again.
-  for (const Experiment& e : read_and_check(options, root, true)) {
+  const std::vector<Experiment> experiments = read_and_check(options, folders, true);
+  RunProgress progress(planned_work(experiments, folders.root / "results"), RunProgress::standard_streams(false));
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& e = experiments[i];
+    progress.begin(i);
     const std::size_t before = results.size();
     try {
-      const Outcome outcome = run_experiment(e, {root, true, options.threads, false, true});
+      const Outcome outcome = run_experiment(e, {folders, true, options.threads, false, true, &progress});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
+    } catch (const scene::CannotWrite&) {
+      throw;  // says nothing about accuracy
     } catch (const Error& error) {
       const bool skipped = dynamic_cast<const NoDevice*>(&error) && !gpu::Context::device_was_chosen();
       results.push_back(
           {e.id, fmt::format("{} {}: {}", e.id, skipped ? "is skipped" : "fails", error.what()), false, skipped});
     }
-    for (std::size_t i = before; !options.margins && i < results.size(); ++i)
-      fmt::print("{:7}  {}\n", word(results[i]), results[i].text);
+    const ProgressHidden hidden;
+    for (std::size_t k = before; !options.margins && k < results.size(); ++k)
+      fmt::print("{:7}  {}\n", word(results[k]), results[k].text);
     std::fflush(stdout);
   }
+  progress.end();
   if (options.margins) fmt::print("{}", margins_text(results));
   if (!options.margins_csv.empty()) scene::write_file_atomically(options.margins_csv, margins_csv(results));
   if (!options.junit.empty()) write_junit(options.junit, results);

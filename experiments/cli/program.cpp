@@ -231,33 +231,53 @@ int dispatch(int argc, char** argv) {
   });
 
   ExperimentOptions experiment_options;
-  const auto experiment_flags = [&](CLI::App* e, bool names) {
-    if (names) e->add_option("NAME", experiment_options.names, "group/name, or a group; none: all");
-    e->add_option("--root", experiment_options.root, "the project's folder (default: found from here upwards)");
-    e->add_option("--profile", experiment_options.profile, "quick (default) or paper");
-    e->add_option("--threads", experiment_options.threads, "0: all")->check(CLI::Range(0, 4096));
-    data_option(e);
+  const auto experiment_flags = [&](CLI::App* e) {
+    e->add_option("NAME", experiment_options.names, "experiments: group/name, or a whole group (default: all)");
+    e->add_option("--root", experiment_options.root,
+                  "folder of the project (default: found above the current folder, else above the program)");
+    e->add_option("--profile", experiment_options.profile,
+                  "quick: small films, a few runs of each row (default); paper: films and runs for publication");
   };
-  CLI::App* experiment = command(app, "experiment", "tables and plots of the papers");
-  CLI::App* e = command(*experiment, "list", "what there is");
-  experiment_flags(e, true);
+  const auto results_option = [&](CLI::App* e) {
+    e->add_option("--results", experiment_options.results,
+                  "folder of tables, plots, records and pictures (default: results/ of the project)")
+        ->type_name("FOLDER");
+  };
+  const auto run_flags = [&](CLI::App* e) {
+    experiment_flags(e);
+    results_option(e);
+    e->add_option(
+         "--cache", experiment_options.cache,
+         "folder of references and simulated smoke, which all runs share (default: results/cache/ of the project)")
+        ->type_name("FOLDER");
+    e->add_option("--threads", experiment_options.threads, "number of threads (default 0: all)")
+        ->check(CLI::Range(0, 4096));
+    data_option(e);
+    gpu_option(e);
+  };
+  CLI::App* experiment = command(app, "experiment", "run the experiments behind the tables and plots");
+  CLI::App* e = command(*experiment, "list", "list the experiments with their titles");
+  experiment_flags(e);
   e->final_callback([&] { action = [&] { return list_experiments(experiment_options); }; });
-  e = command(*experiment, "run", "compute tables, plots and pictures into results/");
-  experiment_flags(e, true);
-  gpu_option(e);
-  e->add_flag("--resume", experiment_options.resume, "keep rows that an earlier run of the same program finished");
+  e = command(*experiment, "run", "run experiments and write their tables, plots and pictures; exit 1 if a gate fails");
+  run_flags(e);
+  e->add_flag("--resume", experiment_options.resume,
+              "continue an interrupted run: keep the rows that this program finished in this results folder");
   e->final_callback([&] { action = [&] { return run_experiments(experiment_options); }; });
-  e = command(*experiment, "plot", "draw the plots again from their data");
-  experiment_flags(e, true);
+  e = command(*experiment, "plot", "draw the plots of finished experiments again from their data");
+  experiment_flags(e);
+  results_option(e);
   e->final_callback([&] { action = [&] { return plot_experiments(experiment_options); }; });
 
-  c = command(app, "gates", "accuracy gates of the experiments; exit 1 if one fails");
-  experiment_flags(c, true);
-  gpu_option(c);
-  c->add_option("--junit", experiment_options.junit, "also write a JUnit report");
-  c->add_flag("--margins", experiment_options.margins, "how many times worse each figure could be, the loosest first");
-  c->add_option("--margins-csv", experiment_options.margins_csv, "the same as a CSV file");
-  c->add_flag("--in-tests", experiment_options.in_tests, "only of experiments with in_tests = true, as scripts/test");
+  c = command(app, "gates", "check the accuracy bounds (gates) of the experiments; exit 1 if one fails");
+  run_flags(c);
+  c->add_option("--junit", experiment_options.junit, "also write a JUnit report to this file")->type_name("FILE");
+  c->add_flag("--margins", experiment_options.margins,
+              "list how many times worse each figure could be before its gate fails, the loosest first");
+  c->add_option("--margins-csv", experiment_options.margins_csv, "write those margins to this CSV file")
+      ->type_name("FILE");
+  c->add_flag("--in-tests", experiment_options.in_tests,
+              "only experiments that say in_tests = true, as scripts/test does");
   c->final_callback([&] {
     experiment_options.gates_only = true;
     action = [&] { return gates(experiment_options); };

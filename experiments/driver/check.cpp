@@ -91,13 +91,13 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
 void check_experiment(const Experiment& e, const RunOptions& options) {
   try {
     for (const std::string& name : e.sequences)  // scenes cannot be looked at without
-      make_sequence(options.root, name, e.profile, e.timing.threads);
+      make_sequence(options.folders, name, e.profile, e.timing.threads);
     if (e.kind == "numbers") {
       for (const SceneCase& c : e.scenes) input_key(c);
       return;
     }
     if (e.kind == "flow") return check_flows(e);
-    const Journal finished(journal_file(options.root, e), options.resume);
+    const Journal finished(journal_file(options.folders, e), options.resume);
     std::set<const MethodCase*> tried;
     for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);
   } catch (const Error& error) {

@@ -117,6 +117,20 @@ TextTable equal_error_and_time(const Outcome& outcome) {
   return lines;
 }
 
+std::optional<Estimate> speed_up_at_equal_error(const Outcome& outcome, const SpeedUpCase& s,
+                                                const std::string& scene) {
+  const Curve baseline_rows = curve_rows(outcome, scene, s.baseline, s.metric),
+              other_rows = curve_rows(outcome, scene, s.method, s.metric);
+  const auto baseline = points_of(baseline_rows, s.metric), other = points_of(other_rows, s.metric);
+  if (baseline.empty() || other.empty()) return std::nullopt;
+  if (const auto faster = speed_up(baseline, other)) {
+    const double mean = faster->geometric_mean;
+    return drawn_again(baseline_rows, other_rows, s.metric, mean_of(speed_up)).value_or(Estimate{mean, mean, mean});
+  }
+  const auto exact = speed_up_of_exact(baseline, other);
+  return exact ? std::optional(Estimate{*exact, *exact, *exact}) : std::nullopt;
+}
+
 TextTable orders(const Outcome& outcome) {
   TextTable lines{{"scene", "method", "metric", "settings", "orders"}};
   for (const std::string& scene : scene_names(outcome))
@@ -176,6 +190,12 @@ std::string load_warning(const Outcome& outcome) {
       "({}, {}{}: {:.0f} %)",
       loaded, timed, 100 * much_waiting, worst->scene, worst->method,
       worst->setting.empty() ? "" : " " + worst->setting, 100 * worst->waited);
+}
+
+std::string time_text(const Row& row) {
+  if (row.runs == 0) return "";
+  if (row.runs == 1) return duration(row.seconds.value) + " (1 run)";
+  return fmt::format("{} [{}, {}]", duration(row.seconds.value), duration(row.seconds.low), duration(row.seconds.high));
 }
 
 std::string duration(double seconds) {

@@ -17,6 +17,10 @@ std::vector<bool> on_front(const Outcome&);
 // with the interval that the runs and errors leave them (drawn_again.h).
 TextTable equal_error_and_time(const Outcome&);
 
+// The first of those ratios of one scene, a geometric mean with its interval where that is known: at equal error the method is
+// so many times faster than the baseline. Where they reach no common error but both reach 0: the ratio of time there.
+std::optional<Estimate> speed_up_at_equal_error(const Outcome&, const SpeedUpCase&, const std::string& scene);
+
 // Of flows: for each scene, method and error of at least two rows at rising numeric settings, the order p with which the
 // error falls as setting^-p from each to the next. Header only where there is none.
 TextTable orders(const Outcome&);
@@ -27,5 +31,6 @@ inline constexpr double much_waiting = 0.1;
 std::string load_warning(const Outcome&);
 
 std::string duration(double seconds);  // "12.3 ms"
+std::string time_text(const Row&);     // "12.3 ms [12.1 ms, 12.6 ms]"; empty where nothing was timed
 
 }  // namespace airlight::experiments

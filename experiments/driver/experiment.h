@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/folders.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {
@@ -77,11 +78,14 @@ struct SpeedUpCase {
 
 struct ExpectedCase {
   std::string what, paper, scene, method, setting, metric;
+  std::string baseline;  // not empty: how many times faster than this the method is at equal error of the metric
+  std::string unit;      // that the figure is printed in (expected.h); empty: the usual one
 };
 
 struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
+  std::string summary;  // one sentence for people; {1} stands for the figure of the first [[expected]]
   std::string kind;     // "images", "numbers" or "flow"
   std::string profile;  // "quick" or "paper"
   std::vector<SceneCase> scenes;
@@ -103,9 +107,9 @@ struct Experiment {
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,
 // names that refer to one another, and that every gate has a row and a figure to judge, are checked here; scenes by
 // check_experiment.
-Experiment read_experiment(const std::filesystem::path& root, const std::string& id, const std::string& profile);
+Experiment read_experiment(const Folders&, const std::string& id, const std::string& profile);
 
-// Where a profile's results lie below results/, and its pictures below results/images/: "group/name" for quick,
+// Where a profile's results lie below the results folder, and its pictures below its images/: "group/name" for quick,
 // "group/name.paper" for paper, so that neither overwrites the other.
 std::string results_name(const std::string& id, const std::string& profile);
 

@@ -15,7 +15,6 @@
 #include "experiments/frames.h"
 #include "experiments/interrupt.h"
 #include "experiments/machine.h"
-#include "experiments/progress.h"
 #include "experiments/solvers.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
@@ -121,13 +120,14 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, JudgedFlow& judge
   const std::string name = "references/" + judged.reference_key + ".flow";
   ReferenceInfo info{c.name, judged.reference_key, solve.solver.name(), solve.settings.canonical(), "", 0, true, 0, ""};
   std::string bytes;
+  RunProgress::Step step = keeper.reference_step(c);
   if (const auto kept = keeper.store().find(name)) {
+    step.spare();
     bytes = scene::read_whole_file(kept->string(), std::size_t(1) << 33);
   } else {
-    Progress progress(fmt::format("{}: reference of {}", e.id, c.name));
     std::unique_ptr<scene::Flow> flow;
     const RunTime time = run_to(frames.empty() ? 0 : frames.back(), solve, judged.problem,
-                                progress.execution(e.timing.threads), flow, [&](int frame, const scene::Flow& now) {
+                                step.execution(e.timing.threads), flow, [&](int frame, const scene::Flow& now) {
                                   if (!std::binary_search(frames.begin(), frames.end(), frame)) return;
                                   const FlowSample s = sample(now, judged.points);
                                   put(bytes, s.velocity);

@@ -10,7 +10,6 @@
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/timing.h"
 #include "experiments/interrupt.h"
-#include "experiments/progress.h"
 
 namespace airlight::experiments {
 namespace {
@@ -27,11 +26,12 @@ struct Judged {
 void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
   const Experiment& e = keeper.experiment();
   const PlannedScene& planned = judged.planned;
-  Progress progress(fmt::format("{}: reference of {}", e.id, c.name));
-  scene::Execution execution = progress.execution(e.timing.threads);
+  RunProgress::Step step = keeper.reference_step(c);
+  scene::Execution execution = step.execution(e.timing.threads);
   execution.store = &keeper.store();
   judged.reference = reference_for(planned.scene, *planned.reference, *planned.reference_settings, execution);
   const Reference& reference = *judged.reference;
+  if (reference.cached) step.spare();
   judged.exposure = exposure_of(reference.film, e.layer);
   ReferenceInfo info{c.name,
                      reference.key,
@@ -133,7 +133,7 @@ Outcome run_images(Experiment experiment, const RunOptions& options) {
   for (const std::string& name : keeper.experiment().sequences) {
     Row history;
     history.method = name;
-    history.columns = sequence_history(options.root, name, keeper.experiment().profile);
+    history.columns = sequence_history(options.folders, name, keeper.experiment().profile);
     keeper.add_history(std::move(history));
   }
   return keeper.run([&](const SceneCase& c) {

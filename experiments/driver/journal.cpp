@@ -11,6 +11,7 @@
 #include "experiments/folders.h"
 #include "experiments/json.h"
 #include "experiments/json_value.h"
+#include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
 
@@ -36,7 +37,7 @@ Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
 void Journal::begin_anew() {
   std::error_code failure;
   std::filesystem::remove(file_, failure);
-  if (failure) throw Error(fmt::format("{}: {}", file_.string(), failure.message()));
+  if (failure) throw scene::CannotWrite(fmt::format("{}: {}", file_.string(), failure.message()));
   rows_.clear();
 }
 
@@ -56,7 +57,7 @@ void Journal::add(const Row& row) {
       handle >= 0 && write(handle, line.data(), line.size()) == ssize_t(line.size()) && fsync(handle) == 0;
   const int reason = errno;
   if (handle >= 0) close(handle);
-  if (!written) throw Error(fmt::format("{}: {}", file_.string(), std::strerror(reason)));
+  if (!written) throw scene::CannotWrite(fmt::format("{}: {}", file_.string(), std::strerror(reason)));
 }
 
 }  // namespace airlight::experiments

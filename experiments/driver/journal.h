@@ -1,4 +1,4 @@
-// Rows that are finished, kept line by line in results/cache so that a run that was killed can be resumed.
+// Rows that are finished, kept line by line so that a run that was killed can be resumed.
 //
 // Every line ends with a checksum; a torn or damaged line counts as not there.
 #pragma once
@@ -15,13 +15,13 @@ class Journal {
   // Reads what is there, or with `resume` false nothing. Writes nothing.
   Journal(const std::filesystem::path& file, bool resume);
 
-  // Removes what is there. Throws Error.
+  // Removes what is there. Throws scene::CannotWrite.
   void begin_anew();
 
   // The row of that key, if it was finished.
   const Row* find(const std::string& key) const;
 
-  // Appends and flushes to the disk; makes the folder. Throws Error.
+  // Appends and flushes to the disk; makes the folder. Throws scene::CannotWrite.
   void add(const Row&);
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
 #include <map>
@@ -36,6 +37,20 @@ bool is_text_of(const fs::path& file, const std::string& text) {
   return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
 }
 
+// Of an experiment that is run alone.
+std::unique_ptr<RunProgress> progress_of(const Experiment& e, const RunOptions& options) {
+  auto streams = RunProgress::standard_streams(false);
+  if (!options.talk) streams.lines = nullptr;
+  auto progress = std::make_unique<RunProgress>(planned_work({e}, options.folders.root / "results"), streams);
+  progress->begin(0);
+  return progress;
+}
+
+std::string title_of(const Row& row) {
+  std::string title = row.setting.empty() ? row.method : row.method + " " + row.setting;
+  return row.scene.empty() ? title : title + " on " + row.scene;
+}
+
 }  // namespace
 
 struct RowKeeper::Held {
@@ -46,10 +61,11 @@ struct RowKeeper::Held {
 
 RowKeeper::RowKeeper(Experiment experiment, const RunOptions& options)
     : options_(options),
-      results_(options.root / "results"),
-      store_(results_ / "cache", experiments::say),
+      own_progress_(options.progress ? nullptr : progress_of(experiment, options)),
+      progress_(options.progress ? *options.progress : *own_progress_),
+      store_(options.folders.cache, experiments::say),
       name_(results_name(experiment.id, experiment.profile)),
-      journal_(journal_file(options.root, experiment), options.resume) {
+      journal_(journal_file(options.folders, experiment), options.resume) {
   outcome_.experiment = std::move(experiment);
   if (options.resume) return;
   journal_.begin_anew();
@@ -67,6 +83,8 @@ Outcome RowKeeper::run(const Plan& plan) {
     } catch (const scene::Interrupted&) {
       stopped = true;
       break;
+    } catch (const scene::CannotWrite&) {
+      throw;  // nor could the tables be written
     } catch (const Error& error) {
       // A scene that cannot be judged takes nothing from the others.
       if (!failure) failure = error;
@@ -88,6 +106,18 @@ std::size_t RowKeeper::row_count() const {
   return count;
 }
 
+double RowKeeper::row_work() const { return progress_.work_of_rows() / double(row_count()); }
+
+// Which part of a row's time its timed runs are is not recorded: half.
+double RowKeeper::making_work() const {
+  const bool timed = experiment().kind != "numbers" && experiment().timing.budget > 0;
+  return timed ? row_work() / 2 : row_work();
+}
+
+RunProgress::Step RowKeeper::reference_step(const SceneCase& c) {
+  return {progress_, "reference of " + c.name, progress_.work_of_reference(c.name)};
+}
+
 // Rows that are finished are kept; the others are made in groups, and timed in turns.
 void RowKeeper::measure(std::vector<RowPlan> plans) {
   std::vector<std::optional<Row>> rows(plans.size());
@@ -100,6 +130,8 @@ void RowKeeper::measure(std::vector<RowPlan> plans) {
       check_interrupted();
       try {
         make(plans[i], i, group, rows);
+      } catch (const scene::CannotWrite&) {
+        throw;
       } catch (const Error& e) {
         error = e;
       }
@@ -117,27 +149,34 @@ void RowKeeper::measure(std::vector<RowPlan> plans) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Pictures may have been deleted since: then the row is made again.
+bool RowKeeper::has_picture(const Row& row) const {
+  return row.image.empty() || fs::exists(images() / (row.image + ".exr"));
+}
+
 void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
                      std::vector<std::optional<Row>>& rows) {
   Row row = plan.row;
-  if (const Row* finished = journal_.find(row.key)) {
+  if (const Row* finished = journal_.find(row.key); finished && has_picture(*finished)) {
     rows[place] = *finished;
     rows[place]->parameter = row.parameter;  // only where it is plotted
+    progress_.spare(row_work());
     say(*finished, "kept");
     return;
   }
-  Progress progress(fmt::format("{} [{} of {}]: {}{}", experiment().id, outcome_.rows.size() + place + 1, row_count(),
-                                row.method, row.scene.empty() ? "" : " on " + row.scene));
+  RunProgress::Step step(progress_, title_of(row), making_work());
   try {
-    Held held{place, plan.make(row, progress.execution(experiment().timing.threads)), {}};
+    Held held{place, plan.make(row, step.execution(experiment().timing.threads)), {}};
     check_interrupted();  // what a stopped run kept is no row
     if (!held.made.again) return finish(held.made.row, rows[place]);
     held.stages.add(held.made.stages);
     group.push_back(std::move(held));
   } catch (const scene::NotSupported& objection) {
+    step.spare();
     row.note = "not supported: " + objection.reason;
     finish(row, rows[place]);
   } catch (const Unavailable& reason) {
+    step.spare();
     row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
     row.unavailable = dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen();
     rows[place] = row;  // not into the journal: the next run may find what is missing
@@ -148,12 +187,19 @@ void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
 void RowKeeper::time_group(std::vector<Held>& group, std::vector<std::optional<Row>>& rows) {
   if (group.empty()) return;
   const TimingRule& rule = experiment().timing;
+  double expected = 0, start = steady_seconds();  // [s]
+  for (const Held& held : group) expected += std::min(rule.budget, rule.runs * held.made.first);
+  RunProgress::Step step(progress_,
+                         fmt::format("timing {}{}", title_of(group.front().made.row),
+                                     group.size() > 1 ? fmt::format(" and {} more", group.size() - 1) : ""),
+                         double(group.size()) * (row_work() - making_work()));
   const scene::Execution execution = quiet_execution(rule.threads);
   std::vector<TimedJob> jobs;
   for (Held& held : group)
     jobs.push_back({held.made.first,
-                    [&held, execution] {
+                    [&, &held = held] {
                       held.stages.add(held.made.again(execution));
+                      step.update((steady_seconds() - start) / expected);
                       check_interrupted();
                     },
                     gpu_warm_up(held.made.row)});
@@ -184,6 +230,7 @@ void RowKeeper::finish(const Row& row, std::optional<Row>& place) {
 
 void RowKeeper::say(const Row& row, const char* how) const {
   if (!options_.talk) return;
+  const ProgressHidden hidden;
   std::string line = fmt::format("{}:", how);
   for (const std::string& word : {row.scene, row.method, row.setting})
     if (!word.empty()) line += " " + word;
@@ -196,7 +243,7 @@ void RowKeeper::say(const Row& row, const char* how) const {
 }
 
 void RowKeeper::write() const {
-  const fs::path folder = results_ / name_;
+  const fs::path folder = options_.folders.results / name_;
   make_folder(folder);
   const auto plots = draw_plots(outcome_, folder);
   bool changed = made_rows_;

@@ -2,10 +2,12 @@
 // others in turns, and writes tables, plots and the record.
 #pragma once
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "experiments/driver/journal.h"
 #include "experiments/driver/run.h"
+#include "experiments/driver/run_progress.h"
 #include "scene/content_store.h"
 #include "scene/renderer.h"
 
@@ -36,10 +38,12 @@ class RowKeeper {
 
   const Experiment& experiment() const { return outcome_.experiment; }
   const scene::ContentStore& store() const { return store_; }
-  // Below results/: where the tables lie, and below results/images the pictures.
+  // Below the results folder: where the tables lie, and below its images/ the pictures.
   const std::string& name() const { return name_; }
-  std::filesystem::path images() const { return results_ / "images"; }
+  std::filesystem::path images() const { return options_.folders.results / "images"; }
   void add_history(Row history) { outcome_.histories.push_back(std::move(history)); }
+  // While a scene's reference is computed, or read.
+  RunProgress::Step reference_step(const SceneCase&);
   void add(const ReferenceInfo& reference) { outcome_.references.push_back(reference); }
 
   // As run_experiment.
@@ -48,6 +52,10 @@ class RowKeeper {
  private:
   struct Held;  // a row that was made, and waits for its timed runs
   std::size_t row_count() const;
+  double row_work() const;  // [s] as planned, of one row
+  // Of that the part before the timed runs.
+  double making_work() const;
+  bool has_picture(const Row&) const;
   void measure(std::vector<RowPlan>);
   void make(RowPlan&, std::size_t place, std::vector<Held>&, std::vector<std::optional<Row>>&);
   void time_group(std::vector<Held>&, std::vector<std::optional<Row>>&);
@@ -56,7 +64,8 @@ class RowKeeper {
   void write() const;
 
   RunOptions options_;
-  std::filesystem::path results_;
+  std::unique_ptr<RunProgress> own_progress_;
+  RunProgress& progress_;
   scene::ContentStore store_;
   std::string name_;
   Journal journal_;

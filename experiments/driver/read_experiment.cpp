@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "experiments/driver/bounds.h"
+#include "experiments/driver/expected.h"
 #include "experiments/driver/experiment.h"
 #include "experiments/driver/next_frames.h"
 #include "experiments/driver/sequences.h"
@@ -27,18 +28,18 @@ namespace {
 
 class Reader {
  public:
-  Reader(const fs::path& root, const std::string& id, const std::string& profile) : root_(root) {
+  Reader(const Folders& folders, const std::string& id, const std::string& profile) : folders_(folders) {
     experiment_.id = id;
     experiment_.profile = profile;
-    file_ = (root / "experiments" / (id + ".toml")).string();
+    file_ = (folders.root / "experiments" / (id + ".toml")).string();
     toml_ = scene::load::parse_toml(scene::read_whole_file(file_, scene::load::most_toml_bytes), file_);
   }
 
   Experiment read() {
     TableReader top(toml_, "");
     experiment_.kind = toml_["kind"].value_or(std::string("images"));
-    std::vector<std::string> keys{"kind",   "title", "paper", "about",    "metrics",  "in_tests", "scene",
-                                  "method", "plot",  "gate",  "speed_up", "expected", "profile",  "timing"};
+    std::vector<std::string> keys{"kind",   "title", "paper", "about",    "summary",  "metrics", "in_tests", "scene",
+                                  "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing"};
     if (!numbers()) keys.insert(keys.end(), {"stages", "reference"});
     if (images()) keys.push_back("layer");
     if (flow()) keys.push_back("orders");
@@ -47,6 +48,7 @@ class Reader {
     experiment_.title = top.text("title");
     experiment_.paper = top.text("paper", "");
     experiment_.about = top.text("about", "");
+    experiment_.summary = top.text("summary", "");
     experiment_.in_tests = top.flag("in_tests", false);
     if (images()) experiment_.layer = top.text("layer", "mean");
     if (flow()) experiment_.orders = top.flag("orders", false);
@@ -65,6 +67,7 @@ class Reader {
     if (numbers()) figures();
     plots(top);
     checks(top);
+    if (top.has("summary")) check_summary(top);
     return experiment_;
   }
 
@@ -185,14 +188,14 @@ class Reader {
     for (auto& [table, reader] : lists(top, "scene")) {
       reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
       SceneCase scene;
-      scene.file = root_ / "experiments" / reader.text("file");
+      scene.file = folders_.root / "experiments" / reader.text("file");
       scene.name = reader.text("name", scene.file.stem().string());
       scene.overrides = of_profile;
       for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
       if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
       const bool wanted = in_profile(*table, reader);
       if (wanted)
-        name_sequences(root_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
+        name_sequences(folders_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
                        experiment_.sequences);
       std::vector<SceneCase> cases{scene};
       if (auto sweep = reader.table("sweep")) {
@@ -378,7 +381,7 @@ class Reader {
       known(reader, "metric", experiment_.speed_ups.back().metric, "metric");
     }
     for (auto& [table, reader] : lists(top, "expected")) {
-      reader.allow({"what", "paper", "scene", "method", "setting", "metric"});
+      reader.allow({"what", "paper", "scene", "method", "setting", "metric", "baseline", "unit"});
       ExpectedCase e;
       e.what = reader.text("what");
       e.paper = reader.text("paper");
@@ -389,12 +392,46 @@ class Reader {
         if (reader.has("setting")) e.setting = plain(*table->get("setting"));
         known(reader, "method", e.method, "method");
         known(reader, "metric", e.metric, "metric");
+        if (reader.has("baseline")) e.baseline = baseline_of(reader, e);
+        if (reader.has("unit")) e.unit = reader.choice("unit", expected_units());
+        if (!e.unit.empty() && !fits_unit(e)) reader.expected("unit", "a unit that " + e.metric + " can have");
       }
       experiment_.expected.push_back(e);
     }
   }
 
-  fs::path root_;
+  // Whose speed-up is expected: the table has it, with its interval.
+  std::string baseline_of(const TableReader& reader, const ExpectedCase& e) const {
+    const std::string baseline = reader.text("baseline");
+    known(reader, "baseline", baseline, "method");
+    if (reader.has("setting")) reader.fail("setting", "has no effect beside baseline: a speed-up is of all settings");
+    const auto& all = experiment_.speed_ups;
+    if (std::none_of(all.begin(), all.end(), [&](const SpeedUpCase& s) {
+          return s.baseline == baseline && s.method == e.method && s.metric == e.metric;
+        }))
+      reader.fail("baseline", fmt::format("there is no [[speed_up]] with baseline '{}', method '{}' and metric '{}'",
+                                          baseline, e.method, e.metric));
+    return baseline;
+  }
+
+  void check_summary(const TableReader& top) const {
+    const auto& expected = experiment_.expected;
+    if (experiment_.summary.find('\n') != std::string::npos) top.fail("summary", "expected one line");
+    try {
+      fill_in(experiment_.summary, [&](std::size_t n) -> std::string {
+        if (n < 1 || n > expected.size())
+          throw Error(fmt::format("found {{{}}}, expected the number of an [[expected]], of which there are {}", n,
+                                  expected.size()));
+        if (expected[n - 1].method.empty())
+          throw Error(fmt::format("found {{{}}}, but that [[expected]] has no method and no figure", n));
+        return "";
+      });
+    } catch (const Error& error) {
+      top.fail("summary", fmt::format("summary: {}", error.what()));
+    }
+  }
+
+  Folders folders_;
   std::string file_;
   toml::table toml_;
   Experiment experiment_;
@@ -402,8 +439,8 @@ class Reader {
 
 }  // namespace
 
-Experiment read_experiment(const fs::path& root, const std::string& id, const std::string& profile) {
-  return Reader(root, id, profile).read();
+Experiment read_experiment(const Folders& folders, const std::string& id, const std::string& profile) {
+  return Reader(folders, id, profile).read();
 }
 
 }  // namespace airlight::experiments

@@ -1,5 +1,6 @@
 #include "experiments/build_info.h"
 #include "experiments/driver/comparisons.h"
+#include "experiments/driver/expected.h"
 #include "experiments/driver/tables.h"
 #include "experiments/json_value.h"
 #include "experiments/machine.h"
@@ -66,6 +67,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
               {"system", machine.system},
               {"load_average_at_end", machine.load_average},
               {"load_warning", load_warning(outcome)}}}};
+  if (!e.summary.empty()) j["summary"] = summary_text(outcome);
   j["libraries"] = json::object();
   for (const auto& [name, number] : libraries()) j["libraries"][name] = number;
   j["references"] = json::array();

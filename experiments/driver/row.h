@@ -32,7 +32,7 @@ struct Row {
   std::vector<std::pair<std::string, double>> stages;  // [s] of one render, median of the runs
   std::string device;                                  // that computed it, if not the processor
   std::map<std::string, double> counters;
-  std::string image;  // file below results/images, without extension; empty: it has no picture
+  std::string image;  // file below images/ of the results, without extension; empty: it has no picture
   std::optional<FigureMap> map;
   Columns columns;
   double exposure = 0;

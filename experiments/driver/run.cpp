@@ -7,8 +7,8 @@
 
 namespace airlight::experiments {
 
-std::filesystem::path journal_file(const std::filesystem::path& root, const Experiment& e) {
-  return root / "results" / "cache" / "rows" / (e.id + "." + e.profile + ".jsonl");
+std::filesystem::path journal_file(const Folders& folders, const Experiment& e) {
+  return folders.rows / (e.id + "." + e.profile + ".jsonl");
 }
 
 Outcome run_experiment(Experiment experiment, const RunOptions& options) {

@@ -3,23 +3,27 @@
 #include <filesystem>
 
 #include "experiments/driver/outcome.h"
+#include "experiments/folders.h"
 
 namespace airlight::experiments {
 
+class RunProgress;
+
 struct RunOptions {
-  std::filesystem::path root;
+  Folders folders;
   bool resume = false;
-  int threads = 0;       // 0: what the experiment says
-  bool talk = true;      // one line per row on standard output
-  bool checked = false;  // check_experiment has found no fault
+  int threads = 0;                  // 0: what the experiment says
+  bool talk = true;                 // one line per row on standard output
+  bool checked = false;             // check_experiment has found no fault
+  RunProgress* progress = nullptr;  // where this experiment has begun; null: of its own
 };
 
-// Everything below root/results (results_name). Throws Error, and writes nothing, where check_experiment objects.
+// Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.
 // Interrupted: writes what is finished, then throws scene::Interrupted. A scene that fails all the same is left out,
 // the others are computed and written, then its Error is thrown. Without a row nothing is written: older tables stay.
 Outcome run_experiment(Experiment, const RunOptions&);
 
 // Rows that were finished by runs of this experiment and profile.
-std::filesystem::path journal_file(const std::filesystem::path& root, const Experiment&);
+std::filesystem::path journal_file(const Folders&, const Experiment&);
 
 }  // namespace airlight::experiments

@@ -33,8 +33,8 @@ toml::table read_list(const fs::path& root) {
 }
 
 // Absolute: scenes look for files beside themselves.
-fs::path folder_of(const fs::path& root, const std::string& name, const std::string& profile) {
-  return fs::absolute(root) / "results" / "cache" / "sequences" / (name + "." + profile);
+fs::path folder_of(const Folders& folders, const std::string& name, const std::string& profile) {
+  return fs::absolute(folders.cache) / "sequences" / (name + "." + profile);
 }
 
 TableReader reader_of(const toml::table& list, const std::string& name) {
@@ -72,17 +72,17 @@ fs::path problem_of(const fs::path& root, const TableReader& reader) {
 
 }  // namespace
 
-std::string sequence_files(const fs::path& root, const std::string& asked, const std::string& profile,
+std::string sequence_files(const Folders& folders, const std::string& asked, const std::string& profile,
                            const std::string& where) {
   const auto [name, kind] = name_and_kind(asked);
-  const toml::table list = read_list(root);
+  const toml::table list = read_list(folders.root);
   std::vector<std::string> known;
   for (const auto& [key, table] : list) known.emplace_back(key.str());
   if (std::find(known.begin(), known.end(), name) == known.end())
-    throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(root).string(),
+    throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(folders.root).string(),
                             scene::nearest_hint(name, known)));
   const std::string of = simulated(list, name);
-  const auto problem = scene::load_flow(problem_of(root, reader_of(list, of)).string());
+  const auto problem = scene::load_flow(problem_of(folders.root, reader_of(list, of)).string());
   std::vector<std::string> kinds{".vdb", ".csv"};
   if (of != name) {
     kinds = {".csv", ".residual"};
@@ -94,16 +94,16 @@ std::string sequence_files(const fs::path& root, const std::string& asked, const
     throw Error(fmt::format("{}: the sequence '{}' has no files {}, expected one of {}", where, name, kind,
                             fmt::join(kinds, ", ")));
   const std::size_t ending = kind.rfind('.');
-  return (folder_of(root, name, profile) / (problem.name + kind.substr(0, ending) + ".####" + kind.substr(ending)))
+  return (folder_of(folders, name, profile) / (problem.name + kind.substr(0, ending) + ".####" + kind.substr(ending)))
       .string();
 }
 
-void name_sequences(const fs::path& root, const std::string& profile, const std::string& where, Pairs& overrides,
+void name_sequences(const Folders& folders, const std::string& profile, const std::string& where, Pairs& overrides,
                     std::vector<std::string>& names) {
   for (auto& [key, value] : overrides) {
     if (value.size() < 2 || value.compare(1, mark.size(), mark) != 0) continue;  // in quotes of TOML
     const std::string name = value.substr(1 + mark.size(), value.size() - mark.size() - 2);
-    value = fmt::format("\"{}\"", sequence_files(root, name, profile, where));
+    value = fmt::format("\"{}\"", sequence_files(folders, name, profile, where));
     const std::string plain = name_and_kind(name).first;
     if (std::find(names.begin(), names.end(), plain) == names.end()) names.push_back(plain);
   }
@@ -111,15 +111,15 @@ void name_sequences(const fs::path& root, const std::string& profile, const std:
 
 namespace {
 
-void fit(const fs::path& root, const TableReader& reader, const std::string& name, const std::string& of,
+void fit(const Folders& folders, const TableReader& reader, const std::string& name, const std::string& of,
          const std::string& profile, int threads) {
   TableReader of_profile = reader.required_table(profile);
   of_profile.allow({"gaussians"});
   FitSequence fitted;
   fitted.options.gaussians = int(of_profile.integer("gaussians", 1, scene::most_fit_gaussians));
-  fitted.folder = folder_of(root, name, profile);
+  fitted.folder = folder_of(folders, name, profile);
   fitted.begin_anew = true;
-  for (const auto& entry : fs::directory_iterator(folder_of(root, of, profile)))
+  for (const auto& entry : fs::directory_iterator(folder_of(folders, of, profile)))
     if (entry.path().extension() == ".vdb") fitted.files.push_back(entry.path().string());
   std::sort(fitted.files.begin(), fitted.files.end());
   Progress progress(fmt::format("sequence {} ({})", name, profile));
@@ -128,13 +128,13 @@ void fit(const fs::path& root, const TableReader& reader, const std::string& nam
 
 }  // namespace
 
-void make_sequence(const fs::path& root, const std::string& asked, const std::string& profile, int threads) {
+void make_sequence(const Folders& folders, const std::string& asked, const std::string& profile, int threads) {
   const std::string name = name_and_kind(asked).first;
-  const toml::table list = read_list(root);
+  const toml::table list = read_list(folders.root);
   const TableReader reader = reader_of(list, name);
   if (const std::string of = simulated(list, name); of != name) {
-    make_sequence(root, of, profile, threads);
-    fit(root, reader, name, of, profile, threads);
+    make_sequence(folders, of, profile, threads);
+    fit(folders, reader, name, of, profile, threads);
     return;
   }
   TableReader of_profile = reader.required_table(profile);
@@ -143,8 +143,8 @@ void make_sequence(const fs::path& root, const std::string& asked, const std::st
   const scene::Solver& solver = find_solver(reader.text("solver"), reader.where());
   const scene::Settings chosen(solver.settings(), settings(raw, "settings", of_profile), name);
   const auto problem = std::make_shared<const scene::FlowProblem>(
-      scene::load_flow(problem_of(root, reader).string(), overrides(raw, "overrides", of_profile)));
-  const Simulation simulation{problem, solver, chosen, folder_of(root, name, profile)};
+      scene::load_flow(problem_of(folders.root, reader).string(), overrides(raw, "overrides", of_profile)));
+  const Simulation simulation{problem, solver, chosen, folder_of(folders, name, profile)};
   const int there = frames_there(simulation);
   if (there == frame_steps(*problem, solver, chosen).frames) return;
   if (there == 0) fs::remove_all(simulation.folder);
@@ -152,8 +152,8 @@ void make_sequence(const fs::path& root, const std::string& asked, const std::st
   simulate(simulation, progress.execution(threads));
 }
 
-Columns sequence_history(const fs::path& root, const std::string& name, const std::string& profile) {
-  const fs::path folder = folder_of(root, name, profile);
+Columns sequence_history(const Folders& folders, const std::string& name, const std::string& profile) {
+  const fs::path folder = folder_of(folders, name, profile);
   Columns columns;
   if (const fs::path file = folder / "record.json"; fs::exists(file)) {
     const auto record = read_json(file.string());

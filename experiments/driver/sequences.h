@@ -1,6 +1,5 @@
-// Sequences of smoke that scenes show: simulated when an experiment first asks for them, kept in results/cache/sequences.
+// Sequences of smoke that scenes show: simulated when an experiment first asks for them, kept in sequences/ of the cache.
 #pragma once
-#include <filesystem>
 #include <string>
 
 #include "experiments/driver/experiment.h"
@@ -12,18 +11,18 @@ namespace airlight::experiments {
 // of its density, of "NAME.OTHER.csv" those of another, of "NAME.particles.csv" the places of its particles; of a fit "NAME.csv" the
 // Gaussians, "NAME.residual" what they leave. Throws Error, beginning with `where`: no such sequence in experiments/sequences.toml, no
 // such files.
-std::string sequence_files(const std::filesystem::path& root, const std::string& name, const std::string& profile,
+std::string sequence_files(const Folders&, const std::string& name, const std::string& profile,
                            const std::string& where);
 
 // Overrides whose value is "sequence:NAME" become that pattern, and `names` gets NAME once. Throws Error as above.
-void name_sequences(const std::filesystem::path& root, const std::string& profile, const std::string& where,
-                    Pairs& overrides, std::vector<std::string>& names);
+void name_sequences(const Folders&, const std::string& profile, const std::string& where, Pairs& overrides,
+                    std::vector<std::string>& names);
 
 // Simulates it, and fits Gaussians to it where that is asked for, unless it is there and of the same problem, settings and program; one
 // that was stopped goes on. Throws Error (file, line, column), Interrupted.
-void make_sequence(const std::filesystem::path& root, const std::string& name, const std::string& profile, int threads);
+void make_sequence(const Folders&, const std::string& name, const std::string& profile, int threads);
 
 // The columns of its history.csv (frames.h); of a fit the numbers that its record holds of each frame. Throws Error.
-Columns sequence_history(const std::filesystem::path& root, const std::string& name, const std::string& profile);
+Columns sequence_history(const Folders&, const std::string& name, const std::string& profile);
 
 }  // namespace airlight::experiments

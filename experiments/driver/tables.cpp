@@ -9,6 +9,7 @@
 
 #include "experiments/build_info.h"
 #include "experiments/driver/comparisons.h"
+#include "experiments/driver/expected.h"
 #include "experiments/machine.h"
 
 namespace airlight::experiments {
@@ -28,12 +29,6 @@ std::string csv(const std::vector<Cells>& lines) {
   std::string out;
   for (const Cells& line : lines) out += csv_line(line);
   return out;
-}
-
-std::string time_text(const Row& row) {
-  if (row.runs == 0) return "";
-  if (row.runs == 1) return duration(row.seconds.value) + " (1 run)";
-  return fmt::format("{} [{}, {}]", duration(row.seconds.value), duration(row.seconds.low), duration(row.seconds.high));
 }
 
 // The name alone, and a warning where its times are not those of a GPU; the whole description stands in the conditions.
@@ -142,27 +137,6 @@ std::string markdown(const std::vector<Cells>& lines) {
   return out;
 }
 
-std::string ours(const Outcome& outcome, const ExpectedCase& e) {
-  if (e.method.empty()) return "";
-  for (const Row& row : outcome.rows)
-    if (row.scene == e.scene && row.method == e.method && (e.setting.empty() || row.setting == e.setting)) {
-      if (!row.note.empty()) return row.note;
-      for (const Measure& m : row.measures)
-        if (m.name == e.metric) return text(m);
-      if (e.metric == "seconds" && row.runs > 0)
-        return outcome.experiment.kind == "images" ? fmt::format("{} at {}x{}, {:.3g} per second", time_text(row),
-                                                                 row.width, row.height, 1 / row.seconds.value)
-                                                   : time_text(row);
-    }
-  return "not in this profile";
-}
-
-std::vector<Cells> expected(const Outcome& outcome) {
-  std::vector<Cells> lines{{"what", "printed", "ours"}};
-  for (const ExpectedCase& x : outcome.experiment.expected) lines.push_back({x.what, x.paper, ours(outcome, x)});
-  return lines;
-}
-
 // Where the setting is how fine the grid is.
 TextTable orders_of(const Outcome& outcome) { return outcome.experiment.orders ? orders(outcome) : TextTable{}; }
 
@@ -227,7 +201,7 @@ std::map<std::string, std::string> table_files(const Outcome& outcome, const std
                                            {"summary.csv", summary_csv(outcome)},
                                            {"table.md", table_markdown(outcome, plots)}};
   if (e.stages) files["stages.csv"] = csv(stage_table(outcome));
-  if (!e.expected.empty()) files["expected.csv"] = csv(expected(outcome));
+  if (!e.expected.empty()) files["expected.csv"] = csv(expected_table(outcome));
   if (const auto lines = orders_of(outcome); lines.size() > 1) files["orders.csv"] = csv(lines);
   if (!e.speed_ups.empty()) files["speed_up.csv"] = csv(equal_error_and_time(outcome));
   return files;
@@ -236,6 +210,7 @@ std::map<std::string, std::string> table_files(const Outcome& outcome, const std
 std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots) {
   const Experiment& e = outcome.experiment;
   std::string out = fmt::format("# {}\n\n", e.title);
+  if (!e.summary.empty()) out += summary_text(outcome) + "\n\n";
   if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
   if (!e.about.empty()) out += e.about + "\n\n";
   if (!outcome.complete)
@@ -245,7 +220,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
     out += "## Stages\n\nOf one render, median of the runs; a blank is a stage that the row does not have.\n\n" +
            markdown(stage_table(outcome)) + "\n";
   if (!e.expected.empty()) {
-    out += "## Printed and measured\n\n" + markdown(expected(outcome)) + "\n";
+    out += "## Printed and measured\n\n" + markdown(expected_table(outcome)) + "\n";
   }
   if (!e.speed_ups.empty()) out += "## Equal error, equal time\n\n" + markdown(equal_error_and_time(outcome)) + "\n";
   if (const auto lines = orders_of(outcome); lines.size() > 1)

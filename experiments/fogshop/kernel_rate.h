@@ -13,6 +13,9 @@ class KernelRate : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override {
+    return {"evaluations", "bare_loop", "share", "erf_calls", "bare_loop_of_erf", "share_of_erf"};
+  }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 

@@ -11,6 +11,7 @@ class LegendreCost : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override { return {"exponent", "exponent_of_coefficients"}; }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
@@ -21,6 +22,7 @@ class LegendreSpeed : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override { return figures(); }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 

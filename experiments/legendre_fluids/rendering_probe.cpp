@@ -142,7 +142,13 @@ std::vector<scene::SettingSpec> LegendreRendering::settings() const {
 }
 
 std::vector<std::string> LegendreRendering::figures() const {
-  std::vector<std::string> names = {"error"};
+  std::vector<std::string> names = speeds();
+  names.insert(names.begin(), "error");
+  return names;
+}
+
+std::vector<std::string> LegendreRendering::speeds() const {
+  std::vector<std::string> names;
   for (const int dimensions : {2, 3})
     for (const int n : grids_of(dimensions)) names.push_back(fmt::format("faster_{}d_{}", dimensions, n));
   return names;

@@ -11,6 +11,7 @@ class LegendreRendering final : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override;
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 

@@ -32,6 +32,7 @@ class PressureSolvers : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override { return {"of_transforms"}; }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
@@ -42,6 +43,7 @@ class TransformsRate : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override { return {"share"}; }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
@@ -52,6 +54,7 @@ class AdvectionRate : public Probe {
   std::string about() const override;
   std::vector<scene::SettingSpec> settings() const override;
   std::vector<std::string> figures() const override;
+  std::vector<std::string> speeds() const override { return {"rate", "memory_rate", "share"}; }
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 

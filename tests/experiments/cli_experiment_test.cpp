@@ -52,7 +52,28 @@ TEST_CASE("experiment run exits 1 and names the gates that fail", "[cli]") {
   CHECK(both.code == 1);
   CHECK(both.err == "airlight: gate failed: g/bad: one, marcher: rel_l2\n");
   CHECK_THAT(both.out, Contains("0 of 1 gates ok: results/g/bad/table.md"));
+  CHECK_THAT(both.out, Catch::StartsWith("[1 of 2] g/bad (quick): ") && Contains("\n[2 of 2] g/good (quick): ") &&
+                           Contains(" left\n"));
   CHECK(run("experiment run --root . --resume", project).code == 1);  // kept rows are judged, too
+}
+
+// Last of all, after the gates.
+TEST_CASE("experiment run ends with the summaries", "[cli]") {
+  const Project project;
+  const std::string expected =
+      "[[expected]]\nwhat = \"w\"\npaper = \"p\"\nscene = \"one\"\nmethod = \"marcher\"\nmetric = \"bias\"\n";
+  const auto text = [&](const std::string& summary) {
+    std::string e = steps_experiment("0.5", summary);
+    e.replace(e.find("[\"rel_l2\"]"), 10, "[\"rel_l2\", \"bias\"]");
+    return e + expected;
+  };
+  project.write("experiments/g/a.toml", text("summary = \"The marcher is off by {1}.\"\n"));
+  project.write("experiments/g/b.toml", text(""));
+  const Result both = run("experiment run --root .", project);
+  CAPTURE(both.out, both.err);
+  CHECK(both.code == 0);
+  const std::size_t last = both.out.rfind('\n', both.out.size() - 2) + 1;
+  CHECK_THAT(both.out.substr(last), Catch::Matches("The marcher is off by -?[0-9.e-]+ %[.]\n"));
 }
 
 TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
@@ -63,6 +84,62 @@ TEST_CASE("only experiments that say so are judged in tests", "[cli]") {
   CHECK(in_tests.code == 1);
   CHECK_THAT(in_tests.out, Contains("g/bad: one") && !Contains("g/slow"));
   CHECK_THAT(run("gates --root .", project).out, Contains("g/slow: one") && Contains("0 of 2 gates ok"));
+}
+
+TEST_CASE("tables and caches go where the options say, and nowhere else", "[cli]") {
+  const Project project;
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
+  const Result run_there = run("experiment run --root . --results there --cache kept", project);
+  CAPTURE(run_there.err);
+  CHECK(run_there.code == 0);
+  CHECK_THAT(run_there.out, Contains("1 of 1 gates ok: there/g/good/table.md"));
+  CHECK(run("gates --root . --results gates --cache kept", project).code == 0);
+  for (const char* file :
+       {"there/g/good/run.json", "there/images/g/good/one/reference.exr", "gates/g/good/run.json", "kept/references"})
+    CHECK(project.has(file));
+  CHECK_FALSE(project.has("results"));
+}
+
+TEST_CASE("a run into another folder says whether it agrees with the committed tables", "[cli]") {
+  const Project project;
+  project.write("experiments/g/e.toml", steps_experiment("0.5"));
+  project.write("experiments/g/new.toml", steps_experiment("0.5"));
+  REQUIRE(run("experiment run g/e --root .", project).code == 0);
+  const auto there = [&] { return run("experiment run --root . --results there", project).out; };
+  const std::string agrees = there();
+  CHECK_THAT(agrees, Contains("\n  agrees with results/g/e: 1 of 1 figure; times ") &&
+                         Contains("\n  there is no committed table to compare with\n") &&
+                         Catch::EndsWith(
+                             "\n1 of 1 experiments agree with the committed tables; 1 without a committed table\n"));
+  std::string record = read_bytes(project.file("results/g/e/run.json"));
+  const std::size_t at = record.find("\"value\": ") + 9;
+  record.replace(at, record.find_first_of(",\n", at) - at, "0.75");
+  for (const char* end : {"low", "high"}) {
+    const std::size_t from = record.find("\"" + std::string(end) + "\": ") + std::string(end).size() + 4;
+    record.replace(from, record.find_first_of(",\n", from) - from, "0.75");
+  }
+  project.write("results/g/e/run.json", record);
+  CHECK_THAT(there(), Contains("\n  DIFFERS from results/g/e: rel_l2 of one, marcher: ") &&
+                          Contains(", committed 0.75 (1 of 1 figure)") &&
+                          Contains("\n0 of 1 experiments agree with the committed tables; differs: g/e; 1 without"));
+}
+
+// A folder that cannot be written to says nothing about accuracy. The second cannot be made even by root.
+TEST_CASE("what cannot be written is an error of one line, not a failed gate", "[cli]") {
+  const Project project;
+  project.write("experiments/g/good.toml", steps_experiment("0.5"));
+  project.write("file", "");
+  for (const char* command : {"gates --root . --junit report.xml", "experiment run --root ."})
+    for (const char* folder : {"--results file", "--results file/below", "--results /proc/none", "--cache file"}) {
+      const Result refused = run(std::string(command) + " " + folder, project);
+      CAPTURE(command, folder, refused.out, refused.err);
+      CHECK(refused.code == 2);
+      CHECK(refused.error_lines() == 1);
+      CHECK_THAT(refused.err,
+                 Catch::StartsWith("airlight: ") && Contains(std::string(folder).substr(folder[2] == 'r' ? 10 : 8)));
+      CHECK_THAT(refused.out, !Contains("FAILED") && !Contains("gates ok"));
+      CHECK_FALSE(project.has("report.xml"));
+    }
 }
 
 // Gates and runs that find all their rows leave the record of the run that made them, with its date and duration.

@@ -121,6 +121,38 @@ TEST_CASE("a run that was killed goes on where it was", "[driver]") {
   CHECK(anew.rows[1].seconds.value != third.rows[1].seconds.value);
 }
 
+// Two results folders share the references alone: neither run takes rows, pictures or progress from the other.
+TEST_CASE("a results folder of its own has its own tables, pictures and finished rows", "[driver]") {
+  const Project project;
+  const Outcome first = project.run(false);
+  const std::string table = read_bytes((project.path() / "results/g/e/table.csv").string()),
+                    journal = read_bytes(project.journal().string());
+  const Folders mine(project.path(), project.path() / "mine");
+  const auto run = [&](bool resume) {
+    return run_experiment(read_experiment(mine, "g/e", "quick"), {mine, resume, 1, false});
+  };
+  const Outcome second = run(true);  // resumes nothing: the finished rows are those of another folder
+  CHECK(second.references.at(0).cached);
+  CHECK(second.rows[1].seconds.value != first.rows[1].seconds.value);
+  CHECK(metric(second.rows[1], "rel_l2") == metric(first.rows[1], "rel_l2"));
+  for (const char* file :
+       {"g/e/table.csv", "g/e/run.json", "images/g/e/one/reference.exr", "images/g/e/one/marcher_64.exr"})
+    CHECK(fs::exists(mine.results / file));
+  CHECK_FALSE(fs::exists(mine.results / "cache"));
+  CHECK(read_bytes((project.path() / "results/g/e/table.csv").string()) == table);
+  CHECK(read_bytes(project.journal().string()) == journal);
+  // A row whose picture was deleted is made again, the others are kept.
+  const fs::path picture = mine.results / "images/g/e/one/marcher_64.exr";
+  fs::remove(picture);
+  const Outcome third = run(true);
+  CHECK(fs::exists(picture));
+  CHECK(third.rows[0].seconds.value == second.rows[0].seconds.value);
+  CHECK(third.rows[1].seconds.value != second.rows[1].seconds.value);
+  // The default folder by another name is the default folder.
+  CHECK(Folders(project.path(), project.path() / "experiments/../results").default_results());
+  CHECK_FALSE(mine.default_results());
+}
+
 TEST_CASE("profiles have folders, pictures and journals of their own", "[driver]") {
   const Project project;
   project.run(false);

@@ -92,6 +92,42 @@ TEST_CASE("an experiment file becomes scenes, methods, plots and gates", "[exper
   CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/f"}), Contains("nearest: g/e"));
 }
 
+TEST_CASE("a summary and what it quotes are checked", "[experiment]") {
+  const std::string entry = "[[expected]]\nwhat = \"w\"\npaper = \"p\"\n";
+  const std::string figure = "scene = \"one 2\"\nmethod = \"marcher\"\nmetric = \"rel_l2\"\n";
+  const auto with = [&](const std::string& summary, const std::string& of_entry) {
+    return "summary = \"" + summary + "\"\n" + good + entry + of_entry;
+  };
+  CHECK(failure(with("errs by {1}", figure)) == "no failure");
+  CHECK(failure(with("errs by {1}", figure + "unit = \"percent\"\n")) == "no failure");
+  CHECK_THAT(failure(with("errs by {2}", figure)),
+             Contains("e.toml:1:11: ") && Contains("{2}") && Contains("there are 1"));
+  CHECK_THAT(failure(with("errs by {0}", figure)), Contains("e.toml:1:11: ") && Contains("{0}"));
+  CHECK_THAT(failure(with("errs by {1", figure)), Contains("e.toml:1:11: ") && Contains("without '}'"));
+  CHECK_THAT(failure(with("errs by {1}", "")), Contains("e.toml:1:11: ") && Contains("no method"));
+  CHECK_THAT(failure(with("a\\nb", figure)), Contains("e.toml:1:11: ") && Contains("one line"));
+  CHECK_THAT(failure(with("", figure + "unit = \"ms\"\n")), Contains("unit = \"ms\"") && Contains("rel_l2"));
+  CHECK_THAT(failure(with("", figure + "unit = \"furlongs\"\n")), Contains("furlongs") && Contains("\"percent\""));
+  // A speed-up must be one of those that the table has.
+  const std::string over = figure + "baseline = \"other\"\n",
+                    other = "[[method]]\nname = \"other\"\nrenderer = \"ray_marcher\"\n",
+                    speed_up = "[[speed_up]]\nbaseline = \"other\"\nmethod = \"marcher\"\nmetric = \"rel_l2\"\n";
+  CHECK_THAT(failure(with("{1}", over)), Contains("baseline = \"other\""));
+  CHECK_THAT(failure(with("{1}", over + other)), Contains("there is no [[speed_up]]"));
+  CHECK(failure(with("{1}", over + other + speed_up)) == "no failure");
+  CHECK_THAT(failure(with("{1}", over + "setting = 8\n" + other + speed_up)), Contains("no effect beside baseline"));
+}
+
+// By the edit distance alone g/rate would be nearer.
+TEST_CASE("of the names that may be meant one that begins with the word comes first", "[experiment]") {
+  const TemporaryFolder folder;
+  for (const char* name : {"fig4_smooth", "fig5_teapots", "rate"})
+    folder.write(std::string("experiments/g/") + name + ".toml", "");
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/fig4"}), Contains("(nearest: g/fig4_smooth)"));
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/fig4_smoth"}), Contains("(nearest: g/fig4_smooth)"));
+  CHECK_THROWS_WITH(choose_experiments(folder.path(), {"g/rat"}), Contains("(nearest: g/rate)"));
+}
+
 TEST_CASE("overrides go along with the values of a sweep", "[experiment]") {
   const std::string swept = "values = [0.5, 2]";
   const std::string along = ", with = { \"film.width\" = [4, 5], \"camera.position\" = [[0, 1, 2], [3, 4, 5]] }";

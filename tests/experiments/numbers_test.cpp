@@ -161,7 +161,7 @@ TEST_CASE("rate of kernels", "[driver]") {
 // A kind of vectors that is read and can be computed is a row of the experiment; one that compares nothing fails its
 // gate.
 TEST_CASE("the experiment of oracle vectors forgets no kind", "[driver]") {
-  const Experiment e = read_experiment(airlight::test::root, "reference/oracles", "quick");
+  const Experiment e = read_experiment(fs::path(airlight::test::root), "reference/oracles", "quick");
   for (const SceneCase& c : e.scenes) {
     std::set<std::string> listed, there;
     for (const MethodCase& m : e.methods)
