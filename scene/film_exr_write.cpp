@@ -5,14 +5,16 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
+#include <half.h>
 
 #include <algorithm>
+#include <list>
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 #include "scene/exr_header.h"
 #include "scene/exr_memory.h"
-#include "scene/film.h"
+#include "scene/film_exr.h"
 
 namespace airlight::scene {
 namespace {
@@ -24,21 +26,35 @@ void check_name(const std::string& path, const std::string& what, const std::str
     throw Error(fmt::format("{}: the {} name '{}' cannot be stored in an EXR file", path, what, name.substr(0, 80)));
 }
 
-void encode(const std::string& path, const Film& film, MemoryStream& stream) {
+std::vector<half> halved(const std::string& path, const std::string& layer, const std::vector<float>& values) {
+  std::vector<half> result(values.begin(), values.end());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (float(result[i]) != values[i])
+      throw Error(fmt::format("{}: layer '{}': {} is no 16-bit float", path, layer, values[i]));
+  return result;
+}
+
+void encode(const std::string& path, const Film& film, const std::set<std::string>& halves, MemoryStream& stream) {
   Imf::Header header(film.width, film.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer pixels;
+  std::list<std::vector<half>> converted;  // until the pixels are written
   for (const auto& [name, values] : film.layers) {
     check_name(path, "layer", name);
     if (values.size() != 3 * film.pixels())
       throw Error(
           fmt::format("{}: layer '{}' has {} values, expected {}", path, name, values.size(), 3 * film.pixels()));
+    const bool is_half = halves.count(name) != 0;
+    if (is_half) converted.push_back(halved(path, name, values));
+    const std::size_t size = is_half ? sizeof(half) : sizeof(float);
+    char* base = is_half ? reinterpret_cast<char*>(converted.back().data())
+                         : reinterpret_cast<char*>(const_cast<float*>(values.data()));
     for (int c = 0; c < 3; ++c) {
       const std::string channel = channel_name(name, "RGB"[c]);
       if (pixels.findSlice(channel)) throw Error(fmt::format("{}: two layers have a channel '{}'", path, channel));
-      header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-      char* base = reinterpret_cast<char*>(const_cast<float*>(values.data() + c));
-      pixels.insert(channel, Imf::Slice(Imf::FLOAT, base, 3 * sizeof(float), 3 * sizeof(float) * film.width));
+      const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
+      header.channels().insert(channel, Imf::Channel(type));
+      pixels.insert(channel, Imf::Slice(type, base + std::size_t(c) * size, 3 * size, 3 * size * film.width));
     }
   }
   for (const auto& [key, value] : film.metadata) {
@@ -50,22 +66,28 @@ void encode(const std::string& path, const Film& film, MemoryStream& stream) {
   file.writePixels(film.height);
 }  // the file is complete when it is closed
 
-}  // namespace
-
-void write_exr(const std::string& path, const Film& film, bool any_value) {
+void encode_to_file(const std::string& path, const Film& film, bool any_value, const std::set<std::string>& halves) {
   if (film.width < 1 || film.height < 1 || film.layers.empty())
     throw Error(fmt::format("{}: a film of {} x {} pixels and {} layers cannot be written", path, film.width,
                             film.height, film.layers.size()));
   if (!any_value) require_finite(film, path);
   MemoryStream stream;
   try {
-    encode(path, film, stream);
+    encode(path, film, halves, stream);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
     throw Error(fmt::format("{}: cannot encode: {}", path, std::string(error.what()).substr(0, 200)));
   }
   write_file_atomically(path, stream.bytes());
+}
+
+}  // namespace
+
+void write_exr(const std::string& path, const Film& film, bool any_value) { encode_to_file(path, film, any_value, {}); }
+
+void write_exr_with_halves(const std::string& path, const Film& film, const std::set<std::string>& halves) {
+  encode_to_file(path, film, false, halves);
 }
 
 }  // namespace airlight::scene

@@ -16,6 +16,7 @@
 #include <random>
 
 #include "scene/error.h"
+#include "scene/film_exr.h"
 #include "tests/temporary_folder.h"
 
 namespace film_test {
@@ -286,6 +287,21 @@ TEST_CASE("previews are sRGB with an exposure", "[film]") {
   CHECK(pixels_of(0) == std::vector<int>{188, 3, 0, 255, 255, 99, 255, 0, 255, 0, 0, 0});
   CHECK(pixels_of(2) == std::vector<int>{255, 13, 0, 255, 255, 188, 255, 0, 255, 0, 0, 0});
   CHECK_THROWS_AS(write_png(folder.file("x.png"), film, "airlight"), Error);
+}
+
+TEST_CASE("layers of 16-bit floats hold what such floats hold, and refuse the rest", "[film]") {
+  const TemporaryFolder folder;
+  Film film(3, 2);
+  film.add("mean")[4] = 1.0f / 3;
+  film.add("steps")[7] = -2047;
+  write_exr_with_halves(folder.file("a.exr"), film, {"steps"});
+  CHECK(read_exr(folder.file("a.exr")).layers == film.layers);
+  for (const float value : {2049.0f, 1.0f / 3, 1e5f}) {
+    film.layers["steps"][7] = value;
+    CHECK_THROWS_WITH(write_exr_with_halves(folder.file("b.exr"), film, {"steps"}),
+                      Contains("b.exr: layer 'steps'") && Contains("no 16-bit float"));
+  }
+  CHECK(folder.entries() == 1);
 }
 
 }  // namespace film_test
