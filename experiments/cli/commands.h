@@ -99,9 +99,10 @@ struct ExperimentOptions {
   std::string results, cache;  // folders; empty: results and results/cache below root
   std::vector<std::string> names;
   bool resume = false;
-  bool gates_only = false;  // experiments without gates are left out
-  bool in_tests = false;    // likewise those without in_tests = true
-  bool margins = false;     // how far each gate is from failing
+  bool gates_only = false;        // experiments without gates are left out
+  bool in_tests = false;          // likewise those without in_tests = true
+  bool margins = false;           // how far each gate is from failing
+  bool fresh_references = false;  // first makes all committed references of these experiments anew
   int threads = 0;
 };
 int list_experiments(const ExperimentOptions&);

@@ -7,6 +7,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/check.h"
+#include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
 #include "experiments/driver/margins.h"
@@ -68,6 +69,23 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     }
   }
   return experiments;
+}
+
+void make_references(const std::vector<Experiment>& experiments, int threads) {
+  const std::vector<CommittedReference> references = committed_references(experiments);
+  if (references.empty())
+    throw Error("--fresh-references: no experiment of this run has committed references (committed_references = true)");
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const CommittedReference& r = references[i];
+    double seconds = 0;
+    {
+      Progress progress(fmt::format("reference {} of {}: {}", i + 1, references.size(), r.asked_by));
+      seconds = make_committed(r, progress.execution(threads));
+    }
+    fmt::print("reference {} of {}: {}: {:.1f} s, {} KB: {}/{}\n", i + 1, references.size(), r.asked_by, seconds,
+               std::filesystem::file_size(r.file) / 1000, committed_folder, r.file.filename().string());
+    std::fflush(stdout);
+  }
 }
 
 // How runs into a folder of their own compare with the committed tables.
@@ -134,6 +152,7 @@ int run_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const Folders folders = folders_of(options);
   const std::vector<Experiment> experiments = read_and_check(options, folders, options.resume);
+  if (options.fresh_references) make_references(experiments, options.threads);
   std::optional<Error> failure;
   std::vector<GateResult> gates;
   std::vector<std::string> summaries;

@@ -263,6 +263,9 @@ int dispatch(int argc, char** argv) {
   run_flags(e);
   e->add_flag("--resume", experiment_options.resume,
               "continue an interrupted run: keep the rows that this program finished in this results folder");
+  e->add_flag("--fresh-references", experiment_options.fresh_references,
+              "first compute the committed references of these experiments anew and replace their films in "
+              "experiments/data/references");
   e->final_callback([&] { action = [&] { return run_experiments(experiment_options); }; });
   e = command(*experiment, "plot", "draw the plots of finished experiments again from their data");
   experiment_flags(e);

@@ -40,6 +40,7 @@ bool is_on(const MethodCase&, const SceneCase&);
 struct ReferenceCase {
   std::string renderer;  // empty: nothing is compared
   Pairs settings;
+  std::filesystem::path committed;  // folder of committed films; empty: none is asked for
 };
 
 struct TimingRule {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/driver/committed_references.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/next_frames.h"
 #include "experiments/driver/pictures.h"
@@ -29,7 +30,8 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
   RunProgress::Step step = keeper.reference_step(c);
   scene::Execution execution = step.execution(e.timing.threads);
   execution.store = &keeper.store();
-  judged.reference = reference_for(planned.scene, *planned.reference, *planned.reference_settings, execution);
+  judged.reference =
+      reference_for(planned.scene, *planned.reference, *planned.reference_settings, execution, planned.committed);
   const Reference& reference = *judged.reference;
   if (reference.cached) step.spare();
   judged.exposure = exposure_of(reference.film, e.layer);
@@ -43,8 +45,13 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
                      judged.exposure,
                      ""};
   keep_picture(keeper.images(), info.image, reference.film, e.layer, judged.exposure);
-  const auto samples = reference.film.metadata.find("samples");
-  if (samples != reference.film.metadata.end()) info.samples = samples->second;
+  const auto& metadata = reference.film.metadata;
+  if (const auto samples = metadata.find("samples"); samples != metadata.end()) info.samples = samples->second;
+  if (reference.committed) {
+    info.committed = fmt::format("{}/{}", committed_folder, planned.committed.filename().string());
+    info.program = metadata.at("program");
+    info.kept = metadata.at("kept");
+  }
   keeper.add(info);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/build_info.h"
+#include "experiments/driver/committed_references.h"
 #include "experiments/driver/reference_cache.h"
 #include "experiments/interrupt.h"
 #include "experiments/machine.h"
@@ -56,7 +57,10 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
   if (!e.reference.renderer.empty()) {
     planned.reference = &find_renderer(e.reference.renderer, "reference");
     planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
-    reference = reference_key(scene, *planned.reference, *planned.reference_settings);
+    if (!e.reference.committed.empty())
+      planned.committed =
+          committed_file(e.reference.committed, scene, *planned.reference, *planned.reference_settings, e.layer);
+    reference = reference_key(scene, *planned.reference, *planned.reference_settings, planned.committed);
   }
   for (const MethodCase& m : e.methods) {
     if (!is_on(m, c)) continue;

@@ -22,7 +22,8 @@ struct PlannedScene {
   std::shared_ptr<const scene::Scene> scene;
   const scene::Renderer* reference = nullptr;  // null: nothing is compared
   std::optional<scene::Settings> reference_settings;
-  std::vector<PlannedRow> rows;  // in the order of the experiment's methods
+  std::filesystem::path committed;  // the reference's film, there or not; empty: none is asked for
+  std::vector<PlannedRow> rows;     // in the order of the experiment's methods
 };
 
 // Loads the scene. A row's key is the content of all that its figures and times depend on: scene, method, reference,

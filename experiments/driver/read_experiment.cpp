@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "experiments/driver/bounds.h"
+#include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/experiment.h"
 #include "experiments/driver/next_frames.h"
@@ -116,7 +117,7 @@ class Reader {
       const auto table = profiles->table(name);
       if (!table) continue;
       TableReader reader = *table;
-      reader.allow({"overrides", "reference", "runs", "budget"});
+      reader.allow({"overrides", "reference", "runs", "budget", "committed_references"});
       const toml::table& raw = *toml_.get("profile")->as_table()->get(name)->as_table();
       const Pairs changed = overrides(raw, "overrides", reader);
       const Pairs finer = settings(raw, "reference", reader);
@@ -124,9 +125,14 @@ class Reader {
       const double budget = reader.number("budget", scene::load::not_negative, rule.budget);
       if (reader.has("runs") && budget == 0)
         reader.fail("runs", "has no effect where budget = 0: then the picture is rendered once");
+      const bool committed = reader.flag("committed_references", false);
+      if (committed && !images()) reader.fail("committed_references", "only pictures have committed references");
+      if (committed && !toml_.contains("reference"))
+        reader.fail("committed_references", "there is no [reference] that could be committed");
       if (name != experiment_.profile) continue;
       scene_overrides = changed;
       reference_settings = finer;
+      if (committed) experiment_.reference.committed = root_ / committed_folder;
       rule.runs = runs;
       rule.budget = budget;
     }
@@ -182,6 +188,10 @@ class Reader {
     experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
     for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
     check_component(*reader, experiment_.reference.renderer, experiment_.reference.settings);
+    if (!experiment_.reference.committed.empty() && !is_reference(find_renderer(experiment_.reference.renderer, "")))
+      reader->fail(component_key(),
+                   "committed_references = true, but only those of reference/ may be committed: a test renders "
+                   "a part of each anew");
   }
 
   void scenes(const TableReader& top, const Pairs& of_profile) {
@@ -220,6 +230,11 @@ class Reader {
     }
     if (numbers() && !top.has("scene")) experiment_.scenes.emplace_back();
     if (experiment_.scenes.empty()) top.fail("", "there is no [[scene]] in this profile");
+    if (!experiment_.reference.committed.empty() && !experiment_.sequences.empty())
+      top.fail(
+          "",
+          "committed_references = true, and a scene shows a sequence: its frames are simulated on each machine, so "
+          "that a committed film may not be of the same smoke");
   }
 
   void methods(const TableReader& top) {

@@ -78,7 +78,10 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
                                {"settings", r.settings},
                                {"seconds", r.seconds},
                                {"samples", r.samples},
-                               {"from_cache", r.cached}});
+                               {"from_cache", r.cached},
+                               {"committed", r.committed},
+                               {"made_by", r.program},
+                               {"kept", r.kept}});
   j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
   if (e.stages) j["tables"].push_back({{"file", "stages.csv"}, {"title", "Stages"}});
   if (!e.expected.empty()) j["tables"].push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});

@@ -236,8 +236,11 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   out += "## Conditions\n\n";
   if (const std::string warning = load_warning(outcome); !warning.empty()) out += fmt::format("- **{}.**\n", warning);
   for (const ReferenceInfo& r : outcome.references)
-    out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once.\n", r.scene, r.renderer, r.settings,
-                       r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds));
+    out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once{}.\n", r.scene, r.renderer, r.settings,
+                       r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds),
+                       r.committed.empty() ? ""
+                                           : fmt::format("; read from the committed film `{}`, made by {}: {}",
+                                                         r.committed, r.program, r.kept));
   std::set<std::string> devices;
   for (const Row& row : outcome.rows)
     if (!row.device.empty()) devices.insert(row.device);
