@@ -132,7 +132,7 @@ class Reader {
       if (name != experiment_.profile) continue;
       scene_overrides = changed;
       reference_settings = finer;
-      if (committed) experiment_.reference.committed = root_ / committed_folder;
+      if (committed) experiment_.reference.committed = folders_.root / committed_folder;
       rule.runs = runs;
       rule.budget = budget;
     }
