@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "experiments/build_info.h"
 #include "scene/content_key.h"
@@ -21,20 +23,40 @@
 namespace airlight::experiments {
 namespace {
 
-// Values from -1 to 1 at the corners of a lattice, smooth between them.
+// Values from -1 to 1 at the eight corners of a cell of a lattice. Samples that lie side by side mostly ask for the same few cells, so each
+// thread keeps those that it used last: random numbers are nearly all of the time that noise takes.
+const std::array<double, 8>& corners_of(const Eigen::Vector3i& low, std::uint32_t stream) {
+  struct Cell {
+    Eigen::Vector3i low;
+    std::uint32_t stream;
+    std::array<double, 8> corners;
+  };
+  constexpr std::size_t count = 256;
+  thread_local std::vector<std::optional<Cell>> cells(count);
+  const std::uint32_t slot =
+      std::uint32_t(low[0]) + 5 * std::uint32_t(low[1]) + 23 * std::uint32_t(low[2]) + 89 * stream;
+  std::optional<Cell>& cell = cells[slot % count];
+  if (!cell || cell->low != low || cell->stream != stream) {
+    cell = Cell{low, stream, {}};
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      PhiloxCounter at = {0, 0, 0, stream};
+      for (std::size_t a = 0; a < 3; ++a) at[a] = std::uint32_t(low[Eigen::Index(a)] + int(corner >> a & 1));
+      cell->corners[corner] = 2 * uniform32(philox4x32_10(at, {53, 1})[0]) - 1;
+    }
+  }
+  return cell->corners;
+}
+
+// Smooth between the corners of a lattice.
 double noise(const Vec3& p, std::uint32_t stream) {
   const Vec3 low = p.array().floor();
   const Vec3 f = p - low, w = f.array().square() * (3 - 2 * f.array());
+  const std::array<double, 8>& corners = corners_of(low.cast<int>(), stream);
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    PhiloxCounter at = {0, 0, 0, stream};
     double weight = 1;
-    for (int a = 0; a < 3; ++a) {
-      const int up = corner >> a & 1;
-      at[std::size_t(a)] = std::uint32_t(int(low[a]) + up);
-      weight *= up ? w[a] : 1 - w[a];
-    }
-    sum += weight * (2 * uniform32(philox4x32_10(at, {53, 1})[0]) - 1);
+    for (int a = 0; a < 3; ++a) weight *= corner >> a & 1 ? w[a] : 1 - w[a];
+    sum += weight * corners[std::size_t(corner)];
   }
   return sum;
 }

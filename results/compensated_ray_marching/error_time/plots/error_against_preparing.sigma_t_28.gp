@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.002188:0.980434]
+set xrange [0.00421156:3.60115]
 set logscale y
 set format y "%g"
-set yrange [0.00962541:0.762486]
+set yrange [0.0203063:0.73022]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_preparing.sigma_t_28.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \
@@ -30,7 +30,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
      data index 12 using 2:5 with linespoints lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "path tracer", \
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     0.0121658 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0246025 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_preparing.sigma_t_28.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \
@@ -47,4 +47,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 10 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#56B4E9" pt 0 lw 0.8 notitle, \
      data index 12 using 2:5 with linespoints lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "path tracer", \
      data index 12 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#000000" pt 0 lw 0.8 notitle, \
-     0.0121658 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0246025 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [38.9582:4106.96]
 set logscale y
 set format y "%g"
-set yrange [0.00217644:33.054]
+set yrange [0.00873595:30.5535]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "squared_error_against_gaussians.smoke.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "48^3", \

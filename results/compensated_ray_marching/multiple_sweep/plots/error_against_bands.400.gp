@@ -13,18 +13,18 @@ set format x "%g"
 set xrange [0.898072:6.68098]
 set logscale y
 set format y "%g"
-set yrange [0.00779787:0.578549]
+set yrange [0.0091894:0.570979]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_bands.400.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper by bands", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "grid by bands", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.012106 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0174454 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_bands.400.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper by bands", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "grid by bands", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.012106 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0174454 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [42.3373:944.794]
 set logscale y
 set format y "%g"
-set yrange [0.00547812:3.25977]
+set yrange [0.0083373:3.18597]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_gaussians.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 40 iterations", \
@@ -22,7 +22,8 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "grid", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     0.0120321 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
+     0.0171694 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_gaussians.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 40 iterations", \
@@ -31,4 +32,5 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "grid", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     0.0120321 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
+     0.0171694 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

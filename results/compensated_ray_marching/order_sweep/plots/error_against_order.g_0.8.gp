@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.861488:13.9294]
 set logscale y
 set format y "%g"
-set yrange [0.0200926:0.908987]
+set yrange [0.0199401:0.902463]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_order.g_0.8.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, HYB", \
@@ -26,7 +26,8 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 8 using 2:5 with linespoints lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "grid", \
      data index 8 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#E69F00" pt 0 lw 0.8 notitle, \
-     0.0246448 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 9 using 2:5 with points lc rgb "#E69F00" pt 10 ps 0.9 notitle, \
+     0.034434 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_order.g_0.8.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, HYB", \
@@ -39,4 +40,5 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 8 using 2:5 with linespoints lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "grid", \
      data index 8 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#E69F00" pt 0 lw 0.8 notitle, \
-     0.0246448 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 9 using 2:5 with points lc rgb "#E69F00" pt 10 ps 0.9 notitle, \
+     0.034434 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -10,29 +10,23 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.79273:60.5502]
+set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [0.0070693:0.0656803]
+set yrange [0.00921792:0.0548109]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.g_0.5.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "levels of ordinates", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "order", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "azimuths", \
-     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "order", \
-     data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
-     0.0152229 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
+     0.0218268 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_cells.g_0.5.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "levels of ordinates", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "order", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "azimuths", \
-     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "order", \
-     data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
-     0.0152229 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
+     0.0218268 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.79273:60.5502]
+set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [0.0184191:0.209986]
+set yrange [0.0213217:0.209512]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.g_0.8__albedo_0.97.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
@@ -24,7 +24,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "order", \
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
-     0.0209841 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0293714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_cells.g_0.8__albedo_0.97.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
@@ -35,4 +35,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "order", \
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
-     0.0209841 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0293714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

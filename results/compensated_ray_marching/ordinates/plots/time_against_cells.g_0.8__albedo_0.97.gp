@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.79273:60.5502]
+set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [0.0191506:3.19294]
+set yrange [0.0568865:4.68002]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_cells.g_0.8__albedo_0.97.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \

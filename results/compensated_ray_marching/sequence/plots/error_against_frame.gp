@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.867798:28.9616]
+set xrange [1.33375:28.2655]
 set logscale y
 set format y "%g"
-set yrange [0.00493649:0.562047]
+set yrange [0.00563491:0.557853]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_frame.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00220471:0.600567]
+set xrange [0.00476913:2.78648]
 set logscale y
 set format y "%g"
-set yrange [3.12469e-05:0.486092]
+set yrange [3.12453e-05:0.486031]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.f100.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00210017:6.80978]
+set xrange [0.00574991:25.4505]
 set logscale y
 set format y "%g"
-set yrange [0.00222506:4.53589]
+set yrange [0.00236541:4.09084]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.tube.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

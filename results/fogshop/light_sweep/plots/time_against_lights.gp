@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.846745:18.8959]
 set logscale y
 set format y "%g"
-set yrange [0.000303426:0.0581333]
+set yrange [0.000500041:0.292677]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_lights.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

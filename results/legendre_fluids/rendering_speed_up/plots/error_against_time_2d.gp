@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [4.15175e-05:0.10233]
+set xrange [4.93265e-05:0.598919]
 set logscale y
 set format y "%g"
 set yrange [4.87578e-07:0.200686]

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00010277:0.0492495]
+set xrange [0.000106348:0.165475]
 set logscale y
 set format y "%g"
-set yrange [0.000121649:0.268792]
+set yrange [0.00012216:0.268766]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time_3d.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray, 3D", \

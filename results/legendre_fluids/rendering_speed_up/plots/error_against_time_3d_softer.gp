@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000102552:0.0491561]
+set xrange [0.000153708:0.132194]
 set logscale y
 set format y "%g"
-set yrange [3.71293e-05:0.335826]
+set yrange [3.55642e-05:0.330543]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time_3d_softer.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray, 3D, softer", \

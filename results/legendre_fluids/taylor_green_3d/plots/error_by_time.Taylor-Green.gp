@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000184583:35.8922]
+set xrange [0.00045943:28.4]
 set logscale y
 set format y "%g"
 set yrange [4.16228e-05:0.571345]

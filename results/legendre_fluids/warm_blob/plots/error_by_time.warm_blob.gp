@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000361071:53.6538]
+set xrange [0.000922696:20.281]
 set logscale y
 set format y "%g"
 set yrange [0.00197064:0.840824]

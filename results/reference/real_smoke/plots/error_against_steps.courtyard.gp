@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [6.77396:151.167]
 set logscale y
 set format y "%g"
-set yrange [0.00109351:0.0329759]
+set yrange [0.00213225:0.0318341]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_steps.courtyard.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -21,7 +21,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "ray marcher, 32 directions", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.00399989 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00565714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_steps.courtyard.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -29,4 +29,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "ray marcher, 32 directions", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.00399989 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00565714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0125385:1.78841]
+set xrange [0.0660788:13.7477]
 set logscale y
 set format y "%g"
-set yrange [0.0010397:0.0804113]
+set yrange [0.00202795:0.0772108]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.courtyard.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -23,7 +23,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "path tracer", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     0.00399989 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00565714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_time.courtyard.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -33,4 +33,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "path tracer", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
-     0.00399989 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00565714 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -10,10 +10,10 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000834453:0.62317]
+set xrange [0.00670932:4.60772]
 set logscale y
 set format y "%g"
-set yrange [0.00627454:0.48724]
+set yrange [0.00908892:0.478038]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.sun.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -21,7 +21,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "path tracer", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.0239341 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0339558 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_time.sun.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "ray marcher", \
@@ -29,4 +29,4 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
      data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "path tracer", \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     0.0239341 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.0339558 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -13,16 +13,16 @@ set format x "%g"
 set xrange [0.882703:9.06307]
 set logscale y
 set format y "%g"
-set yrange [0.000663505:0.649928]
+set yrange [0.000933214:0.636095]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "missing_light_against_order.elephant.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "path tracer, orders up to", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     0.000959572 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00132366 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "missing_light_against_order.elephant.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "path tracer, orders up to", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     0.000959572 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.00132366 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

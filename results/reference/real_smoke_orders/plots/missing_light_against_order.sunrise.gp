@@ -13,14 +13,14 @@ set format x "%g"
 set xrange [0.882703:9.06307]
 set logscale y
 set format y "%g"
-set yrange [0.00034681:0.288619]
+set yrange [0.000359813:0.289246]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "missing_light_against_order.sunrise.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "path tracer, orders up to", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     0.000497202 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.000514887 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "missing_light_against_order.sunrise.png"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "path tracer, orders up to", \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     0.000497202 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
+     0.000514887 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
