@@ -292,7 +292,7 @@ TEST_CASE("the guard passes what the program computes, and finds what it does no
   }
 }
 
-TEST_CASE("--fresh-references makes the films, and says how long it took", "[committed_references][cli]") {
+TEST_CASE("the option --fresh-references makes the films, and says how long it took", "[committed_references][cli]") {
   const Project project(noisy_experiment);
   const Result missing = run("experiment run g/e --root .", project);
   CHECK(missing.code == 0);

@@ -128,10 +128,14 @@ TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching]
   coloured->media[0].phase = scene::HenyeyGreenstein{0.6};
   coloured->ambient_in_scatter = Rgb(0.1, 0.2, 0.3);
   finish(*coloured);
-  for (const char* order : {"1", "2", "3", "4", "5", "6"})
-    for (const char* transmittance : {"ol", "hyb", "series", "directional"}) {
-      CAPTURE(order, transmittance);
-      compare(coloured, paper({{"order", order}, {"transmittance", transmittance}, {"iterations", "12"}}));
+  // All pairs of order and transmittance up to order 3; above it, where systems are large, half of them.
+  const char* const transmittances[] = {"ol", "hyb", "series", "directional"};
+  for (int order = 1; order <= 6; ++order)
+    for (int t = 0; t < 4; ++t) {
+      if (order > 3 && (order + t) % 2) continue;
+      CAPTURE(order, transmittances[t]);
+      compare(coloured,
+              paper({{"order", std::to_string(order)}, {"transmittance", transmittances[t]}, {"iterations", "12"}}));
     }
   for (Given more : {Given{{"multiple", "none"}}, Given{{"multiple", "corrected"}}, Given{{"iterations", "1"}},
                      Given{{"solver", "cg_scaled"}}, Given{{"solver", "lsqr"}}, Given{{"solver", "lsqr_scaled"}},
