@@ -45,6 +45,13 @@ std::string shown(const Folders& folders, const std::string& name) {
   return ((folders.default_results() ? "results" : folders.results) / name).string();
 }
 
+// Tests judge errors: each picture is rendered once, without timed runs, unless a gate judges a time.
+void leave_out_times(Experiment& e) {
+  for (const GateCase& gate : e.gates)
+    if (judges_time(gate.metric)) return;
+  e.timing.budget = 0;
+}
+
 // All of them, before the first is computed. Only those with gates where these are all that is asked for.
 std::vector<Experiment> read_and_check(const ExperimentOptions& options, const Folders& folders, bool resume) {
   check_writable(folders.results, "--results names another folder");
@@ -55,6 +62,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     if (options.gates_only && e.gates.empty()) continue;
     if (options.in_tests && !e.in_tests) continue;
     if (options.threads > 0) e.timing.threads = options.threads;
+    if (options.in_tests) leave_out_times(e);
     experiments.push_back(std::move(e));
   }
   Progress progress("checking the experiments");
@@ -213,7 +221,8 @@ int gates(const ExperimentOptions& options) {
     progress.begin(i);
     const std::size_t before = results.size();
     try {
-      const Outcome outcome = run_experiment(e, {folders, true, options.threads, false, true, &progress});
+      const Outcome outcome =
+          run_experiment(e, {folders, true, options.threads, false, true, &progress, !options.in_tests});
       results.insert(results.end(), outcome.gates.begin(), outcome.gates.end());
     } catch (const scene::CannotWrite&) {
       throw;  // says nothing about accuracy

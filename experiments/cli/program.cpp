@@ -279,8 +279,10 @@ int dispatch(int argc, char** argv) {
               "list how many times worse each figure could be before its gate fails, the loosest first");
   c->add_option("--margins-csv", experiment_options.margins_csv, "write those margins to this CSV file")
       ->type_name("FILE");
-  c->add_flag("--in-tests", experiment_options.in_tests,
-              "only experiments that say in_tests = true, as scripts/test does");
+  c->add_flag(
+      "--in-tests", experiment_options.in_tests,
+      "only experiments that say in_tests = true, as scripts/test does; without timed runs unless a gate judges a "
+      "time, and without tables");
   c->final_callback([&] {
     experiment_options.gates_only = true;
     action = [&] { return gates(experiment_options); };

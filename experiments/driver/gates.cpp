@@ -21,7 +21,7 @@ std::string name_of(const Experiment& experiment, const GateCase& gate, const Ro
 }
 
 std::string kind_of(const Row& row, const std::string& metric) {
-  if (metric.ends_with("seconds") && !metric.starts_with("counter.")) return "time";
+  if (judges_time(metric)) return "time";
   if (metric.rfind("counter.", 0) == 0) return "counter";
   for (const char* test : {"objections", "largest_z", "detectable_bias"})
     if (metric == test) return "Monte Carlo";  // of equality but for noise
@@ -76,6 +76,8 @@ GateCounts count(const std::vector<GateResult>& gates) {
 }
 
 const char* word(const GateResult& gate) { return gate.skipped ? "skipped" : gate.passed ? "ok" : "FAILED"; }
+
+bool judges_time(const std::string& metric) { return metric.ends_with("seconds") && !metric.starts_with("counter."); }
 
 std::vector<GateResult> judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::vector<GateResult> results;

@@ -93,7 +93,7 @@ Outcome RowKeeper::run(const Plan& plan) {
   outcome_.complete = !stopped && !failure;
   outcome_.seconds = steady_seconds() - start;
   outcome_.gates = judge(outcome_.experiment, outcome_.rows);
-  if (!outcome_.rows.empty()) write();
+  if (!outcome_.rows.empty() && options_.tables) write();
   if (stopped) throw scene::Interrupted("interrupted");
   if (failure) throw Error(*failure);
   return outcome_;

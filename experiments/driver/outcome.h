@@ -39,6 +39,7 @@ struct GateCounts {
 };
 GateCounts count(const std::vector<GateResult>&);
 const char* word(const GateResult&);  // ok, skipped or FAILED
+bool judges_time(const std::string& metric);
 
 struct Outcome {
   Experiment experiment;

@@ -16,6 +16,7 @@ struct RunOptions {
   bool talk = true;                 // one line per row on standard output
   bool checked = false;             // check_experiment has found no fault
   RunProgress* progress = nullptr;  // where this experiment has begun; null: of its own
+  bool tables = true;               // false: only gates are wanted, so no tables, plots and record are written
 };
 
 // Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.

@@ -16,18 +16,18 @@ namespace {
 constexpr double thinnest_box = 0.03;
 constexpr Eigen::Index outside = -1;
 
+// Between two cells, or a cell and what is outside: flux = (L0 of low - L0 of high + push) / resistance along the axis, L0 outside 0. The push
+// is half a cell's s J1 on either side.
+struct Face {
+  Eigen::Index low, high;
+  int axis;
+  double resistance;
+};
+
 }  // namespace
 
 // The solver refers to the matrix beside it: both stay where they are.
 struct P1Grid::System {
-  // Between two cells, or a cell and what is outside: flux = (L0 of low - L0 of high + push) / resistance along the axis,
-  // L0 outside 0. The push is half a cell's s J1 on either side.
-  struct Face {
-    Eigen::Index low, high;
-    int axis;
-    double resistance;
-  };
-
   OrdinateGrid grid;
   Eigen::ArrayXd extinction;
   double albedo, g;
@@ -91,7 +91,7 @@ P1Grid::P1Grid(const OrdinateGrid& grid, const Eigen::ArrayXd& extinction, doubl
   }
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index i = 0; i < grid.nodes(); ++i) entries.emplace_back(i, i, (1 - albedo) * extinction[i]);
-  for (const System::Face& f : s.faces) {
+  for (const Face& f : s.faces) {
     const double share = 1 / (f.resistance * grid.cell[f.axis]);
     for (const Eigen::Index i : {f.low, f.high})
       if (i != outside) entries.emplace_back(i, i, share);
@@ -124,7 +124,7 @@ P1Solution P1Grid::solve(const Moments& source, int order, const Moments* before
     for (int a = 0; a < 3 && order > 1; ++a)
       direction.col(a) = sign[std::size_t(a)] * source.col(light + harmonic[std::size_t(a)]) / direction_scale;
     Eigen::VectorXd right = s.extinction * source.col(light) / mean_scale;
-    for (const System::Face& f : s.faces) {
+    for (const Face& f : s.faces) {
       const double flows = s.pushed(f, direction) / (f.resistance * s.grid.cell[f.axis]);
       if (f.low != outside) right[f.low] -= flows;
       if (f.high != outside) right[f.high] += flows;
@@ -139,7 +139,7 @@ P1Solution P1Grid::solve(const Moments& source, int order, const Moments* before
     if (order < 2) continue;
     // A node's flux is the mean of its two faces'; along an axis without ends that of the source alone.
     Eigen::ArrayXXd flux = Eigen::ArrayXXd::Zero(nodes, 3);
-    for (const System::Face& f : s.faces) {
+    for (const Face& f : s.faces) {
       const double half = 0.5 * s.flux(f, mean, direction);
       for (const Eigen::Index i : {f.low, f.high})
         if (i != outside) flux(i, f.axis) += half;

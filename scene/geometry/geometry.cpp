@@ -15,6 +15,13 @@
 namespace airlight::scene {
 namespace {
 
+// A primitive of the tree: a triangle of a mesh with its vertices beside it, or a whole sphere.
+struct Primitive {
+  int surface;
+  int triangle;  // -1 for a sphere
+  Point3 a, b, c;
+};
+
 Box box_of(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
   Box box;
   for (const int v : triangle) box = unite(box, {mesh.vertices[v], mesh.vertices[v]});
@@ -47,13 +54,6 @@ void check(const Surface& surface) {
 }  // namespace
 
 struct Geometry::Impl {
-  // A primitive of the tree: a triangle of a mesh with its vertices beside it, or a whole sphere.
-  struct Primitive {
-    int surface;
-    int triangle;  // -1 for a sphere
-    Point3 a, b, c;
-  };
-
   std::vector<Surface> surfaces;
   std::vector<Primitive> primitives;
   std::vector<int> planes;  // surfaces; few, and without bounds: tested one by one, outside the tree
@@ -105,7 +105,7 @@ Geometry::Geometry(const std::vector<Surface>& surfaces) : impl_(std::make_uniqu
   for (const Surface& surface : surfaces) check(surface);
   impl_->surfaces = surfaces;
   std::vector<Box> boxes;
-  const auto add = [&](Impl::Primitive primitive, const Box& box) {
+  const auto add = [&](Primitive primitive, const Box& box) {
     impl_->primitives.push_back(primitive);
     boxes.push_back(box);
     impl_->bounds = unite(impl_->bounds, box);
