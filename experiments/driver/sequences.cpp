@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/driver/toml_values.h"
 #include "experiments/fit_sequence.h"
 #include "experiments/frames.h"
 #include "experiments/json.h"
+#include "experiments/json_value.h"
 #include "experiments/progress.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"

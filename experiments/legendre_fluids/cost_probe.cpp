@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <ctime>
 
@@ -9,6 +8,7 @@
 #include "experiments/stable_fluids/stages.h"
 #include "methods/legendre_fluids/confined_fluid.h"
 #include "methods/legendre_fluids/paper_operators.h"
+#include "scene/math/dense.h"
 
 namespace airlight::experiments {
 namespace {
@@ -94,7 +94,7 @@ std::function<void()> part_of(const std::string& part, int n) {
     const auto laplacian = std::make_shared<legendre_fluids::PaperLaplacian>(3, n, Vec3::Ones());
     const auto m = std::make_shared<MatrixXd>(
         dense(space->scalars(), [&](const Array& c) -> Array { return c - 1e-3 * (*laplacian)(c); }));
-    return [=] { m->partialPivLu().solve(f); };
+    return [=] { scene::SquareFactors(*m).solve(f); };
   }
   legendre_fluids::PaperAdvection advection(3, n, legendre_fluids::Truncation::chebyshev);
   advection.set_velocity({f, g, f});

@@ -1,9 +1,9 @@
 #include "experiments/verify/ball_transport.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "scene/math/dense.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
@@ -25,7 +25,7 @@ BallTransport::BallTransport(const BallLight& light) : light_(light), bands_(int
   Eigen::MatrixXd values(points, points);
   for (int i = 0; i < points; ++i)
     for (int k = 0; k < points; ++k) values(i, k) = legendre(k, rule.node[std::size_t(i)]);
-  interpolation_ = values.inverse();
+  interpolation_ = scene::inverse(values);
   const auto n = Eigen::Index(node_.size()) * bands_;
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd right(n);
@@ -34,7 +34,7 @@ BallTransport::BallTransport(const BallLight& light) : light_(light), bands_(int
       const Eigen::Index row = Eigen::Index(i) * bands_ + l;
       system.row(row) -= moment_row(l, node_[i], right[row]);
     }
-  moments_ = system.partialPivLu().solve(right);
+  moments_ = scene::SquareFactors(system).solve(right);
 }
 
 double BallTransport::depth_from_face(double impact, double along) const {

@@ -1,8 +1,9 @@
 #include "experiments/verify/ray_quadrature.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "scene/math/dense.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::experiments::verification {
@@ -24,7 +25,7 @@ struct Panel {
         integrals(i, k) =
             k == 0 ? x + 1 : (std::legendre(unsigned(k + 1), x) - std::legendre(unsigned(k - 1), x)) / (2 * k + 1);
       }
-    up_to = 0.5 * integrals * powers.inverse();
+    up_to = 0.5 * integrals * scene::inverse(powers);
     for (double& x : rule.node) x = 0.5 * (1 + x);
     for (double& w : rule.weight) w *= 0.5;
   }

@@ -1,10 +1,8 @@
 #include "experiments/verify/slab_transport.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
+#include "scene/math/dense.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
@@ -38,14 +36,14 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
     sides[l % 2] -= light.albedo * (2 * l + 1) * light.phase[std::size_t(l)] * p * p.transpose();
   }
   const Eigen::VectorXd slowness = mu_.cwiseInverse();
-  const Eigen::MatrixXd lower = sides[0].llt().matrixL();
+  const Eigen::MatrixXd lower = scene::DefiniteFactors(sides[0]).lower();
   const Eigen::MatrixXd inner = slowness.asDiagonal() * lower;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(inner.transpose() * sides[1] * inner);
-  rate_ = modes.eigenvalues().cwiseSqrt();
-  const Eigen::MatrixXd weighted = lower.transpose().triangularView<Eigen::Upper>().solve(modes.eigenvectors());
+  const scene::SymmetricModes modes = scene::symmetric_modes(inner.transpose() * sides[1] * inner);
+  rate_ = modes.values.cwiseSqrt();
+  const Eigen::MatrixXd weighted = scene::solve_upper(lower.transpose(), modes.vectors);
   sum_ = root.cwiseInverse().asDiagonal() * weighted;
-  difference_ =
-      root.cwiseInverse().asDiagonal() * sides[1].llt().solve(mu_.asDiagonal() * weighted * rate_.asDiagonal());
+  difference_ = root.cwiseInverse().asDiagonal() *
+                scene::DefiniteFactors(sides[1]).solve(mu_.asDiagonal() * weighted * rate_.asDiagonal());
   even_ = 2 * light.emission / (1 - light.albedo);
 
   // What comes in: (S + D) / 2 at the top, (S - D) / 2 at the bottom.
@@ -56,7 +54,7 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
   Eigen::VectorXd comes(2 * directions);
   comes.head(directions).setConstant(2 * light.top - even_);
   comes.tail(directions).setConstant(2 * light.bottom - even_);
-  const Eigen::VectorXd shares = faces.partialPivLu().solve(comes);
+  const Eigen::VectorXd shares = scene::SquareFactors(faces).solve(comes);
   falling_ = shares.head(directions);
   growing_ = shares.tail(directions);
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/math/dense.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {
@@ -345,7 +345,7 @@ OrdinateSolution DiscreteOrdinates::solve(const Moments& source, double inflow, 
       for (int j = 0; j <= i; ++j) gram(i, j) = gram(j, i) = product(misses[std::size_t(i)], misses[std::size_t(j)]);
       right[i] = product(misses[std::size_t(i)], missed);
     }
-    const Eigen::VectorXd shares = gram.completeOrthogonalDecomposition().solve(right);
+    const Eigen::VectorXd shares = scene::LeastNormFactors(gram).solve(right);
     for (int i = 0; i < n; ++i) at -= shares[i] * steps[std::size_t(i)];
   }
   return solution;

@@ -1,12 +1,12 @@
 #include "methods/compensated_ray_marching/sphere_shadow.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/error.h"
+#include "scene/math/dense.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {
@@ -51,7 +51,7 @@ double fit(const HarmonicExponential& exponential, const Eigen::VectorXd& visibl
     for (; !better && damping < 1e12; damping *= better ? 0.1 : 8) {
       Eigen::MatrixXd damped = normal;
       damped.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
-      Eigen::VectorXd next = f + damped.ldlt().solve(right);
+      Eigen::VectorXd next = f + scene::solve_definite(damped, right);
       if (const double length = next.tail(n - 1).norm(); length > longest) next.tail(n - 1) *= longest / length;
       const Eigen::VectorXd then = missed(next);
       better = then.allFinite() && then.squaredNorm() < now.squaredNorm();

@@ -1,8 +1,9 @@
 #include "methods/legendre_fluids/confined_space.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {
 namespace {
@@ -35,16 +36,17 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
   free_modes_ = pressure_modes_ = MatrixXd::Identity(n, n);
   free_rates_ = Array::Zero(n);
   if (n > 1) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> wall(mass_);
-    wall_modes_ = wall.eigenvectors();
-    wall_rates_ = wall.eigenvalues().cwiseInverse();
+    const scene::SymmetricModes wall = scene::symmetric_modes(mass_);
+    wall_modes_ = wall.vectors;
+    wall_rates_ = wall.values.cwiseInverse();
     inverse_ = wall_modes_ * wall_rates_.asDiagonal() * wall_modes_.transpose();
     pressure_modes_.bottomRightCorner(n - 1, n - 1) = wall_modes_;
     // The constant is a mode to the last bit, so that diffusion keeps the mass.
     const MatrixXd slope = scene::legendre_derivative(n);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> free((slope.transpose() * slope).bottomRightCorner(n - 1, n - 1));
-    free_modes_.bottomRightCorner(n - 1, n - 1) = free.eigenvectors();
-    free_rates_.tail(n - 1) = free.eigenvalues();
+    const scene::SymmetricModes free =
+        scene::symmetric_modes((slope.transpose() * slope).bottomRightCorner(n - 1, n - 1));
+    free_modes_.bottomRightCorner(n - 1, n - 1) = free.vectors;
+    free_rates_.tail(n - 1) = free.values;
   }
   to_wall_modes_ = wall_modes_.transpose();
   to_free_modes_ = free_modes_.transpose();

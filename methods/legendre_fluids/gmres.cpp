@@ -3,6 +3,8 @@
 #include <Eigen/Jacobi>
 #include <vector>
 
+#include "scene/math/dense.h"
+
 namespace airlight::legendre_fluids {
 
 GmresResult gmres(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& apply, const Eigen::VectorXd& right,
@@ -37,7 +39,7 @@ GmresResult gmres(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& 
     else
       result.residual = 0;
   }
-  const Eigen::VectorXd weights = triangle.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(rest.head(k));
+  const Eigen::VectorXd weights = scene::solve_upper(triangle.topLeftCorner(k, k), rest.head(k));
   for (int i = 0; i < k; ++i) result.x += weights[i] * basis[std::size_t(i)];
   result.iterations = k;
   return result;

@@ -56,7 +56,7 @@ LightSystem::LightSystem(const DensityProduct& product, const Vec3& rate, double
   Eigen::MatrixXd equation(unknowns, unknowns);
   for (int k = 0; k < unknowns; ++k) equation.col(k) = apply(Eigen::VectorXd::Unit(unknowns, k));
   if (solver.closure == Closure::upwind) {
-    factors_.compute(equation);
+    factors_.emplace(equation);
     return;
   }
   equation_ = equation / rate.norm();
@@ -68,7 +68,7 @@ LightSystem::LightSystem(const DensityProduct& product, const Vec3& rate, double
     for (int k = 0; k < unknowns; ++k)
       normal.col(k) += scene::along_axis(a, rows, Eigen::VectorXd::Unit(unknowns, k), n);
   }
-  normal_.compute(normal);
+  normal_.emplace(normal);
 }
 
 Eigen::VectorXd LightSystem::apply(const Eigen::VectorXd& e) const {
@@ -92,8 +92,8 @@ Eigen::VectorXd LightSystem::inflow_side(double inflow) const {
 
 Eigen::VectorXd LightSystem::solve(const Eigen::VectorXd& q, double inflow, int* iterations) const {
   const Eigen::VectorXd side = inflow_side(inflow);
-  if (solver_.closure == Closure::least_squares) return normal_.solve(equation_.transpose() * q / rate_.norm() + side);
-  if (solver_.dense) return factors_.solve(q + side);
+  if (solver_.closure == Closure::least_squares) return normal_->solve(equation_.transpose() * q / rate_.norm() + side);
+  if (solver_.dense) return factors_->solve(q + side);
   constexpr int most = 400;
   const GmresResult result =
       gmres([&](const Eigen::VectorXd& e) { return apply(e); }, q + side, solver_.tolerance, most);

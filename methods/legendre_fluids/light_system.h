@@ -7,9 +7,10 @@
 //
 // Coordinates are those of [-1, 1]^3; a direction is its rate there, per metre of path. Axes along which it is 0 have no inflow.
 #pragma once
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Core>
+#include <optional>
 
+#include "scene/math/dense.h"
 #include "scene/math/legendre.h"
 #include "scene/math/types.h"
 
@@ -75,9 +76,9 @@ class LightSystem {
   LightSolver solver_;
   LightAxes axes_;
   // Where it is dense: the factors of upwind; the equation and the factors of the normal equations of least_squares.
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  std::optional<scene::SquareFactors> factors_;
   Eigen::MatrixXd equation_;
-  Eigen::LLT<Eigen::MatrixXd> normal_;
+  std::optional<scene::DefiniteFactors> normal_;
 };
 
 }  // namespace airlight::legendre_fluids

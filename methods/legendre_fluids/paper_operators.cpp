@@ -97,14 +97,12 @@ Array PaperLaplacian::diffused(const Array& c, double amount) const {
   return result;
 }
 
-const Eigen::CompleteOrthogonalDecomposition<MatrixXd>& PaperLaplacian::decomposition() const {
-  if (decomposition_.rows() > 0) return decomposition_;
+const scene::LeastNormFactors& PaperLaplacian::decomposition() const {
+  if (decomposition_) return *decomposition_;
   const int size = scene::tensor_size(shape_);
   MatrixXd matrix(size, size);
   for (int i = 0; i < size; ++i) matrix.col(i) = (*this)(Array::Unit(size, i));
-  decomposition_.setThreshold(1e-11);
-  decomposition_.compute(matrix);
-  return decomposition_;
+  return decomposition_.emplace(matrix, 1e-11);
 }
 
 Components PaperLaplacian::projected(const Components& u) const {

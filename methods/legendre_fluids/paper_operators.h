@@ -1,10 +1,12 @@
 // The operators of the paper's section 5 as it prints them, without walls: n coefficients of L along each axis for every field.
 // Lengths are half sizes of the box, as in ConfinedSpace.
 #pragma once
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "methods/legendre_fluids/confined_space.h"
+#include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {
 
@@ -39,15 +41,15 @@ class PaperLaplacian {
   Array diffused(const Array& c, double amount) const;
   // U - D Q with D^2 Q = div U in the sense of least squares, Q of least norm. The first call decomposes a dense matrix of n^d rows.
   Components projected(const Components& u) const;
-  int rank() const { return int(decomposition().rank()); }
+  int rank() const { return decomposition().rank(); }
 
  private:
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& decomposition() const;
+  const scene::LeastNormFactors& decomposition() const;
   int d_, n_;
   Vec3 half_;
   TensorShape shape_;
   Eigen::MatrixXd derivative_;
-  mutable Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition_;
+  mutable std::optional<scene::LeastNormFactors> decomposition_;
 };
 
 }  // namespace airlight::legendre_fluids

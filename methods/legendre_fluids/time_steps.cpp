@@ -1,9 +1,10 @@
 #include "methods/legendre_fluids/time_steps.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 #include <vector>
+
+#include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {
 
@@ -21,14 +22,14 @@ namespace {
 Array first_column(const MatrixXd& h, double dt, SkewFunction function) {
   const std::complex<double> i(0, 1);
   const MatrixXd skew = 0.5 * (h - h.transpose());
-  const Eigen::SelfAdjointEigenSolver<MatrixXcd> eigen(MatrixXcd(-i * skew.cast<std::complex<double>>()));
-  Eigen::VectorXcd weights = eigen.eigenvectors().row(0).adjoint();
+  const scene::HermitianModes modes = scene::hermitian_modes(-i * skew.cast<std::complex<double>>());
+  Eigen::VectorXcd weights = modes.vectors.row(0).adjoint();
   for (Eigen::Index k = 0; k < weights.size(); ++k) {
-    const double angle = dt * eigen.eigenvalues()[k];
+    const double angle = dt * modes.values[k];
     weights[k] *=
         function == SkewFunction::exponential ? std::exp(i * angle) : (1.0 + 0.5 * i * angle) / (1.0 - 0.5 * i * angle);
   }
-  return (eigen.eigenvectors() * weights).real();
+  return (modes.vectors * weights).real();
 }
 
 }  // namespace

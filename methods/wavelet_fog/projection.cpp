@@ -1,9 +1,10 @@
 #include "methods/wavelet_fog/projection.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "scene/math/bspline.h"
+#include "scene/math/dense.h"
 
 namespace airlight::wavelet_fog {
 namespace {
@@ -29,11 +30,11 @@ Coefficients orthogonal_projection(const Coefficients& c, int degree) {
     for (int i = 0; i < size; ++i)
       for (int s = 0; s < taps; ++s) onto(a, i) += p.values[s] * inner_product(degree, 2 * (first + a) + s - (lo + i));
   }
-  const Eigen::LDLT<Eigen::MatrixXd> solver(gram);
+  const Eigen::MatrixXd projection = scene::solve_definite(gram, onto);
   Coefficients out{{{first, c.range.lo[1]}, {count, c.range.size[1]}}, {}};
   for (int j = 0; j < c.range.size[1]; ++j) {
     const Eigen::Map<const Eigen::VectorXd> row(c.values.data() + std::size_t(j) * size, size);
-    const Eigen::VectorXd coarse = solver.solve(onto * row);
+    const Eigen::VectorXd coarse = projection * row;
     out.values.insert(out.values.end(), coarse.data(), coarse.data() + count);
   }
   return out;

@@ -1,9 +1,10 @@
 #include "scene/math/bernstein.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "scene/math/dense.h"
 #include "scene/math/types.h"
 
 namespace airlight {
@@ -21,7 +22,7 @@ Matrix values_to_coefficients() {
       binomial *= double(bernstein_size - 1 - k) / (k + 1);
     }
   }
-  return basis.inverse();
+  return scene::inverse(basis);
 }
 
 // `length` is that of the piece which p stands for, as a share of the whole.

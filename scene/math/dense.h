@@ -1,0 +1,66 @@
+#pragma once
+
+// Decompositions of dense matrices. Eigen's templates take the compiler three to ten seconds in every file that names one; here each is
+// compiled once. Sizes that do not fit are a mistake of the caller, and assert.
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace airlight::scene {
+
+// Eigenvalues, ascending, and orthonormal eigenvectors, one a column.
+struct SymmetricModes {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+struct HermitianModes {
+  Eigen::VectorXd values;
+  Eigen::MatrixXcd vectors;
+};
+SymmetricModes symmetric_modes(const Eigen::MatrixXd&);   // reads the lower triangle
+HermitianModes hermitian_modes(const Eigen::MatrixXcd&);  // reads the lower triangle
+
+// A square matrix in factors L U with partial pivoting. Of a singular matrix `solve` gives values that are not finite.
+class SquareFactors {
+ public:
+  explicit SquareFactors(const Eigen::MatrixXd&);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+
+ private:
+  struct Factors;
+  std::shared_ptr<const Factors> factors_;
+};
+
+// A symmetric positive definite matrix in factors L L^T.
+class DefiniteFactors {
+ public:
+  explicit DefiniteFactors(const Eigen::MatrixXd&);  // reads the lower triangle
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd lower() const;
+
+ private:
+  struct Factors;
+  std::shared_ptr<const Factors> factors_;
+};
+
+// The same by L D L^T with pivots, which bears matrices that are nearly semidefinite.
+Eigen::MatrixXd solve_definite(const Eigen::MatrixXd&, const Eigen::MatrixXd& right);
+
+// Any matrix: the solution of least squares that has the least norm.
+class LeastNormFactors {
+ public:
+  // Pivots below `threshold` times the greatest count as zero; 0: rounding times the size.
+  explicit LeastNormFactors(const Eigen::MatrixXd&, double threshold = 0);
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  int rank() const;
+
+ private:
+  struct Factors;
+  std::shared_ptr<const Factors> factors_;
+};
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd&);
+// The solution of an upper triangular system; what lies below the diagonal is not read.
+Eigen::MatrixXd solve_upper(const Eigen::MatrixXd&, const Eigen::MatrixXd& right);
+
+}  // namespace airlight::scene
