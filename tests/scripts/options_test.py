@@ -91,6 +91,10 @@ class Options(Machine):
             self.assertIn(f"scripts/{script} --help", err)
         self.assertFalse(os.path.exists(f"{self.root}/build"))
 
+    def test_an_empty_name_is_refused_before_anything_is_built(self):
+        code, out, err = self.run_script("reproduce", "")
+        self.assertEqual((code, out, err), (2, "", "scripts/reproduce: a name is empty; see scripts/reproduce --help\n"))
+
     def test_a_report_without_renders_needs_no_program(self):
         os.makedirs(f"{self.root}/results/g/e")
         with open(f"{self.root}/results/g/e/run.json", "w") as stream:
