@@ -32,7 +32,7 @@ double sum(const std::vector<scene::StageTime>& times) {
 
 }  // namespace
 
-TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
+TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][slow]") {
   if (!gpu::test::device()) return;
   const gpu::FogshopGpu fogshop;
   const gpu::ShadowPlanesGpu planes;
@@ -59,7 +59,7 @@ TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu]") {
   };
   for (const Case& c : cases) {
     CAPTURE(c.method.name(), c.scene, c.given);
-    const auto scene = scene_named(c.scene, 40, 30);
+    const auto scene = scene_named(c.scene, 20, 15);
     const scene::View view = view_of(*scene);
     const auto prepared = c.method.prepare(scene, {c.method.settings(), c.given}, {1, {}});
     scene::Execution none{1, {}}, all{1, {}}, mean{1, {}};
