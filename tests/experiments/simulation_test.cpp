@@ -113,7 +113,7 @@ TEST_CASE("a simulation begins with a frame of another one and goes on like it",
 }
 
 // The program itself, ended by a signal that it cannot catch.
-TEST_CASE("a simulation that is killed fifty times goes on with the same bits", "[simulation]") {
+TEST_CASE("a simulation that is killed fifty times goes on with the same bits", "[simulation][slow]") {
   const TemporaryFolder folder;
   folder.write("smoke.toml", rising_smoke);
   const std::string& arguments = airlight::test::simulate_smoke;

@@ -51,7 +51,7 @@ const std::string good = R"({"id": "a", "kind": "F", "in": {"u": 0.0, "v": 0.7},
 }  // namespace
 
 // What these check of an implementation no other test repeats.
-TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify]") {
+TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify][slow]") {
   for (const char* kind :
        {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians", "optical_depth",
         "field_bounds", "phase_function", "statistics", "sampling", "random_numbers"}) {

@@ -94,14 +94,17 @@ TEST_CASE("readers use the tolerance of the vector", "[verify]") {
     }
 }
 
-// Every expected number of a vector that states its tolerance, moved by twenty of them: at least as many are out as there are vectors. Kinds
+// Every expected number of two vectors a kind that state their tolerance, moved by twenty of them: at least as many are out as there are vectors.
+// All vectors of a kind have one reader. Kinds
 // of whole numbers alone, which `move` leaves as they are, and those of Monte Carlo and of seconds are left out.
 TEST_CASE("numbers of compensated ray marching are compared at the vectors' own tolerances", "[verify]") {
   std::ifstream in(AIRLIGHT_SOURCE_DIR "/tests/vectors/compensated_ray_marching.json");
   nlohmann::json file = nlohmann::json::parse(in), wrong = file;
   wrong["vectors"].clear();
+  std::map<std::string, int> taken;
   for (nlohmann::json v : file["vectors"]) {
     const std::string kind = v["kind"];
+    if (++taken[kind] > 2) continue;
     if (kind == "sh_triple_counts" || kind == "psh_address" || kind == "ol_table" || kind == "march_single_scattering")
       continue;
     const double rtol = v["rtol"], atol = v["atol"];

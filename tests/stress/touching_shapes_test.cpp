@@ -39,7 +39,8 @@ Answer answer(const std::string& name, const std::shared_ptr<scene::Scene>& scen
   const scene::Renderer& renderer = experiments::find_renderer(name, "touching");
   Given given;
   if (name == "path_tracer") given = {{"samples", "256"}};
-  if (name.starts_with("ray_marcher")) given = {{"steps", "256"}};
+  if (name.starts_with("ray_marcher")) given = {{"steps", "64"}};
+  if (name == "fogshop_gpu") given = {{"light_distance_side", "32"}};  // nothing depends on it
   const scene::Settings settings(renderer.settings(), given);
   if (const auto reasons = renderer.supports(*scene, settings); !reasons.empty()) return {{}, reasons.front()};
   try {
@@ -112,7 +113,7 @@ void everywhere(const Test& test) {
 }  // namespace
 
 // From the surface outwards, a quarter turn to the side: the horizon of the face runs past the picture.
-TEST_CASE("stress: a camera on every shape", "[stress][touching]") {
+TEST_CASE("stress: a camera on every shape", "[stress][touching][slow]") {
   everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
     const Point3 light = t.spot.at + 1.5 * t.spot.out + 0.4 * side;
     const auto from = [&](double off) {
@@ -123,7 +124,7 @@ TEST_CASE("stress: a camera on every shape", "[stress][touching]") {
   });
 }
 
-TEST_CASE("stress: a light on every shape, in every renderer", "[stress][touching]") {
+TEST_CASE("stress: a light on every shape, in every renderer", "[stress][touching][slow]") {
   everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
     const Point3 eye = t.spot.at + 2 * t.spot.out + 1.5 * side, target = t.spot.at + 0.6 * t.spot.out;
     const auto lit = [&](double off) {
@@ -134,7 +135,7 @@ TEST_CASE("stress: a light on every shape, in every renderer", "[stress][touchin
 }
 
 // Both on one spot: the light is moved off the surface, and stands beside the eye.
-TEST_CASE("stress: camera and light on one spot of every shape", "[stress][touching]") {
+TEST_CASE("stress: camera and light on one spot of every shape", "[stress][touching][slow]") {
   everywhere([](const Touched& t, const std::string& name, const Vec3& side, bool endless) {
     const Point3 target = t.spot.at + t.spot.out + 0.3 * side;
     const Answer both = answer(name, scene_of(t.surface, t.spot.at, target, t.spot.at, endless));

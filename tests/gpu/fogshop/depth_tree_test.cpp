@@ -28,8 +28,8 @@ Scene fog_banks(int count, double scale) {
   const auto number = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(engine); };
   Scene scene;
   scene.name = fmt::format("{} banks of fog, scale {:g}", count, scale);
-  scene.width = 48;
-  scene.height = 36;
+  scene.width = 32;
+  scene.height = 24;
   scene.camera = scene::look_at(scale * Point3(1.2, 1.1, 3.2), Point3(0, 0, 0), {0, 1, 0});
   scene.lights.push_back(scene::make_sh_environment(
       {Rgb(3, 3, 4), Rgb(-1, -0.8, -1), Rgb(0.2, 0.2, 0.1), Rgb(0.4, 0.1, 0.1)}, Mat3::Identity(), Rgb::Ones()));

@@ -18,7 +18,7 @@ namespace {
 std::shared_ptr<const scene::Scene> scene_of(const char* name) {
   return std::make_shared<scene::Scene>(
       scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/") + name,
-                        {{"film.width", "42"}, {"film.height", "30"}}));
+                        {{"film.width", "21"}, {"film.height", "15"}}));
 }
 
 // Counters of a frame that only differs from the one before in its camera.
@@ -60,7 +60,7 @@ TEST_CASE("fogshop: a warm frame allocates nothing, sends nothing and waits once
     CHECK(counters.at("dispatches") == c.dispatches);
     alone.layers->insert("mean");
     counters = warm(*scene, *prepared, alone);
-    CHECK(counters.at("bytes_down") == 42 * 30 * 12);
+    CHECK(counters.at("bytes_down") == 21 * 15 * 12);
     CHECK(counters.at("syncs") == 1);
     CHECK(prepared->render(view_of(*scene), alone).film.layers.size() == 1);
   }

@@ -7,6 +7,7 @@
 #include "scene/error.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
+#include "tests/gpu/fogshop/small_sky.h"
 #include "tests/gpu/p99.h"
 #include "tests/pictures.h"
 
@@ -26,6 +27,8 @@ ScenePointer cloud() {
                                                                  {"film.height", "18"},
                                                                  {"medium.0.sigma_t", "[0.25, 0.15, 0.05]"},
                                                                  {"medium.0.albedo", "[0.9, 0.8, 0.7]"}}));
+  scene->lights[0] = gpu::test::with_small_map(std::get<scene::EnvironmentLight>(scene->lights[0]));
+  finish(*scene);
   return scene;
 }
 

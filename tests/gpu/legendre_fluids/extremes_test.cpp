@@ -46,14 +46,14 @@ std::string objection(int n) {
 
 // dt = 10 is divided by the rule of Runge-Kutta, as on the processor; viscosity times a step up to 1e4.
 TEST_CASE("legendre fluids on the device, extremes: no step and no viscosity makes a value that is no number",
-          "[gpu][legendre_fluids]") {
+          "[gpu][legendre_fluids][slow]") {
   if (!gpu::test::device()) return;
   for (const int dimensions : {2, 3})
     for (const int n : {2, 3, 8, 16})
       for (const double viscosity : {0.0, 1e-12, 1e-3, 1.0, 1e3})
         for (const double dt : {1e-4, 0.1, 10.0}) {
-          if (n == 16 && dimensions == 3 && dt == 10)
-            continue;  // 64 parts of a step each, seconds on a software device
+          // Seconds on a software device: 64 parts of a step each; between the ends of viscosity.
+          if (n == 16 && dimensions == 3 && (dt == 10 || (viscosity > 0 && viscosity < 1e3))) continue;
           const auto flow = start(swirl_and_blob(dimensions, viscosity), n);
           const scene::Totals before = flow->totals();
           for (int step = 0; step < 2; ++step) flow->step(dt);

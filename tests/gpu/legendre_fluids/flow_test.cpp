@@ -121,7 +121,7 @@ TEST_CASE("legendre fluids on the device: flows agree with the CPU after many st
 }
 
 TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without divergence",
-          "[gpu][legendre_fluids]") {
+          "[gpu][legendre_fluids][slow]") {
   if (!gpu::test::device()) return;
   using namespace legendre_fluids;
   const std::pair<int, int> cases[] = {{2, 8}, {2, 16}, {3, 8}};

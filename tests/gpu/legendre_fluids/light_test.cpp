@@ -51,7 +51,7 @@ double compare(const char* name, const ScenePointer& scene, double most, const t
 }
 
 ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 3) {
-  return lit_scene(smoke(random_density(n, seed), 0.5 * depth), oblique_light, oblique_view, 24, 20);
+  return lit_scene(smoke(random_density(n, seed), 0.5 * depth), oblique_light, oblique_view, 14, 11);
 }
 
 }  // namespace

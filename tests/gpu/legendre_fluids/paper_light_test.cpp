@@ -60,7 +60,7 @@ void compare(const char* name, const ScenePointer& scene, const Given& given, do
 }
 
 ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 3) {
-  return lit_scene(smoke(random_density(n, seed), 0.5 * depth), oblique_light, oblique_view, 24, 20);
+  return lit_scene(smoke(random_density(n, seed), 0.5 * depth), oblique_light, oblique_view, 14, 11);
 }
 
 }  // namespace

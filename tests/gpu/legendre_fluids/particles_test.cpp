@@ -114,8 +114,9 @@ TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre
         problem.expansion = 1.0 / 300;
         problem.blobs.push_back({Point3(0.2, -0.3, 0), 0.6, 1, 30});
         problem.viscosity = 1e-3;
+        const int steps = dimensions == 3 && n == std::string("16") ? 4 : 12;
         const double error =
-            greatest(by_device(problem, {{"n", n}}, 12, 0.2), by_processor(problem, {{"n", n}}, 12, 0.2));
+            greatest(by_device(problem, {{"n", n}}, steps, 0.2), by_processor(problem, {{"n", n}}, steps, 0.2));
         CAPTURE(dimensions, int(leaving), n, error);
         CHECK(error < 2e-5);
         if (std::getenv("AIRLIGHT_TEST_FIGURES"))

@@ -11,8 +11,8 @@ inline scene::View look() {
   scene::View view;
   view.camera = scene::look_at(Point3(0.4, 0.3, 4), Point3(0, 0, 0), Vec3::UnitY());
   view.camera.vertical_fov = 0.7;
-  view.width = 21;  // no multiple of a tile
-  view.height = 14;
+  view.width = 13;  // no multiple of a tile
+  view.height = 9;
   return view;
 }
 

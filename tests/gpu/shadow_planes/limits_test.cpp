@@ -77,8 +77,8 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const auto scene = std::make_shared<scene::Scene>(scene::load_scene(
-      AIRLIGHT_SOURCE_DIR "/experiments/scenes/shadow_planes/edges.toml", {{"film.width", "32"},
-                                                                           {"film.height", "24"},
+      AIRLIGHT_SOURCE_DIR "/experiments/scenes/shadow_planes/edges.toml", {{"film.width", "20"},
+                                                                           {"film.height", "15"},
                                                                            {"surface.0.boxes", "16641"},
                                                                            {"surface.0.columns", "129"},
                                                                            {"surface.0.lot", "0.0775193798"}}));

@@ -63,7 +63,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][s
 // coloured media, boxes and slabs that overlap.
 TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes]") {
   if (!gpu::test::device()) return;
-  const auto scene = scene_of("shadow_planes/boxes_3", 32, 24);
+  const auto scene = scene_of("shadow_planes/boxes_3", 20, 15);
   scene->name = "two lights and a ball";
   const Point3 light = scene::ball(scene->lights[0])->center;
   scene->lights.emplace_back(
@@ -87,7 +87,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_plan
   finish(*scene);
   compare(scene, {});
 
-  const auto bounded = scene_of("shadow_planes/media", 32, 24);
+  const auto bounded = scene_of("shadow_planes/media", 20, 15);
   bounded->name = "box and slab overlap around the light";
   bounded->media[0].region = Box{{-1, -1, 1}, {2, 2, 4}};
   bounded->media[1].region = scene::Slab{Vec3(0.1, 1, 0).normalized(), -0.5, 0.3};

@@ -19,7 +19,7 @@ namespace airlight::gpu::test {
 using Pairs = std::map<std::string, std::string>;
 using airlight::test::render;
 
-inline std::shared_ptr<scene::Scene> scene_of(const std::string& file, int width = 48, int height = 36) {
+inline std::shared_ptr<scene::Scene> scene_of(const std::string& file, int width = 32, int height = 24) {
   return airlight::test::scene_named(file, width, height);
 }
 

@@ -56,13 +56,10 @@ inline std::shared_ptr<scene::Scene> scene_of(std::shared_ptr<const scene::Fogma
   return made;
 }
 
-// The greatest 99th percentile of relative differences in any layer; each below `bound`.
-inline double compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
-  Given of_both = given;
-  of_both.erase("first_hits");
-  const scene::Film a = render(wavelet_fog::WaveletFog(), scene, of_both).film;
-  const scene::Film b = render(gpu::WaveletFogGpu(), scene, given).film;
-  CAPTURE(scene->name, given);
+// The greatest 99th percentile of relative differences in any layer of two films of a scene; each below `bound`.
+inline double compare(const scene::Scene& scene, const Given& given, const scene::Film& a, const scene::Film& b,
+                      double bound) {
+  CAPTURE(scene.name, given);
   bound += 10 * injected_error();  // thin fog's opacity is a difference
   double worst = 0;
   REQUIRE(a.layers.size() == b.layers.size());
@@ -73,8 +70,16 @@ inline double compare(const std::shared_ptr<const scene::Scene>& scene, const Gi
     CHECK(error < bound);
   }
   if (std::getenv("AIRLIGHT_TEST_FIGURES"))
-    fmt::print("{} {}: p99 {:.1e} of {:.1e}\n", scene->name, fmt::join(given, " "), worst, bound);
+    fmt::print("{} {}: p99 {:.1e} of {:.1e}\n", scene.name, fmt::join(given, " "), worst, bound);
   return worst;
+}
+
+// The same of the processor's film and the device's.
+inline double compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
+  Given of_both = given;
+  of_both.erase("first_hits");
+  const scene::Film a = render(wavelet_fog::WaveletFog(), scene, of_both).film;
+  return compare(*scene, given, a, render(gpu::WaveletFogGpu(), scene, given).film, bound);
 }
 
 }  // namespace airlight::gpu::test

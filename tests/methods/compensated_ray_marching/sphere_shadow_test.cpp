@@ -58,7 +58,8 @@ TEST_CASE("shadows of spheres: visibility in closed form", "[compensated_ray_mar
   CHECK_FALSE(hidden_angle({{0, 0, 4}, 5}, Point3(1, 0, 3)).has_value());
 }
 
-TEST_CASE("shadows of spheres: exponentials of the table's logarithms are visibility", "[compensated_ray_marching]") {
+TEST_CASE("shadows of spheres: exponentials of the table's logarithms are visibility",
+          "[compensated_ray_marching][slow]") {
   const ShadowTable by_series(4, series());
   const LinearExponential linear(depth_family(4, {1, 2, 4}, 20));
   const ShadowTable by_hyb(4, [&](const Harmonics& f) { return squared_exponential(f, linear, 0.5); });

@@ -28,7 +28,7 @@ Given settings_of(const StressScene& s, bool paper) {
 
 }  // namespace
 
-TEST_CASE("compensated march, stress list: pictures of both variants", "[stress][compensated_ray_marching]") {
+TEST_CASE("compensated march, stress list: pictures of both variants", "[stress][compensated_ray_marching][slow]") {
   for (const StressScene& s : StressScenes::all())
     for (const bool paper : {false, true}) {
       if (!(paper ? s.for_paper : s.for_grid)) continue;

@@ -15,7 +15,7 @@ using namespace airlight;
 using airlight::test::picture;
 
 // False alarms: 1e-3 for all scenes together.
-TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes]") {
+TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes][slow]") {
   const std::pair<const char*, const char*> samples_of[] = {
       {"shadow_planes/lamp", "512"},
       {"shadow_planes/boxes_1", "512"},

@@ -79,7 +79,7 @@ TEST_CASE("sun: a map's columns converge to the exact ones at every height", "[w
         }
 }
 
-TEST_CASE("sun: pictures equal the quadrature's and the path tracer's", "[wavelet_fog][sun]") {
+TEST_CASE("sun: pictures equal the quadrature's and the path tracer's", "[wavelet_fog][sun][slow]") {
   const double alpha = 1e-3 / double(std::size(sun_cases));
   for (const SunCase& c : sun_cases) {
     const auto scene = sun_scene(c, 24, 18);

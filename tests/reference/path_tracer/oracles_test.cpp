@@ -51,7 +51,7 @@ scene::Light light_of(const nlohmann::json& j, const std::string& type) {
 }  // namespace
 
 // Nine scenes of an independent Monte Carlo; M7 and M8 need hours (their own standard errors are 0.2 and 0.6 %).
-TEST_CASE("multiple scattering agrees with the independent Monte Carlo", "[path_tracer][oracle]") {
+TEST_CASE("multiple scattering agrees with the independent Monte Carlo", "[path_tracer][oracle][slow]") {
   // Paths for 1 % of the sum over orders, from the variance per path of each scene.
   const std::map<std::string, std::uint64_t> budget = {{"mc-M1", 4 << 20}, {"mc-M2", 5 << 18}, {"mc-M3", 1 << 19},
                                                        {"mc-M4", 1 << 18}, {"mc-M5", 3 << 18}, {"mc-M6", 3 << 19},

@@ -141,7 +141,7 @@ TEST_CASE("thin media and the light of surfaces: flat relative error", "[path_tr
 }
 
 // Where paths split (thin scenes with surfaces), and where they do not: the same means, order by order, as analog ones.
-TEST_CASE("forced collisions before surfaces change the noise and nothing else", "[path_tracer]") {
+TEST_CASE("forced collisions before surfaces change the noise and nothing else", "[path_tracer][slow]") {
   const double limit = threshold(1e-3, 4 * 2 * 3 * 3 * 3);
   const scene::Surface ball{"ball", scene::Sphere{Point3(-0.6, -0.2, -0.3), 0.3}, scene::Lambert{Rgb(0.9, 0.6, 0.3)}};
   const std::vector<std::vector<scene::Light>> lights = {
@@ -181,7 +181,7 @@ TEST_CASE("the second scattering after a forced one", "[path_tracer]") {
     for (const bool forced : {false, true}) {
       Options options;
       options.forced = forced;
-      got[forced] = radiance(World(scene, options), through, 1 << 20, {}, ++index).orders[2];
+      got[forced] = radiance(World(scene, options), through, forced ? 1 << 17 : 1 << 20, {}, ++index).orders[2];
     }
     for (int c = 0; c < 3; ++c) {
       CAPTURE(index, c, got[0].mean[c], got[1].mean[c], got[0].error[c], got[1].error[c]);

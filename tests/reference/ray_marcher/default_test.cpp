@@ -10,7 +10,7 @@ namespace default_test {
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
-// At worst 6.8 % where surfaces cast shadows: fig7 and spot, seen by 48 x 48 pixels. results/reference/marcher_default
+// At worst 6.8 % where surfaces cast shadows: fig7 and spot, seen by 32 x 32 pixels. results/reference/marcher_default
 // has more.
 TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
   for (const char* name : {"plume_sun", "elephant_fog", "elephant_gaussians", "crosscheck/sphere_point_inside",
@@ -19,7 +19,7 @@ TEST_CASE("ray marcher: the default keeps its stated error", "[ray_marcher]") {
     const auto scene = std::make_shared<const scene::Scene>(
         scene::load_scene(std::string(AIRLIGHT_SOURCE_DIR "/experiments/scenes/") + name + ".toml"));
     scene::View view = view_of(*scene);
-    view.width = view.height = scene->geometry ? 48 : 24;
+    view.width = view.height = scene->geometry ? 32 : 16;
     const deterministic::AirlightIntegrator truth(*scene, {1e-5, 200000});
     const RayMarcher marcher;
     const auto prepared = marcher.prepare(scene, {marcher.settings(), {}}, {1, {}});

@@ -15,7 +15,7 @@ scene::View looking(const Point3& from, const Point3& to) {
   scene::View view;
   view.camera = scene::look_at(from, to, Vec3::UnitY());
   view.camera.vertical_fov = 0.8;
-  view.width = view.height = 9;  // odd: the centre pixel looks straight at `to`
+  view.width = view.height = 5;  // odd: the centre pixel looks straight at `to`
   return view;
 }
 

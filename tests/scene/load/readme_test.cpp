@@ -161,7 +161,7 @@ TEST_CASE("the documentation names every key that the loader knows", "[load]") {
     }
 }
 
-TEST_CASE("every scene of the experiments loads", "[load]") {
+TEST_CASE("every scene of the experiments loads", "[load][slow]") {
   int count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root + "/experiments/scenes")) {
     if (entry.path().extension() != ".toml") continue;
