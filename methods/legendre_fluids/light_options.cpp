@@ -30,7 +30,7 @@ std::vector<scene::SettingSpec> light_settings() {
       integer_setting("shadow_steps", "64", 1, 65536,
                       "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
                       "finds shadows wider than that"),
-      integer_setting("environment_directions", "64", 1, 65536, "of ray: directions that stand for each environment"),
+      integer_setting("environment_directions", "256", 1, 65536, "of ray: directions that stand for each environment"),
       integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis"),
       choice_setting("closure", "least_squares", {"least_squares", "upwind"},
                      "of paper, where light comes in: rows of a system of least squares; weak upwind inflow"),

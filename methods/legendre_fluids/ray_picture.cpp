@@ -113,6 +113,10 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
   float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
   film.metadata = {
       {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  if (scene::has_environment(*scene_) && !rays_.media().lights.empty())
+    film.metadata["warning"] =
+        fmt::format("legendre_fluids: {} directional lights stand for each environment (environment_directions)",
+                    options_.environment_directions);
   scene::Stopwatch watch;
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;

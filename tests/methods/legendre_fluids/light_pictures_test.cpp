@@ -163,7 +163,8 @@ TEST_CASE("legendre light: what an environment scatters equals the path tracer's
       const experiments::Equality e = experiments::compare_equal(fine, traced, "mean", {}, 2.5e-4);
       CHECK(e.equal);
       CHECK(e.detectable_bias < 0.01);
-      CHECK(relative_l2(picture(method, scene, {}, 0), fine) <= 6e-3);  // 64 directions
+      // 256 directions; of an uneven sky they follow the luminance, and its colours less closely.
+      CHECK(relative_l2(picture(method, scene, {}, 0), fine) <= (sky.sh.empty() ? 1e-3 : 0.03));
     }
 }
 
