@@ -15,6 +15,7 @@
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/legendre_fluids/light.h"
 #include "methods/legendre_fluids/light_options.h"
+#include "scene/background.h"
 #include "scene/error.h"
 #include "scene/single_precision.h"
 
@@ -26,6 +27,7 @@ using namespace legendre;
 using legendre_fluids::LightRays;
 using legendre_fluids::LitMedium;
 using legendre_fluids::RayOptions;
+using legendre_fluids::with_sky;
 using scene::Execution;
 using scene::Scene;
 using scene::View;
@@ -121,20 +123,25 @@ bool PreparedLightGpu::scatters() const {
 
 std::vector<scene::Stage> PreparedLightGpu::stages() const {
   const std::string why = !any_medium()         ? "no medium extinguishes"
-                          : lit_.lights.empty() ? "no directional light shines"
+                          : lit_.lights.empty() ? "no light shines"
                                                 : "no medium scatters";
   const bool ends = first_hits_ != nullptr, lit = surfaces_->shines();
   return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
           {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
           {"rays", any_medium(),
-           negative()   ? "a stretch of every ray in each round, until all are done"
-           : scatters() ? fmt::format("{} dispatches for each light, a stretch of every ray each", media_->stretches())
+           negative()     ? "a stretch of every ray in each round, until all are done"
+           : scatters()   ? fmt::format("{} dispatches for each of {} lights, a stretch of every ray each",
+                                        media_->stretches(), lit_.lights.size())
            : any_medium() ? "columns alone: " + why
                           : why},
           {"clamping", negative(),
            negative() ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_share_)
                       : "no density is below 0"},
           {"surfaces", lit, lit ? "lights through the media, background" : "no surface is lit, no background"},
+          {"environment as a light", scene::has_environment(*scene_) && !lit_.lights.empty(),
+           !scene::has_environment(*scene_) ? "no environment"
+           : lit_.lights.empty()            ? "nothing scatters, no surface is lit: only the background is drawn"
+                                            : fmt::format("{} directions", options_.environment_directions)},
           {"composition", true, "layers of the film"}};
 }
 
@@ -294,6 +301,10 @@ scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution
   result.counters["negative_share"] = negative_share_;
   result.film.metadata = {
       {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  if (scene::has_environment(*scene_) && !lit_.lights.empty())
+    result.film.metadata["warning"] =
+        fmt::format("legendre_fluids_gpu: {} directional lights stand for each environment (environment_directions)",
+                    options_.environment_directions);
   return result;
 }
 
@@ -320,7 +331,8 @@ std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const sc
   if (options.variant == legendre_fluids::LightOptions::Variant::paper)
     for (const std::string& reason : legendre::reasons_against_paper(scene, options.paper)) reasons.push_back(reason);
   if (!reasons.empty() || options.variant == legendre_fluids::LightOptions::Variant::paper) return reasons;
-  const LightRays rays(scene, options.ray);
+  const auto lit = with_sky({std::shared_ptr<const Scene>(), &scene}, options.ray);
+  const LightRays rays(*lit, options.ray);
   for (const std::string& reason : legendre::reasons_against(rays.media())) reasons.push_back(reason);
   if (rays.shadowed())
     reasons.push_back("surfaces that may stand between a light and a medium: shaders know no shadows within media");
@@ -333,7 +345,7 @@ std::unique_ptr<scene::Prepared> LegendreLightGpu::prepare_supported(std::shared
   const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
   if (options.variant == legendre_fluids::LightOptions::Variant::paper)
     return legendre::prepare_paper(std::move(scene), options.paper, settings.canonical());
-  return std::make_unique<PreparedLightGpu>(std::move(scene), options.ray, settings.canonical());
+  return std::make_unique<PreparedLightGpu>(with_sky(std::move(scene), options.ray), options.ray, settings.canonical());
 }
 
 }  // namespace airlight::gpu

@@ -201,7 +201,7 @@ void main() {
     for (int m = 0; m < MEDIA; ++m) columns[place * MEDIA + m] = after[m];
     vec3 before = vec3(airlight[3 * place], airlight[3 * place + 1], airlight[3 * place + 2]);
     if (has_light != 0) {
-      vec3 sum = before + irradiance * half_length * integral(before / max(irradiance * half_length, vec3(1e-30)));
+      vec3 sum = before + irradiance * half_length * integral(abs(before) / max(abs(irradiance) * half_length, vec3(1e-30)));
       if (loops_cut()) sum = vec3(uintBitsToFloat(0x7fc00000u));  // no number, rather than a wrong one
       for (int c = 0; c < 3; ++c) airlight[3 * place + c] = sum[c];
     }

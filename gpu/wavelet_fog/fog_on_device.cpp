@@ -313,17 +313,19 @@ void FogOnDevice::bind() const {
 void FogOnDevice::fill_table(const scene::View& view, FrameBuffers& buffers, const Buffer& counters, bool counts) {
   const scene::Fogmap& fog = fogmap(medium_);
   const scene::MapLine eye = line_over(fog, {view.camera.position, Vec3::UnitX()});
-  const wavelet_fog::PolarTable::Fan fan = wavelet_fog::fan_of(fog, view);
+  const wavelet_fog::PolarTable::Fan fan = wavelet_fog::fan_of(fog, view, options_.angles);
   const int angles = fan.span == 2 * pi ? 2 * options_.angles : options_.angles;
   table_.angles = angles + 3;
-  table_.steps = wavelet_fog::steps_to_rim(fog.map, eye.u, eye.v, options_.radial_step);
+  const wavelet_fog::Spoke spoke = wavelet_fog::spoke_of(fog.map, eye.u, eye.v, table_.angles, options_.radial_step);
+  table_.first = spoke.first;
+  table_.steps = spoke.steps;
   table_.span = fan.span;
   table_.spacing = fan.span / angles;
   table_.middle = fan.first + 0.5 * fan.span;
   if (context_.software() && table_.steps > most_iterations)
-    throw Unavailable(
-        fmt::format("gpu: {} steps of radial_step = {} from the eye to the map's far corner, {} takes {} at most",
-                    table_.steps, options_.radial_step, context_.renderer(), most_iterations));
+    throw Unavailable(fmt::format(
+        "gpu: {} steps of radial_step = {} from the map's rim, or the eye, to its far corner, {} takes {} at most",
+        table_.steps, options_.radial_step, context_.renderer(), most_iterations));
   // Rooms grow by powers of two, so that an eye that moves allocates next to nothing.
   const std::size_t bytes = 24 * std::size_t(table_.angles) * std::size_t(table_.steps + 1);
   table_buffer_ = &buffers.get(fmt::format("polar table {}", number_),
@@ -339,6 +341,7 @@ void FogOnDevice::fill_table(const scene::View& view, FrameBuffers& buffers, con
   p.set("table_spacing", table_.spacing);
   p.set("table_first", -table_.spacing - 0.5 * table_.span);
   p.set_double("step_", options_.radial_step);
+  p.set("table_first_step", table_.first);
   p.set("table_angles", table_.angles);
   p.set("table_steps", table_.steps);
   p.set("counts", counts);
@@ -364,6 +367,7 @@ void FogOnDevice::add_depths(const scene::View& view, const Buffer* distances, c
     table_buffer_->bind(at::table);
     p.set("table_angles", table_.angles);
     p.set("table_steps", table_.steps);
+    p.set("table_first_step", table_.first);
     p.set("table_middle_u", std::cos(table_.middle));
     p.set("table_middle_v", std::sin(table_.middle));
     p.set("table_span", table_.span);

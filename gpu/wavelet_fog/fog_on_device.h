@@ -62,7 +62,7 @@ class FogOnDevice {
   Program *camera_rays_ = nullptr, *light_rays_ = nullptr, *table_steps_ = nullptr,
           *table_sums_ = nullptr;  // null: not needed
   struct Table {
-    int angles = 0, steps = 0;
+    int angles = 0, first = 0, steps = 0;
     double span = 0, spacing = 0, middle = 0;  // [rad]
   } table_;
   const Buffer* table_buffer_ = nullptr;

@@ -3,6 +3,7 @@
 #include "common/angle.glsl"
 layout(std430, binding = AT_TABLE) readonly buffer Table { double table[]; };  // [angle][distance]: of f, of s f, and f there
 uniform int table_angles, table_steps;
+uniform int table_first_step;  // of entry 0, from the eye
 uniform float table_middle_u, table_middle_v;  // direction in the middle of the fan, unit
 uniform float table_span, table_spacing, table_step;  // [rad], [rad], [cells]
 const double upright = UPRIGHT;         // [cells] over the ground below which the table has nothing to say
@@ -16,14 +17,14 @@ float hermite(float t, float slope_a, float b, float slope_b) {
 // Integrals of f and s f up to r cells along a spoke.
 dvec2 on_spoke(int angle, float r) {
   int first = clamp(angle, 0, table_angles - 1) * (table_steps + 1);
-  float place = min(r / table_step, float(table_steps));
+  float place = clamp(r / table_step - float(table_first_step), 0, float(table_steps));
   int k = min(int(place), table_steps - 1), a = 3 * (first + k), b = a + 3;
   float t = place - float(k), slope = table_step * table_step;
   float at_a = float(table[a + 2]), at_b = float(table[b + 2]);
   dvec2 m = dvec2(table[a], 0);
   m.x += hermite(t, table_step * at_a, float(table[b] - table[a]), table_step * at_b);
 #if PROFILE == PROFILE_LAYERS
-  m.y = table[a + 1] + hermite(t, slope * float(k) * at_a, float(table[b + 1] - table[a + 1]), slope * float(k + 1) * at_b);
+  m.y = table[a + 1] + hermite(t, slope * float(table_first_step + k) * at_a, float(table[b + 1] - table[a + 1]), slope * float(table_first_step + k + 1) * at_b);
 #endif
   return m;
 }
@@ -41,7 +42,7 @@ dvec2 looked_up(vec2 along, float r) {
 float column_of_table(dvec3 origin, dvec3 direction, double length_, inout uint lookups) {
   Line line = line_over(origin, direction);
   dvec2 t = clip_to_region(origin, direction, dvec2(0, length_));
-  double across = length(line.along), reach = double(table_steps) * double(table_step);
+  double across = length(line.along), reach = double(table_first_step + table_steps) * double(table_step);
   if (across * t.y > reach) t.y = reach / across;  // the map need not be met: the table knows where it is
   if (!(t.y > t.x)) return 0;
   if (!(across * (t.y - t.x) > upright)) return column(origin, direction, length_);

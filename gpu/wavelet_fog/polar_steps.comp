@@ -13,6 +13,7 @@ uniform float table_spacing;  // [rad]
 uniform float table_first;    // of spoke 0, from the middle [rad]
 uniform double step_;         // [cells]
 uniform int table_angles, table_steps, counts;
+uniform int table_first_step;  // of entry 0, from the eye
 
 float value_at(Grid g, dvec2 x) {
   dvec2 corner = floor(x);
@@ -30,7 +31,7 @@ void main() {
   Line line = Line(eye, along, 0, 0);
   Grid map = grids[0];
   int entry = 3 * (angle * (table_steps + 1) + k);
-  dvec2 t = clip_to_support(map, line, dvec2(k - 1, k) * step_);
+  dvec2 t = clip_to_support(map, line, dvec2(table_first_step + k - 1, table_first_step + k) * step_);
   vec2 sum = vec2(0);
   if (k > 0 && t.y > t.x) {
     sum.x = walk(map, line, t.x, float(t.y - t.x), Factor(1, 0, false), 1e37);
@@ -41,5 +42,5 @@ void main() {
   }
   table[entry] = sum.x;
   table[entry + 1] = sum.y;
-  table[entry + 2] = value_at(map, eye + double(k) * step_ * along);
+  table[entry + 2] = value_at(map, eye + double(table_first_step + k) * step_ * along);
 }

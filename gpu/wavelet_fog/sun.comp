@@ -28,7 +28,7 @@ uniform float phase_g[MEDIA], climb;  // climb: scale heights per metre upwards,
 const float sun_node[SUN_POINTS] = float[](SUN_NODES), sun_weight[SUN_POINTS] = float[](SUN_WEIGHTS);
 const float upto[SUN_POINTS * SUN_POINTS] = float[](SUN_UPTO);  // [node][term]: integral from 0 to the node
 const float opaque = 40, most_change = 0.5;
-const int most_halvings = 12;
+const int most_halvings = 12, most_deep_halvings = 30;  // `index` is a whole number of 32 bits
 
 vec3 source_of[MEDIA];  // per density
 vec3 depth, light;
@@ -102,9 +102,10 @@ bool scatter(dvec2 t, bool lit, inout int halvings, inout int index) {
       high = max(high, to_sun[k]);
     }
     points_done += uint(SUN_POINTS);
-    bool coarse = max(total.x, max(total.y, total.z)) > most_change || climb * abs(float(course_direction.y)) * s > 1;
+    bool deep = max(total.x, max(total.y, total.z)) > most_change;
+    bool coarse = deep || climb * abs(float(course_direction.y)) * s > 1;
     for (int a = 0; a < 3; ++a) coarse = coarse || (lit && low[a] < opaque && high[a] - low[a] > most_change);
-    if (coarse && halvings < most_halvings) {
+    if (coarse && halvings < (deep ? most_deep_halvings : most_halvings)) {
       ++halvings;
       index *= 2;
       continue;

@@ -17,6 +17,22 @@ struct MapFrame {
 };
 MapFrame frame_of(const GaussianArrays&, const Point3& light);
 
+// Where the texels and the edges of a map lie.
+struct MapGrid {
+  MapFrame frame;
+  int directions = 0, edges = 0;
+
+  Vec3 direction(int i, int j) const;  // of a texel; i, j from -1 to directions: a border of one texel
+  double distance_of(double edge) const;
+  // The four texels around a direction: i, j to i + 1, j + 1, counted from the border, and the share of the latter.
+  struct Place {
+    bool seen;
+    int i, j;
+    double fu, fv;
+  };
+  Place place(const Vec3& direction) const;
+};
+
 class LightMap {
  public:
   // `directions` squared texels and `edges` + 1 distances; every texel holds exact depths at its centre. Calls of the
@@ -34,12 +50,8 @@ class LightMap {
   std::size_t bytes() const { return depths_.size() * sizeof(float); }
 
  private:
-  Vec3 direction(int i, int j) const;  // of a texel; i, j from -1 to directions: a border of one texel
-  double distance_of(double edge) const;
-
   Point3 light_;
-  int directions_, edges_;
-  MapFrame frame_;
+  MapGrid grid_;
   std::vector<float> depths_;  // [row][column][edge], with a border of one texel
   double evaluations_ = 0;
 };

@@ -1,7 +1,10 @@
 #include "methods/fogshop/model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "methods/fogshop/map_error.h"
 
 namespace airlight::fogshop {
 
@@ -96,6 +99,20 @@ Options read_options(const scene::Settings& settings) {
   return o;
 }
 
+namespace {
+
+// Where the maps' even grids miss what matters, sums replace them: small Gaussians in great ones, above all.
+void judge_maps(Model& model, const Point3& eye) {
+  Options& o = model.options;
+  if (model.paper() || !o.map || model.gaussians.count == 0) return;
+  for (const LightModel& light : model.lights)
+    model.map_error = std::max(model.map_error, map_error(model.gaussians, light.position, eye, o.map_directions,
+                                                          o.map_edges, o.erf, model.evaluations));
+  o.map = !(model.map_error > greatest_map_error);
+}
+
+}  // namespace
+
 Model make_model(const scene::Scene& scene, const Options& options) {
   Model model;
   model.options = options;
@@ -117,6 +134,7 @@ Model make_model(const scene::Scene& scene, const Options& options) {
     const auto* point = std::get_if<scene::PointLight>(&light);
     if (point && (point->intensity > 0).any()) model.lights.push_back({point->position, point->intensity, {}, nullptr});
   }
+  judge_maps(model, scene.camera.position);
   return model;
 }
 

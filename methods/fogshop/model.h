@@ -73,6 +73,7 @@ struct Model {
   std::unique_ptr<Noise> noise;    // null: none
   std::unique_ptr<SkyVolume> sky;  // the same
   double evaluations = 0;          // of the error function
+  double map_error = 0;            // of light maps, estimated; where it is too great options.map is false
 
   bool paper() const { return options.variant == Options::Variant::paper; }
 };

@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "methods/fogshop/domain.h"
+#include "methods/fogshop/map_error.h"
 #include "methods/fogshop/radiance_transfer.h"
 
 namespace airlight::fogshop {
@@ -100,8 +101,15 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
         stage("depths to centres", {no_gaussians, no_lights}, fmt::format("T(s,b_i), T(v,b_i) for {}", lights));
   else
     needs.light_maps =
-        stage("light maps", {no_gaussians, no_lights, {!o.map, "light_depth = exact: sums per edge instead"}},
-              fmt::format("{0}^2 directions x {1} distances for {2}", o.map_directions, o.map_edges, lights));
+        stage("light maps",
+              {no_gaussians,
+               no_lights,
+               {model.map_error > greatest_map_error,
+                fmt::format("maps would be off by {:.2g} % (estimated), more than {:g} %: sums per edge instead",
+                            100 * model.map_error, 100 * greatest_map_error)},
+               {!o.map, "light_depth = exact: sums per edge instead"}},
+              fmt::format("{0}^2 directions x {1} distances for {2}, error {3:.2g} % (estimated)", o.map_directions,
+                          o.map_edges, lights, 100 * model.map_error));
   if (o.table) needs.f_table = stage("table of F", {{!(paper && lit && constant), "nothing reads it"}}, "asked for");
   stage("airlight of Gaussians", {no_gaussians, no_lights},
         paper ? "Eqs. 8 to 17" : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : ""));

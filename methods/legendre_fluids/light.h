@@ -1,6 +1,6 @@
 // Light in Legendre boxes: Gupta and Narasimhan, "Legendre Fluids" (SCA 2007), section 6. README.md says which variants, how accurate.
 //
-// Layers: airlight (directional lights, scattered once), surface (lit by them through the media, seen through the media), transmittance,
+// Layers: airlight (directional lights and environments, scattered once), surface (lit by them through the media, seen through the media), transmittance,
 // ambient = ambient_in_scatter (1 - transmittance), mean = their sum.
 #pragma once
 #include "scene/renderer.h"

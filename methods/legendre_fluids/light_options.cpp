@@ -1,11 +1,20 @@
 #include "methods/legendre_fluids/light_options.h"
 
+#include <algorithm>
+
 #include "methods/legendre_fluids/paper_picture.h"
+#include "scene/background.h"
+#include "scene/sky_directions.h"
 
 namespace airlight::legendre_fluids {
 namespace {
 
 constexpr int least_gmres = 5;  // coefficients along an axis from which on GMRES is faster than dense factors
+
+bool scatters(const scene::Scene& scene) {
+  return std::any_of(scene.media.begin(), scene.media.end(),
+                     [](const scene::Medium& m) { return (m.albedo * m.sigma_t).maxCoeff() > 0; });
+}
 
 }  // namespace
 
@@ -21,6 +30,7 @@ std::vector<scene::SettingSpec> light_settings() {
       integer_setting("shadow_steps", "64", 1, 65536,
                       "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
                       "finds shadows wider than that"),
+      integer_setting("environment_directions", "256", 1, 65536, "of ray: directions that stand for each environment"),
       integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis"),
       choice_setting("closure", "least_squares", {"least_squares", "upwind"},
                      "of paper, where light comes in: rows of a system of least squares; weak upwind inflow"),
@@ -37,6 +47,7 @@ LightOptions read_light_options(const scene::Settings& settings) {
   o.ray.points = int(settings.integer("points"));
   o.ray.tolerance = settings.real("tolerance");
   o.ray.shadow_steps = int(settings.integer("shadow_steps"));
+  o.ray.environment_directions = int(settings.integer("environment_directions"));
   o.paper.n = int(settings.integer("n"));
   o.paper.truncation = settings.choice<LightTruncation>("truncation");
   LightSolver& solver = o.paper.solver;
@@ -48,9 +59,20 @@ LightOptions read_light_options(const scene::Settings& settings) {
   return o;
 }
 
+std::shared_ptr<const scene::Scene> with_sky(std::shared_ptr<const scene::Scene> scene, const RayOptions& o) {
+  if (!scene::has_environment(*scene) || !(scatters(*scene) || scene->geometry)) return scene;
+  return std::make_shared<const scene::Scene>(scene::with_sky_as_lights(*scene, o.environment_directions));
+}
+
 std::vector<std::string> reasons_against_light(const scene::Scene& scene, const LightOptions& o) {
   std::vector<std::string> reasons;
-  if (o.variant == LightOptions::Variant::paper) reasons = reasons_against_paper(scene, o.paper);
+  if (o.variant == LightOptions::Variant::paper) {
+    reasons = reasons_against_paper(scene, o.paper);
+    if (scene::has_environment(scene) && (scatters(scene) || scene.geometry))
+      reasons.push_back(
+          "variant = paper solves a system for each direction of light, and an environment has all of "
+          "them: expected directional lights, or variant = ray");
+  }
   for (std::size_t i = 0; i < scene.media.size(); ++i)
     if (const std::string why = field_against(scene.media, i); !why.empty()) reasons.push_back(why);
   for (std::size_t i = 0; i < scene.lights.size() && o.variant == LightOptions::Variant::ray; ++i)

@@ -96,7 +96,7 @@ Rgb sent_back(const scene::Scene& scene, const std::vector<scene::DirectionalLig
     const double cosine = hit.normal.dot(light.to_light);
     if (!(cosine > 0)) continue;
     const Rgb reflected = scene::brdf(material, hit.normal, light.to_light, -ray.direction) * light.irradiance * cosine;
-    if (!(reflected.maxCoeff() > 0)) continue;
+    if ((reflected == 0).all()) continue;
     const Point3 start = scene.geometry->offset_origin(hit.position, hit.normal, light.to_light);
     if (scene.geometry->occluded({start, light.to_light})) continue;
     sum += reflected * left(hit.position, l);
@@ -124,7 +124,7 @@ bool may_shadow(const scene::Surface& surface, const Box& box, const Vec3& to_li
 
 LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
   for (const scene::Light& light : scene.lights)
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && !(sun->irradiance == 0).all())
       lights.push_back(*sun);
   for (const scene::Medium& medium : scene.media) {
     if (!extinguishes(medium)) continue;

@@ -1,4 +1,4 @@
-// Media as Legendre boxes under directional lights: what rays through them read. The preparation of variant `ray`.
+// Media as Legendre boxes under directional lights (environments are such lights already): what rays through them read. The preparation of variant `ray`.
 #pragma once
 #include <functional>
 

@@ -62,7 +62,7 @@ std::vector<scene::Stage> PreparedRays::stages() const {
   for (const LitMedium& m : lit.media)
     for (const LightColumns& columns : m.columns) polynomials += columns.polynomials(), faces += columns.face_count();
   const std::string why = lit.media.empty()    ? "no medium extinguishes"
-                          : lit.lights.empty() ? "no directional light shines"
+                          : lit.lights.empty() ? "no light shines"
                                                : "no medium scatters";
   return {{"polynomials of light paths", polynomials > 0,
            lit.media.empty() || lit.lights.empty() ? why
@@ -81,8 +81,10 @@ std::vector<scene::Stage> PreparedRays::stages() const {
            behind_kept() ? "lights through the media, backgrounds" : "no surface is lit, no background"},
           {"ambient", ambient_kept(),
            ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"},
-          {"environment as a light", false,
-           scene::has_environment(*scene_) ? "no direction: only the background is drawn" : "no environment"}};
+          {"environment as a light", scene::has_environment(*scene_) && !lit.lights.empty(),
+           !scene::has_environment(*scene_) ? "no environment"
+           : lit.lights.empty()             ? "nothing scatters, no surface is lit: only the background is drawn"
+                                            : fmt::format("{} directions", options_.environment_directions)}};
 }
 
 PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
@@ -111,6 +113,10 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
   float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
   film.metadata = {
       {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  if (scene::has_environment(*scene_) && !rays_.media().lights.empty())
+    film.metadata["warning"] =
+        fmt::format("legendre_fluids: {} directional lights stand for each environment (environment_directions)",
+                    options_.environment_directions);
   scene::Stopwatch watch;
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;

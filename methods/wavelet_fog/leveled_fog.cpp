@@ -133,7 +133,7 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
 
 PolarTable LeveledFog::polar_table(const scene::View& view, const scene::Execution& execution) const {
   const scene::MapLine line = line_over(*fog_, {view.camera.position, Vec3::UnitX()});
-  const PolarTable::Fan fan = fan_of(*fog_, view);
+  const PolarTable::Fan fan = fan_of(*fog_, view, options_.angles);
   const int angles = fan.span == 2 * pi ? 2 * options_.angles : options_.angles;
   return {fog_->map,
           line.u,

@@ -35,8 +35,8 @@ class PolarTable {
   };
   Place place(double du, double dv) const;
   Moments at(const Place&, double r) const;
-  double reach() const { return steps_ * step_; }  // [cells], beyond the map: nothing is added farther out
-  long cells() const { return cells_; }            // visited for the table
+  double reach() const { return (first_ + steps_) * step_; }  // [cells], beyond the map: nothing is added farther out
+  long cells() const { return cells_; }                       // visited for the table
 
  private:
   struct Entry {
@@ -44,8 +44,8 @@ class PolarTable {
   };
 
   Fan fan_;
-  int angles_, steps_;
-  double spacing_;  // of angles; the first spoke lies one before the fan
+  int angles_, first_, steps_;  // the first entry lies `first_` steps from the eye: nothing is nearer
+  double spacing_;              // of angles; the first spoke lies one before the fan
   double step_;
   double per_spacing_, per_step_;  // their inverses
   bool first_moment_;
@@ -54,10 +54,15 @@ class PolarTable {
 };
 
 // Directions over the map that a view holds. Where it looks straight up or down anywhere, all of them; else they are widest at its
-// rim.
-PolarTable::Fan fan_of(const scene::Fogmap&, const scene::View&);
+// rim. From an eye beside the map no more than the map takes, and a few of the `angles` of the fan to both sides.
+PolarTable::Fan fan_of(const scene::Fogmap&, const scene::View&, int angles);
 
-// Steps of that many cells from (u, v) that pass the map's farthest corner.
-int steps_to_rim(const scene::SplineMap&, double u, double v, double step);
+// Entries of a spoke from (u, v), in steps of that many cells: from the last before the map, 0 within it, to the first that passes its
+// farthest corner. Throws Error, which names the settings, where a table of so many angles is larger than `most_table_bytes`.
+inline constexpr double most_table_bytes = 4e9;
+struct Spoke {
+  int first = 0, steps = 0;
+};
+Spoke spoke_of(const scene::SplineMap&, double u, double v, int angles, double step);
 
 }  // namespace airlight::wavelet_fog

@@ -15,6 +15,7 @@ using scene::Medium;
 constexpr double opaque = 40;             // optical depth beyond which nothing comes through
 constexpr double most_change = 0.5;       // of an optical depth over a piece
 constexpr int most_halvings = 12;         // of a cell
+constexpr int most_deep_halvings = 48;    // where extinction asks for it: what is lit may be as thin as that
 constexpr double edge_share = 1. / 4096;  // of the way between two shadow rays: how well an edge is known
 
 const scene::Fogmap& fog_of(const Medium& medium) { return *std::get<scene::FogmapPointer>(medium.field); }
@@ -178,9 +179,10 @@ void SunScattering::add(Along& along, Interval t, bool lit, int halvings) const 
     most = most.max(to_sun);
   }
   along.points += long(points);
-  bool coarse = total.maxCoeff() > most_change || along.climb * t.length() > 1;
+  const bool deep = total.maxCoeff() > most_change;
+  bool coarse = deep || along.climb * t.length() > 1;
   for (int c = 0; c < 3 && lit; ++c) coarse = coarse || (least[c] < opaque && most[c] - least[c] > most_change);
-  if (coarse && halvings < most_halvings) {
+  if (coarse && halvings < (deep ? most_deep_halvings : most_halvings)) {
     const double middle = t.lo + 0.5 * t.length();
     add(along, {t.lo, middle}, lit, halvings + 1);
     add(along, {middle, t.hi}, lit, halvings + 1);

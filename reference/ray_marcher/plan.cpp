@@ -11,20 +11,6 @@
 
 namespace airlight::ray_marcher {
 
-std::vector<scene::DirectionalLight> environment_as_lights(const scene::EnvironmentLight& environment, int count) {
-  const double golden = 0.6180339887498949;  // (sqrt 5 - 1) / 2
-  std::vector<scene::DirectionalLight> lights;
-  for (int k = 0; k < count; ++k) {
-    const double u2 = (k + 0.5) * golden;
-    const Vec3 w = sample_environment(environment, (k + 0.5) / count, u2 - std::floor(u2));
-    const double pdf = pdf_environment(environment, w);
-    const Rgb from_there = radiance(environment, w);
-    if (!(pdf > 0) || (from_there == 0).all()) continue;
-    lights.push_back({w, from_there / (pdf * count)});
-  }
-  return lights;
-}
-
 double length_unit(const scene::Scene& scene) {
   double unit = infinity;
   for (const scene::Medium& medium : scene.media)
@@ -60,9 +46,11 @@ bool only_deep_lamps(const Plan& plan) {
 
 Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
   Plan plan{scene, options, make_layers(scene->media), {}, false};
+  plan.swallowed = scene::swallows_distant_light(scene->media);
   for (const scene::Light& light : scene->lights) {
+    if (plan.swallowed && !scene::ball(light)) continue;
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
-      for (const auto& l : environment_as_lights(*environment, options.environment_directions))
+      for (const auto& l : scene::environment_as_lights(*environment, options.environment_directions))
         plan.lights.emplace_back(l);
     } else {
       plan.lights.push_back(light);

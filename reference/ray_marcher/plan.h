@@ -6,7 +6,7 @@
 #include "reference/ray_marcher/layer.h"
 #include "reference/ray_marcher/options.h"
 #include "reference/ray_marcher/spacing.h"
-#include "scene/scene.h"
+#include "scene/sky_directions.h"
 
 namespace airlight::ray_marcher {
 
@@ -15,19 +15,14 @@ struct Plan {
   Options options;
   std::vector<Layer> layers;
   std::vector<scene::Light> lights;  // delta lights only: an environment is replaced by directional lights
-  bool scatters = false;             // some medium has an albedo, and there is light for it
+  bool swallowed = false;  // fog without end takes all light from infinitely far away: such lights are left out
+  bool scatters = false;   // some medium has an albedo, and there is light for it
 };
 
 // Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
 double length_unit(const scene::Scene&);
 
 Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
-
-// `count` directional lights that stand for an environment: direction k is the environment's own sample for the k-th
-// point of a Fibonacci lattice in the unit square, with irradiance radiance / (pdf * count). For a map that follows its
-// luminance, mixed with 5 % uniform; for a constant it is the spherical Fibonacci set. Directions without radiance are
-// left out.
-std::vector<scene::DirectionalLight> environment_as_lights(const scene::EnvironmentLight&, int count);
 
 // One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
 // march of its own. A light that grades the ray around itself has one.

@@ -15,6 +15,8 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
   const bool constants =
       std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return l.constant > 0; });
   const bool lit = !plan.lights.empty();
+  const char* no_light =
+      plan.swallowed ? "no light: fog without end lets none come in from infinitely far away" : "no light";
   const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
   const Options &o = plan.options, defaults;
   const bool as_stated = o.steps == defaults.steps && o.shadow_steps == defaults.shadow_steps && o.step == 0 &&
@@ -28,13 +30,13 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
   add("shadows", shadows,
-      !lit                        ? "no light"
+      !lit                        ? no_light
       : plan.layers.empty()       ? "no medium with extinction"
       : !shadows                  ? "no medium scatters, no surface is lit"
       : varying == 0              ? "closed form: no medium varies"
       : plan.options.exact_shadow ? fmt::format("exact, {} lights", plan.lights.size())
                                   : fmt::format("marched, {} varying media, {} lights", varying, plan.lights.size()));
-  add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? "no light" : "no medium scatters");
+  add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? no_light : "no medium scatters");
   add("constant_media", constants,
       constants ? "constants are integrated in closed form" : "no medium has a constant part");
   const bool grids = std::any_of(plan.layers.begin(), plan.layers.end(), [](const Layer& l) { return bool(l.grid); });
@@ -42,9 +44,10 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
       !grids                     ? "no voxel grid"
       : !plan.options.skip_empty ? "empty_space_skipping = false"
                                  : "bricks of 4^3 voxels");
-  add("environment_directions", has_environment(scene),
-      has_environment(scene) ? fmt::format("{} directions per environment", plan.options.environment_directions)
-                             : "no environment light");
+  add("environment_directions", has_environment(scene) && !plan.swallowed,
+      !has_environment(scene) ? "no environment light"
+      : plan.swallowed        ? no_light
+                              : fmt::format("{} directions per environment", plan.options.environment_directions));
   add("occlusion", bool(scene.geometry) && lit, scene.geometry ? "surfaces cast shadows" : "no surfaces");
   const bool seen = (bool(scene.geometry) && lit) || has_environment(scene) || !scene.backdrops.empty();
   add("surfaces", seen,

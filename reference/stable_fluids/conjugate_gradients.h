@@ -16,18 +16,22 @@ FluidParts fluid_parts(const Lattice&, const Obstacles&);
 template <class Real>
 class ConjugateGradients {
  public:
-  ConjugateGradients(const Lattice&, const Obstacles&, PressureSolver, double tolerance, int most_iterations);
-  // -Laplacian p = right side, by cell; p begins at 0. The right side sums to 0 over closed parts. Throws Error.
+  ConjugateGradients(const Lattice&, const Obstacles&, const FluidParts&, PressureSolver, double tolerance,
+                     int most_iterations);
+  // -Laplacian p = right side, by cell; p begins at 0. The mean of the right side over a closed part, which has no
+  // solution, is dropped. Throws Error.
   ProjectionReport solve(const std::vector<Real>& right_side, std::vector<Real>& p);
 
  private:
   void apply(const std::vector<Real>& x, std::vector<Real>& y) const;  // y = -h^2 Laplacian x
   void factorize();
   void precondition(const std::vector<Real>& r, std::vector<Real>& z);
+  void balance(std::vector<Real>& r) const;  // to a mean of 0 in each closed part
   template <class Body>
   void each_fluid(const Body&) const;  // body(cell, i, j, k)
 
   const Lattice& l_;
+  const FluidParts& parts_;
   PressureSolver which_;
   double tolerance_;
   int most_iterations_;

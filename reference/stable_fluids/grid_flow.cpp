@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/stable_fluids/balance.h"
 #include "reference/stable_fluids/diffusion.h"
 #include "reference/stable_fluids/forces.h"
 #include "reference/stable_fluids/frames.h"
@@ -135,6 +136,7 @@ class GridFlow : public scene::Flow {
 
   void begin() {
     projection_.emplace(l_, obstacles_, plan_.pressure, plan_.tolerance, plan_.iterations);
+    balance_.emplace(l_, obstacles_, projection_->parts());
     for (int a = 0; a < l_.dimensions; ++a) {
       u_[a] = Field<Real>(l_, a);
       each_sample(u_[a], [&](const Point3& x) { return scene::start_velocity(*problem_, a, x); });
@@ -206,6 +208,7 @@ class GridFlow : public scene::Flow {
         for (int a = 0; a < l_.dimensions; ++a)
           advect(plan_.advection, l_, obstacles_, u_, dt, Quantity::velocity, u_[a], advected_[a], work_);
         std::swap(u_, advected_);
+        balance_->add_deferred(u_);
         settle();
       });
       if (problem_->viscosity > 0)
@@ -224,14 +227,22 @@ class GridFlow : public scene::Flow {
   }
 
   void add_forces(double dt) {
-    const Field<Real>* density = find(Quantity::density);
-    const Field<Real>* temperature = find(Quantity::temperature);
-    if ((density && problem_->weight != 0) || (temperature && problem_->expansion != 0)) {
-      const Field<Real>& some = density ? *density : *temperature;
+    const Field<Real>* density = problem_->weight != 0 ? find(Quantity::density) : nullptr;
+    const Field<Real>* temperature = problem_->expansion != 0 ? find(Quantity::temperature) : nullptr;
+    const auto acts_along = [&](int axis) {
+      bool any = (density || temperature) && problem_->gravity[axis] != 0;
+      for (const scene::Push& push : problem_->pushes) any |= push.acceleration[axis] != 0;
+      return any;
+    };
+    Velocity<Real>& change = advected_;  // not used before the advection
+    for (int a = 0; a < l_.dimensions; ++a)
+      if (acts_along(a)) std::fill(change[a].values.begin(), change[a].values.end(), Real(0));
+    if (density || temperature)
       add_buoyancy(density ? problem_->weight : 0, temperature ? problem_->expansion : 0, problem_->gravity, l_,
-                   density ? *density : some, temperature ? *temperature : some, dt, u_);
-    }
-    add_pushes(*problem_, l_, time_, dt, u_);
+                   density ? *density : *temperature, temperature ? *temperature : *density, dt, change);
+    add_pushes(*problem_, l_, time_, dt, change);
+    for (int a = 0; a < l_.dimensions; ++a)
+      if (acts_along(a)) balance_->add(change[a], u_[a]);
     add_confinement(problem_->confinement, l_, obstacles_, dt, u_);
     settle();
   }
@@ -286,6 +297,7 @@ class GridFlow : public scene::Flow {
   Obstacles obstacles_;
   mutable tbb::task_arena arena_;
   std::optional<Projection<Real>> projection_;
+  std::optional<Balance<Real>> balance_;
   std::vector<Diffusion<Real>> diffusion_;
   Velocity<Real> u_, advected_;
   std::vector<Carried<Real>> carried_;

@@ -69,7 +69,7 @@ Projection<Real>::Projection(const Lattice& l, const Obstacles& obstacles, Press
   } else {
     pressure_.resize(count_of(l.n));
     gradients_ = std::make_unique<Gradients>(
-        Gradients{ConjugateGradients<Real>(l, obstacles, which, tolerance, most_iterations)});
+        Gradients{ConjugateGradients<Real>(l, obstacles, *parts_, which, tolerance, most_iterations)});
   }
 }
 template <class Real>
@@ -83,7 +83,6 @@ ProjectionReport Projection<Real>::operator()(Velocity<Real>& u) {
     box_->solve(right_side_, 0, 1);
     subtract_gradient(right_side_, u);
   } else {
-    balance();
     report = gradients_->solver.solve(right_side_, pressure_);
     subtract_gradient(pressure_, u);
   }
@@ -98,18 +97,6 @@ void Projection<Real>::divergence(const Velocity<Real>& u) {
     for (int i = 0; i < l_.n[0]; ++i)
       row[i] = obstacles_.any() && obstacles_.solid.at(i, j, k) ? Real(0) : -divergence_at(u, l_, i, j, k);
   });
-}
-
-// Parts that nothing leaves have a mean that is rounding, for what flows in through walls was balanced at first. The
-// transforms drop it themselves.
-template <class Real>
-void Projection<Real>::balance() {
-  std::vector<double> sums(parts_->open.size(), 0.0);
-  for (std::size_t c = 0; c < right_side_.size(); ++c) sums[parts_->part[c]] += double(right_side_[c]);
-  for (std::size_t c = 0; c < right_side_.size(); ++c) {
-    const int part = parts_->part[c];
-    if (!parts_->open[part]) right_side_[c] -= Real(sums[part] / double(parts_->cells[part]));
-  }
 }
 
 template <class Real>

@@ -27,11 +27,11 @@ class Projection {
   // Velocities on walls and obstacles, and ghosts, are set before; those on walls and obstacles stay. Throws Error where
   // conjugate gradients do not reach the tolerance.
   ProjectionReport operator()(Velocity<Real>&);
+  const FluidParts& parts() const { return *parts_; }
 
  private:
   struct Gradients;
   void divergence(const Velocity<Real>&);
-  void balance();
   void subtract_gradient(const std::vector<Real>& pressure, Velocity<Real>&) const;
   const Lattice& l_;
   const Obstacles& obstacles_;

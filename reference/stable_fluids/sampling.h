@@ -100,26 +100,27 @@ class Sampler {
     return monotone_cubic<Real>(slab(-s), slab(0), slab(s), slab(2 * s), f.z);
   }
 
-  // With the range of the samples around.
+  // With the range of the samples around. A sample of weight 0 does not count: at a place on a line of samples the one
+  // after it would, and the one before it would not.
   Read<Real> linear_in_range(const Foot& f) const {
-    Read<Real> all_of;
-    all_of.least = all_of.greatest = get(f, 0).first;
     const auto row = [&](std::ptrdiff_t to) {
       const auto [first, second] = get(f, to);
-      all_of.least = hn::Min(hn::Min(all_of.least, first), second);
-      all_of.greatest = hn::Max(hn::Max(all_of.greatest, first), second);
-      return between(first, second, f.x);
+      return combined(Read<Real>{first, first, first}, Read<Real>{second, second, second}, f.x);
     };
-    const auto slab = [&](std::ptrdiff_t to) {
-      const V first = row(to), second = row(to + stride_[1]);
-      return between(first, second, f.y);
-    };
-    const V low = slab(0);
-    all_of.value = D == 2 ? low : between(low, slab(D == 2 ? 0 : stride_[2]), f.z);
-    return all_of;
+    const auto slab = [&](std::ptrdiff_t to) { return combined(row(to), row(to + stride_[1]), f.y); };
+    if constexpr (D == 2) return slab(0);
+    return combined(slab(0), slab(stride_[2]), f.z);
   }
 
  private:
+  Read<Real> combined(const Read<Real>& first, const Read<Real>& second, V share) const {
+    const auto weightless = hn::Eq(share, all(Real(0)));
+    Read<Real> both;
+    both.value = between(first.value, second.value, share);
+    both.least = hn::IfThenElse(weightless, first.least, hn::Min(first.least, second.least));
+    both.greatest = hn::IfThenElse(weightless, first.greatest, hn::Max(first.greatest, second.greatest));
+    return both;
+  }
   std::pair<V, V> split(V x, int axis) const {
     const V from = hn::Sub(x, all(offset_[axis])), floor = hn::Floor(from);
     return {floor, hn::Sub(from, floor)};

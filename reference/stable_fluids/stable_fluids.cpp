@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "reference/stable_fluids/grid_flow.h"
 
@@ -57,6 +58,13 @@ std::vector<std::string> StableFluids::supports(const FlowProblem& problem, cons
     reasons.push_back("a gust: it knows winds that begin a flow only");
   if (settings.text("pressure") == "transforms" && !problem.obstacles.empty())
     reasons.push_back("pressure = transforms solves in boxes without obstacles only");
+  const std::string& pressure = settings.text("pressure");
+  const bool by_gradients = pressure != "transforms" && (pressure != "auto" || !problem.obstacles.empty());
+  if (constexpr double rounding = std::numeric_limits<float>::epsilon();
+      by_gradients && settings.text("precision") == "float" && settings.real("tolerance") < rounding)
+    reasons.push_back(
+        fmt::format("tolerance = {:g} is below the rounding of precision = float, expected at least {:.2g}",
+                    settings.real("tolerance"), rounding));
   if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
     reasons.push_back(fmt::format("dt = {:g}, courant = {:g} make {:.3g} steps of a frame, expected at most {:g}",
                                   settings.real("dt"), settings.real("courant"), steps, most_steps));

@@ -102,6 +102,19 @@ TEST_CASE("legendre light on the device: colours, several media and lights, came
   compare("three media", scene, bound);
 }
 
+TEST_CASE("legendre light on the device: an environment lights the smoke and a wall behind it",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  ScenePointer scene = oblique({4, 5, 3}, 2);
+  scene->media[0].sigma_t = Rgb(0.5, 1, 2);
+  scene->lights = {scene::make_constant_environment({1, 2, 0.5})};
+  compare("even sky", scene, bound);
+  // Below 0 in places.
+  scene->lights = {scene::make_sh_environment({Rgb(2, 1.5, 1), Rgb(1.9, -0.3, 2), Rgb(0.2, 1.4, -2), Rgb(-0.3, 0, 0.3)},
+                                              Mat3::Identity(), Rgb::Ones())};
+  compare("uneven sky", scene, 4 * bound, {{"environment_directions", "24"}});
+}
+
 TEST_CASE("legendre light on the device: scenes without light, without media", "[gpu][legendre_fluids]") {
   if (!gpu::test::device()) return;
   ScenePointer scene = oblique({4, 4, 4}, 2);

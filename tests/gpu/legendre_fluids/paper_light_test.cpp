@@ -229,7 +229,7 @@ TEST_CASE("legendre light on the device: what the paper's systems refuse there",
   CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("no medium is lit"));
   scene = oblique({4, 4, 4}, 2);
   scene->lights.push_back(scene::make_constant_environment(Rgb::Ones()));
-  CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("surfaces or an environment"));
+  CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("an environment has all of them"));
   scene->camera.kind = scene::Camera::Kind::perspective;
   CHECK_THAT(objections(*scene, paper("upwind", 6)).at(0), Contains("orthographic"));
 }

@@ -56,6 +56,18 @@ TEST_CASE("wavelet fog: the polar table on the GPU is that of the CPU", "[gpu][w
       }
 }
 
+TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's rim", "[gpu][wavelet_fog]") {
+  if (!gpu::test::device()) return;
+  for (int profile = 0; profile < 2; ++profile) {
+    const auto scene = scene_of(patches(2, 64, 47, 0.8, 7, profiles[profile]), 0.2, {-1200, 90, -700}, {0, 0, 0});
+    for (const double fov : {0.08, 0.8}) {
+      scene->camera.vertical_fov = fov;
+      scene->name = fmt::format("far, {} {}", profile_name(profiles[profile]), fov);
+      compare(scene, {{"variant", "polar"}}, 1e-4);
+    }
+  }
+}
+
 TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
   if (!gpu::test::device()) return;
   auto valley = airlight::test::scene_named("wavelet_fog/valley", 96, 72);

@@ -259,6 +259,37 @@ TEST_CASE("fogshop against the deterministic reference", "[fogshop]") {
 
 // Everything at once, layer by layer: two lights of which one has a ball, colour, albedo, a merged second medium, a
 // wall, both kinds of camera. The wall stands behind everything, so that nothing shadows the medium.
+// Gaussians of very different sizes, which the even edges and texels of a light map miss: sums are chosen by themselves.
+TEST_CASE("fogshop: a puff in a bank, at any ratio of their sizes, is right by default", "[fogshop]") {
+  struct Pair {
+    scene::Gaussian puff, bank;
+    double eye;
+    bool map;
+  };
+  const Pair pairs[] = {{{Point3(0, 1, 0), 0.1, 10}, {Point3(0.5, 1, 0), 200, 0.003}, 6, false},
+                        {{Point3(0, 1, 0), 0.001, 1000}, {Point3(0.5, 1, 0), 1000, 0.001}, 6, false},
+                        {{Point3(2, 1, 0), 0.1, 10}, {Point3(0.5, 1, 0), 200, 0.003}, 6, false},
+                        {{Point3(0, 1, 0), 1, 1}, {Point3(0.5, 1, 0), 200, 0.003}, 6, false},
+                        {{Point3(0, 1, 0), 0.1, 0.3}, {Point3(0.5, 1, 0), 200, 0.003}, 6, true},
+                        {{Point3(0, 1, 0), 20, 0.1}, {Point3(0.5, 1, 0), 200, 0.003}, 60, true},
+                        {{Point3(3, 1, 0), 0.5, 3}, {Point3(0.5, 1, 0), 10, 0.05}, 10, true}};
+  for (const Pair& pair : pairs) {
+    Scene scene;
+    scene.width = 24;
+    scene.height = 18;
+    scene.camera = scene::look_at(Point3(0, 1, pair.eye), Point3(0, 1, 0), Vec3::UnitY());
+    scene.lights = {scene::PointLight{Point3(0, 1, 0), Rgb::Constant(4), 0}};
+    scene.media = {gaussians({pair.puff, pair.bank})};
+    finish(scene);
+    CAPTURE(pair.puff.width, pair.bank.width);
+    const auto shared = std::make_shared<Scene>(scene);
+    const Film truth =
+        airlight::test::picture(*deterministic::make_renderer(), shared, {{"relative_tolerance", "1e-6"}});
+    CHECK(relative_l2(render(scene).film, truth) < 0.015);
+    CHECK(kept(method.prepare(shared, settings({}), {})->stages(), "light maps") == pair.map);
+  }
+}
+
 TEST_CASE("fogshop layers are those of the deterministic reference", "[fogshop]") {
   Scene scene = small_scene();
   scene.lights.push_back(scene::PointLight{Point3(-0.8, -0.5, -4), Rgb(1, 2, 4), 0.2});

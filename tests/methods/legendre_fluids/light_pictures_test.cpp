@@ -143,6 +143,52 @@ TEST_CASE("legendre light: pictures equal the quadrature's and the path tracer's
   }
 }
 
+TEST_CASE("legendre light: what an environment scatters equals the path tracer's", "[legendre_fluids][light]") {
+  auto scene = lit_scene(smoke(random_density({4, 4, 4}, 3), 1.5), oblique_light, oblique_view, 24, 18, 3);
+  scene->media[0].sigma_t = {0.5, 1.5, 4};
+  scene->media[0].albedo = {0.9, 0.5, 0.7};
+  scene->media[0].phase = scene::HenyeyGreenstein{0.5};
+  const scene::EnvironmentLight skies[] = {
+      scene::make_constant_environment({1, 2, 0.5}),
+      scene::make_sh_environment({Rgb(2, 1.5, 1), Rgb(0.8, -0.3, 0.1), Rgb(0.2, 0.4, -0.2), Rgb(-0.3, 0, 0.3)},
+                                 Mat3::Identity(), Rgb::Ones())};
+  for (const scene::EnvironmentLight& sky : skies)
+    for (const bool with_sun : {false, true}) {
+      if (!with_sun) scene->lights = {sky};
+      if (with_sun) scene->lights = {sun(oblique_light, {3, 2, 1}), sky};
+      finish(*scene);
+      const scene::Film fine = picture(method, scene, {{"environment_directions", "2048"}}, 0);
+      const scene::Film traced =
+          picture(path_tracer::PathTracer(), scene, {{"samples", "1024"}, {"max_order", "1"}}, 0);
+      const experiments::Equality e = experiments::compare_equal(fine, traced, "mean", {}, 2.5e-4);
+      CHECK(e.equal);
+      CHECK(e.detectable_bias < 0.01);
+      // 256 directions; of an uneven sky they follow the luminance, and its colours less closely.
+      CHECK(relative_l2(picture(method, scene, {}, 0), fine) <= (sky.sh.empty() ? 1e-3 : 0.03));
+    }
+}
+
+TEST_CASE("legendre light: thin smoke under an even sky sends back its scattering times the length",
+          "[legendre_fluids][light]") {
+  auto scene = lit_scene(smoke(random_density({1, 1, 1}, 1), 1e-5, 0.75), {0, 1, 0}, {0, 0, -1}, 8, 6, 1);
+  scene->lights = {scene::make_constant_environment({2, 4, 8})};
+  finish(*scene);
+  const scene::Film film = picture(method, scene, {}, 0);
+  for (std::size_t i = 0; i < film.layer("airlight").size(); ++i)
+    CHECK(film.layer("airlight")[i] == Approx(double(2 << i % 3) * 0.75 * 1e-5 * 2).epsilon(1e-4));
+  const auto stage = [&](const char* name) {
+    for (const scene::Stage& s : method.prepare(scene, scene::Settings(method.settings(), {}), {})->stages())
+      if (s.name == name) return s;
+    return scene::Stage{};
+  };
+  CHECK(stage("environment as a light").kept);
+  CHECK(stage("airlight").kept);
+  scene->media[0].albedo = Rgb::Zero();
+  finish(*scene);
+  CHECK_FALSE(stage("environment as a light").kept);
+  CHECK_FALSE(stage("airlight").kept);
+}
+
 TEST_CASE("legendre light: threads change nothing; layers add up", "[legendre_fluids][light]") {
   auto scene = scene_of(cases[6], 24, 18);
   scene->ambient_in_scatter = {0.1, 0.2, 0.3};

@@ -213,10 +213,13 @@ TEST_CASE("legendre light: E_d casts the medium's shadowgram on what lies behind
   CHECK(surface[2] <= surface[0] / 100);
   CHECK(mean[0] <= 1e-3);
   CHECK(mean[2] <= mean[0] / 100);
-  // A background is seen through the medium, and nothing else of it is.
+  // A background is seen through a medium that does not scatter; one that does is refused.
   scene->lights.push_back(scene::make_constant_environment(Rgb(0.5, 0.6, 0.7)));
   scene->surfaces.clear();
   scene->geometry = nullptr;
+  finish(*scene);
+  CHECK_THROWS_WITH(picture(method, scene, paper(6)), Catch::Contains("an environment has all of them"));
+  scene->media[0].albedo = Rgb::Zero();
   finish(*scene);
   CHECK(relative_l2(picture(method, scene, paper(6)), picture(method, scene), "surface") <= 1e-7);
 }

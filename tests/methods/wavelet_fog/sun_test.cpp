@@ -144,6 +144,29 @@ TEST_CASE("sun: in even fog under a flat top the light is a closed form", "[wave
     }
 }
 
+// What is lit may be as thin as 1e-8 of a cell.
+TEST_CASE("sun: fog of any extinction sends back what the quadrature says", "[wavelet_fog][sun]") {
+  auto fog = std::make_shared<scene::Fogmap>();
+  fog->map = scene::SplineMap(2, {{0, 0}, {4, 4}},
+                              {0.5, 1, 0.6, 0.8, 0.4, 0.3, 0.9, 0.7, 0.5, 0.2, 1, 0.9, 0.3, 0.6, 0.8, 0.5});
+  fog->x0 = fog->z0 = -8;
+  fog->cell = 4;
+  auto scene = std::make_shared<scene::Scene>();
+  scene->media.resize(1);
+  scene->media[0].field = scene::FogmapPointer(fog);
+  scene->media[0].region = Box{{-9, -2, -9}, {9, 2, 9}};
+  scene->lights = {scene::DirectionalLight{Vec3(0.3, 0.8, 0.4).normalized(), Rgb::Constant(2)}};
+  scene->camera = scene::look_at({0, 8, 25}, {0, 0, 0}, Vec3::UnitY());
+  scene->width = 16, scene->height = 12;
+  for (const double extinction : {1e3, 1e5, 1e7, 1e9}) {
+    scene->media[0].sigma_t = Rgb(extinction, 0.5 * extinction, 2 * extinction);
+    finish(*scene);
+    CAPTURE(extinction);
+    const scene::Film truth = picture(*deterministic::make_renderer(), scene, {{"relative_tolerance", "1e-6"}}, 0);
+    CHECK(relative_l2(picture(method, scene, {{"sun", "true"}}, 0), truth, "airlight") <= 1e-5);
+  }
+}
+
 TEST_CASE("sun: several suns and maps over each other, a ray without end", "[wavelet_fog][sun]") {
   const auto scene = sun_scene(sun_cases[0], 16, 12);
   scene->media.push_back(sun_scene(sun_cases[4], 16, 12)->media[0]);

@@ -4,6 +4,7 @@
 
 #include "experiments/equality.h"
 #include "methods/fogshop/fogshop.h"
+#include "methods/wavelet_fog/polar_table.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
@@ -63,6 +64,36 @@ TEST_CASE("wavelet fog: skip equals direct, polar is off by 1e-4, bound below it
       CHECK(most(picture(method, scene, {{"variant", "tele"}, {"mu", "0.4"}}), paper, "transmittance") <= 2e-7);
       CHECK(most(picture(method, scene, {{"variant", "paper"}, {"mu", "1"}}), direct, "transmittance") <= 2e-7);
     }
+}
+
+// The table begins at the map's rim, and turns over what the map takes: from the eye it took 733 MB at 20 km. Seen from
+// one side, edges of a hard map need more angles than from within.
+TEST_CASE("wavelet fog: polar from an eye far away is as close, and its table no larger", "[wavelet_fog]") {
+  struct Far {
+    Point3 eye;
+    double fov;
+  };
+  const Far eyes[] = {{{-2e4, 900, -1.2e4}, 0.004},
+                      {{-2e4, 900, -1.2e4}, 0.8},
+                      {{1e5, 3000, 0}, 0.0012},
+                      {{300, 20, -5}, 0.3},
+                      {{0, 2000, 300}, 2.5}};
+  for (const std::string name : {"smooth", "patchy", "hard"})
+    for (const Far& far : eyes) {
+      const auto scene = seen_from(scene_named("wavelet_fog/" + name, 96, 72), far.eye, {0, 0, 0});
+      scene->camera.vertical_fov = far.fov;
+      CAPTURE(name, far.eye.transpose());
+      const scene::Film direct = picture(method, scene, {{"variant", "direct"}});
+      CHECK(rms(picture(method, scene, {{"variant", "polar"}, {"angles", "2048"}}), direct, "transmittance") <= 1.2e-4);
+      const auto& fog = *std::get<scene::FogmapPointer>(scene->media[0].field);
+      const scene::MapLine at = line_over(fog, {far.eye, Vec3::UnitX()});
+      const double across =
+          std::hypot(fog.map.support_hi(0) - fog.map.support_lo(0), fog.map.support_hi(1) - fog.map.support_lo(1));
+      CHECK(wavelet_fog::spoke_of(fog.map, at.u, at.v, 512, 0.5).steps <= 2 * across + 4);
+    }
+  const auto scene = scene_named("wavelet_fog/patchy", 8, 6);
+  CHECK_THROWS_WITH(picture(method, scene, {{"variant", "polar"}, {"angles", "65536"}, {"radial_step", "0.001"}}),
+                    Catch::Contains("variant = polar: a table of") && Catch::Contains("radial_step"));
 }
 
 TEST_CASE("wavelet fog: a ray that ends early is off by the threshold at most", "[wavelet_fog]") {

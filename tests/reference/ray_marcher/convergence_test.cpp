@@ -258,6 +258,15 @@ TEST_CASE("ray marcher: stages say what is kept and why", "[ray_marcher]") {
   };
   const scene::Light sun = scene::DirectionalLight{};
   CHECK(kept(make_scene({}, {sun})) == "camera_rays ");
+  // Fog without end takes all light from infinitely far away; of red light alone it does not.
+  const scene::Light sky = scene::make_constant_environment(Rgb::Ones());
+  const auto endless = [](const Rgb& sigma_t) {
+    return make_medium(scene::Homogeneous{1}, scene::Unbounded{}, sigma_t, Rgb::Ones());
+  };
+  CHECK(kept(make_scene({endless(Rgb::Ones())}, {sun})) == "camera_rays camera_march constant_media ");
+  CHECK(kept(make_scene({endless(Rgb::Ones())}, {sky})) == "camera_rays camera_march constant_media surfaces ");
+  CHECK(kept(make_scene({endless(Rgb(1, 0, 0))}, {sun})) ==
+        "camera_rays camera_march shadows scattering constant_media ");
   CHECK(kept(make_scene({make_medium(scene::Homogeneous{1}, scene::Sphere{}, Rgb::Ones(), Rgb::Ones())}, {sun})) ==
         "camera_rays camera_march shadows scattering constant_media ");
   const auto grid = make_smoke(6, 0.3, Vec3::Zero(), Mat3::Identity());
