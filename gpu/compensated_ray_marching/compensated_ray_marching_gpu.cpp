@@ -9,6 +9,7 @@
 #include "gpu/compensated_ray_marching/map_projection.h"
 #include "gpu/compensated_ray_marching/smoke_density.h"
 #include "gpu/compensated_ray_marching/smoke_source.h"
+#include "gpu/compensated_ray_marching/smoke_volume.h"
 #include "gpu/compensated_ray_marching/surroundings.h"
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
@@ -65,6 +66,8 @@ class PreparedSmokeGpu final : public scene::Prepared {
   Context& context_;
   std::unique_ptr<Surroundings> surroundings_;
   std::unique_ptr<SmokeDensity> density_;
+  std::unique_ptr<SmokeDensity> centre_density_;    // of paper through voxels: the Gaussians
+  std::unique_ptr<SmokeVolume> volume_;             // of paper through voxels
   std::unique_ptr<SmokeColumns> columns_;           // of grid
   std::unique_ptr<SmokeSource> source_;             // of grid
   std::unique_ptr<CentreSourcesOnDevice> centres_;  // of paper
@@ -150,9 +153,13 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
 void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& execution) {
   static const scene::GaussianSum no_smoke;
   static const scene::Medium clear;
-  centres_ = std::make_unique<CentreSourcesOnDevice>(context_, smoke_ ? *smoke_->gaussians() : no_smoke,
-                                                     smoke_ ? smoke_->medium() : clear, scene_->surfaces,
-                                                     density_.get(), middle_, options_, timer, execution);
+  if (smoke_ && smoke_->voxels()) {
+    centre_density_ = std::make_unique<SmokeDensity>(context_, smoke_->centres(), middle_);
+    volume_ = std::make_unique<SmokeVolume>(context_, *smoke_);
+  }
+  centres_ = std::make_unique<CentreSourcesOnDevice>(
+      context_, smoke_ ? smoke_->centres() : no_smoke, smoke_ ? smoke_->medium() : clear, scene_->surfaces,
+      volume_ ? centre_density_.get() : density_.get(), middle_, options_, timer, execution);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
@@ -211,8 +218,12 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
            : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
-           : smoke_->gaussians()     ? "the Gaussians are all"
+           : paper()                 ? "the Gaussians are all"
                                      : "the field itself is marched through"},
+          {"volume pass", bool(volume_),
+           volume_ ? fmt::format("density and source at {} x {} x {} voxels", smoke_->voxels()->size[0],
+                                 smoke_->voxels()->size[1], smoke_->voxels()->size[2])
+                   : "no Gaussians with voxels of variant = paper"},
           {"march", smoke_.has_value(), smoke_ ? fmt::format("slices of {:.3g} m", slice_) : none},
           {"ends", surroundings_->ends(),
            surroundings_->ends() ? "where surfaces and backdrops end camera rays" : "nothing ends a ray"},
@@ -245,8 +256,9 @@ void PreparedSmokeGpu::march(const View& view) const {
   Program& p = *march_;
   set_camera(p, view, middle_);
   density_->bind(p);
-  density_->bind_residual(p);
-  if (centres_) {
+  if (volume_) {
+    volume_->values().bind(at::volume);
+  } else if (centres_) {
     centres_->sources().bind(at::centre_sources);
     p.set("least_source_density", smoke_->least_density());
   } else {
@@ -328,6 +340,10 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
   if (smoke_) {
     frame_.timer.begin("towards the camera");
     centres_ ? centres_->towards(view) : source_->towards(view, middle_);
+    if (volume_) {
+      frame_.timer.begin("volume pass");
+      volume_->find(centres_->sources());
+    }
     frame_.timer.begin("march");
     march(view);
   }

@@ -8,7 +8,8 @@ layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_COLUMN) buffer Column { float column[]; };  // so far [m]
 uniform int first_slice, weight;  // as SliceWeight
 uniform vec3 sigma_t;
-#if PAPER
+#if VOLUME
+#elif PAPER
 layout(std430, binding = AT_CENTRE_SOURCES) readonly buffer CentreSources { vec4 sources[]; };  // by Gaussian
 uniform float least_source_density;  // of Gaussians: below it no one knows the source
 #else
@@ -31,16 +32,31 @@ vec3 source_at(vec3 x) {
 }
 #endif
 
-#if RESIDUAL
-#include "compensated_ray_marching/residual.glsl"
-uniform vec3 residual_along;  // samples of each axis, without the border that the levels have around them
-uniform mat3 to_residual;
-uniform vec3 middle_of_residual;
-uniform float border_of_residual, residual_step;
-float residual_at(vec3 x) {
-  vec3 s = to_residual * x + middle_of_residual;
-  if (any(lessThan(s, vec3(-border_of_residual))) || any(greaterThan(s, residual_along - 1 + border_of_residual))) return 0;
-  return residual_step * residual_between(s + 1);
+#if VOLUME
+layout(std430, binding = AT_VOLUME) readonly buffer Volume { vec4 volume[]; };  // of voxels: source times density, density
+
+// Trilinear, as density_at.
+vec4 voxel_of(ivec3 i) {
+  ivec3 samples = ivec3(samples_along);
+#if CLAMPED
+  i = clamp(i, ivec3(0), samples - 1);
+#else
+  if (any(lessThan(i, ivec3(0))) || any(greaterThanEqual(i, samples))) return vec4(0);
+#endif
+  return volume[i.x + samples.x * (i.y + samples.y * i.z)];
+}
+vec4 volume_at(vec3 x) {
+  vec3 s = sample_at(x);
+  if (any(lessThan(s, vec3(-border))) || any(greaterThan(s, samples_along - 1 + border))) return vec4(0);
+  vec3 low = floor(s), share = s - low;
+  ivec3 i = ivec3(low);
+  vec4 sum = vec4(0);
+  for (int c = 0; c < 8; ++c) {
+    ivec3 on = ivec3(c & 1, c >> 1 & 1, c >> 2);
+    vec3 weight = mix(1 - share, share, vec3(on));
+    sum += weight.x * weight.y * weight.z * voxel_of(i + on);
+  }
+  return sum;
 }
 #endif
 
@@ -88,8 +104,16 @@ void main() {
   }
 #else
   if (active_)
-    for (int k = 0; k < SLICES; ++k)
-      density[k] = density_at(origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction);
+    for (int k = 0; k < SLICES; ++k) {
+      vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
+#if VOLUME
+      vec4 voxel = volume_at(middle);
+      density[k] = voxel.a;
+      weighted[k] = voxel.rgb;
+#else
+      density[k] = density_at(middle);
+#endif
+    }
 #endif
   if (!active_) return;
   vec3 light = vec3(0);
@@ -97,13 +121,13 @@ void main() {
   for (int k = 0; k < SLICES; ++k) {
     float here = density[k];
     if (first_slice + k >= count || !(here > 0)) continue;
+#if !PAPER
     vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
-#if PAPER
-    bool known = here >= least_source_density;
-    vec3 source = known ? max(weighted[k] / here, vec3(0)) : vec3(0);
-#if RESIDUAL
-    here = known ? max(here + residual_at(middle), 0.0) : 0;
 #endif
+#if VOLUME
+    vec3 source = weighted[k] / here;
+#elif PAPER
+    vec3 source = here >= least_source_density ? max(weighted[k] / here, vec3(0)) : vec3(0);
 #else
     vec3 source = source_at(middle);
 #endif

@@ -19,6 +19,7 @@ shared uint met[words];  // of 32 words of Gaussians, a bit each
 
 float column_past_group(vec3 place, bool wanted) {
   vec3 middle_ = corner + cell_edge * (vec3(gl_WorkGroupID) + 0.5) * vec3(gl_WorkGroupSize);
+  vec2 region = region_part(place, to_light);
   float sum = 0, spread = 0.5001 * cell_edge * length(vec3(gl_WorkGroupSize) - 1);
   for (int first = 0; first < gaussian_count; first += 32 * words) {
     barrier();
@@ -33,7 +34,7 @@ float column_past_group(vec3 place, bool wanted) {
     if (!wanted) continue;
     for (int w = 0; w < words; ++w)
       for (uint left = met[w]; left != 0u; left &= left - 1u)
-        sum += column_of(gaussians[first + 32 * w + findLSB(left)], place);
+        sum += column_of(gaussians[first + 32 * w + findLSB(left)], place, region);
   }
   return sum;
 }

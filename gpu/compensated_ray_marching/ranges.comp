@@ -37,6 +37,8 @@ void main() {
   }
 #endif
   int place = at.y * width + at.x;
+  vec2 region = region_part(origin, direction);
+  t = vec2(max(t.x, region.x), min(t.y, region.y));
   if (has_ends != 0) t.y = min(t.y, distances[place]);
   ranges[place] = vec4(0);
   if (t.x < t.y) {

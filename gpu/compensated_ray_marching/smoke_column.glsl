@@ -10,9 +10,10 @@ uniform float widths2;  // of Gaussians: where they end, in widths, squared
 
 #if GAUSSIANS
 // Zhou et al. 2007, Eq. 31 from a point to infinity [m].
-float column_of(Gaussian g, vec3 origin) {
+float column_of(Gaussian g, vec3 origin, vec2 region) {
   float nearest, aside, column = 0;
   vec2 part = within(g, widths2, origin, to_light, nearest, aside);
+  part = vec2(max(part.x, region.x), min(part.y, region.y));
   if (part.x < part.y && part.y > 0) {
     vec2 u = (vec2(max(part.x, 0), part.y) - nearest) / g.width;
     column = 0.886226925 * g.amplitude * g.width * exp(-aside) * (error_function(u.y) - error_function(u.x));
@@ -21,14 +22,16 @@ float column_of(Gaussian g, vec3 origin) {
 }
 float column_from(vec3 origin) {
   float sum = 0;
-  for (int i = 0; i < gaussian_count; ++i) sum += column_of(gaussians[i], origin);
+  vec2 region = region_part(origin, to_light);
+  for (int i = 0; i < gaussian_count; ++i) sum += column_of(gaussians[i], origin, region);
   return sum;
 }
 #else
 // Between planes of samples density is a cubic along the ray: two Gauss points are exact [m].
 float column_from(vec3 origin) {
   vec3 o = sample_at(origin), d = to_samples * to_light;
-  float begin = 0, end = 1e37, sum = 0;
+  vec2 region = region_part(origin, to_light);
+  float begin = region.x, end = region.y, sum = 0;
   vec3 next, pace;  // [m] to the next plane of each axis, and from one to the next
   for (int a = 0; a < 3; ++a) {
     float lo = -border, hi = samples_along[a] - 1 + border;

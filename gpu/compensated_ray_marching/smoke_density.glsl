@@ -1,4 +1,6 @@
-// The smoke along a ray: a sum of Gaussians, each where it is above nothing, or a voxel grid. Places relative to the middle of the smoke.
+// The smoke along a ray: a sum of Gaussians, each where it is above nothing, or a voxel grid,
+// cut off by a region. Places relative to the middle of the smoke.
+#include "compensated_ray_marching/smoke_region.glsl"
 #if GAUSSIANS
 struct Gaussian {
   vec3 center;     // [m]

@@ -1,8 +1,7 @@
-// The density that camera rays march through, on the device: a sum of Gaussians or a voxel grid.
+// The density that camera rays march through, on the device: a sum of Gaussians or a voxel grid, cut off by a region.
 #pragma once
 #include <memory>
 
-#include "gpu/compensated_ray_marching/residual_on_device.h"
 #include "gpu/compensated_ray_marching/smoke_interface.h"
 #include "methods/compensated_ray_marching/marched_smoke.h"
 
@@ -10,28 +9,30 @@ namespace airlight::gpu::smoke {
 
 class SmokeDensity {
  public:
-  // Of a field that `reasons_against` has nothing against, its residual as bricks or hash; places on the device are relative to `middle`
-  // [m]. `paper`: the march also interpolates between the centres of the Gaussians, and adds their residual.
+  // Of a field that `reasons_against` has nothing against; places on the device are relative to `middle` [m]. `paper`: the march also
+  // interpolates between the centres of the Gaussians, or between voxels (SmokeVolume).
   SmokeDensity(Context&, const compensated_ray_marching::SmokeField&, const Point3& middle, bool paper);
+  // Gaussians alone, without a region.
+  SmokeDensity(Context&, const scene::GaussianSum&, const Point3& middle);
 
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&) const;
-  void bind_residual(Program&) const;  // of the march
   // Length of the longest way through it [m].
   double longest() const { return longest_; }
   double widths2() const { return widths2_; }  // of a Gaussian: where it ends, squared
   int slices() const { return slices_; }       // of a ray in one dispatch
 
  private:
-  void set_samples(const scene::VoxelGrid&, const Point3& middle);
+  void set_gaussians(Context&, const scene::GaussianSum&, const Point3& middle);
+  void set_voxels(Context&, const scene::VoxelGrid&, const Point3& middle);
+  void set_region(const scene::Region&, const Point3& middle);
 
   int slices_;
   std::unique_ptr<Buffer> values_;
-  std::unique_ptr<compensated::ResidualOnDevice> residual_;  // null: there is none
-  double step_ = 0;                                          // density of one of its levels
   Definitions definitions_;
   double longest_ = 0, widths2_ = 0, farthest_ = 0, border_ = 0;
-  int count_ = 0;
+  int count_ = 0, region_kind_ = 0;
+  Vec3 region_a_ = Vec3::Zero(), region_b_ = Vec3::Zero();
   Vec3 samples_ = Vec3::Zero(), middle_sample_ = Vec3::Zero();
   Mat3 to_samples_ = Mat3::Identity();
 };

@@ -35,6 +35,7 @@ enum Binding {
   radiance = 6,
   greatest = 7,
   logarithms = 5,
+  volume = 5,
   // camera rays
   density = 0,
   ranges = 1,

@@ -36,6 +36,7 @@ void SurfacesByDirections::light(const scene::View& view, const SurfacesOnDevice
   } else {
     towards_.bind(at::density);  // of which nothing is read
     p.set("gaussian_count", 0);
+    p.set("region_kind", 0);
   }
   light.bind(at::light_bands);
   spheres.bind(at::spheres);

@@ -8,7 +8,7 @@
 
 #include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/lit_grid.h"
-#include "methods/compensated_ray_marching/marched_smoke.h"
+#include "methods/compensated_ray_marching/smoke_volume.h"
 #include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/math/special_functions.h"
@@ -56,7 +56,7 @@ class PreparedPicture final : public scene::Prepared {
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
-  Pixel pixel(const Ray&, const View&, const GaussianRow*, const std::vector<Rgb>& towards,
+  Pixel pixel(const Ray&, const View&, const GaussianRow*, const SmokeVolume::Values&, const std::vector<Rgb>& towards,
               std::vector<double>& density, std::vector<Rgb>& weighted) const;
   Rgb behind(const Ray&, const scene::RayEnd&) const;
 
@@ -69,6 +69,7 @@ class PreparedPicture final : public scene::Prepared {
   std::optional<IncomingLight> incoming_;
   std::optional<LitGrid> grid_;
   std::optional<CentreSources> centres_;
+  std::optional<SmokeVolume> volume_;  // of paper through fitted smoke
   std::vector<scene::StageTime> times_;
 };
 
@@ -91,7 +92,12 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
   }
   slice_ = smoke_box(smoke_->medium()).size().maxCoeff() / options_.slices;
   if (paper()) {
-    centres_.emplace(*smoke_->gaussians(), smoke_->medium(), scene_->surfaces, options_);
+    centres_.emplace(smoke_->centres(), smoke_->medium(), scene_->surfaces, options_);
+    if (smoke_->voxels()) {
+      watch.lap();
+      volume_.emplace(*smoke_, execution);
+      times_.push_back({"densities", watch.lap()});
+    }
   } else {
     grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
     times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
@@ -154,8 +160,12 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
            : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
-           : smoke_->gaussians()     ? "the Gaussians are all"
+           : paper()                 ? "the Gaussians are all"
                                      : "the field itself is marched through"},
+          {"volume pass", volume_.has_value(),
+           volume_ ? fmt::format("density and source at {} x {} x {} voxels", smoke_->voxels()->size[0],
+                                 smoke_->voxels()->size[1], smoke_->voxels()->size[2])
+                   : "no Gaussians with voxels of variant = paper"},
           {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
           {"surfaces", behind_kept(),
            !behind_kept() ? "nothing stands behind"
@@ -189,7 +199,8 @@ Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
   return sum.max(0);
 }
 
-Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow* row, const std::vector<Rgb>& towards,
+Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow* row,
+                             const SmokeVolume::Values& voxels, const std::vector<Rgb>& towards,
                              std::vector<double>& density, std::vector<Rgb>& weighted) const {
   Pixel p;
   const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
@@ -199,19 +210,22 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
     RaySlices slices{t.lo, 0, std::max(1, int(std::ceil(t.length() * slope / slice_)))};
     slices.step = t.length() / slices.count;
     density.assign(std::size_t(slices.count), 0.0);
-    weighted.assign(centres_ ? density.size() : 0, Rgb::Zero());
+    weighted.assign(centres_ && row ? density.size() : 0, Rgb::Zero());
     const bool exact = options_.weight == SliceWeight::exact;
     if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
     for (int k = 0; k < slices.count; ++k) {
       const Point3 x = ray.at(slices.middle(k));
       const double of_gaussians = density[std::size_t(k)];
-      const double here = smoke_->density(x, of_gaussians);
+      const SmokeVolume::Sample voxel = volume_ ? volume_->between(voxels, x) : SmokeVolume::Sample{};
+      const double here = volume_ ? voxel.density : smoke_->density(x, of_gaussians);
       if (!(here > 0)) continue;
       ++p.slices;
       const Rgb depth = smoke_->medium().sigma_t * here * slices.step, lost = one_minus_exp(depth);
       Rgb source = Rgb::Zero();
       if (grid_)
         source = exponentials(between_nodes(grid_->grid(), towards, x));
+      else if (volume_)
+        source = voxel.source;
       else if (of_gaussians >= smoke_->least_density())
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
       // What a slice shows of its source is what it takes away, by exact weights.
@@ -240,6 +254,11 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
   if (grid_) towards = grid_->towards(view.camera, execution);
   if (centres_) towards = centres_->towards(view.camera);
   if (smoke_) result.times.push_back({"towards the camera", watch.lap()});
+  SmokeVolume::Values voxels;
+  if (volume_) {
+    voxels = volume_->values(towards, execution);
+    result.times.push_back({"volume pass", watch.lap()});
+  }
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;
   long slices = 0, samples = 0;
@@ -256,7 +275,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
     }
     long row_slices = 0, row_samples = 0;
     for (int x = 0; x < view.width; ++x) {
-      const Pixel p = pixel(rays(x + 0.5, y + 0.5), view, row ? &*row : nullptr, towards, density, weighted);
+      const Pixel p = pixel(rays(x + 0.5, y + 0.5), view, row ? &*row : nullptr, voxels, towards, density, weighted);
       const Rgb sum = p.airlight + p.surface + p.ambient;
       const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
       for (std::size_t c = 0; c < 3; ++c) {

@@ -56,6 +56,13 @@ double StoredResidual::at(const Point3& x) const {
   return step_ * scene::level_between(*bricks(), padded);
 }
 
+double StoredResidual::at_sample(const Vector3i& sample) const {
+  if (const auto* grid = std::get_if<scene::VoxelGrid>(&store_)) return grid->at(sample[0], sample[1], sample[2]);
+  const Vector3i padded = sample + Vector3i::Ones();
+  if (const scene::PerfectHash* h = hash()) return step_ * h->value_by_domain(padded);
+  return step_ * scene::level_between(*bricks(), padded.cast<double>());
+}
+
 const char* StoredResidual::name() const { return hash() ? "a hash" : bricks() ? "bricks" : "a grid"; }
 
 }  // namespace airlight::compensated_ray_marching

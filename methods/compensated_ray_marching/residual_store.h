@@ -17,7 +17,8 @@ class StoredResidual {
  public:
   StoredResidual(const scene::Residual&, ResidualStore);
 
-  double at(const Point3&) const;  // density
+  double at(const Point3&) const;                  // density
+  double at_sample(const Eigen::Vector3i&) const;  // the same, at a sample of the layout
   // Density of a level, and where the samples lie: without values. Levels of bricks and hash have one sample more on every side: size().
   double step() const { return step_; }
   const scene::VoxelGrid& layout() const { return layout_; }

@@ -229,6 +229,21 @@ TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][
     fitted->grid = *grid;
     const auto scene = scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven());
     compare(scene, paper({{"residual", "false"}}));
+    const Given of_grid{{"multiple", "none"}, {"cells", "12"}, {"levels", "6"}};
+    compare(scene, of_grid);
+    for (const scene::Region& region :
+         {scene::Region(Box{{-1, -1, -0.2}, {0.3, 0.1, 1}}), scene::Region(scene::Sphere{{0.1, 0, 0}, 0.45}),
+          scene::Region(scene::Slab{Vec3(1, 2, 0).normalized(), -0.2, 0.15})}) {
+      CAPTURE(region_name(region));
+      auto cut = std::make_shared<scene::Scene>(*scene);
+      cut->media[0].region = region;
+      finish(*cut);
+      compare(cut, paper({{"multiple", "none"}}));
+      compare(cut, of_grid);
+      cut->media[0].field = puffs();
+      finish(*cut);
+      compare(cut, of_grid);
+    }
     // All stores have the same levels; the processor's grid rounds them to floats.
     const scene::Film grid = picture(cpu, scene, paper()), bricks = picture(device, scene, paper());
     compare(grid, bricks);

@@ -315,7 +315,7 @@ TEST_CASE("compensated march on the device: refusals name the reason", "[gpu][co
   CHECK(reason(*scene).empty());
   CHECK_THAT(reason(*scene, {{"multiple", "p1"}}), Contains("multiple = p1"));
   scene->media[0].region = scene::Sphere{};
-  CHECK_THAT(reason(*scene), Contains("cut off by a region"));
+  CHECK(reason(*scene).empty());
   scene->media[0].field = scene::Homogeneous{};
   CHECK_THAT(reason(*scene), Contains("is homogeneous, expected gaussians or grid or fitted"));
 }
