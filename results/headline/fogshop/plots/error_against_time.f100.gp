@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0208196:1.16973]
+set xrange [0.0234287:1.58539]
 set logscale y
 set format y "%g"
 set yrange [0.000137176:0.375652]

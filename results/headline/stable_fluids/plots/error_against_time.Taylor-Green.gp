@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [7.33802e-05:0.676751]
+set xrange [7.61646e-05:0.869019]
 set logscale y
 set format y "%g"
 set yrange [4.36735e-05:0.507091]
