@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [42.3373:944.794]
 set logscale y
 set format y "%g"
-set yrange [0.00305912:0.92827]
+set yrange [0.00317224:0.480042]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_gaussians.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \

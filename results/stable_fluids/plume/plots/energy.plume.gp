@@ -9,7 +9,7 @@ set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
 set xrange [-0.03:1.03]
-set yrange [-7.19811e-05:0.00247135]
+set yrange [-7.19628e-05:0.00247072]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "energy.plume.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian, double", \

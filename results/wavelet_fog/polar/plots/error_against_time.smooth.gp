@@ -8,7 +8,7 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.00193794]
+set xrange [0:0.00361266]
 set logscale y
 set format y "%g"
 set yrange [1.46795e-07:5.87843e-05]
