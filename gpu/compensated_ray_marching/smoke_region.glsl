@@ -11,7 +11,9 @@ vec2 region_part(vec3 origin, vec3 direction) {
   vec2 part = vec2(0, 1e37);
   if (region_kind == REGION_SPHERE) {
     vec3 offset = region_a - origin;
-    float nearest = dot(offset, direction), half2 = region_b.x * region_b.x - dot(offset - nearest * direction, offset - nearest * direction);
+    float nearest = dot(offset, direction);
+    vec3 aside = offset - nearest * direction;
+    float half2 = region_b.x * region_b.x - dot(aside, aside);
     return half2 > 0 ? vec2(max(nearest - sqrt(half2), 0), nearest + sqrt(half2)) : vec2(1, -1);
   }
   for (int a = 0; a < (region_kind == REGION_BOX ? 3 : region_kind == REGION_SLAB ? 1 : 0); ++a) {

@@ -24,7 +24,8 @@ dvec2 on_spoke(int angle, float r) {
   dvec2 m = dvec2(table[a], 0);
   m.x += hermite(t, table_step * at_a, float(table[b] - table[a]), table_step * at_b);
 #if PROFILE == PROFILE_LAYERS
-  m.y = table[a + 1] + hermite(t, slope * float(table_first_step + k) * at_a, float(table[b + 1] - table[a + 1]), slope * float(table_first_step + k + 1) * at_b);
+  m.y = table[a + 1] + hermite(t, slope * float(table_first_step + k) * at_a, float(table[b + 1] - table[a + 1]),
+                               slope * float(table_first_step + k + 1) * at_b);
 #endif
   return m;
 }
