@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.017686:0.931131]
+set xrange [0.0207246:1.05516]
 set logscale y
 set format y "%g"
 set yrange [4.58615e-09:0.397618]
