@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.0870964:1.14815]
 set logscale y
 set format y "%g"
-set yrange [0.00694197:74.8042]
+set yrange [0.00694951:73.3827]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_albedo.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.000218258:1145.43]
 set logscale y
 set format y "%g"
-set yrange [0.00411935:3.46962]
+set yrange [0.00412828:3.33938]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_thickness.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \
@@ -24,6 +24,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "paper, 40 iterations", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
+     data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "grid, 48 cells", \
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 7 using 2:5 with points lc rgb "#CC79A7" pt 10 ps 0.9 notitle, \
@@ -42,6 +43,7 @@ plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
      data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "paper, 40 iterations", \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
+     data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      data index 6 using 2:5 with linespoints lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "grid, 48 cells", \
      data index 6 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#CC79A7" pt 0 lw 0.8 notitle, \
      data index 7 using 2:5 with points lc rgb "#CC79A7" pt 10 ps 0.9 notitle, \

@@ -8,10 +8,10 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.10076]
+set xrange [0:0.0627001]
 set logscale y
 set format y "%g"
-set yrange [0.0221317:0.580088]
+set yrange [0.0221345:0.57883]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "front.interior.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \

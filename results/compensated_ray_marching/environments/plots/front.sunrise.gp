@@ -8,9 +8,7 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set logscale x
-set format x "%g"
-set xrange [0.0228415:0.38922]
+set xrange [0:0.111281]
 set logscale y
 set format y "%g"
 set yrange [0.0211982:0.527619]

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [0.182742:0.984998]
 set logscale y
 set format y "%g"
-set yrange [0.00993018:0.956992]
+set yrange [0.00992669:0.962967]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_g.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "grid", \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [1.33375:28.2655]
 set logscale y
 set format y "%g"
-set yrange [0.00563491:0.557853]
+set yrange [0.00560335:0.616039]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_frame.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper", \
