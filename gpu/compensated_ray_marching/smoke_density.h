@@ -9,10 +9,10 @@ namespace airlight::gpu::smoke {
 
 class SmokeDensity {
  public:
-  // Of a field that `reasons_against` has nothing against; places on the device are relative to `middle` [m]. `paper`: the march also
-  // interpolates between the centres of the Gaussians, or between voxels (SmokeVolume).
+  // Uploads the field of the smoke, which `reasons_against` must have accepted. Places on the device are relative to `middle` [m]. With
+  // `paper` the march also interpolates the source radiance between the centres of the Gaussians, or between voxels (SmokeVolume).
   SmokeDensity(Context&, const compensated_ray_marching::SmokeField&, const Point3& middle, bool paper);
-  // Gaussians alone, without a region.
+  // Uploads Gaussians that no region cuts off.
   SmokeDensity(Context&, const scene::GaussianSum&, const Point3& middle);
 
   const Definitions& definitions() const { return definitions_; }

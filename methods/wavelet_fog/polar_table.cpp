@@ -38,7 +38,7 @@ void add_piece(const SplineMap& map, const MapLine& line, int i, int j, double f
   }
 }
 
-// Of a point to the support; 0 within it [cells].
+// Distance of the point (u, v) from the support of the map [cells]; 0 within it.
 double nearest(const SplineMap& map, double u, double v) {
   const double x = std::max({0.0, map.support_lo(0) - u, u - map.support_hi(0)});
   const double y = std::max({0.0, map.support_lo(1) - v, v - map.support_hi(1)});

@@ -43,7 +43,7 @@ class DefiniteFactors {
   std::shared_ptr<const Factors> factors_;
 };
 
-// The same by L D L^T with pivots, which bears matrices that are nearly semidefinite.
+// Solves a symmetric positive definite system by factors L D L^T with pivots. Unlike DefiniteFactors it bears nearly singular matrices.
 Eigen::MatrixXd solve_definite(const Eigen::MatrixXd&, const Eigen::MatrixXd& right);
 
 // Any matrix: the solution of least squares that has the least norm.

@@ -74,7 +74,7 @@ inline double compare(const scene::Scene& scene, const Given& given, const scene
   return worst;
 }
 
-// The same of the processor's film and the device's.
+// Draws a scene on the processor and on the device, checks that p99 of each layer's difference is below `bound`, and returns the worst.
 inline double compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
   Given of_both = given;
   of_both.erase("first_hits");
