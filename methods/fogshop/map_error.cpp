@@ -71,7 +71,7 @@ class Probe {
 
 double factor_off(double exact, double mapped) { return std::abs(std::exp(std::min(exact - mapped, 50.0)) - 1); }
 
-// Shares of the light that the medium scatters between neighbouring distances, and how wrong they would be.
+// Relative error of the power that the medium scatters, summed over stretches between neighbouring distances from the light.
 double error_of_power(Probe& probe, double least_width) {
   const MapFrame& frame = probe.grid().frame;
   std::vector<double> at(2 * radii + 1);
@@ -103,7 +103,7 @@ double error_of_power(Probe& probe, double least_width) {
   return power > 0 ? missed / power : 0;
 }
 
-// Of Gaussians as spots of even radiance, each as bright as its middle.
+// Relative L2 error of a picture of the Gaussians, each drawn as a spot of even radiance, as bright as its middle.
 double error_of_picture(Probe& probe, const GaussianArrays& g, const Point3& light, const Point3& eye) {
   std::vector<double> weight(g.count);
   std::vector<int> order(g.count);

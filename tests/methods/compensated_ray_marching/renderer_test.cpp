@@ -6,6 +6,7 @@
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "scene/media/fitted.h"
+#include "tests/methods/compensated_ray_marching/puffs.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/oracle_vectors.h"
 #include "tests/pictures.h"
@@ -22,32 +23,6 @@ namespace {
 const CompensatedRayMarching method;
 const Given paper{{"variant", "paper"}};
 
-scene::GaussianSum puffs() {
-  scene::GaussianSum sum;
-  sum.cutoff = 3;
-  sum.gaussians = {{{0, 0, 0}, 0.4, 1}, {{0.5, 0.2, -0.1}, 0.25, 0.7}, {{-0.3, 0.4, 0.2}, 0.3, 0.9}};
-  return sum;
-}
-
-std::shared_ptr<scene::Scene> scene_of(scene::GaussianSum sum, double sigma_t, double albedo,
-                                       scene::EnvironmentLight light) {
-  auto s = std::make_shared<scene::Scene>();
-  s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
-  s->camera.vertical_fov = 0.6;
-  s->width = 12;
-  s->height = 9;
-  s->lights = {std::move(light)};
-  scene::Medium smoke;
-  smoke.field = std::move(sum);
-  smoke.sigma_t = Rgb::Constant(sigma_t);
-  smoke.albedo = Rgb::Constant(albedo);
-  s->media = {smoke};
-  finish(*s);
-  return s;
-}
-std::shared_ptr<scene::Scene> in_white(scene::GaussianSum sum, double sigma_t, double albedo = 0.8) {
-  return scene_of(std::move(sum), sigma_t, albedo, scene::make_constant_environment(Rgb::Ones()));
-}
 // 1 + 0.8 cos towards +y in the red, from the side in the others.
 scene::EnvironmentLight uneven(double turn = 0) {
   const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
@@ -57,12 +32,6 @@ scene::EnvironmentLight uneven(double turn = 0) {
       Rgb::Ones());
 }
 
-double greatest_difference(const scene::Film& a, const scene::Film& b, const std::string& layer) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.layer(layer).size(); ++i)
-    most = std::max(most, std::abs(double(a.layer(layer)[i]) - b.layer(layer)[i]));
-  return most;
-}
 bool finite(const scene::Film& film) {
   for (const auto& [name, values] : film.layers)
     for (const float v : values)
@@ -203,95 +172,6 @@ TEST_CASE("compensated march: paper leaves out what is less than the tolerance, 
   fitted->grid = scene::decoded(puffs(), *fitted->residual);
   finish(*of_fit);
   CHECK(stage(of_fit, "residual").kept);
-}
-
-namespace {
-
-// A box of samples that cuts all puffs, with a residual of either sign.
-std::shared_ptr<scene::Fitted> cut_fit() {
-  scene::VoxelGrid grid;
-  grid.size = {9, 8, 7};
-  grid.voxel_size = 0.12;
-  grid.translation = {-0.5, -0.4, -0.3};
-  grid.values = scene::decoded(grid, puffs(), {}).values;
-  for (std::size_t i = 0; i < grid.values.size(); ++i)
-    grid.values[i] = float(std::max(0.0, grid.values[i] + 0.3 * std::sin(0.7 * double(i))));
-  auto fitted = std::make_shared<scene::Fitted>();
-  fitted->gaussians = puffs();
-  fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(grid, puffs(), {}));
-  fitted->grid = scene::decoded(puffs(), *fitted->residual);
-  return fitted;
-}
-
-const std::vector<scene::Region> regions = {scene::Unbounded{}, Box{{-1, -1, -0.2}, {0.3, 0.1, 1}},
-                                            scene::Sphere{{0.1, 0, 0}, 0.35},
-                                            scene::Slab{Vec3(1, 2, 0).normalized(), -0.2, 0.15}};
-
-}  // namespace
-
-// The Gaussians reach beyond the samples, where nothing takes their tails away. The grid's variant, which marches through the decoded voxels,
-// is another way to the same density; in thin smoke under an even light what is scattered once is the albedo times what is taken away.
-TEST_CASE("compensated march: fitted smoke of paper ends with its samples and its region",
-          "[compensated_ray_marching]") {
-  const auto fitted = cut_fit();
-  auto without = std::make_shared<scene::Fitted>(*fitted);
-  without->residual = nullptr;
-  without->grid = scene::decoded(fitted->grid, fitted->gaussians, {});
-  for (const scene::Region& region : regions)
-    for (const std::string residual : {"true", "false"}) {
-      CAPTURE(region_name(region), residual);
-      const auto scene = in_white(puffs(), 0.02);
-      scene->media[0].field = scene::FittedPointer(fitted);
-      scene->media[0].region = region;
-      finish(*scene);
-      const Given of_paper{{"variant", "paper"}, {"multiple", "none"}, {"residual", residual}};
-      const Given of_grid{{"multiple", "none"}, {"residual", residual}};
-      const scene::Film a = picture(method, scene, of_paper), b = picture(method, scene, of_grid);
-      CHECK(greatest_difference(a, b, "transmittance") < 1e-6);
-      double most = 0;
-      for (std::size_t i = 0; i < a.layer("airlight").size(); ++i) {
-        const double lost = 1 - double(b.layer("transmittance")[i]);
-        most = std::max(most, lost);
-        CHECK(std::abs(a.layer("airlight")[i] - 0.8 * lost) <= 0.03 * lost + 1e-6);
-      }
-      CHECK(most > 1e-3);
-      if (residual == "true") continue;
-      const auto alone = std::make_shared<scene::Scene>(*scene);
-      alone->media[0].field = scene::FittedPointer(without);
-      finish(*alone);
-      for (const Given& given : {of_paper, of_grid})
-        CHECK(picture(method, scene, given).layer("mean") == picture(method, alone, given).layer("mean"));
-    }
-}
-
-TEST_CASE("compensated march: Gaussians of paper beyond the region throw no shadow", "[compensated_ray_marching]") {
-  scene::VoxelGrid grid;
-  grid.size = {12, 30, 12};
-  grid.voxel_size = 0.1;
-  grid.translation = {-0.55, -0.55, -0.55};
-  const auto of = [&](const scene::GaussianSum& sum) {
-    auto fitted = std::make_shared<scene::Fitted>();
-    fitted->gaussians = sum;
-    fitted->grid = scene::decoded(grid, sum, {});
-    return scene::FittedPointer(fitted);
-  };
-  scene::GaussianSum low;
-  low.cutoff = 3;
-  low.gaussians = {{{0, 0, 0}, 0.2, 1}, {{0.1, 0.1, 0}, 0.1, 1}};
-  scene::GaussianSum both = low;
-  both.gaussians.push_back({{0, 1.5, 0}, 0.25, 30});
-  const auto scene = in_white(low, 4);
-  scene->media[0].field = of(low);
-  finish(*scene);
-  const auto cut = std::make_shared<scene::Scene>(*scene), uncut = std::make_shared<scene::Scene>(*scene);
-  cut->media[0].field = uncut->media[0].field = of(both);
-  cut->media[0].region = scene::Slab{Vec3::UnitY(), -5, 0.7};
-  finish(*cut);
-  finish(*uncut);
-  const Given once{{"variant", "paper"}, {"multiple", "none"}, {"slices", "2000"}};
-  const scene::Film alone = picture(method, scene, once);
-  CHECK(relative_l2(picture(method, cut, once), alone) < 2e-3);
-  CHECK(relative_l2(picture(method, uncut, once), alone) > 0.02);
 }
 
 TEST_CASE("compensated march: no Gaussian, one, two at one place, one without weight, the eye within",

@@ -1,0 +1,44 @@
+// Three Gaussians that overlap, seen from the front, and how far two films of them differ.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "tests/pictures.h"
+
+namespace airlight::test {
+
+inline scene::GaussianSum puffs() {
+  scene::GaussianSum sum;
+  sum.cutoff = 3;
+  sum.gaussians = {{{0, 0, 0}, 0.4, 1}, {{0.5, 0.2, -0.1}, 0.25, 0.7}, {{-0.3, 0.4, 0.2}, 0.3, 0.9}};
+  return sum;
+}
+
+inline std::shared_ptr<scene::Scene> scene_of(scene::GaussianSum sum, double sigma_t, double albedo,
+                                              scene::EnvironmentLight light) {
+  auto s = std::make_shared<scene::Scene>();
+  s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
+  s->camera.vertical_fov = 0.6;
+  s->width = 12;
+  s->height = 9;
+  s->lights = {std::move(light)};
+  scene::Medium smoke;
+  smoke.field = std::move(sum);
+  smoke.sigma_t = Rgb::Constant(sigma_t);
+  smoke.albedo = Rgb::Constant(albedo);
+  s->media = {smoke};
+  finish(*s);
+  return s;
+}
+inline std::shared_ptr<scene::Scene> in_white(scene::GaussianSum sum, double sigma_t, double albedo = 0.8) {
+  return scene_of(std::move(sum), sigma_t, albedo, scene::make_constant_environment(Rgb::Ones()));
+}
+
+inline double greatest_difference(const scene::Film& a, const scene::Film& b, const std::string& layer) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.layer(layer).size(); ++i)
+    most = std::max(most, std::abs(double(a.layer(layer)[i]) - b.layer(layer)[i]));
+  return most;
+}
+
+}  // namespace airlight::test
