@@ -50,12 +50,19 @@ void Buffer::poison() { fill(~0u); }
 void Buffer::fill(GLuint word) {
   const Use use(*context_);
   context_->gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+  // NVIDIA's driver (580) puts a fill off, beyond a dispatch that uses the buffer where it was bound before; a small upload makes it
+  // happen now.
+  context_->gl().NamedBufferSubData(id_, 0, sizeof word, &word);
+  filled_ = true;
 }
 
 void Buffer::write(const void* data, std::size_t bytes) {
   if (bytes > bytes_) throw Error(fmt::format("gpu: buffer '{}' holds {} bytes, {} were given", name_, bytes_, bytes));
   if (bytes == 0) return;
   const Use use(*context_);
+  // NVIDIA's driver (580) lets a fill overwrite an upload of 64 KiB or more that comes after it; no barrier of OpenGL prevents that.
+  if (filled_ && bytes >= 65536) context_->wait();
+  filled_ = false;
   context_->gl().NamedBufferSubData(id_, 0, GLsizeiptr(bytes), data);
   context_->traffic().bytes_up += long(bytes);
   context_->check("filling buffer '" + name_ + "'");

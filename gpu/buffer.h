@@ -62,6 +62,7 @@ class Buffer {
   std::string name_;
   std::size_t bytes_;
   Handle id_;
+  bool filled_ = false;  // by the device, and nothing was uploaded since
 };
 
 }  // namespace airlight::gpu

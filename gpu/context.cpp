@@ -135,6 +135,11 @@ Context::Context(Attempt attempt, std::unique_ptr<EglContext> egl)
     : attempt_(std::move(attempt)), egl_(std::move(egl)) {
   egl_->make_current();
   load_gl([&](const char* name) { return egl_->function(name); }, gl_);  // what it lacks, attempt() has told
+  // Before messages are errors: where GL_NVX_gpu_memory_info is missing this is one, and the memory stays unknown.
+  constexpr GLenum dedicated_memory = 0x9047;  // [KiB]
+  GLint kibibytes = 0;
+  gl_.GetIntegerv(dedicated_memory, &kibibytes);
+  if (gl_.GetError() == GL_NO_ERROR) limits_.memory = std::size_t(std::max(0, kibibytes)) << 10;
   debugging_ = debug_wanted();
   if (debugging_) {
     gl_.Enable(GL_DEBUG_OUTPUT);

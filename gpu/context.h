@@ -25,6 +25,7 @@ struct Limits {
   int invocations = 0;            // of a work group
   int shared_memory = 0;          // bytes
   int texture_size_3d = 0, texture_size = 0;
+  std::size_t memory = 0;                                      // bytes; 0: the driver does not tell
   int texture_units = 0;                                       // of a compute shader
   int vertex_storage_blocks = 0, fragment_storage_blocks = 0;  // OpenGL promises none; raster passes need some
 };

@@ -41,7 +41,7 @@ void Program::dispatch(int x, int y, int z) {
   const int wanted[3] = {x, y, z};
   GLuint groups[3];
   for (int axis = 0; axis < 3; ++axis) {
-    groups[axis] = GLuint((wanted[axis] + local_[axis] - 1) / local_[axis]);
+    groups[axis] = GLuint((long(wanted[axis]) + local_[axis] - 1) / local_[axis]);
     if (groups[axis] > GLuint(context_.limits().groups[axis]))
       throw Error(fmt::format("{}: {} work groups, {} offers at most {}", files_, groups[axis], context_.renderer(),
                               context_.limits().groups[axis]));

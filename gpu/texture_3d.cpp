@@ -24,9 +24,11 @@ Texture3D::Texture3D(Context& context, const std::string& name, const std::array
   gl.CreateTextures(GL_TEXTURE_3D, 1, &id);
   id_ = Handle(context, id, [](const Gl& gl, GLuint id) { gl.DeleteTextures(1, &id); });
   ++context.traffic().allocations;
-  gl.TextureStorage3D(id_, 1, format == Format::r32f ? GL_R32F : GL_RGBA32F, size[0], size[1], size[2]);
+  // NVIDIA's driver makes textures of any size, and fails when they are filled.
+  const bool fits = context.limits().memory == 0 || bytes() <= context.limits().memory;
+  if (fits) gl.TextureStorage3D(id_, 1, format == Format::r32f ? GL_R32F : GL_RGBA32F, size[0], size[1], size[2]);
   const GLenum error = gl.GetError();
-  if (error == GL_OUT_OF_MEMORY) {
+  if (!fits || error == GL_OUT_OF_MEMORY) {
     context.forget_errors();  // the same in the driver's words
     throw Unavailable(fmt::format("gpu: texture '{}' of {} texels needs {:.1f} MiB: {} is out of memory", name,
                                   dimensions, double(bytes()) / (1 << 20), context.renderer()));

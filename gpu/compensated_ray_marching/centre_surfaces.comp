@@ -21,7 +21,7 @@ void main() {
   int surface = solids[primitive].surface;
   if (dot(normal, direction) > 0) normal = -normal;
   clear_rows();
-  for (int l = 0; l < SH_ORDER; ++l) band[l] = cosine[l];
+  for (int l = 0; l < SH_ORDER; ++l) band[l] = bits_of(cosine[l]);
   if (lane == 0) add_about(normal, 1);
   sum_rows(LOBE);
   dvec3 point = origin + t * direction;

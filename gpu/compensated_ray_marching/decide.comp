@@ -13,6 +13,9 @@ double total(int s) {
   return sum;
 }
 
+// Shared, though one invocation decides: NVIDIA rounds its own arrays of doubles (common/private_doubles.glsl).
+shared double a[KEPT * KEPT], right[KEPT];
+
 void main() {
   if (gl_GlobalInvocationID.x != 0 || done != 0) return;
   int used = min(iteration - 1, KEPT), slot = (iteration - 2) % KEPT;
@@ -31,7 +34,6 @@ void main() {
     return;
   }
   // gram shares = what missed has of each; the greatest diagonal first, and what is left of the others' combinations is left out.
-  double a[KEPT * KEPT], right[KEPT];
   bool gone[KEPT];
   int order[KEPT];
   double most = 0;

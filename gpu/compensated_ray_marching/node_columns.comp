@@ -18,9 +18,11 @@ const int lanes = LOCAL_SIZE_X * LOCAL_SIZE_Y * LOCAL_SIZE_Z, words = 32;
 shared uint met[words];  // of 32 words of Gaussians, a bit each
 
 float column_past_group(vec3 place, bool wanted) {
-  vec3 middle_ = corner + cell_edge * (vec3(gl_WorkGroupID) + 0.5) * vec3(gl_WorkGroupSize);
+  // Not gl_WorkGroupSize: as a factor of a vector of floats it makes NVIDIA's compiler (driver 580) crash.
+  const vec3 group_size = vec3(LOCAL_SIZE_X, LOCAL_SIZE_Y, LOCAL_SIZE_Z);
+  vec3 middle_ = corner + cell_edge * (vec3(gl_WorkGroupID) + 0.5) * group_size;
   vec2 region = region_part(place, to_light);
-  float sum = 0, spread = 0.5001 * cell_edge * length(vec3(gl_WorkGroupSize) - 1);
+  float sum = 0, spread = 0.5001 * cell_edge * length(group_size - 1);
   for (int first = 0; first < gaussian_count; first += 32 * words) {
     barrier();
     if (lane < words) met[lane] = 0u;

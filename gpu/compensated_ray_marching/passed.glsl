@@ -1,5 +1,6 @@
 // What of the light passes smoke and objects on its way to a point, in harmonics of lookup directions: SourceRadiance::passed of
 // methods/compensated_ray_marching. A point is a work group's; Gaussians and spheres are shared out among its lanes, coefficients too.
+#include "common/private_doubles.glsl"
 #include "compensated_ray_marching/doubles.glsl"
 #include "compensated_ray_marching/centre_tables.glsl"
 #include "compensated_ray_marching/triple_product.glsl"
@@ -19,13 +20,13 @@ shared double vectors[6 * BANDS];
 #define LOBE (5 * BANDS)  // of surfaces
 shared int within_sphere;
 
-double band[SH_ORDER];  // of a zonal function: its coefficients times sqrt(4 pi / (2l+1))
+uvec2 band[SH_ORDER];  // bits of doubles: coefficients of a zonal function times sqrt(4 pi / (2l+1))
 
 // That function about a unit axis, times a factor, is added to the lane's row.
 void add_about(dvec3 axis, double factor) {
   for (Harmonic y = first_harmonic(); y.m < sh_order; next_harmonic(y, axis)) {
     int at = (y.l * (y.l + 1) + y.m) * lanes + lane;
-    double q = factor * band[y.l] * y.q;
+    double q = factor * from_bits(band[y.l]) * y.q;
     rows[at] += q * y.turn.x;
     if (y.m > 0) rows[at - 2 * y.m * lanes] += q * y.turn.y;
   }
@@ -50,7 +51,7 @@ void find_depth(dvec3 x) {
     dvec3 offset = dvec3(gaussians[5 * i], gaussians[5 * i + 1], gaussians[5 * i + 2]) - x;
     double far = sqrt(dot(offset, offset)), width = gaussians[5 * i + 3], d = far / width;
     double place = d / (1 + d) * DEPTH_LAST, scale = 1 / (1 + d * d);
-    for (int l = 0; l < SH_ORDER; ++l) band[l] = scale * between(DEPTH_AT + l, SH_ORDER, DEPTH_LAST, place);
+    for (int l = 0; l < SH_ORDER; ++l) band[l] = bits_of(scale * between(DEPTH_AT + l, SH_ORDER, DEPTH_LAST, place));
     add_about(far > 0 ? offset / far : dvec3(0, 0, 1), -width * gaussians[5 * i + 4]);
   }
   sum_rows(DEPTH);
@@ -84,7 +85,7 @@ void find_hidden(dvec3 x, int surface) {
     double sine = radius / far;
     if (far <= radius || sine < LEAST_SINE) continue;
     double place = place_of_shadow(sine);
-    for (int l = 0; l < SH_ORDER; ++l) band[l] = between(SHADOW_AT + l, SH_ORDER, SHADOW_LAST, place);
+    for (int l = 0; l < SH_ORDER; ++l) band[l] = bits_of(between(SHADOW_AT + l, SH_ORDER, SHADOW_LAST, place));
     add_about(offset / far, 1);
   }
   sum_rows(HIDDEN);
@@ -104,7 +105,8 @@ void multiply(int a, int b, double factor) {
 }
 double size_of(int v) {
   double sum = 0;
-  for (int b = 1; b < BANDS; ++b) sum += vectors[v + b] * vectors[v + b];
+  // To a uniform: NVIDIA refuses the tables' constant indices that follow from a sum over no band.
+  for (int b = 1; b < sh_order * sh_order; ++b) sum += vectors[v + b] * vectors[v + b];
   return sqrt(sum);
 }
 

@@ -24,7 +24,7 @@ shared uint met[words];  // of 32 words of Gaussians, a bit each
 void main() {
   ivec3 size = ivec3(samples_along), at = ivec3(gl_GlobalInvocationID);
   int lane = int(gl_LocalInvocationIndex);
-  vec3 block = vec3(gl_WorkGroupSize), middle = vec3(gl_WorkGroupID) * block + 0.5 * (block - 1);
+  vec3 block = vec3(LOCAL_SIZE_X, LOCAL_SIZE_Y, LOCAL_SIZE_Z), middle = vec3(gl_WorkGroupID) * block + 0.5 * (block - 1);
   float density = 0, weight = 0, radius = 0.5001 * length(block - 1);
   vec3 sum = vec3(0);
   for (int first = 0; first < gaussian_count; first += 32 * words) {

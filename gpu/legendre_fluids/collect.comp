@@ -64,8 +64,11 @@ void begin_back(int field, int slab) {
 // One coefficient of the row, also to where it belongs.
 float collected(int field, int slab, int k) {
   int at = field * SIZE + slab * SLAB + lane * NZ + k;
-  if (comes_from == COMES_FROM_POINTS)
-    return rates[at] = row_times_line(D == 3 ? basis_at(TABLE_FROM_POINTS, field, 2) : TABLE_PRESSURE_MODES, FOURS_Z, k);
+  if (comes_from == COMES_FROM_POINTS) {
+    float rate = row_times_line(D == 3 ? basis_at(TABLE_FROM_POINTS, field, 2) : TABLE_PRESSURE_MODES, FOURS_Z, k);
+    rates[at] = rate;
+    return rate;
+  }
   if (comes_from == COMES_FROM_MODES)
     return state[at] = row_times_line(D == 3 ? modes_at(field, 2) : TABLE_PRESSURE_MODES, SQUARE_FOURS_Z, k);
   return state[at] += pushed(field, slab, lane, k);

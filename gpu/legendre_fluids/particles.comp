@@ -48,21 +48,23 @@ dvec3 velocity(dvec3 place, float share) {
   return 0.5LF * size * dvec3(u) + fall;
 }
 
+// x with another place along one axis. NVIDIA's compiler (driver 580) links no shader that writes a dvec3 by a variable index.
+dvec3 with_axis(dvec3 x, int axis, double place) { return mix(x, dvec3(place), equal(ivec3(0, 1, 2), ivec3(axis))); }
+
 void let_leave(int i, inout dvec3 x, inout double times) {
   for (int a = 0; a < D; ++a) {
     if (x[a] >= low[a] && x[a] <= low[a] + size[a]) continue;
     if (leaving == wraps || leaving == respawns) {
       double beyond = (x[a] - low[a]) / size[a];
-      x[a] = low[a] + size[a] * (beyond - floor(beyond));
+      x = with_axis(x, a, low[a] + size[a] * (beyond - floor(beyond)));
     }
     if (leaving == respawns) {
       times += 1;
       uint seed = uint(seed_low) | uint(seed_high) << 16;
       dvec3 share = random_shares(seed, uint(i), uint(times) + respawned);
-      for (int b = 0; b < 3; ++b)
-        if (b != a) x[b] = low[b] + size[b] * share[b];
+      x = with_axis(low + size * share, a, x[a]);
     }
-    x[a] = clamp(x[a], low[a], low[a] + size[a]);
+    x = with_axis(x, a, clamp(x[a], low[a], low[a] + size[a]));
   }
 }
 

@@ -36,7 +36,7 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
 void HitImage::begin() const {
   const Gl& gl = context_.gl();
   const GLfloat nothing[4] = {far_away, 0, 0, 0}, farthest[1] = {1};
-  const GLint none[4] = {-1, -1, -1, -1};
+  const GLint none[4] = {0, 0, 0, 0};
   gl.ClearNamedFramebufferfv(framebuffer_, GL_COLOR, 0, nothing);
   gl.ClearNamedFramebufferiv(framebuffer_, GL_COLOR, 1, none);
   gl.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, farthest);
@@ -65,7 +65,7 @@ void HitImage::copy(int attachment, GLenum format, GLenum type, const Buffer& bu
 void HitImage::copy_distances(const Buffer& buffer, std::size_t offset) const {
   copy(0, GL_RED, GL_FLOAT, buffer, offset);
 }
-void HitImage::copy_primitives(const Buffer& buffer, std::size_t offset) const {
+void HitImage::copy_numbers(const Buffer& buffer, std::size_t offset) const {
   copy(1, GL_RED_INTEGER, GL_INT, buffer, offset);
 }
 

@@ -80,7 +80,8 @@ bool grids_alone(Part part) {
 bool march(vec3 origin, vec3 direction, int own, Approach seen) {
   float total = measure_of_all();
   ended = false;
-  for (; at_part < part_count; ++at_part) {
+  // Counters of the march advance at the ends of the loops. On NVIDIA (driver 580) a `for` advances them before it returns from within.
+  while (at_part < part_count) {
     Part part = part_at(at_part);
     float share = measure(part);
     float n = step_length > 0 ? clamp(ceil(share / step_length), 1, 1048576)
@@ -93,7 +94,7 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
 #endif
     // Around the light from it, otherwise from the beginning of the part.
     float base = part.zone ? seen.t : part.lo, fall = exp_minus_one(-0.5 * growth * (part.hi - part.lo));
-    for (; at_step < n; ++at_step) {
+    while (at_step < n) {
       if (out_of_budget()) return false;
       ++work;
       float middle = (at_step + 0.5) * h, length_ = h;
@@ -102,7 +103,7 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
         float run = grids_run(part, origin + part.lo * direction, h * direction, at_step);
         until = at_step + max(run, 0);
         if (run < 0) {
-          at_step += -run - 1;
+          at_step += -run;
           continue;
         }
       }
@@ -122,7 +123,10 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
         }
         middle = 0.5 * (end[0] + end[1]);
         length_ = end[1] - end[0];
-        if (!(length_ > 0)) continue;
+        if (!(length_ > 0)) {
+          ++at_step;
+          continue;
+        }
       }
       ended = all_above(depth, darkest);
       if (ended) return true;
@@ -132,11 +136,13 @@ bool march(vec3 origin, vec3 direction, int own, Approach seen) {
         if (!march_deep_step(part, origin, direction, base + middle - half_length, x - half_length, length_, own))
           return false;
         if (ended) return true;
-        continue;
+      } else if (!march_step(part, origin, direction, base + middle, x, length_, own)) {
+        return false;
       }
-      if (!march_step(part, origin, direction, base + middle, x, length_, own)) return false;
+      ++at_step;
     }
     at_step = 0;
+    ++at_part;
   }
   return true;
 }

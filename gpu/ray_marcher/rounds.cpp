@@ -8,8 +8,8 @@
 namespace airlight::gpu::marcher {
 namespace {
 
-constexpr int software_budget = 3000, budget = 100000;     // iterations of loops, about
-constexpr int software_tiles = 64, hardware_tiles = 4096;  // of a dispatch between two looks at `progress`
+constexpr int software_budget = 3000, hardware_budget = 100000;  // iterations of loops, about
+constexpr int software_tiles = 64, hardware_tiles = 4096;        // of a dispatch between two looks at `progress`
 
 }  // namespace
 
@@ -21,13 +21,13 @@ void Rounds::begin(bool looks, const std::function<bool(double)>& progress) {
 
 void Rounds::run(Program& p, FrameBuffers& buffers, int tiles) {
   Buffer& rounds = buffers.get(name_of(bands_.size()), 4 * (12 + 3 * std::size_t(tiles)));
-  rounds.bind(at::rounds);
   p.set("tile_count", tiles);
-  p.set("budget", context_.software() ? software_budget : budget);
+  p.set("budget", budget > 0 ? budget : context_.software() ? software_budget : hardware_budget);
   const int at_once = progress_ ? (context_.software() ? software_tiles : hardware_tiles) : tiles;
   int taken = 1;
   for (int first = 0; first < tiles; first += at_once) {
     rounds.clear();
+    rounds.bind(at::rounds);
     p.set("first_tile", first);
     const int count = std::min(at_once, tiles - first);
     for (int round = 0; looks_ || round < 2 * known_; ++round) {

@@ -15,6 +15,8 @@ namespace airlight::gpu::marcher {
 class Rounds {
  public:
   static constexpr int tile = 8;  // pixels, to both sides: a work group
+  // Iterations of loops that a pixel does in a dispatch, about; 0: as suits the device. Tests set it, to have rounds on any device.
+  static inline int budget = 0;
 
   Rounds(Context& context, std::string name) : context_(context), name_(std::move(name)) {}
 

@@ -50,14 +50,11 @@ void meet_kinks(Ray ray, int m, double from) {
   if (kind != region_box) return;
   dvec3 side = cross(ray.direction, ray.to_light);
   for (int edge = 0; edge < 12; ++edge) {
-    int axis = edge >> 2, next = (axis + 1) % 3, last = (axis + 2) % 3;
-    dvec3 a = lo;
-    if ((edge & 1) != 0) a[next] = hi[next];
-    if ((edge & 2) != 0) a[last] = hi[last];
-    dvec3 b = a;
-    b[axis] = hi[axis];
-    a -= light;
-    b -= light;
+    // Bit 0: at the high end of the edge's own axis; bits 1 and 2: of the two axes after it.
+    int axis = edge >> 2, begins = (edge & 3) << 1;
+    ivec3 bit = (ivec3(3, 4, 5) - axis) % 3;
+    dvec3 a = mix(lo, hi, notEqual(ivec3(begins) >> bit & 1, ivec3(0))) - light;
+    dvec3 b = mix(lo, hi, notEqual(ivec3(begins | 1) >> bit & 1, ivec3(0))) - light;
     double sa = dot(side, a), sb = dot(side, b);
     if ((sa >= 0) == (sb >= 0)) continue;
     dvec3 p = a + (b - a) * (sa / (sa - sb));

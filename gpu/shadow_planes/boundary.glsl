@@ -12,10 +12,9 @@ void boundary_frame(out dvec3 centre, out dvec3 half_size) {
 // From the middle, i and j in [0, cells].
 dvec3 boundary_vertex(dvec3 half_size, int face, int i, int j) {
   int axis = face / 2;
-  dvec3 u;
-  u[axis] = face % 2 == 0 ? 1 : -1;
-  u[(axis + 1) % 3] = 2.0LF * i / boundary_cells - 1;
-  u[(axis + 2) % 3] = 2.0LF * j / boundary_cells - 1;
+  // Along the face's axis, the next and the last.
+  dvec3 p = dvec3(face % 2 == 0 ? 1 : -1, 2.0LF * i / boundary_cells - 1, 2.0LF * j / boundary_cells - 1);
+  dvec3 u = axis == 0 ? p : axis == 1 ? p.zxy : p.yzx;
   return half_size * (media[air_medium].region == region_sphere ? normalize(u) : u);
 }
 

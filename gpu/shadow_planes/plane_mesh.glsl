@@ -17,13 +17,13 @@ void locate_on_plane(float ratio, int pieces, float share, float s, out ivec3 co
   float along = share * float(pieces);
   int piece = clamp(int(along), 0, pieces - 1);
   float u = along - float(piece);
-  s = clamp(s, 1, 1e37);
+  s = clamp(s, 1.0, 1e37);
   int level = int(min(log(s) / ratio, float(plane_levels)));  // no infinity becomes an integer
   int a0 = piece * (plane_levels + 2) + level, b0 = a0 + plane_levels + 2;
   float s0 = exp(float(level) * ratio), nearer = s0 / s, at_a = 1 - u, at_b = u;
   if (level < plane_levels) {
     float s1 = exp(float(level + 1) * ratio);
-    nearer = clamp((s1 - s) / (s1 - s0), 0, 1);
+    nearer = clamp((s1 - s) / (s1 - s0), 0.0, 1.0);
     at_a = s * (1 - u) / s0;
     at_b = s * u / s1;
   }

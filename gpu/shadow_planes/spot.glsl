@@ -34,7 +34,5 @@ dvec2 cross_cone(Ray ray, double cosine) {
   dvec3 y = -ray.to_light;
   double ya = dot(y, spot_axis), wa = dot(ray.direction, spot_axis), c2 = cosine * cosine;
   dvec2 places = roots_of(wa * wa - c2, ya * wa - c2 * dot(y, ray.direction), ya * ya - c2 * dot(y, y));
-  for (int k = 0; k < 2; ++k)
-    if ((ya + places[k] * wa) * cosine < 0) places[k] = -1;
-  return places;
+  return dvec2((ya + places.x * wa) * cosine < 0 ? -1 : places.x, (ya + places.y * wa) * cosine < 0 ? -1 : places.y);
 }

@@ -17,7 +17,7 @@ float hermite(float t, float slope_a, float b, float slope_b) {
 // Integrals of f and s f up to r cells along a spoke.
 dvec2 on_spoke(int angle, float r) {
   int first = clamp(angle, 0, table_angles - 1) * (table_steps + 1);
-  float place = clamp(r / table_step - float(table_first_step), 0, float(table_steps));
+  float place = clamp(r / table_step - float(table_first_step), 0.0, float(table_steps));
   int k = min(int(place), table_steps - 1), a = 3 * (first + k), b = a + 3;
   float t = place - float(k), slope = table_step * table_step;
   float at_a = float(table[a + 2]), at_b = float(table[b + 2]);

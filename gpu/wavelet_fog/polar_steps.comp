@@ -5,6 +5,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "wavelet_fog/grids.glsl"
 #include "wavelet_fog/fog.glsl"
 #include "wavelet_fog/walk.glsl"
+#include "common/unit_vector.glsl"
 layout(std430, binding = AT_TABLE) writeonly buffer Table { double table[]; };
 layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };
 uniform double eye_u, eye_v;  // over the map [cells]
@@ -26,8 +27,8 @@ void main() {
   dvec2 eye = dvec2(eye_u, eye_v);
   int k = int(gl_GlobalInvocationID.x), angle = int(gl_GlobalInvocationID.y);
   if (k > table_steps || angle >= table_angles) return;
-  float turn = table_first + float(angle) * table_spacing, c = cos(turn), s = sin(turn);
-  dvec2 along = dvec2(table_middle_u * c - table_middle_v * s, table_middle_v * c + table_middle_u * s);
+  dvec2 turned_ = unit_vector(double(table_first + float(angle) * table_spacing));
+  dvec2 along = dvec2(table_middle_u * turned_.x - table_middle_v * turned_.y, table_middle_v * turned_.x + table_middle_u * turned_.y);
   Line line = Line(eye, along, 0, 0);
   Grid map = grids[0];
   int entry = 3 * (angle * (table_steps + 1) + k);

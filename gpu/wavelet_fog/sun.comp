@@ -70,7 +70,7 @@ void add_medium(dvec2 t, double middle, bool lit) {
       float h = float(factor.value + here * factor.slope);
       if (PROFILE == PROFILE_EXPONENTIAL && factor.falls)
         h = exp(-float((course_origin.y + here * course_direction.y - FALL_BASE) / FALL_SCALE));
-      float density = max(in_cell(c, vec2(start_in[medium] + here * along_in[medium] - dvec2(cell))) * h, 0);
+      float density = max(in_cell(c, vec2(from_bits(start_in[medium]) + here * from_bits(along_in[medium]) - dvec2(cell))) * h, 0);
       extinction[k] += sigma * density;
       scattering[k] += source_of[medium] * density;
     }

@@ -14,7 +14,7 @@ const float opaque = 40;
 float density_at(double t) {
   Grid g = grids[fog.map];
   ivec2 cell = cell_of(t);
-  vec2 local = vec2(start_in[medium] + t * along_in[medium] - dvec2(cell));
+  vec2 local = vec2(from_bits(start_in[medium]) + t * from_bits(along_in[medium]) - dvec2(cell));
   return in_cell(cell_at(place_of(g, cell), g.stride), local) * factor_at(course_origin.y + t * course_direction.y);
 }
 
@@ -24,7 +24,7 @@ double end_in_fog(dvec3 origin, dvec3 direction) {
   set_course(origin, direction, 1e37LF);
   for (int i = 0; i < media; ++i) {
     take_medium(i);
-    dvec2 way = way_in[medium];
+    dvec2 way = from_bits(way_in[medium]);
     if (way.y > way.x && way.y > 1e36LF) {
       double last = way.x;
       for (int k = 0; k < breaks() && direction.y != 0; ++k) last = max(last, (knot_height(k) - origin.y) / direction.y);

@@ -183,7 +183,7 @@ TEST_CASE("misuse of the GPU is an error", "[gpu]") {
   CHECK_THROWS_AS(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}), Unavailable);
   CHECK_THROWS_WITH(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}),
                     Catch::Contains(too_many + " invocations") && Catch::Contains("offers at most"));
-  CHECK_THROWS_AS(program.dispatch(context->limits().groups[0] + 1), Error);
+  CHECK_THROWS_AS(program.dispatch(1, context->limits().groups[1] + 1), Error);
   CHECK_THROWS_WITH(Buffer(*context, "giant", context->limits().storage_block + 1),
                     Catch::Contains("'giant' needs") && Catch::Contains("offers at most"));
   CHECK_THROWS_AS(Buffer(*context, "giant", context->limits().storage_block + 1), Unavailable);

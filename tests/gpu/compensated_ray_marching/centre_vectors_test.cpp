@@ -62,7 +62,7 @@ void main() {
     multiply(GIVEN, SMALL, 1);
     from = GIVEN;
   } else if (what == 1) {  // about an axis
-    for (int l = 0; l < SH_ORDER; ++l) band[l] = given[l];
+    for (int l = 0; l < SH_ORDER; ++l) band[l] = bits_of(given[l]);
     clear_rows();
     if (lane == 0) add_about(axis, 1);
     sum_rows(LOBE);

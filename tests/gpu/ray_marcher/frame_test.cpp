@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "gpu/ray_marcher/rounds.h"
 #include "tests/gpu/ray_marcher/pictures.h"
 
 namespace frame_test {
@@ -9,10 +10,21 @@ namespace frame_test {
 using namespace airlight;
 using namespace airlight::ray_marcher;
 
+namespace {
+
+// Rounds as on a software renderer: a fast device would do these pictures in one.
+struct ManyRounds {
+  explicit ManyRounds(int budget = 3000) { gpu::marcher::Rounds::budget = budget; }
+  ~ManyRounds() { gpu::marcher::Rounds::budget = 0; }
+};
+
+}  // namespace
+
 // Counters go into tables: every one of them the same in every run, however busy the machine is. The first frame learns
 // how many rounds there are (gpu/ray_marcher/rounds.h); a warm one takes them without a look, and gives the same bits.
 TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher]") {
   if (!gpu::test::device()) return;
+  const ManyRounds many;
   for (const auto& [name, scene] : assorted_scenes()) {
     const bool several = name == "Gaussians";  // rounds
     if (!several && !scene->geometry) continue;
@@ -49,6 +61,7 @@ TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher]")
 // More rounds than the frame before had: they are found to be too few, and the picture is made again.
 TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]") {
   if (!gpu::test::device()) return;
+  const ManyRounds many;
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name != "Gaussians") continue;
     const gpu::RayMarcherGpu marcher;
@@ -60,6 +73,31 @@ TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]"
     const auto frame = prepared->render(look(), {1, {}});
     CHECK(frame.counters.at("syncs") > 2);  // it looked
     CHECK(frame.film.layers == render_gpu(scene, look(), given).film.layers);
+  }
+}
+
+// Where a ray stops until the next round changes nothing: thick Gaussians, whose steps are divided, in rounds of three lengths.
+TEST_CASE("ray marcher: pictures and counters are the same in any rounds", "[gpu][ray_marcher]") {
+  if (!gpu::test::device()) return;
+  const auto scene = make_scene(
+      {make_medium(scene::GaussianSum{{{Point3(0, 0, 0), 0.4, 1}, {Point3(0.3, 0.1, 0), 0.2, 2}}, 0, infinity},
+                   scene::Sphere{Point3::Zero(), 1}, Rgb::Constant(300), Rgb::Constant(0.9), scene::Isotropic{})},
+      {scene::DirectionalLight{Vec3(0.4, 0.5, 1).normalized(), Rgb(3, 2, 1)}});
+  scene::View view = look();
+  view.width = 8, view.height = 6;
+  const Given given{{"steps", "64"}, {"shadow_steps", "32"}};
+  const scene::Rendering cpu = render(scene, view, given, 1);
+  scene::Rendering first;
+  for (const int budget : {5000, 1000, 50}) {
+    CAPTURE(budget);
+    const ManyRounds many(budget);
+    const scene::Rendering picture = render_gpu(scene, view, given);
+    if (budget == 5000) first = picture;
+    CHECK(gpu::test::p99(picture.film, first.film, "airlight") < 1e-6);  // light is added up in other portions
+    CHECK(gpu::test::p99(picture.film, first.film, "transmittance") < 1e-6);
+    for (const char* counter : {"steps", "shadow_steps", "shadow_rays"})
+      CHECK(picture.counters.at(counter) == first.counters.at(counter));
+    CHECK(picture.counters.at("steps") == Approx(cpu.counters.at("steps")).epsilon(0.01));
   }
 }
 
