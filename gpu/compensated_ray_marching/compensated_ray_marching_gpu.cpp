@@ -266,7 +266,9 @@ void PreparedSmokeGpu::march(const View& view) const {
   } else {
     source_->logarithms().bind(at::logarithms);
     set_grid(p, grid_->grid(), middle_);
-    p.set("brightest", Rgb((smoke_->medium().albedo * incoming_->brightest()).min(1e37)));
+    p.set("brightest", compensated_ray_marching::has_hard_edges(smoke_->medium())
+                           ? Rgb((smoke_->medium().albedo * incoming_->brightest()).min(1e37))
+                           : Rgb(Rgb::Constant(1e37)));
   }
   p.set("sigma_t", smoke_->medium().sigma_t);
   p.set("weight", int(options_.weight));

@@ -213,8 +213,10 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
     slices.step = t.length() / slices.count;
     density.assign(std::size_t(slices.count), 0.0);
     weighted.assign(centres_ && row ? density.size() : 0, Rgb::Zero());
-    // Smoke is no brighter than the light it scatters.
-    const Rgb brightest = grid_ ? Rgb(smoke_->medium().albedo * incoming_->brightest()) : Rgb(Rgb::Zero());
+    // Where density jumps lines go on beyond nodes; smoke is no brighter than the light it scatters.
+    const Rgb brightest = grid_ && has_hard_edges(smoke_->medium())
+                              ? Rgb(smoke_->medium().albedo * incoming_->brightest())
+                              : Rgb(Rgb::Constant(infinity));
     const bool exact = options_.weight == SliceWeight::exact;
     if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
     for (int k = 0; k < slices.count; ++k) {
