@@ -10,6 +10,7 @@ layout(std430, binding = AT_RESULT) buffer Result { float result[]; };
 layout(std430, binding = AT_STEPS) writeonly buffer Steps { float steps[]; };            // [slot][light of the solve][band][cell]
 // Of band 0: [at, missed, moved, misses by slot][light of the solve][cell].
 layout(std430, binding = AT_MEANS) buffer Means { float means[]; };
+layout(std430, binding = AT_BALANCE) readonly buffer Balance { float balance[]; };       // [channel][cell]
 uniform int directions, cells;
 
 void main() {
@@ -21,10 +22,11 @@ void main() {
     float here = light[(d * lights + l) * cells + cell];
     for (int b = 0; b < BANDS; ++b) sum[b] += weighted[d * BANDS + b] * here;
   }
+  float scattered = balance[channel[l] * cells + cell] * albedo[channel[l]];
   int slot = (iteration - 2) % KEPT, first = (first_light + l) * BANDS;
   for (int b = 0; b < BANDS; ++b) {
     int at = (first + b) * cells + cell;
-    float now = single_source[at] + albedo[channel[l]] * moment[b] * sum[b];
+    float now = single_source[at] + scattered * moment[b] * sum[b];
     if (iteration > 1) steps[((slot * lights + l) * BANDS + b) * cells + cell] = now - result[at];
     result[at] = now;
   }

@@ -165,7 +165,9 @@ void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& executi
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
 std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_ptr<const Scene> scene,
                                                                     const Execution& execution) {
-  if (scene->matter_hash != scene_->matter_hash || !compensated_ray_marching::reasons_against(*scene, options_).empty())
+  if (scene->matter_hash != scene_->matter_hash ||
+      !compensated_ray_marching::reasons_against(*scene, options_).empty() ||
+      (incoming_ && !incoming_->fits(scene->lights)))
     return std::nullopt;
   const Use use(context_);
   scene_ = std::move(scene);
@@ -264,6 +266,9 @@ void PreparedSmokeGpu::march(const View& view) const {
   } else {
     source_->logarithms().bind(at::logarithms);
     set_grid(p, grid_->grid(), middle_);
+    p.set("brightest", compensated_ray_marching::has_hard_edges(smoke_->medium())
+                           ? Rgb((smoke_->medium().albedo * incoming_->brightest()).min(1e37))
+                           : Rgb(Rgb::Constant(1e37)));
   }
   p.set("sigma_t", smoke_->medium().sigma_t);
   p.set("weight", int(options_.weight));

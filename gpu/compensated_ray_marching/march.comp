@@ -14,21 +14,26 @@ layout(std430, binding = AT_CENTRE_SOURCES) readonly buffer CentreSources { vec4
 uniform float least_source_density;  // of Gaussians: below it no one knows the source
 #else
 layout(std430, binding = AT_LOGARITHMS) readonly buffer Logarithms { vec4 logarithms[]; };  // of source radiance, by cell
+uniform vec3 brightest;  // of the light, times the albedo
 uniform vec3 corner;
 uniform float cell_edge;
 uniform vec3 cells_along;  // each axis
 
 vec3 source_at(vec3 x) {
   ivec3 size = ivec3(cells_along);
-  vec3 place = clamp((x - corner) / cell_edge - 0.5, vec3(0), vec3(size - 1));
+  vec3 place = clamp((x - corner) / cell_edge - 0.5, vec3(-0.5), vec3(size) - 0.5);
   ivec3 low = min(ivec3(place), max(size - 2, ivec3(0)));
   vec3 share = place - vec3(low);
   ivec3 on = ivec3(size.x > 1 ? 1 : 0, size.y > 1 ? size.x : 0, size.z > 1 ? size.x * size.y : 0);
   int at = low.x + size.x * (low.y + size.y * low.z);
-  vec4 a = mix(logarithms[at], logarithms[at + on.x], share.x), b = mix(logarithms[at + on.y], logarithms[at + on.y + on.x], share.x);
-  at += on.z;
-  vec4 c = mix(logarithms[at], logarithms[at + on.x], share.x), d = mix(logarithms[at + on.y], logarithms[at + on.y + on.x], share.x);
-  return exp(mix(mix(a, b, share.y), mix(c, d, share.y), share.z).rgb);
+  vec4 v[8], most = vec4(-1e37);
+  for (int c = 0; c < 8; ++c) {
+    v[c] = logarithms[at + (c & 1) * on.x + (c >> 1 & 1) * on.y + (c >> 2) * on.z];
+    most = max(most, v[c]);
+  }
+  vec4 low_ = mix(mix(v[0], v[1], share.x), mix(v[2], v[3], share.x), share.y);
+  vec4 high = mix(mix(v[4], v[5], share.x), mix(v[6], v[7], share.x), share.y);
+  return min(exp(min(mix(low_, high, share.z), most + 3).rgb), brightest);  // node_grid.cpp: steepest
 }
 #endif
 

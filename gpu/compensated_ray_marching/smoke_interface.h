@@ -35,6 +35,10 @@ enum Binding {
   radiance = 6,
   greatest = 7,
   logarithms = 5,
+  balance = 8,
+  edges = 0,
+  edge_nodes = 1,
+  edge_weights = 2,
   volume = 5,
   // camera rays
   density = 0,

@@ -78,7 +78,26 @@ SmokeSource::SmokeSource(Context& context, const scene::Medium& medium, const Op
   };
   towards_program_ = program_of("towards", line);
   logarithms_program_ = program_of("logarithms", line);
+  if (const auto& beyond = grid.beyond(); !beyond.nodes.empty()) {
+    edges_program_ = program_of("beyond_edges", line);
+    std::vector<std::int32_t> edges;
+    for (std::size_t n = 0; n < beyond.nodes.size(); ++n) {
+      edges.push_back(std::int32_t(beyond.nodes[n]));
+      edges.push_back(std::int32_t(beyond.first[n + 1]));
+    }
+    edge_count_ = int(beyond.nodes.size());
+    edges_ = std::make_unique<Buffer>(context_, "beyond edges", edges);
+    edge_nodes_ = std::make_unique<Buffer>(context_, "within edges",
+                                           std::vector<std::int32_t>(beyond.from.begin(), beyond.from.end()));
+    edge_weights_ = std::make_unique<Buffer>(context_, "weights beyond edges",
+                                             std::vector<float>(beyond.weights.begin(), beyond.weights.end()));
+  }
   if (!multiple_) return;
+  std::vector<float> balance(3 * std::size_t(cells_), 1.0F);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (Eigen::Index i = 0; i < grid.balance()[c].size(); ++i)
+      balance[c * std::size_t(cells_) + std::size_t(i)] = float(grid.balance()[c][i]);
+  balance_ = std::make_unique<Buffer>(context_, "balance", balance);
   single_program_ = program_of("single", line);
   emit_program_ = program_of("emit", line);
   sweep_program_ = program_of("sweep", tile, tile);
@@ -224,6 +243,7 @@ void SmokeSource::iterate(const Group& g, int iteration) {
   result_->bind(at::result);
   steps_->bind(at::steps);
   means_->bind(at::means);
+  balance_->bind(at::balance);
   set_scatterer(collect, g);
   collect.set("albedo", medium_.albedo);
   for (int b = 0; b < options_.order * options_.order; ++b)
@@ -338,6 +358,13 @@ void SmokeSource::towards(const scene::View& view, const Point3& middle) {
   logarithms_->bind(at::logarithms);
   logarithms.set("cells", cells_);
   logarithms.dispatch(cells_);
+  if (!edges_) return;
+  Program& edges = *edges_program_;
+  edges_->bind(at::edges);
+  edge_nodes_->bind(at::edge_nodes);
+  edge_weights_->bind(at::edge_weights);
+  edges.set("edge_count", edge_count_);
+  edges.dispatch(edge_count_);
 }
 
 }  // namespace airlight::gpu::smoke

@@ -45,7 +45,7 @@ class SmokeSource {
   Context& context_;
   Program *single_program_ = nullptr, *emit_program_ = nullptr, *sweep_program_ = nullptr, *collect_program_ = nullptr,
           *products_program_ = nullptr, *decide_program_ = nullptr, *combine_program_ = nullptr,
-          *towards_program_ = nullptr, *logarithms_program_ = nullptr;
+          *towards_program_ = nullptr, *logarithms_program_ = nullptr, *edges_program_ = nullptr;
   const scene::Medium& medium_;
   compensated_ray_marching::Options options_;
   bool multiple_ = false, grey_ = false;
@@ -56,11 +56,12 @@ class SmokeSource {
   std::vector<double> moments_, band_moments_;
   std::vector<Group> groups_;
   std::array<int, 3> light_of_{0, 0, 0};
+  int edge_count_ = 0;
   int iterations_ = 0;
   double error_ = 0;
   std::unique_ptr<Buffer> densities_, powers_, towards_light_, harmonics_, ordinate_harmonics_, weighted_, ways_, open_,
       single_, source_, result_, emitted_, radiance_of_ways_, steps_, means_, parts_, state_, radiance_, greatest_,
-      logarithms_;
+      logarithms_, balance_, edges_, edge_nodes_, edge_weights_;
 };
 
 }  // namespace airlight::gpu::smoke

@@ -30,6 +30,14 @@ float phase_in_bands(float c) {
   return sum * per_sphere;
 }
 
+float again_of(int light, int band, int cell) {
+  int at = (light * BANDS + band) * cells + cell;
+  return result[at] - single_source[at];
+}
+vec3 again_of(int band, int cell) {
+  return vec3(again_of(light_of[0], band, cell), again_of(light_of[1], band, cell), again_of(light_of[2], band, cell));
+}
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= node_count) return;
@@ -52,13 +60,14 @@ void main() {
     sum += powers[k].rgb * exp(-min(sigma_t * columns[k * node_count + i], vec3(200))) * phase;
   }
   sum *= albedo;
-  if (has_again != 0)
-    for (ShPair y = first_pair(outwards); y.m < sh_order; next_pair(y, outwards))
-      for (int c = 0; c < 3; ++c) {
-        int above = (light_of[c] * BANDS + y.l * (y.l + 1) + y.m) * cells + cell;
-        int below = above - 2 * y.m * cells;
-        sum[c] += y.plus * (result[above] - single_source[above]) + y.minus * (result[below] - single_source[below]);
-      }
+  if (has_again != 0) {
+    vec3 again = vec3(0);
+    for (ShPair y = first_pair(outwards); y.m < sh_order; next_pair(y, outwards)) {
+      int middle = y.l * (y.l + 1);
+      again += y.plus * again_of(middle + y.m, cell) + y.minus * again_of(middle - y.m, cell);
+    }
+    sum += again;
+  }
   sum = max(sum, vec3(0));
   radiance[cell] = vec4(sum, 0);
   atomicMax(greatest, floatBitsToUint(max(sum.r, max(sum.g, sum.b))));  // positive floats are in the order of their bits

@@ -315,6 +315,7 @@ OrdinateSolution DiscreteOrdinates::solve(const Moments& source, double inflow, 
   double least = 1;  // by how much of its own size a part of the error shows in what is missed
   while (solution.iterations < options_.iterations && !(interrupted && interrupted())) {
     solution.radiance = sweep(at, inflow);
+    if (factors_.size() > 0) solution.radiance.colwise() *= factors_;
     ++solution.iterations;
     Moments result = source;
     for (Eigen::Index c = 0; c < source.cols(); ++c)

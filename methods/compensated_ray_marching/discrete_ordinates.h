@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "methods/compensated_ray_marching/ordinate_directions.h"
@@ -50,6 +51,9 @@ class DiscreteOrdinates {
   DiscreteOrdinates(const OrdinateGrid&, Eigen::ArrayXd extinction, double albedo, std::vector<double> phase,
                     const OrdinateOptions&, std::vector<std::vector<float>> open = {});
 
+  // Factors of M_lm by node, of what `solve` sweeps; without them 1.
+  void scale(Eigen::ArrayXd factors) { factors_ = std::move(factors); }
+
   // source: J_ss. inflow: radiance at all faces that are not endless. before: where to start from, a solution's source, or null.
   // interrupted: asked once an iteration; true ends the solve with what it has.
   OrdinateSolution solve(const Moments& source, double inflow = 0, const Moments* before = nullptr,
@@ -67,6 +71,7 @@ class DiscreteOrdinates {
 
   OrdinateGrid grid_;
   Eigen::ArrayXd extinction_;
+  Eigen::ArrayXd factors_;  // empty: 1
   double albedo_;
   std::vector<double> phase_;
   OrdinateOptions options_;

@@ -1,15 +1,35 @@
 #include "methods/compensated_ray_marching/incoming_light.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {
 
+namespace {
+
+bool directional_alone(const std::vector<scene::Light>& lights) {
+  bool any = false;
+  for (const scene::Light& light : lights) {
+    if (std::holds_alternative<scene::EnvironmentLight>(light)) return false;
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    any = any || (sun && sun->irradiance.maxCoeff() > 0);
+  }
+  return any;
+}
+
+}  // namespace
+
 IncomingLight::IncomingLight(const std::vector<scene::Light>& lights, EnvironmentBands bands)
-    : bands_(std::move(bands)), fixed_(ordinate_directions(bands_.order(), 2 * bands_.order(), false)) {
+    : bands_(std::move(bands)) {
+  if (!directional_alone(lights)) fixed_ = ordinate_directions(bands_.order(), 2 * bands_.order(), false);
   become(lights);
+}
+
+bool IncomingLight::fits(const std::vector<scene::Light>& lights) const {
+  return directional_alone(lights) == fixed_.empty();
 }
 
 void IncomingLight::become(const std::vector<scene::Light>& lights) {
@@ -36,6 +56,13 @@ void IncomingLight::become(const std::vector<scene::Light>& lights) {
       }
     }
   }
+}
+
+Rgb IncomingLight::brightest() const {
+  if (directions_.size() > fixed_.size()) return Rgb::Constant(std::numeric_limits<double>::max());
+  Rgb most = Rgb::Zero();
+  for (std::size_t k = 0; k < fixed_.size(); ++k) most = most.max(power_[k] / fixed_[k].weight);
+  return most;
 }
 
 bool IncomingLight::dark() const {

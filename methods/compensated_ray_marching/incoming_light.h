@@ -13,12 +13,17 @@ class IncomingLight {
  public:
   // With as many levels as the bands have order.
   IncomingLight(const std::vector<scene::Light>&, EnvironmentBands);
-  // Other lights.
+  // Whether other lights have the same fixed directions: those of environments are left out where directional lights are all.
+  bool fits(const std::vector<scene::Light>&) const;
+  // Other lights, which fit.
   void become(const std::vector<scene::Light>&);
 
   const std::vector<Vec3>& directions() const { return directions_; }  // towards the light, unit
   std::size_t fixed() const { return fixed_.size(); }                  // those of environments, which come first
+  const std::vector<Ordinate>& fixed_directions() const { return fixed_; }
   const std::vector<Rgb>& power() const { return power_; }  // radiance times solid angle, or irradiance [W/m^2]
+  // What the source radiance of smoke cannot pass, per albedo: the brightest of the sky; no limit where a sun shines [W/m^2/sr].
+  Rgb brightest() const;
   bool dark() const;
   bool grey() const;  // the same in all channels
 

@@ -20,7 +20,11 @@ namespace {
 constexpr int most_cells = 96;           // along a side, for cells that are not too deep
 constexpr double least_share = 1e-6;     // of the greatest mean density: below it a cell counts as empty
 constexpr double least_radiance = 1e-6;  // of the greatest
-constexpr std::size_t run = 64;          // nodes a task
+// Of deepest_cell: light from one direction has creases where it comes in by one face or another, which cells of a box 1.3 deep miss by
+// 20 %, of 0.8 by 6 %, of 0.5 by 2 %.
+constexpr double share_of_sharp_light = 1. / 3;
+constexpr double least_again = 1e-6;  // of an even light: ordinates that scatter less keep what they have
+constexpr std::size_t run = 64;       // nodes a task
 
 // Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr], of many cosines.
 Eigen::ArrayXXd phase_in_bands(const std::vector<double>& moments, const Eigen::ArrayXXd& c) {
@@ -41,44 +45,51 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
     : scene_(scene), medium_(medium), options_(options), phase_(phase_moments(medium.phase, options.grid.levels)) {
   scene::Stopwatch watch;
   const Box box = smoke_box(medium);
+  const bool sharp = has_hard_edges(medium) && light.directions().size() > light.fixed();
+  const double deepest_cell = options.grid.deepest_cell * (sharp ? share_of_sharp_light : 1);
   for (int cells = options.grid.cells;;) {
     grid_ = node_grid(box, cells);
     densities_ = mean_densities(medium, grid_, execution.threads);
     deepest_ = medium.sigma_t.maxCoeff() * densities_.maxCoeff() * grid_.cells.cell[0];
-    if (deepest_ <= options.grid.deepest_cell || options.grid.multiple == Options::Grid::Multiple::none) break;
-    const int needed = int(std::ceil(cells * deepest_ / options.grid.deepest_cell));
+    if (deepest_ <= deepest_cell) break;
+    const int needed = int(std::ceil(cells * deepest_ / deepest_cell));
     if (cells >= most_cells)
       throw scene::NotSupported(
           fmt::format("compensated_ray_marching: cells of the smoke's {} are {:.3g} deep: light would leak through; "
-                      "settings.deepest_cell = {} allows no more",
-                      cells, deepest_, options.grid.deepest_cell),
+                      "settings.deepest_cell = {} allows {:.3g}",
+                      cells, deepest_, options.grid.deepest_cell, deepest_cell),
           "cells deeper than deepest_cell");
     cells = std::min(std::max(cells + 1, needed), most_cells);
   }
   nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities_, least_share * densities_.maxCoeff());
+  beyond_ = beyond_edges(medium, grid_);
   times_.push_back({"nodes", watch.lap()});
+  fixed_ = light.fixed();
   add_depths(light, 0, execution);
   times_.push_back({"depths", watch.lap()});
 
   const Rgb &sigma_t = medium.sigma_t, &albedo = medium.albedo;
   double most = 0;  // of multiple scattering, as a share of the light
-  double deepest = 0;
-  for (const std::vector<float>& column : columns_)
-    for (const float c : column)
-      if (std::isfinite(c)) deepest = std::max(deepest, double(c));
-  for (int c = 0; c < 3; ++c) most = std::max(most, -albedo[c] * std::expm1(-sigma_t[c] * deepest));
-  if (options.grid.multiple == Options::Grid::Multiple::none)
+  if (options.grid.multiple == Options::Grid::Multiple::none) {
     single_only_ = "not asked for";
-  else if (most < options.tolerance)
-    single_only_ = fmt::format("at most {:.2g} of the light is scattered again", most);
-  if (!single_only_.empty()) return;
+    return;
+  }
   OrdinateOptions ordinates;
   ordinates.levels = options.grid.ordinate_levels;
   ordinates.azimuths = options.grid.azimuths;
   ordinates.order = options.order;
   ordinates.tolerance = options.tolerance;
   ordinates.iterations = options.iterations;
+  const double deepest = look_around(light, ordinates, execution);
+  times_.back().seconds += watch.lap();
+  for (int c = 0; c < 3; ++c) most = std::max(most, -albedo[c] * std::expm1(-sigma_t[c] * deepest));
+  if (most < options.tolerance) {
+    single_only_ = fmt::format("at most {:.2g} of the light is scattered again", most);
+    return;
+  }
   const std::vector<double> moments(phase_moments(medium.phase, options.order));
+  if (options.grid.multiple == Options::Grid::Multiple::ordinates && has_hard_edges(medium))
+    find_balance(ordinates, execution);
   if (scene.geometry) find_open_ways(ordinates, execution);
   for (int c = 0; c < 3; ++c) {
     const auto alike = [&](const Channels& group) {
@@ -93,9 +104,64 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
                            P1Grid(grid_.cells, sigma_t[c] * densities_, albedo[c], mean_cosine(medium.phase),
                                   {options.tolerance, options.iterations}),
                            {}});
-    else
+    else {
       channels_.push_back(
           {{c}, DiscreteOrdinates(grid_.cells, sigma_t[c] * densities_, albedo[c], moments, ordinates, open_), {}, {}});
+      channels_.back().ordinates->scale(balance_[std::size_t(c)]);
+    }
+  }
+}
+
+// What the smoke leaves of an even light at the nodes; the deepest column [m]. From the directions that an environment's light is scattered
+// once from, where there is one, else from the ordinates'. Surfaces are left out.
+double LitGrid::look_around(const IncomingLight& light, const OrdinateOptions& options,
+                            const scene::Execution& execution) {
+  const bool known = fixed_ > 0 && !scene_.geometry;
+  const std::vector<Ordinate> directions =
+      fixed_ > 0 ? light.fixed_directions()
+                 : ordinate_directions(options.levels, options.azimuths, options.hemispheres);
+  even_.setZero(Eigen::Index(nodes_.size()), 3);
+  std::vector<float> deepest((nodes_.size() + run - 1) / run, 0.0F);
+  in_columns(execution, [&](std::size_t first, std::size_t count, const auto& columns_towards) {
+    std::vector<float> found(count);
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      if (!known) columns_towards(fixed_ > 0 ? directions[k].direction : Vec3(-directions[k].direction), found.data());
+      const auto column =
+          Eigen::Map<const Eigen::ArrayXf>(known ? columns_[k].data() + first : found.data(), Eigen::Index(count));
+      for (int c = 0; c < 3; ++c)
+        even_.col(c).segment(Eigen::Index(first), Eigen::Index(count)) +=
+            directions[k].weight / (4 * pi) * (-medium_.sigma_t[c] * column.cast<double>()).exp();
+      deepest[first / run] = std::max(deepest[first / run], column.maxCoeff());
+    }
+  });
+  return deepest.empty() ? 0 : *std::max_element(deepest.begin(), deepest.end());
+}
+
+// Between nodes the ordinates see means of cells; the light that is scattered once is exact at nodes. Where cells are deep, or an edge runs
+// through them, the two do not add up: of an even light of 1 that scatters without loss everything must be 1. So the ordinates' light is
+// given what light scattered once leaves: then no light is made, and none is brighter than what comes in. Where density has no edges the
+// two agree to second order without, and smoke 23 depths across is 1.6 times as wrong with it.
+void LitGrid::find_balance(const OrdinateOptions& options, const scene::Execution& execution) {
+  tbb::task_arena arena(scene::threads_for(execution.threads));
+  OrdinateOptions of_means = options;
+  of_means.order = 1;
+  const double mean = std::sqrt(4 * pi);
+  for (int c = 0; c < 3; ++c) {
+    Eigen::ArrayXd& balance = balance_[std::size_t(c)];
+    const int same = medium_.sigma_t[c] == medium_.sigma_t[0] ? 0 : medium_.sigma_t[c] == medium_.sigma_t[1] ? 1 : 2;
+    if (same < c) {
+      balance = balance_[std::size_t(same)];
+      continue;
+    }
+    Moments again;
+    arena.execute([&] {
+      const DiscreteOrdinates even(grid_.cells, medium_.sigma_t[c] * densities_, 1, {1}, of_means);
+      again = even.sweep(Moments::Constant(grid_.cells.nodes(), 1, mean), 0);
+    });
+    balance.setOnes(grid_.cells.nodes());
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (const double rest = again(nodes_[i], 0) / mean; rest > least_again)
+        balance[nodes_[i]] = (1 - even_(Eigen::Index(i), c)) / rest;
   }
 }
 
@@ -109,10 +175,8 @@ void LitGrid::find_open_ways(const OrdinateOptions& options, const scene::Execut
   });
 }
 
-void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const scene::Execution& execution) {
-  toward_ = light.directions();
-  columns_.resize(from);
-  columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
+// Calls of(first, count, columns_towards) for runs of nodes with smoke; columns_towards(direction, columns) finds theirs [m].
+void LitGrid::in_columns(const scene::Execution& execution, const OfColumns& of) const {
   const auto* sum = std::get_if<scene::GaussianSum>(&medium_.field);
   std::optional<GaussianColumns> gaussians;
   if (sum && GaussianColumns::knows(*sum) && std::holds_alternative<scene::Unbounded>(medium_.region))
@@ -120,16 +184,26 @@ void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const sce
   in_runs(execution, [&](std::size_t first, std::size_t count) {
     std::vector<Point3> points;
     for (std::size_t i = first; i < first + count; ++i) points.push_back(grid_.node(nodes_[i]));
+    of(first, count, [&](const Vec3& direction, float* columns) {
+      if (gaussians) return gaussians->from(points, direction, columns);
+      for (std::size_t i = 0; i < count; ++i)
+        columns[i] = float(density_integral(medium_, {points[i], direction}, {0, infinity}));
+    });
+  });
+}
+
+void LitGrid::add_depths(const IncomingLight& light, std::size_t from, const scene::Execution& execution) {
+  toward_ = light.directions();
+  columns_.resize(from);
+  columns_.resize(toward_.size(), std::vector<float>(nodes_.size()));
+  in_columns(execution, [&](std::size_t first, std::size_t count, const auto& columns_towards) {
     for (std::size_t k = from; k < toward_.size(); ++k) {
       float* columns = columns_[k].data() + first;
-      if (gaussians) gaussians->from(points, toward_[k], columns);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Ray ray{points[i], toward_[k]};
-        if (scene_.geometry && scene_.geometry->occluded(ray))
+      columns_towards(toward_[k], columns);
+      if (!scene_.geometry) continue;
+      for (std::size_t i = 0; i < count; ++i)
+        if (scene_.geometry->occluded({grid_.node(nodes_[first + i]), toward_[k]}))
           columns[i] = std::numeric_limits<float>::infinity();
-        else if (!gaussians)
-          columns[i] = float(density_integral(medium_, ray, {0, infinity}));
-      }
     }
   });
 }
@@ -221,12 +295,13 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
       solution = {p1.radiance, std::move(p1.radiance), p1.iterations, p1.error};
     }
     if (stopped) throw scene::Interrupted("interrupted");
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
       for (std::size_t l = 0; l < group.which.size(); ++l)
         for (Eigen::Index b = 0; b < bands; ++b)
           again_[i][std::size_t(b)][group.which[l]] =
               albedo * moments[std::size_t(std::sqrt(double(b)))] *
               solution.radiance(nodes_[i], Eigen::Index(lights == 1 ? 0 : l) * bands + b);
+    }
     iterations_ += solution.iterations;
     error_ = std::max(error_, solution.error);
     group.before = std::move(solution.source);
@@ -238,7 +313,7 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
 
 std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Execution& execution) const {
   std::vector<Rgb> values(std::size_t(grid_.cells.nodes()), Rgb::Zero());
-  const Eigen::Index fixed = Eigen::Index(options_.grid.levels) * 2 * Eigen::Index(options_.grid.levels);
+  const auto fixed = Eigen::Index(fixed_);
   Eigen::MatrixXd came(3, Eigen::Index(toward_.size()));  // the ways that light goes
   for (std::size_t k = 0; k < toward_.size(); ++k) came.col(Eigen::Index(k)) = -toward_[k];
   in_runs(execution, [&](std::size_t first, std::size_t count) {
@@ -265,6 +340,7 @@ std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Exec
   for (const Rgb& value : values) most = most.max(value);
   const double least = std::max(least_radiance * most.maxCoeff(), std::numeric_limits<double>::min());
   for (Rgb& value : values) value = value.max(least).log();
+  beyond_.go_on(values);
   return values;
 }
 

@@ -1,6 +1,7 @@
 // Source radiance on a grid of nodes (ours, in place of the publication's at the centres of Gaussians): depths towards the light in
 // fixed directions, in closed form, for single scattering; discrete ordinates or diffusion for the rest.
 #pragma once
+#include <array>
 #include <functional>
 #include <optional>
 
@@ -36,6 +37,9 @@ class LitGrid {
   const std::vector<std::vector<float>>& columns() const { return columns_; }
   // Of the ordinates, past surfaces (open_ways); empty without surfaces or multiple scattering.
   const std::vector<std::vector<float>>& open() const { return open_; }
+  const BeyondEdges& beyond() const { return beyond_; }
+  // Of each channel, by cell: factors of what the ordinates sweep; empty: 1. Of smoke with hard edges.
+  const std::array<Eigen::ArrayXd, 3>& balance() const { return balance_; }
   double deepest_cell() const { return deepest_; }
   const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something
   // Why multiple scattering is left out; empty where it is not.
@@ -51,7 +55,12 @@ class LitGrid {
     std::optional<Moments> before;    // where to start from: a source, or radiance
   };
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
+  double look_around(const IncomingLight&, const OrdinateOptions&, const scene::Execution&);
+  void find_balance(const OrdinateOptions&, const scene::Execution&);
   void find_open_ways(const OrdinateOptions&, const scene::Execution&);
+  using OfColumns =
+      std::function<void(std::size_t first, std::size_t count, const std::function<void(const Vec3&, float*)>&)>;
+  void in_columns(const scene::Execution&, const OfColumns&) const;
   Eigen::ArrayXXd left(std::size_t first, std::size_t count, double sigma_t) const;
   void in_runs(const scene::Execution&, const std::function<void(std::size_t, std::size_t)>&) const;
   void scatter_again(const IncomingLight&, const scene::Execution&);
@@ -60,6 +69,7 @@ class LitGrid {
   const scene::Medium& medium_;
   Options options_;
   NodeGrid grid_;
+  BeyondEdges beyond_;
   Eigen::ArrayXd densities_;
   double deepest_ = 0;
   std::vector<Eigen::Index> nodes_;
@@ -69,6 +79,9 @@ class LitGrid {
   std::vector<Vec3> toward_;  // the directions
   Eigen::ArrayX3d power_;     // of each
   std::vector<std::vector<float>> open_;
+  Eigen::ArrayXXd even_;  // of an even light of 1 what the smoke leaves at each node with smoke, by channel
+  std::array<Eigen::ArrayXd, 3> balance_;
+  std::size_t fixed_ = 0;  // directions of environments
   std::vector<Channels> channels_;
   std::vector<std::vector<Rgb>> again_;  // J_ms of each node with smoke, order^2 coefficients; empty without
   std::string single_only_;

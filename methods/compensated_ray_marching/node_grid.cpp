@@ -11,7 +11,8 @@ namespace {
 
 constexpr double widths_without_cutoff = 3;
 constexpr int samples_of_gaussians = 3, most_samples = 8;  // along a side of a cell
-constexpr int block = 4;                                   // nodes along a side
+constexpr double steepest = 3;  // as far as lines that go on may rise above the nodes they come from
+constexpr int block = 4;        // nodes along a side
 
 }  // namespace
 
@@ -46,8 +47,9 @@ Eigen::ArrayXd mean_densities(const scene::Medium& medium, const NodeGrid& grid,
   const scene::VoxelGrid* voxels = grid_of(medium.field);
   const auto* gaussians = std::get_if<scene::GaussianSum>(&medium.field);
   const double edge = grid.cells.cell[0];
-  const int across =
-      voxels ? std::clamp(int(std::ceil(edge / voxels->voxel_size)), 1, most_samples) : samples_of_gaussians;
+  const int across = !std::holds_alternative<scene::Unbounded>(medium.region) ? most_samples
+                     : voxels ? std::clamp(int(std::ceil(edge / voxels->voxel_size)), 1, most_samples)
+                              : samples_of_gaussians;
   // Finer samples, `across` along each side of a cell.
   scene::VoxelGrid fine;
   for (int a = 0; a < 3; ++a) fine.size[a] = across * grid.cells.size[std::size_t(a)];
@@ -100,14 +102,73 @@ std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid& grid, const Eigen::Ar
   return nodes;
 }
 
+bool has_hard_edges(const scene::Medium& medium) {
+  if (!std::holds_alternative<scene::Unbounded>(medium.region)) return true;
+  const scene::VoxelGrid* voxels = grid_of(medium.field);
+  return voxels ? voxels->clamp_border : !std::holds_alternative<scene::GaussianSum>(medium.field);
+}
+
+BeyondEdges beyond_edges(const scene::Medium& medium, const NodeGrid& grid) {
+  BeyondEdges edges;
+  edges.first.push_back(0);
+  if (std::holds_alternative<scene::Unbounded>(medium.region)) return edges;
+  const auto& size = grid.cells.size;
+  std::vector<char> within(std::size_t(grid.cells.nodes()));
+  for (Eigen::Index i = 0; i < grid.cells.nodes(); ++i) within[std::size_t(i)] = contains(medium.region, grid.node(i));
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i) {
+        const auto at = [&](const Eigen::Vector3i& n) -> Eigen::Index {
+          for (int a = 0; a < 3; ++a)
+            if (n[a] < 0 || n[a] >= size[std::size_t(a)]) return -1;
+          const Eigen::Index index = n[0] + Eigen::Index(size[0]) * (n[1] + Eigen::Index(size[1]) * n[2]);
+          return within[std::size_t(index)] ? index : -1;
+        };
+        const Eigen::Vector3i here(i, j, k);
+        if (at(here) >= 0) continue;
+        double sum = 0;
+        const std::size_t first = edges.from.size();
+        const auto take = [&](Eigen::Index node, double weight) {
+          edges.from.push_back(node);
+          edges.weights.push_back(weight);
+        };
+        for (int d = 0; d < 27; ++d) {
+          const Eigen::Vector3i step(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+          const Eigen::Index next = at(here + step), second = at(here + 2 * step);
+          if (next < 0) continue;
+          const double weight = 1.0 / step.squaredNorm();
+          sum += weight;
+          take(next, second < 0 ? weight : 2 * weight);
+          if (second >= 0) take(second, -weight);
+        }
+        if (sum == 0) continue;
+        for (std::size_t n = first; n < edges.weights.size(); ++n) edges.weights[n] /= sum;
+        edges.nodes.push_back(i + Eigen::Index(size[0]) * (j + Eigen::Index(size[1]) * k));
+        edges.first.push_back(edges.from.size());
+      }
+  return edges;
+}
+
+void BeyondEdges::go_on(std::vector<Rgb>& values) const {
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    Rgb sum = Rgb::Zero();
+    Rgb most = Rgb::Constant(-infinity);
+    for (std::size_t i = first[n]; i < first[n + 1]; ++i) {
+      sum += weights[i] * values[std::size_t(from[i])];
+      most = most.max(values[std::size_t(from[i])]);
+    }
+    values[std::size_t(nodes[n])] = sum.min(most + steepest);
+  }
+}
+
 Rgb between_nodes(const NodeGrid& grid, const std::vector<Rgb>& values, const Point3& x) {
   const auto& size = grid.cells.size;
   std::size_t first[3], step[3] = {1, std::size_t(size[0]), std::size_t(size[0]) * std::size_t(size[1])};
   double share[3];
   for (int a = 0; a < 3; ++a) {
     const double place =
-        std::clamp((x[a] - grid.corner[a]) / grid.cells.cell[a] - 0.5, 0.0, double(size[std::size_t(a)] - 1));
-    const int low = std::min(int(place), std::max(size[std::size_t(a)] - 2, 0));
+        std::clamp((x[a] - grid.corner[a]) / grid.cells.cell[a] - 0.5, -0.5, size[std::size_t(a)] - 0.5);
+    const int low = std::clamp(int(place), 0, std::max(size[std::size_t(a)] - 2, 0));
     first[a] = std::size_t(low) * step[a];
     share[a] = place - low;
     if (size[std::size_t(a)] == 1) step[a] = 0;
@@ -118,8 +179,11 @@ Rgb between_nodes(const NodeGrid& grid, const std::vector<Rgb>& values, const Po
     const Rgb low = along(p);
     return low + share[1] * (along(p + step[1]) - low);
   };
+  Rgb most = v[0];
+  for (std::size_t c = 1; c < 8; ++c)
+    most = most.max(v[(c & 1) * step[0] + (c >> 1 & 1) * step[1] + (c >> 2) * step[2]]);
   const Rgb low = plane(v);
-  return low + share[2] * (plane(v + step[2]) - low);
+  return (low + share[2] * (plane(v + step[2]) - low)).min(most + steepest);
 }
 
 }  // namespace airlight::compensated_ray_marching

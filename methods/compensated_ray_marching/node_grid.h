@@ -26,7 +26,21 @@ Eigen::ArrayXd mean_densities(const scene::Medium&, const NodeGrid&, int threads
 // In blocks of 4^3: neighbours in the list are neighbours in space, which have much work in common.
 std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid&, const Eigen::ArrayXd& densities, double least);
 
-// Trilinear between nodes, the nearest beyond them. values: one a node.
+// Whether density jumps: at a region, at the faces of a field that has a border. Of fields that fade to 0 none.
+bool has_hard_edges(const scene::Medium&);
+
+// Nodes beyond a hard edge of the medium, a region's or a border's, beside nodes within it. Within, logarithms of light that dies away are
+// straight lines, which go on beyond the edge; what a node has there itself bends them. Each takes weights times values of nodes within.
+struct BeyondEdges {
+  std::vector<Eigen::Index> nodes;
+  std::vector<std::size_t> first;  // of each in the two lists, and their length
+  std::vector<Eigen::Index> from;
+  std::vector<double> weights;
+  void go_on(std::vector<Rgb>& values) const;
+};
+BeyondEdges beyond_edges(const scene::Medium&, const NodeGrid&);
+
+// Trilinear between nodes; beyond them, as far as the cells reach, the same lines go on. values: one a node.
 Rgb between_nodes(const NodeGrid&, const std::vector<Rgb>& values, const Point3&);
 
 }  // namespace airlight::compensated_ray_marching

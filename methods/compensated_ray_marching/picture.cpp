@@ -119,7 +119,9 @@ std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution)
 // Lights alone: the smoke, its depths and the last multiple scattering are kept.
 std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_ptr<const Scene> scene,
                                                                    const Execution& execution) {
-  if (scene->matter_hash != scene_->matter_hash || !reasons_against(*scene, options_).empty()) return std::nullopt;
+  if (scene->matter_hash != scene_->matter_hash || !reasons_against(*scene, options_).empty() ||
+      (incoming_ && !incoming_->fits(scene->lights)))
+    return std::nullopt;
   kept_.push_back(std::exchange(scene_, std::move(scene)));
   kept_.resize(1);  // the first, whose smoke is marched through
   std::vector<scene::StageTime> times;
@@ -211,6 +213,10 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
     slices.step = t.length() / slices.count;
     density.assign(std::size_t(slices.count), 0.0);
     weighted.assign(centres_ && row ? density.size() : 0, Rgb::Zero());
+    // Where density jumps lines go on beyond nodes; smoke is no brighter than the light it scatters.
+    const Rgb brightest = grid_ && has_hard_edges(smoke_->medium())
+                              ? Rgb(smoke_->medium().albedo * incoming_->brightest())
+                              : Rgb(Rgb::Constant(infinity));
     const bool exact = options_.weight == SliceWeight::exact;
     if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
     for (int k = 0; k < slices.count; ++k) {
@@ -223,7 +229,7 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       const Rgb depth = smoke_->medium().sigma_t * here * slices.step, lost = one_minus_exp(depth);
       Rgb source = Rgb::Zero();
       if (grid_)
-        source = exponentials(between_nodes(grid_->grid(), towards, x));
+        source = exponentials(between_nodes(grid_->grid(), towards, x)).min(brightest);
       else if (volume_)
         source = voxel.source;
       else if (of_gaussians >= smoke_->least_density())

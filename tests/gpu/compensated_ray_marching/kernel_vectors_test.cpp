@@ -231,6 +231,7 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums", "[gp
       density.bind(march);
       march.set("corner", Vec3(Vec3::Constant(-0.5 * length)));
       march.set("cell_edge", length);
+      march.set("brightest", Rgb(Rgb::Constant(1e37)));
       march.set("cells_along", Vec3(Vec3::Ones()));
       march.set("sigma_t", medium.sigma_t);
       march.set("weight", int(weight == 0 ? SliceWeight::paper : SliceWeight::exact));

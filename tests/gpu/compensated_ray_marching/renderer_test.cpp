@@ -306,6 +306,25 @@ TEST_CASE("compensated march on the device: black smoke and phase functions at t
     }
 }
 
+TEST_CASE("compensated march on the device: hard edges of regions", "[gpu][compensated_ray_marching]") {
+  if (!gpu::test::device()) return;
+  auto scene = scene_of(puffs(), 3, 0.9, uneven());
+  for (const scene::Region& region :
+       {scene::Region(scene::Sphere{{0.1, 0.1, 0}, 0.5}), scene::Region(Box{{-0.4, -0.3, -1}, {0.5, 0.6, 0.3}}),
+        scene::Region(scene::Slab{Vec3(1, 2, 0).normalized(), -0.3, 0.4})}) {
+    CAPTURE(region_name(region));
+    scene->media[0].region = region;
+    scene->lights = {uneven()};
+    finish(*scene);
+    compare(scene);
+    scene::DirectionalLight sun;
+    sun.to_light = Vec3(1, 2, 1).normalized();
+    scene->lights = {sun};
+    finish(*scene);
+    compare(scene);
+  }
+}
+
 TEST_CASE("compensated march on the device: refusals name the reason", "[gpu][compensated_ray_marching]") {
   const auto reason = [](const scene::Scene& scene, const Given& given = {}) {
     const auto reasons = device.supports(scene, {device.settings(), given});
