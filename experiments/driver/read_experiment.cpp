@@ -199,7 +199,8 @@ class Reader {
       reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
       SceneCase scene;
       scene.file = folders_.root / "experiments" / reader.text("file");
-      scene.name = reader.text("name", scene.file.stem().string());
+      scene.name = reader.name("name", scene.file.stem().string());
+      scene.position = scene::load::location(table->source());
       scene.overrides = of_profile;
       for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
       if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
@@ -244,7 +245,8 @@ class Reader {
       reader.allow(keys);
       MethodCase method;
       method.renderer = reader.text(component_key());
-      method.name = reader.text("name", method.renderer);
+      method.name = reader.name("name", method.renderer);
+      method.position = scene::load::location(table->source());
       method.settings = settings(*table, "settings", reader);
       if (images()) {
         method.layer = reader.text("layer", experiment_.layer);
@@ -278,7 +280,7 @@ class Reader {
       if (table->contains("map")) {
         reader.allow({"name", "title", "map"});
         plot.map = reader.flag("map", true);
-        plot.name = reader.text("name", "map");
+        plot.name = reader.name("name", "map");
         plot.title = reader.text("title", "");
         experiment_.plots.push_back(plot);
         continue;
@@ -286,7 +288,7 @@ class Reader {
       reader.allow({"name", "title", "x", "y", "x_label", "y_label", "per_scene", "methods"});
       plot.x = reader.text("x");
       plot.y = reader.text("y");
-      plot.name = reader.text("name", plot.y + "_against_" + plot.x);
+      plot.name = reader.name("name", plot.y + "_against_" + plot.x);
       plot.title = reader.text("title", "");
       plot.x_label = reader.text("x_label", "");
       plot.y_label = reader.text("y_label", "");
