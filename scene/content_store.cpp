@@ -34,9 +34,7 @@ std::optional<fs::path> ContentStore::find(const std::string& name) const {
 void ContentStore::keep(const std::string& name, const std::function<void(const fs::path&)>& write) const {
   const fs::path file = folder_ / name;
   std::error_code failure;
-  fs::create_directories(file.parent_path(), failure);
-  if (failure)
-    throw CannotWrite(fmt::format("{}: cannot be created: {}", file.parent_path().string(), failure.message()));
+  make_private_folder(folder_, fs::path(name).parent_path());
   const fs::path part =
       file.parent_path() / fmt::format("{}.{}.part{}", file.stem().string(), getpid(), file.extension().string());
   try {

@@ -52,7 +52,7 @@ void Journal::add(const Row& row) {
   const std::string text = to_json(row).dump();
   // A torn line before this one must not swallow it: begin on a new line.
   const std::string line = fmt::format("\n{} {}\n", content_key(std::string_view(text)), text);
-  const int handle = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const int handle = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
   const bool written =
       handle >= 0 && write(handle, line.data(), line.size()) == ssize_t(line.size()) && fsync(handle) == 0;
   const int reason = errno;

@@ -68,6 +68,7 @@ RowKeeper::RowKeeper(Experiment experiment, const RunOptions& options)
       journal_(journal_file(options.folders, experiment), options.resume) {
   outcome_.experiment = std::move(experiment);
   if (options.resume) return;
+  if (options.folders.default_results()) scene::make_private_folder(store_.folder());  // the journal lies there, too
   journal_.begin_anew();
   fs::remove_all(images() / name_);
 }

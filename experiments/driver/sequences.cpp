@@ -15,6 +15,7 @@
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
 #include "scene/load/parse_toml.h"
+#include "scene/atomic_file.h"
 #include "scene/nearest.h"
 #include "scene/read_file.h"
 
@@ -145,6 +146,7 @@ void make_sequence(const Folders& folders, const std::string& asked, const std::
   const auto problem = std::make_shared<const scene::FlowProblem>(
       scene::load_flow(problem_of(folders.root, reader).string(), overrides(raw, "overrides", of_profile)));
   const Simulation simulation{problem, solver, chosen, folder_of(folders, name, profile)};
+  scene::make_private_folder(folders.cache, "sequences");
   const int there = frames_there(simulation);
   if (there == frame_steps(*problem, solver, chosen).frames) return;
   if (there == 0) fs::remove_all(simulation.folder);
