@@ -18,7 +18,8 @@
 namespace airlight::experiments {
 
 Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
-  if (!resume) return;
+  std::error_code ignored;
+  if (!resume || !std::filesystem::is_regular_file(file, ignored)) return;  // a pipe would be waited for
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     const std::size_t space = line.find(' ');

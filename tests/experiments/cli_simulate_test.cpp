@@ -38,6 +38,20 @@ region = { type = "box", lo = [0, 0, 0], hi = [1, 1, 1] }
 
 }  // namespace
 
+TEST_CASE("a flow's name leads nowhere", "[cli][simulation]") {
+  const TemporaryFolder folder;
+  for (const std::string name : {"../evil", "/tmp/airlight_evil", "a/evil", "..", ".", "a\\u0000b", "a\\nb", ""}) {
+    CAPTURE(name);
+    folder.write("flow.toml", "name = \"" + name + "\"\n" + flow);
+    const Result result = run("simulate flow.toml --set n=4 --out out", folder);
+    CHECK(result.code == 2);
+    CHECK(result.error_lines() == 1);
+    CHECK_THAT(result.err, Contains("flow.toml:1:8: name = ") &&
+                               Contains("expected a name of 1 to 200 bytes in one line, without '/'"));
+    CHECK(folder.entries() == 3);  // the problem and both outputs
+  }
+}
+
 // Where somebody else may write into the folder, a link could lead to any file of the user's.
 TEST_CASE("simulate replaces links in its folder", "[cli][simulation]") {
   const TemporaryFolder folder;

@@ -132,4 +132,22 @@ TEST_CASE("a name is one line, and is refused where it is read", "[driver][exper
   }
 }
 
+// Of names that a folder cannot have the pictures lie in the project's folder all the same.
+TEST_CASE("a scene named like the folder above stays below its experiment", "[driver][experiment]") {
+  for (const std::string name : {"..", ".", ".hidden", "../../../x", "/tmp/x"}) {
+    CAPTURE(name);
+    const SmallProject project(box_of_fog(8, 6), experiment_of(name, "t"));
+    const Result result = run("experiment run g/e --root .", project);
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    int pictures = 0;
+    for (const std::string& file : files_below(project.path()))
+      if (file.ends_with(".exr") && file.find("/cache/") == std::string::npos) {
+        CHECK_THAT(file, Catch::StartsWith("results/images/g/e/_"));
+        ++pictures;
+      }
+    CHECK(pictures == 3);
+  }
+}
+
 }  // namespace names_test

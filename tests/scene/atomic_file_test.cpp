@@ -94,4 +94,35 @@ TEST_CASE("a store does not write through links", "[atomic_file][content_store]"
   CHECK(read_bytes(store.find("entry.exr")->string()) == "content");
 }
 
+// In place of an entry or its checksum: a folder, a pipe that nobody writes to, a device without an end.
+TEST_CASE("an entry of a store that is no file is made anew", "[atomic_file][content_store]") {
+  const TemporaryFolder folder;
+  std::vector<std::string> said;
+  const ContentStore store(folder.path(), [&](const std::string& line) { said.push_back(line); });
+  const auto keep = [&] {
+    store.keep("entry", [](const fs::path& file) { write_file_atomically(file.string(), "content"); });
+  };
+  for (const std::string name : {"entry", "entry.xxh128"})
+    for (const std::string kind : {"folder", "pipe", "device", "empty"}) {
+      CAPTURE(name, kind);
+      said.clear();
+      keep();
+      REQUIRE(store.find("entry"));
+      fs::remove(folder.path() / name);
+      if (kind == "folder") fs::create_directory(folder.path() / name);
+      if (kind == "pipe") REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
+      if (kind == "device") fs::create_symlink("/dev/zero", folder.path() / name);
+      if (kind == "empty") folder.write(name, "");
+      CHECK_FALSE(store.find("entry"));
+      REQUIRE(said.size() == 1);
+      CHECK_THAT(said[0], Contains(folder.file(name)) && Contains("computing it anew"));
+      if (kind == "folder") {
+        CHECK_THROWS_AS(keep(), CannotWrite);
+        fs::remove(folder.path() / name);
+      } else if (kind == "pipe" && name != "entry") {
+        fs::remove(folder.path() / name);  // a user's own pipe is written into
+      }
+    }
+}
+
 }  // namespace atomic_file_test

@@ -1,4 +1,7 @@
 // Files that a scene names: where they are looked for, and what is said of damaged ones.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -6,6 +9,7 @@
 
 #include "scene/data_folder.h"
 #include "scene/error.h"
+#include "scene/read_file.h"
 #include "scene/scene.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
@@ -112,6 +116,27 @@ TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
     CHECK(what.find("g.csv") != std::string::npos);
     CHECK(what.find('\n') == std::string::npos);
   }
+}
+
+// A pipe would be waited for, and so would some files of /proc that count as regular.
+TEST_CASE("what is no file is refused at once", "[load]") {
+  const TemporaryFolder folder;
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"a.vdb", "[[medium]]\ntype = 'grid'\n"},
+                                   {"a.csv", "[[medium]]\ntype = 'gaussians'\n"},
+                                   {"a.exr", "[[light]]\ntype = 'environment'\n"},
+                                   {"a.png", "[[medium]]\ntype = 'fogmap'\n"},
+                                   {"a.obj", "[[surface]]\ntype = 'mesh'\n"}}) {
+    CAPTURE(name);
+    const std::string keys = text + "file = '" + name + "'\n" + (name == "a.png" ? "cell = 1\nsigma_t = 1\n" : "");
+    REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
+    CHECK(message(camera + keys, folder.path().string()).find(name + ": ") != std::string::npos);
+    fs::remove(folder.path() / name);
+    fs::create_symlink("/dev/zero", folder.path() / name);
+    CHECK(message(camera + keys, folder.path().string()).find(name + ": ") != std::string::npos);
+  }
+  if (access("/proc/kmsg", R_OK) == 0) CHECK_THROWS_AS(read_whole_file("/proc/kmsg", 1 << 20), Error);
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(read_whole_file(folder.file("pipe")), Catch::Contains("found a pipe or a device"));
 }
 
 TEST_CASE("a scene file that cannot be read says why", "[load]") {
