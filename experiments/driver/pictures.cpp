@@ -28,6 +28,10 @@ std::string file_name(const std::string& text) {
   return out;
 }
 
+std::string picture_name(const std::string& method, const std::string& setting) {
+  return file_name(setting.empty() ? method : method + "_" + setting);
+}
+
 double exposure_of(const scene::Film& film, const std::string& layer) {
   std::vector<double> y;
   const std::vector<float>& v = film.layer(layer);

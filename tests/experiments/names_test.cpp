@@ -132,6 +132,52 @@ TEST_CASE("a name is one line, and is refused where it is read", "[driver][exper
   }
 }
 
+// Each of these would give two rows one picture, or one name.
+TEST_CASE("names are held apart before anything is written", "[driver][experiment]") {
+  const std::string top = "title = \"t\"\nlayer = \"airlight\"\nmetrics = [\"rel_l2\"]\n[profile.quick]\nbudget = 0\n",
+                    reference = "[reference]\nrenderer = \"deterministic\"\n",
+                    scene = "[[scene]]\nfile = \"scenes/one.toml\"\n",
+                    marcher = "[[method]]\nrenderer = \"ray_marcher\"\n";
+  const auto said = [&](const std::string& text) {
+    const SmallProject project(box_of_fog(8, 6), text);
+    const Result result = run("experiment run g/e --root .", project);
+    if (result.code == 2) {
+      CHECK(result.error_lines() == 1);
+      CHECK_FALSE(project.has("results/g"));
+      CHECK_FALSE(project.has("results/images"));
+    }
+    return result.code == 0 ? "" : result.err;
+  };
+  const auto named = [](const std::string& name) { return "name = \"" + name + "\"\n"; };
+  CHECK_THAT(said(top + reference + scene + marcher + named("reference")),
+             Contains("e.toml:10:1: the picture 'reference' of method 'reference' is that of the reference, too"));
+  CHECK_THAT(said(top + reference + scene + marcher + named("A b") + marcher + named("A_b")),
+             Contains("e.toml:13:1: the picture 'A_b' of method 'A_b' is that of method 'A b', too"));
+  CHECK_THAT(said(top + reference + scene + marcher + "settings = { steps = 4 }\n" + marcher),
+             Contains("of method 'ray_marcher' is that of method 'ray_marcher', too"));
+  CHECK_THAT(said(top + reference + scene + scene + marcher),
+             Contains("the folder of pictures 'one' of scene 'one' is that of scene 'one', too"));
+  CHECK_THAT(said(top + reference + scene + named("a:b") + scene + named("a/b") + marcher),
+             Contains("the folder of pictures 'a_b' of scene 'a/b' is that of scene 'a:b', too"));
+  CHECK_THAT(
+      said(top + reference + scene + marcher + "sweep = { key = \"steps\", values = [5, 5] }\n"),
+      Contains("of method 'ray_marcher' with setting '5' is that of method 'ray_marcher' with setting '5', too"));
+  CHECK_THAT(
+      said(top + reference + scene + "sweep = { key = \"medium.0.sigma_t\", values = [0.001, 1e-3] }\n" + marcher),
+      Contains("of scene 'one 0.001' is that of scene 'one 0.001', too"));
+  CHECK_THAT(said(top + reference + scene + marcher + named("a") + "sweep = { key = \"steps\", values = [5] }\n" +
+                  marcher + named("a_5")),
+             Contains("the picture 'a_5' of method 'a_5' is that of method 'a' with setting '5', too"));
+  const std::string plot = "[[plot]]\nx = \"setting\"\ny = \"rel_l2\"\n";
+  CHECK_THAT(said(top + reference + scene + marcher + plot + named("p q") + plot + named("p_q")),
+             Contains("the file 'p_q.one' of plot 'p_q' is that of plot 'p q', too"));
+  // Apart by scene, by profile, or by a letter.
+  CHECK(said(top + reference + scene + named("s1") + scene + named("s2") + marcher + "scenes = [\"s1\"]\n" + marcher +
+             "scenes = [\"s2\"]\n") == "");
+  CHECK(said(top + reference + scene + marcher + marcher + "profiles = [\"paper\"]\n") == "");
+  CHECK(said(top + reference + scene + marcher + named("A b") + marcher + named("A-b")) == "");
+}
+
 // Of names that a folder cannot have the pictures lie in the project's folder all the same.
 TEST_CASE("a scene named like the folder above stays below its experiment", "[driver][experiment]") {
   for (const std::string name : {"..", ".", ".hidden", "../../../x", "/tmp/x"}) {
