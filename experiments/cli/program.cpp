@@ -218,8 +218,8 @@ int dispatch(int argc, char** argv) {
       "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
   c->add_option(
       "--renderer", simulate_options.renderer,
-      "of --scene (default: legendre_fluids); legendre_fluids_gpu draws flows of that name where they lie, what is "
-      "below 0 towards the mean");
+      "renderer of --scene (default: legendre_fluids for both methods of that name, else ray_marcher); legendre_fluids_gpu draws "
+      "flows of that name where they lie, what is below 0 towards the mean");
   add_pairs(c, "--renderer-set", simulate_options.renderer_settings, "a setting of the renderer");
   c->add_option("--exposure", simulate_options.exposure, "of the pictures, in powers of two");
   c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");

@@ -38,6 +38,21 @@ region = { type = "box", lo = [0, 0, 0], hi = [1, 1, 1] }
 
 }  // namespace
 
+TEST_CASE("each solver's frames are drawn without naming a renderer", "[cli][simulation]") {
+  const TemporaryFolder folder;
+  folder.write("flow.toml", flow);
+  folder.write("scene.toml", scene);
+  for (const std::string method : {"", " --method stable_fluids --set n=4", " --method legendre_fluids --set n=4"}) {
+    CAPTURE(method);
+    const Result result = run("simulate flow.toml --scene scene.toml --out frames" + method, folder);
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    for (const std::string frame : {"0000", "0001", "0002"})
+      CHECK(fs::file_size(folder.path() / "frames" / ("flow." + frame + ".png")) > 60);
+    fs::remove_all(folder.path() / "frames");
+  }
+}
+
 TEST_CASE("a flow's name leads nowhere", "[cli][simulation]") {
   const TemporaryFolder folder;
   for (const std::string name : {"../evil", "/tmp/airlight_evil", "a/evil", "..", ".", "a\\u0000b", "a\\nb", ""}) {
