@@ -45,6 +45,7 @@ GreyImage decode(const std::string& path, const std::string& wish, std::size_t m
   require_pixels(path, std::size_t(std::max<std::int64_t>(0, width)), std::size_t(std::max<std::int64_t>(0, height)),
                  most_pixels);
   const std::string name = chosen_channel(path, file.header(), wish);
+  check_windows(path, file.header());
   const Imf::Channel& channel = *file.header().channels().findChannel(name.c_str());
   if (channel.xSampling != 1 || channel.ySampling != 1)
     throw Error(fmt::format("{}: channel '{}' is subsampled", path, name));
