@@ -13,6 +13,7 @@
 #include "scene/content_key.h"
 #include "scene/convert/residual_file.h"
 #include "scene/error.h"
+#include "scene/file_ending.h"
 #include "scene/load/parts.h"
 #include "scene/read_file.h"
 #include "scene/scene.h"
@@ -46,7 +47,7 @@ VoxelGrid grid_of_medium(const std::string& file, const std::string& choice) {
 }
 
 VoxelGrid read_frame(const FitSequence& s, const std::string& file) {
-  return fs::path(file).extension() == ".toml" ? grid_of_medium(file, s.medium) : scene::read_vdb(file, s.grid);
+  return scene::file_ending(file) == ".toml" ? grid_of_medium(file, s.medium) : scene::read_vdb(file, s.grid);
 }
 
 // What a frame was made from, whatever its file is called.

@@ -118,6 +118,47 @@ TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
   }
 }
 
+// As editors, spreadsheets and other programs write them.
+TEST_CASE("tables of Gaussians in other spellings", "[load]") {
+  const TemporaryFolder folder;
+  const std::string mark = "\xEF\xBB\xBF", header = "center_x,center_y,center_z,width,amplitude\n",
+                    row = "0,0.5,0,1,2\n";
+  for (const std::string& content : {mark + header + row, "# made by hand\n" + header + row,
+                                     mark + "# made by hand\r\n\r\n" + header + row, header + "+0,+0.5,0,+1,+2e0\n"}) {
+    CAPTURE(content);
+    folder.write("g.csv", content);
+    const Scene scene =
+        parse_scene(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", "s.toml", folder.path().string());
+    const auto& gaussians = std::get<GaussianSum>(scene.media[0].field).gaussians;
+    REQUIRE(gaussians.size() == 1);
+    CHECK(gaussians[0].center == Point3(0, 0.5, 0));
+    CHECK(gaussians[0].amplitude == 2);
+  }
+  for (const std::string cell : {"+-1", "++1", "+"}) {
+    folder.write("g.csv", header + "0,0,0,1," + cell + "\n");
+    CHECK(message(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", folder.path().string())
+              .find(":2:9: amplitude = ") != std::string::npos);
+  }
+}
+
+TEST_CASE("a # in the name of a folder is no digit of a frame", "[load]") {
+  const TemporaryFolder folder;
+  const auto copy = [&](const std::string& name) {
+    fs::create_directories((folder.path() / name).parent_path());
+    fs::copy_file(root + "/experiments/data/plume_0024.vdb", folder.path() / name);
+  };
+  const auto said = [&](const std::string& keys) {
+    return message(camera + "[[medium]]\ntype = 'grid'\n" + keys, folder.path().string());
+  };
+  copy("take#2/smoke.vdb");
+  copy("take#2/smoke_0007.vdb");
+  copy("frame_03/smoke.vdb");
+  CHECK(said("file = 'take#2/smoke.vdb'\n") == "");
+  CHECK(said("file = 'take#2/smoke_####.vdb'\nframe = 7\n") == "");
+  CHECK(said("file = 'frame_##/smoke.vdb'\nframe = 3\n") == "");
+  CHECK(said("file = 'take#2/smoke_####.vdb'\n").find("is a sequence, expected a frame") != std::string::npos);
+}
+
 // A pipe would be waited for, and so would some files of /proc that count as regular.
 TEST_CASE("what is no file is refused at once", "[load]") {
   const TemporaryFolder folder;
