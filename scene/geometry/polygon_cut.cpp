@@ -59,7 +59,8 @@ int turn(const Flat& p, const Flat& q, const Flat& r) {
 
 class Polygon {
  public:
-  explicit Polygon(const std::vector<Point3>& corners) : size_(int(corners.size())), before_(size_), after_(size_) {
+  explicit Polygon(const std::vector<Point3>& corners)
+      : size_(int(corners.size())), left_(size_), before_(size_), after_(size_) {
     // Newell's normal; from the first corner, so that a place far from the origin costs nothing.
     Vec3 normal = Vec3::Zero();
     for (int i = 0; i < size_; ++i)
@@ -75,18 +76,22 @@ class Polygon {
   }
 
   std::optional<std::vector<std::array<int, 3>>> cut() {
-    int left = size_, at = 0;
-    for (int tried = 0; left > 3;) {
+    int at = 0;
+    // Folds first, here and in remove(): an ear at a corner that they touch might lie on the other side.
+    for (int tried = 0; tried < left_ && left_ > 3; ++tried) {
+      if (is_fold(at)) {
+        at = remove(at);
+        tried = -1;
+      } else {
+        at = after_[at];
+      }
+    }
+    for (int tried = 0; left_ > 3;) {
       if (is_ear(at)) {
         at = remove(at);
-        --left;
         tried = 0;
-      } else if (++tried <= left) {
+      } else if (++tried <= left_) {
         at = after_[at];
-      } else if (const int folded = find_fold(at, left); folded >= 0) {
-        at = remove(folded);
-        --left;
-        tried = 0;
       } else {
         return std::nullopt;
       }
@@ -101,23 +106,29 @@ class Polygon {
   int turn_at(int i) const { return turn_of(before_[i], i, after_[i]); }
   bool same(int i, int j) const { return flat_[i] == flat_[j]; }
 
+  // The edge runs back along itself, or nowhere: nothing is cut off.
+  bool is_fold(int i) const {
+    const Flat &p = flat_[before_[i]], &q = flat_[i], &r = flat_[after_[i]];
+    return turn(p, q, r) == 0 && (p.x - q.x) * (r.x - q.x) + (p.y - q.y) * (r.y - q.y) >= 0;
+  }
+
   // Makes a triangle of the corner and its neighbours; returns where to go on. Not at the next corner: its triangle
   // would be thin.
   int remove(int i) {
-    triangles_.push_back({before_[i], i, after_[i]});
-    after_[before_[i]] = after_[i];
-    before_[after_[i]] = before_[i];
-    return after_[after_[i]];
+    const int a = before_[i], c = after_[i];
+    triangles_.push_back({a, i, c});
+    after_[a] = c;
+    before_[c] = a;
+    --left_;
+    for (const int j : {a, c})
+      if (left_ > 3 && is_fold(j)) return remove(j);
+    return after_[c];
   }
 
   // The diagonal from a to c leaves nothing of the polygon on its other side within the triangle.
   bool is_ear(int b) const {
     const int a = before_[b], c = after_[b];
-    if (same(a, b) || same(b, c)) return true;  // nothing is cut off
     if (turn_of(a, b, c) <= 0) return false;
-    // At its ends the diagonal lies within the polygon's angle: where corners repeat, they may belong to other parts.
-    if (turn_at(a) > 0 && turn_of(a, c, before_[a]) <= 0) return false;
-    if (turn_at(c) > 0 && turn_of(c, after_[c], a) <= 0) return false;
     const auto [low_x, high_x] = std::minmax({flat_[a].x, flat_[b].x, flat_[c].x});
     const auto [low_y, high_y] = std::minmax({flat_[a].y, flat_[b].y, flat_[c].y});
     for (int p = after_[c]; p != a; p = after_[p]) {
@@ -134,16 +145,7 @@ class Polygon {
     return true;
   }
 
-  // A corner where the edge runs back along itself, or all that is left lies on a line.
-  int find_fold(int at, int left) const {
-    for (int i = 0; i < left; ++i, at = after_[at]) {
-      const Flat &p = flat_[before_[at]], &q = flat_[at], &r = flat_[after_[at]];
-      if (turn(p, q, r) == 0 && (p.x - q.x) * (r.x - q.x) + (p.y - q.y) * (r.y - q.y) >= 0) return at;
-    }
-    return -1;
-  }
-
-  int size_;
+  int size_, left_;  // corners, and those that no triangle has cut off yet
   std::vector<Flat> flat_;
   std::vector<int> before_, after_;
   std::vector<std::array<int, 3>> triangles_;

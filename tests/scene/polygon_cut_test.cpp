@@ -17,25 +17,32 @@ double twice_the_area(const Point3& a, const Point3& b, const Point3& c) { retur
 
 // Triangles of a polygon in the plane z = 0 that have no area of the other sign, and as much as the shoelace formula
 // says: each point is covered as often as the polygon winds around it, so once within it and nowhere else.
-void check_cut(const Corners& corners) {
+// None of the triangles is without area, unless the polygon has corners that repeat: a corner on the edge of a triangle
+// would leave a crack.
+void check_cut(const Corners& corners, bool repeats = false) {
   double area = 0;
   for (std::size_t i = 0; i < corners.size(); ++i)
     area += twice_the_area(corners[0], corners[i], corners[(i + 1) % corners.size()]);
   const auto triangles = cut_polygon(corners);
   REQUIRE(triangles);
   REQUIRE(triangles->size() == corners.size() - 2);
-  double sum = 0;
-  for (const auto& t : *triangles) sum += std::abs(twice_the_area(corners[t[0]], corners[t[1]], corners[t[2]]));
+  double sum = 0, least = infinity;
+  for (const auto& t : *triangles) {
+    const double own = std::abs(twice_the_area(corners[t[0]], corners[t[1]], corners[t[2]]));
+    sum += own;
+    least = std::min(least, own);
+  }
+  CHECK((least > 0 || repeats));
   CHECK(sum == Approx(std::abs(area)).epsilon(1e-12));
 }
 
 // Wound either way, from each corner on, in the three coordinate planes.
-void check_all(const Corners& corners) {
+void check_all(const Corners& corners, bool repeats = false) {
   for (Corners c : {corners, Corners(corners.rbegin(), corners.rend())})
     for (std::size_t first = 0; first < c.size(); ++first) {
       std::rotate(c.begin(), c.begin() + 1, c.end());
       CAPTURE(first, c.size());
-      check_cut(c);
+      check_cut(c, repeats);
       Corners upright = c;
       for (Point3& p : upright) p = Point3(p[1], p[2], p[0]);
       CHECK(cut_polygon(upright) == cut_polygon(c));
@@ -65,7 +72,9 @@ TEST_CASE("outlines of columns of whole heights", "[geometry][polygon_cut]") {
     const int columns = 1 + int(random() % 12);
     const int lowest = trial % 2 ? 4 : 0;
     Corners corners;
-    const auto add = [&](int x, int y) { corners.emplace_back(x, y, 0); };
+    const auto add = [&](int x, int y) {
+      if (corners.empty() || corners.back() != Point3(x, y, 0)) corners.emplace_back(x, y, 0);
+    };
     for (int x = 0; x < columns; ++x) {
       const int y = lowest ? -1 - int(random() % lowest) : 0;
       add(x, y);
@@ -83,7 +92,7 @@ TEST_CASE("outlines of columns of whole heights", "[geometry][polygon_cut]") {
 }
 
 TEST_CASE("holes at the end of an edge that runs to and fro", "[geometry][polygon_cut]") {
-  check_all(of({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}, {2, 2}, {2, 8}, {8, 8}, {8, 2}, {2, 2}}));
+  check_all(of({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}, {2, 2}, {2, 8}, {8, 8}, {8, 2}, {2, 2}}), true);
   // Two holes, at one corner.
   check_all(of({{0, 0},
                 {10, 0},
@@ -100,7 +109,46 @@ TEST_CASE("holes at the end of an edge that runs to and fro", "[geometry][polygo
                 {5, 3},
                 {7, 3},
                 {7, 1},
-                {5, 1}}));
+                {5, 1}}),
+            true);
+}
+
+// A hole that touches a corner and hangs at another one: the triangle at the corner holds no corner of it, and yet two of
+// its edges. Two holes that touch; a chain of holes, each at the last one's corner; triangles around one corner.
+TEST_CASE("corners that several parts of a polygon share", "[geometry][polygon_cut]") {
+  check_all(of({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {.9, .9}, {.9, 2.9}, {4, 4}, {2.9, .9}, {.9, .9}}), true);
+  check_all(of({{0, 0},
+                {9, 0},
+                {9, 9},
+                {0, 9},
+                {0, 0},
+                {2, 2},
+                {2, 4},
+                {4, 4},
+                {4, 6},
+                {6, 6},
+                {6, 4},
+                {4, 4},
+                {4, 2},
+                {2, 2}}),
+            true);
+  Corners chain = of({{0, 0}, {13, 0}, {13, 13}, {0, 13}, {0, 0}}), back;
+  for (const double x : {1, 4, 7, 10}) {
+    for (const Point3& p : {Point3(x, x, 0), Point3(x, x + 1, 0), Point3(x + 1, x + 1, 0)}) chain.push_back(p);
+    back.insert(back.begin(), {Point3(x + 1, x + 1, 0), Point3(x + 1, x, 0), Point3(x, x, 0)});
+  }
+  chain.insert(chain.end(), back.begin() + 1, back.end());
+  check_all(chain, true);
+  for (int blades = 2; blades < 8; ++blades) {
+    Corners wheel;
+    for (int i = 0; i < blades; ++i) {
+      const double angle = 2 * pi * i / blades;
+      wheel.push_back(Point3::Zero());
+      for (const auto& [radius, turn] : {std::pair{1.0, 0.0}, {0.6, 0.9 / blades}, {1.0, 2.0 / blades}})
+        wheel.emplace_back(radius * std::cos(angle + turn), radius * std::sin(angle + turn), 0);
+    }
+    check_all(wheel, true);
+  }
 }
 
 TEST_CASE("stars, spirals and combs", "[geometry][polygon_cut]") {
@@ -126,9 +174,9 @@ TEST_CASE("stars, spirals and combs", "[geometry][polygon_cut]") {
   check_cut(comb);
 }
 
-TEST_CASE("polygons without area, and such as cross themselves", "[geometry][polygon_cut]") {
-  check_cut(of({{0, 0}, {1, 0}, {3, 0}, {2, 0}, {0.5, 0}}));
-  check_cut(of({{0, 0}, {0, 0}, {1, 0}, {1, 1}, {1, 1}, {0, 1}, {0, 1}}));  // corners that repeat
+TEST_CASE("polygons without area or such as cross themselves", "[geometry][polygon_cut]") {
+  check_cut(of({{0, 0}, {1, 0}, {3, 0}, {2, 0}, {0.5, 0}}), true);
+  check_cut(of({{0, 0}, {0, 0}, {1, 0}, {1, 1}, {1, 1}, {0, 1}, {0, 1}}), true);  // corners that repeat
   CHECK_FALSE(cut_polygon(of({{0, 0}, {2, 2}, {2, 0}, {0, 2}, {-1, 1}})));
   // Not flat, and crossing itself from each side: a surface all the same.
   CHECK(cut_polygon({{0, 0, 0}, {1, 1, 1}, {1, 0, -1}, {0, 1, 3}})->size() == 2);
@@ -138,7 +186,7 @@ TEST_CASE("polygons without area, and such as cross themselves", "[geometry][pol
 TEST_CASE("a corner a rounding beside a diagonal", "[geometry][polygon_cut]") {
   for (const double x : {std::nextafter(0.1, 0), 0.1, std::nextafter(0.1, 1)})
     for (const double y : {std::nextafter(0.3, 0), 0.3, std::nextafter(0.3, 1)})
-      check_all(of({{-0.2, -0.6}, {1, -0.6}, {0.4, 1.2}, {x, y}, {-0.8, 1.2}}));
+      check_all(of({{-0.2, -0.6}, {1, -0.6}, {0.4, 1.2}, {x, y}, {-0.8, 1.2}}), true);
 }
 
 }  // namespace polygon_cut_test
