@@ -15,7 +15,7 @@ using namespace airlight::scene;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
-TEST_CASE("a link is replaced, and what it leads to stays", "[atomic_file]") {
+TEST_CASE("what a link leads to stays as it was", "[atomic_file]") {
   const TemporaryFolder folder;
   folder.write("victim", "mine");
   folder.write("other/inside", "mine");

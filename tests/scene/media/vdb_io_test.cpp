@@ -254,7 +254,7 @@ TEST_CASE("what is not a grid of densities is refused, and why is said", "[media
 
 // A file as OpenVDB's own writer makes it where two grids share a tree: "smoke" has no samples of its own. Its place is
 // its own: voxels of 0.25 m like those of "density", moved by nothing.
-TEST_CASE("a grid that shares another's samples is read, and so is that other", "[media][vdb]") {
+TEST_CASE("grids that share samples are read", "[media][vdb]") {
   const std::string file = std::string(AIRLIGHT_SOURCE_DIR) + "/tests/scene/media/instance.vdb";
   const VoxelGrid own = read_vdb(file, "density"), shared = read_vdb(file, "smoke");
   CHECK(own.values.size() == 64);
