@@ -160,6 +160,24 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
   CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
 }
 
+TEST_CASE("compare says where noise is unknown", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string traced = "render " + scenes +
+                             "constant_homogeneous.toml -m path_tracer --samples 128 "
+                             "--override film.width=8 --override film.height=6 -o noisy.exr";
+  REQUIRE(run(traced, folder).code == 0);
+  CHECK(run("compare noisy.exr noisy.exr", folder).err.empty());
+  airlight::scene::Film film = airlight::scene::read_exr(folder.file("noisy.exr"));
+  std::erase_if(film.layers, [](const auto& layer) {
+    return layer.first == "se" || layer.first.ends_with(".se") || layer.first.find("batch.") != std::string::npos;
+  });
+  airlight::scene::write_exr(folder.file("bare.exr"), film);
+  const Result bare = run("compare noisy.exr bare.exr", folder);
+  CHECK(bare.code == 0);
+  CHECK(bare.error_lines() == 1);
+  CHECK_THAT(bare.err, Contains("bare.exr: warning: has 128 samples a pixel and no batches: its noise is unknown"));
+}
+
 // No room on standard error, or no standard error at all, changes no exit code; and a message never lands in a file that
 // happens to have its number.
 TEST_CASE("messages that cannot be written change nothing", "[cli]") {
