@@ -13,7 +13,9 @@
 #include "scene/content_key.h"
 #include "scene/convert/residual_file.h"
 #include "scene/error.h"
+#include "scene/file_ending.h"
 #include "scene/load/parts.h"
+#include "scene/load/ranges.h"
 #include "scene/read_file.h"
 #include "scene/scene.h"
 
@@ -46,7 +48,7 @@ VoxelGrid grid_of_medium(const std::string& file, const std::string& choice) {
 }
 
 VoxelGrid read_frame(const FitSequence& s, const std::string& file) {
-  return fs::path(file).extension() == ".toml" ? grid_of_medium(file, s.medium) : scene::read_vdb(file, s.grid);
+  return scene::file_ending(file) == ".toml" ? grid_of_medium(file, s.medium) : scene::read_vdb(file, s.grid);
 }
 
 // What a frame was made from, whatever its file is called.
@@ -57,6 +59,15 @@ std::string content_of(const VoxelGrid& grid) {
   return content_key({bytes(grid.size.data(), 3), bytes(grid.origin_index.data(), 3), bytes(grid.rotation.data(), 9),
                       bytes(&grid.voxel_size, 1), bytes(grid.translation.data(), 3),
                       bytes(grid.values.data(), grid.values.size())});
+}
+
+// What would give amplitudes or a residual that no scene may have.
+void check_densities(const FitSequence& s, const std::string& file, const VoxelGrid& grid) {
+  const float greatest = grid.values.empty() ? 0 : *std::max_element(grid.values.begin(), grid.values.end());
+  const scene::load::Range& range = scene::load::density_range;
+  const scene::load::Range wanted = scene::load::or_zero({range.least / s.options.amplitudes.lo, range.greatest});
+  if (!wanted.contains(greatest))
+    throw Error(fmt::format("{}: found a greatest density of {}, expected {}", file, greatest, wanted.words()));
 }
 
 struct Frame {
@@ -80,6 +91,7 @@ Survey survey(const FitSequence& s) {
       throw Error(
           fmt::format("{}: its results would be called {}.csv, as others' are; expected another name", file, name));
     const VoxelGrid grid = read_frame(s, file);
+    check_densities(s, file, grid);
     found.frames.push_back({file, name, content_of(grid)});
     if (grid.values.empty()) continue;
     one_lattice &= voxel == 0 || std::abs(grid.voxel_size - voxel) <= 1e-9 * voxel;

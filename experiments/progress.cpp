@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "experiments/interrupt.h"
+#include "experiments/say.h"
 
 namespace airlight::experiments {
 namespace {
@@ -25,7 +26,8 @@ void draw_progress(std::FILE* terminal, const std::string& line) {
   const std::lock_guard lock(line_mutex);
   winsize size{};
   const bool known = ioctl(fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  fmt::print(terminal, "\r\033[K{}", known ? line.substr(0, size.ws_col - 1u) : line);
+  // A terminal that went away is no reason to stop: nothing is thrown.
+  std::fputs(("\r\033[K" + (known ? line.substr(0, size.ws_col - 1u) : line)).c_str(), terminal);
   std::fflush(terminal);
   line_is_on = terminal;
 }
@@ -56,7 +58,7 @@ void Progress::update(double fraction) {
   if (terminal_)
     draw_progress(stderr, line);
   else
-    fmt::print(stderr, "airlight: {}\n", line);
+    say(line);
 }
 
 scene::Execution Progress::execution(int threads) {

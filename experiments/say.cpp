@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include "experiments/progress.h"
 #include "scene/printable.h"
 
@@ -13,7 +15,8 @@ void say(const std::string& line) {
   // What was found comes first and what was expected last; between two characters of UTF-8.
   if (text.size() > most) text = scene::printable(text, most - end) + scene::printable(text.substr(text.size() - end));
   const ProgressHidden hidden;
-  fmt::print(stderr, "airlight: {}\n", text);
+  // Not fmt::print, which throws: where the line cannot be written, the exit code must still be told.
+  std::fputs(fmt::format("airlight: {}\n", text).c_str(), stderr);
 }
 
 }  // namespace airlight::experiments

@@ -5,7 +5,8 @@
 namespace airlight::experiments {
 
 // "airlight: LINE", as one line whatever the text holds: file names, values and messages of libraries are quoted in it.
-// Of more than 1000 bytes the middle is left out.
+// Of more than 1000 bytes the middle is left out. Where standard error cannot be written, the line is lost; nothing is
+// thrown.
 void say(const std::string& line);
 
 }  // namespace airlight::experiments

@@ -43,6 +43,8 @@ struct Kept {
   int last = -1, coefficients = 0;
 };
 std::optional<Kept> what_is_in(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / "state", ignored)) return std::nullopt;
   std::ifstream in(folder / "state", std::ios::binary);
   Kept kept;
   if (std::getline(in, kept.key) && in >> kept.last >> kept.coefficients) return kept;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include "scene/error.h"
 
@@ -96,12 +97,20 @@ int write_named(const std::string& target, std::string_view bytes) {
   return error;
 }
 
-void write_directly(const std::string& path, std::string_view bytes) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+// Into a pipe or a device; `follow`: also through a link.
+void write_directly(const std::string& path, std::string_view bytes, bool follow) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW));
   if (descriptor < 0) fail(path, errno);
   int error = write_all(descriptor, bytes);
   if (::close(descriptor) != 0 && error == 0) error = errno;
   if (error != 0) fail(path, error);
+}
+
+// /dev/stdout and its like: links that the system made, in folders that only the system writes.
+bool is_link_of_the_system(const std::string& path) {
+  std::error_code failure;
+  const std::string folder = std::filesystem::canonical(folder_of(path), failure).string();
+  return !failure && (folder == "/dev" || folder == "/dev/fd" || folder.starts_with("/proc/"));
 }
 
 // The rename is on the disk once the folder is. A file system that cannot do this has still done the rename.
@@ -117,19 +126,34 @@ void flush_folder(const std::string& target) {
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   if (path.empty()) throw Error("cannot write: the file name is empty");
   struct stat status;
-  std::string target = path;
-  if (::stat(path.c_str(), &status) == 0) {
+  if (::lstat(path.c_str(), &status) == 0) {
+    const bool through_link = S_ISLNK(status.st_mode) && is_link_of_the_system(path);
     if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
-    if (!S_ISREG(status.st_mode)) return write_directly(path, bytes);
-    std::error_code ignored;
-    const auto resolved = std::filesystem::canonical(path, ignored);
-    if (!ignored) target = resolved.string();
+    if (through_link || (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode)))
+      return write_directly(path, bytes, through_link);
   }
 
   int error = 0;
-  if (!write_unnamed(target, bytes, error)) error = write_named(target, bytes);
+  if (!write_unnamed(path, bytes, error)) error = write_named(path, bytes);
   if (error != 0) fail(path, error);
-  flush_folder(target);
+  flush_folder(path);
+}
+
+void make_private_folder(const std::filesystem::path& root, const std::filesystem::path& below) {
+  std::error_code failure;
+  std::filesystem::path folder = std::filesystem::absolute(root);
+  if (!folder.has_filename()) folder = folder.parent_path();
+  std::filesystem::create_directories(folder.parent_path(), failure);
+  const auto make = [&] {
+    if (!failure && ::mkdir(folder.c_str(), 0700) != 0 && !std::filesystem::is_directory(folder))
+      failure.assign(errno == EEXIST ? ENOTDIR : errno, std::generic_category());
+  };
+  make();
+  for (const auto& part : below) {
+    folder /= part;
+    make();
+  }
+  if (failure) throw CannotWrite(fmt::format("{}: cannot make this folder: {}", folder.string(), failure.message()));
 }
 
 }  // namespace airlight::scene

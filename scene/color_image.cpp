@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/file_ending.h"
 #include "scene/film.h"
 #include "scene/grey_image_parts.h"
 #include "scene/printable.h"
@@ -92,7 +93,7 @@ DepthImage read_pfm(const std::string& path) {
 }  // namespace
 
 ColorImage read_color_image(const std::string& path, const std::string& layer) {
-  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string kind = file_ending(path);
   if (kind != ".png" && kind != ".exr") throw Error(fmt::format("{}: expected a name in .png or .exr", path));
   ColorImage image;
   if (kind == ".png") {
@@ -111,7 +112,7 @@ ColorImage read_color_image(const std::string& path, const std::string& layer) {
 }
 
 DepthImage read_depth_image(const std::string& path, const std::string& channel) {
-  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string kind = file_ending(path);
   if (kind == ".pfm") return read_pfm(path);
   if (kind != ".exr" && kind != ".png") throw Error(fmt::format("{}: expected a name in .pfm, .exr or .png", path));
   const GreyImage grey =

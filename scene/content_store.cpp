@@ -3,20 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
+#include <limits>
 
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
+#include "scene/read_file.h"
 
 namespace airlight::scene {
 namespace fs = std::filesystem;
 namespace {
 
 std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return read_whole_file(path.string(), std::numeric_limits<std::size_t>::max() / 2);
 }
 
 fs::path checksum_of(fs::path file) { return file += ".xxh128"; }
@@ -25,18 +24,23 @@ fs::path checksum_of(fs::path file) { return file += ".xxh128"; }
 
 std::optional<fs::path> ContentStore::find(const std::string& name) const {
   const fs::path file = folder_ / name;
-  if (!fs::exists(file) || !fs::exists(checksum_of(file))) return std::nullopt;
-  if (content_key(std::string_view(bytes_of(file))) == bytes_of(checksum_of(file))) return file;
-  say(fmt::format("{}: checksum differs, computing it anew", file.string()));
+  std::error_code ignored;
+  if (!fs::exists(file, ignored) || !fs::exists(checksum_of(file), ignored)) return std::nullopt;
+  std::string reason;
+  try {
+    if (content_key(std::string_view(bytes_of(file))) == bytes_of(checksum_of(file))) return file;
+    reason = fmt::format("{}: checksum differs", file.string());
+  } catch (const Error& error) {  // a folder, a pipe, no permission
+    reason = error.what();
+  }
+  say(fmt::format("{}, computing it anew", reason));
   return std::nullopt;
 }
 
 void ContentStore::keep(const std::string& name, const std::function<void(const fs::path&)>& write) const {
   const fs::path file = folder_ / name;
   std::error_code failure;
-  fs::create_directories(file.parent_path(), failure);
-  if (failure)
-    throw CannotWrite(fmt::format("{}: cannot be created: {}", file.parent_path().string(), failure.message()));
+  make_private_folder(folder_, fs::path(name).parent_path());
   const fs::path part =
       file.parent_path() / fmt::format("{}.{}.part{}", file.stem().string(), getpid(), file.extension().string());
   try {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/exr_header.h"
 #include "scene/film.h"
 #include "scene/lat_long.h"
 #include "scene/lat_long_density.h"
@@ -116,6 +117,8 @@ EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& 
 
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& path) {
   const Film film = read_exr(path);
+  if (is_cube_map(path))
+    throw Error(fmt::format("{}: found a cube map, expected a map of longitude and latitude", path));
   auto map = std::make_shared<EnvironmentMap>();
   map->width = film.width;
   map->height = film.height;

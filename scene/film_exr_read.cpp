@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -65,6 +66,17 @@ void check_exr_attributes(const std::string& path) {
   }
 }
 
+void check_windows(const std::string& path, const Imf::Header& header) {
+  if (header.displayWindow() != header.dataWindow())
+    throw Error(fmt::format("{}: a cropped or overscanned image (data and display window differ)", path));
+}
+
+bool is_cube_map(const std::string& path) {
+  check_exr_attributes(path);
+  const Imf::InputFile file(path.c_str(), 1);
+  return Imf::hasEnvmap(file.header()) && Imf::envmap(file.header()) == Imf::ENVMAP_CUBE;
+}
+
 namespace {
 
 struct Layout {
@@ -74,6 +86,20 @@ struct Layout {
   std::set<std::string> layers;
 };
 
+// Numbers of other primaries are other colours.
+void check_primaries(const std::string& path, const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return;
+  const Imf::Chromaticities found = Imf::chromaticities(header), expected;  // Rec. 709 with D65
+  const auto differ = [](const Imath::V2f& a, const Imath::V2f& b) { return !((a - b).length() <= 0.002f); };
+  if (differ(found.red, expected.red) || differ(found.green, expected.green) || differ(found.blue, expected.blue) ||
+      differ(found.white, expected.white))
+    throw Error(fmt::format(
+        "{}: its colours have other primaries: found chromaticities red ({:.4g}, {:.4g}), green ({:.4g}, {:.4g}), blue "
+        "({:.4g}, {:.4g}), white ({:.4g}, {:.4g}), expected those of Rec. 709 with D65",
+        path, found.red.x, found.red.y, found.green.x, found.green.y, found.blue.x, found.blue.y, found.white.x,
+        found.white.y));
+}
+
 Layout check_layout(const std::string& path, const Imf::Header& header, std::size_t max_bytes) {
   Layout layout;
   layout.window = header.dataWindow();
@@ -81,8 +107,8 @@ Layout check_layout(const std::string& path, const Imf::Header& header, std::siz
   const std::int64_t height = std::int64_t(layout.window.max.y) - layout.window.min.y + 1;
   if (width < 1 || height < 1 || width > max_side || height > max_side)
     throw Error(fmt::format("{}: {} x {} pixels, expected 1 to {} a side", path, width, height, max_side));
-  if (header.displayWindow() != layout.window)
-    throw Error(fmt::format("{}: a cropped or overscanned image (data and display window differ)", path));
+  check_windows(path, header);
+  check_primaries(path, header);
   layout.width = int(width);
   layout.height = int(height);
 

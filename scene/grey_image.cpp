@@ -16,6 +16,7 @@
 #include "scene/error.h"
 #include "scene/exr_header.h"
 #include "scene/exr_memory.h"
+#include "scene/file_ending.h"
 #include "scene/grey_image_parts.h"
 #include "scene/printable.h"
 
@@ -44,6 +45,7 @@ GreyImage decode(const std::string& path, const std::string& wish, std::size_t m
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   require_pixels(path, std::size_t(std::max<std::int64_t>(0, width)), std::size_t(std::max<std::int64_t>(0, height)),
                  most_pixels);
+  check_windows(path, file.header());
   const std::string name = chosen_channel(path, file.header(), wish);
   const Imf::Channel& channel = *file.header().channels().findChannel(name.c_str());
   if (channel.xSampling != 1 || channel.ySampling != 1)
@@ -77,7 +79,7 @@ GreyImage read_grey_exr(const std::string& path, const std::string& channel, std
 }
 
 GreyImage read_grey_image(const std::string& path, const std::string& channel, std::size_t most_pixels) {
-  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string kind = file_ending(path);
   if (kind != ".png" && kind != ".exr") throw Error(fmt::format("{}: expected a name in .png or .exr", path));
   if (kind == ".png" && !channel.empty()) throw Error(fmt::format("{}: a channel is chosen of EXR files only", path));
   GreyImage image = kind == ".png" ? read_grey_png(path, most_pixels) : read_grey_exr(path, channel, most_pixels);
@@ -89,7 +91,7 @@ GreyImage read_grey_image(const std::string& path, const std::string& channel, s
 }
 
 void write_grey_image(const std::string& path, const GreyImage& image) {
-  if (std::filesystem::path(path).extension() == ".png") return write_grey_png(path, image);
+  if (file_ending(path) == ".png") return write_grey_png(path, image);
   MemoryStream stream;
   {
     Imf::Header header(image.width, image.height);

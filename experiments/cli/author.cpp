@@ -7,12 +7,12 @@
 #include "experiments/cli/commands.h"
 #include "experiments/interrupt.h"
 #include "scene/error.h"
+#include "scene/file_ending.h"
 
 namespace airlight::experiments::cli {
 
 int author(const AuthorOptions& options) {
-  if (std::filesystem::path(options.out).extension() != ".toml")
-    throw Error(fmt::format("{}: expected a name in .toml", options.out));
+  if (scene::file_ending(options.out) != ".toml") throw Error(fmt::format("{}: expected a name in .toml", options.out));
   if (authoring::draws_fogmap(options.script)) {
     const authoring::DrawnFogmap drawn = authoring::run_fogmap_script(options.script, check_interrupted);
     const std::string map = authoring::write(drawn, options.script, options.out);

@@ -76,8 +76,8 @@ int explain(const ExplainOptions&);
 struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
-  std::string sequence, profile = "quick";          // in place of a problem and a folder
-  std::string scene, renderer = "legendre_fluids";  // of pictures of each frame; scene empty: none
+  std::string sequence, profile = "quick";  // in place of a problem and a folder
+  std::string scene, renderer;              // of pictures of each frame; scene empty: none; renderer empty: by method
   Pairs renderer_settings;
   double exposure = 0;
   int threads = 0;

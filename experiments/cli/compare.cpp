@@ -7,6 +7,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/equality.h"
 #include "experiments/metrics.h"
+#include "experiments/say.h"
 #include "scene/error.h"
 #include "scene/renderer.h"
 
@@ -28,6 +29,14 @@ double certain(const Measure& m) {
   return std::min(std::abs(m.low), std::abs(m.high));
 }
 
+// A path-traced picture whose batches were left out, as those of experiments are.
+void warn_of_unknown_noise(const std::string& file, const scene::Film& film) {
+  const auto samples = film.metadata.find("samples");
+  if (samples == film.metadata.end() || film.has("batch.00") || film.has("se")) return;
+  say(fmt::format("{}: warning: has {} samples a pixel and no batches: its noise is unknown, and counts as error", file,
+                  samples->second));
+}
+
 }  // namespace
 
 int compare(const CompareOptions& options) {
@@ -37,6 +46,8 @@ int compare(const CompareOptions& options) {
   if (options.scene.empty() && !options.overrides.empty()) throw Error("--override: of what scene? expected --scene");
   const scene::Film image = scene::read_exr(options.image);
   const scene::Film reference = scene::read_exr(options.reference);
+  warn_of_unknown_noise(options.image, image);
+  warn_of_unknown_noise(options.reference, reference);
   Masks masks;
   masks.foreground = foreground_mask(reference);
   if (!options.scene.empty()) {

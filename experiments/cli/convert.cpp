@@ -9,6 +9,7 @@
 #include "scene/convert/fogmap_columns.h"
 #include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
+#include "scene/file_ending.h"
 #include "scene/film.h"
 #include "scene/grey_image.h"
 #include "scene/media/legendre_box.h"
@@ -19,12 +20,12 @@ namespace airlight::experiments::cli {
 namespace {
 
 std::string kind_of(const std::string& out) {
-  const std::string kind = std::filesystem::path(out).extension().string();
+  const std::string kind = scene::file_ending(out);
   if (kind != ".png" && kind != ".pfm") throw Error(fmt::format("{}: expected a name in .png or .pfm", out));
   return kind;
 }
 
-bool is_grid(const std::string& in) { return std::filesystem::path(in).extension() == ".vdb"; }
+bool is_grid(const std::string& in) { return scene::file_ending(in) == ".vdb"; }
 
 // A voxel grid as a fogmap of its columns; prints the medium that shows it, and what it loses.
 void convert_columns(const std::string& in, const std::string& out, const ConvertOptions& options) {
@@ -39,8 +40,8 @@ void convert_columns(const std::string& in, const std::string& out, const Conver
   fmt::print("region = {{ type = \"slab\", lo = {}, hi = {} }}\n", fog.heights.lo, fog.heights.hi);
 }
 
-bool is_scene(const std::string& in) { return std::filesystem::path(in).extension() == ".toml"; }
-bool is_table(const std::string& out) { return std::filesystem::path(out).extension() == ".csv"; }
+bool is_scene(const std::string& in) { return scene::file_ending(in) == ".toml"; }
+bool is_table(const std::string& out) { return scene::file_ending(out) == ".csv"; }
 
 // By name, or by number.
 const scene::Medium& chosen_medium(const scene::Scene& scene, const std::string& choice) {
@@ -113,7 +114,7 @@ int convert(const ConvertOptions& options) {
     if (is_scene(files[i])) throw Error(fmt::format("{}: expected a name in .csv for a Legendre box", files[i + 1]));
     if (!is_grid(files[i]))
       kind_of(files[i + 1]);
-    else if (std::filesystem::path(files[i + 1]).extension() != ".exr")
+    else if (scene::file_ending(files[i + 1]) != ".exr")
       throw Error(
           fmt::format("{}: expected a name in .exr for the map of a grid, or .csv for a Legendre box", files[i + 1]));
   }

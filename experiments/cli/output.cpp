@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "scene/error.h"
+#include "scene/file_ending.h"
 
 namespace airlight::experiments::cli {
 
 void require_output(const std::string& file, const std::string& ending) {
-  if (std::filesystem::path(file).extension() != ending)
-    throw Error(fmt::format("{}: expected a name in {}", file, ending));
+  if (scene::file_ending(file) != ending) throw Error(fmt::format("{}: expected a name in {}", file, ending));
   const auto folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))
     throw Error(fmt::format("{}: there is no folder {}", file, folder.string()));

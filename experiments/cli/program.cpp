@@ -1,10 +1,12 @@
 #include "experiments/cli/program.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -33,6 +35,14 @@ void require(const std::string& value, const std::string& what) {
 void check_exposure(double exposure) {
   if (!(std::abs(exposure) <= 100))
     throw Error(fmt::format("--exposure {}: expected a number in [-100, 100]", exposure));
+}
+
+const std::string lost_output = "standard output could not be written";
+
+// A standard stream that is closed would be the next file that is opened, and messages would be written into that.
+void reserve_standard_streams() {
+  for (const int stream : {0, 1, 2})
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);  // read only: writing still fails
 }
 
 int dispatch(int argc, char** argv) {
@@ -208,8 +218,8 @@ int dispatch(int argc, char** argv) {
       "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
   c->add_option(
       "--renderer", simulate_options.renderer,
-      "of --scene (default: legendre_fluids); legendre_fluids_gpu draws flows of that name where they lie, what is "
-      "below 0 towards the mean");
+      "renderer of --scene (default: legendre_fluids for both methods of that name, else ray_marcher); legendre_fluids_gpu draws "
+      "flows of that name where they lie, what is below 0 towards the mean");
   add_pairs(c, "--renderer-set", simulate_options.renderer_settings, "a setting of the renderer");
   c->add_option("--exposure", simulate_options.exposure, "of the pictures, in powers of two");
   c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");
@@ -366,10 +376,11 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int run(int argc, char** argv) {
+  reserve_standard_streams();
   try {
     const int code = dispatch(argc, argv);
     std::cout.flush();
-    if (std::fflush(stdout) != 0 || !std::cout) throw Error("standard output could not be written");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) throw Error(lost_output);
     return code;
   } catch (const Error& error) {
     say(error.what());
@@ -384,7 +395,8 @@ int run(int argc, char** argv) {
     say("out of memory");
     return 2;
   } catch (const std::exception& error) {
-    say(fmt::format("unexpected failure: {}", error.what()));
+    // What prints to a stream that fails throws an exception of the system's.
+    say(std::ferror(stdout) ? lost_output : fmt::format("unexpected failure: {}", error.what()));
     return 2;
   }
 }

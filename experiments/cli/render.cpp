@@ -39,7 +39,7 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   scene::write_exr(options.out, film);
   if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure);
   if (const auto warning = metadata.find("warning"); warning != metadata.end())
-    fmt::print(stderr, "airlight: {}: warning: {}\n", options.scene, warning->second);
+    say(fmt::format("{}: warning: {}", options.scene, warning->second));
 }
 
 }  // namespace

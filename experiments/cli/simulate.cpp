@@ -27,12 +27,18 @@ int simulate_sequence(const SimulateOptions& options) {
   return 0;
 }
 
+// A grid is drawn by the ray marcher, a series of Legendre polynomials by its own method.
+std::string default_renderer(const scene::Solver& solver) {
+  return solver.name().starts_with("legendre_fluids") ? "legendre_fluids" : "ray_marcher";
+}
+
 // With what the pictures are made of, if there are any.
 struct Pictured {
-  explicit Pictured(const SimulateOptions& options) {
+  Pictured(const SimulateOptions& options, const scene::Solver& solver) {
     if (options.scene.empty()) return;
-    const scene::Renderer& renderer = find_renderer(options.renderer, "--renderer");
-    settings.emplace(renderer.settings(), options.renderer_settings, options.renderer);
+    const std::string name = options.renderer.empty() ? default_renderer(solver) : options.renderer;
+    const scene::Renderer& renderer = find_renderer(name, "--renderer");
+    settings.emplace(renderer.settings(), options.renderer_settings, name);
     scene.emplace(scene::load_scene(options.scene));
     pictures.emplace(*scene, renderer, *settings, options.exposure, options.threads);
   }
@@ -48,7 +54,7 @@ int simulate(const SimulateOptions& options) {
   const scene::Solver& solver = find_solver(options.method, "--method");
   const scene::Settings settings(solver.settings(), options.settings, options.method);
   const auto problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(options.problem, options.overrides));
-  Pictured pictured(options);
+  Pictured pictured(options, solver);
   Simulation simulation{problem, solver, settings, options.out};
   if (pictured.pictures)
     simulation.look = [&](int frame, const scene::Flow& flow) {

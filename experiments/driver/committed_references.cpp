@@ -41,8 +41,12 @@ std::vector<CommittedReference> committed_references(const std::vector<Experimen
 bool is_committed(const fs::path& file) { return !file.empty() && fs::exists(file); }
 
 std::string committed_checksum(const fs::path& file) {
-  std::ifstream in(fs::path(file) += ".xxh128", std::ios::binary);
-  std::string sum{std::istreambuf_iterator<char>(in), {}};
+  const fs::path beside = fs::path(file) += ".xxh128";
+  std::string sum;
+  if (fs::is_regular_file(beside)) {
+    std::ifstream in(beside, std::ios::binary);
+    sum.assign(std::istreambuf_iterator<char>(in), {});
+  }
   if (sum.empty())
     throw Error(
         fmt::format("{0}: committed reference without its checksum {0}.xxh128; `git checkout -- {0}.xxh128` gets it "

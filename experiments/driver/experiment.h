@@ -19,6 +19,7 @@ struct SceneCase {  // kind "numbers": the input of a probe, all empty where the
   std::filesystem::path file;
   Pairs overrides;                  // with those of the profile
   std::optional<double> parameter;  // abscissa of plots over scenes
+  std::string position;             // file:line:column
   std::string of_sequence;          // what is swept from picture to picture: "frame" of a medium, "angle" of what turns
 };
 
@@ -32,6 +33,7 @@ struct MethodCase {
   bool picture_only = false;        // rendered and timed, not compared
   std::string moving;               // each timed run is the next frame, of which this has moved; empty: one frame
   std::vector<std::string> scenes;  // empty: all
+  std::string position;             // file:line:column
 };
 
 // Is the method on this scene? A swept scene is called "name value": the name means all of them.
@@ -57,6 +59,7 @@ struct PlotCase {
   bool per_scene = true;
   bool map = false;                  // not curves: the maps of the rows, side by side
   std::vector<std::string> methods;  // empty: all
+  std::string position;              // file:line:column
 };
 
 struct GateCase {

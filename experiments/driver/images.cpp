@@ -123,8 +123,7 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
   }
   if (m.layer != e.layer) rendering.film.layers[e.layer] = rendering.film.layer(m.layer);
   if (judged->reference) row.measures = compare(e, m, rendering.film, judged->reference->film, judged->masks);
-  row.image = keeper.name() + "/" + file_name(row.scene) + "/" +
-              file_name(row.setting.empty() ? row.method : row.method + "_" + row.setting);
+  row.image = keeper.name() + "/" + file_name(row.scene) + "/" + picture_name(row.method, row.setting);
   row.exposure = judged->reference ? judged->exposure : exposure_of(rendering.film, e.layer);
   keep_picture(keeper.images(), row.image, rendering.film, m.layer, row.exposure);
   return {row, first, stages, download, [prepared, moving, judged, row](const scene::Execution& execution) {

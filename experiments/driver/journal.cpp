@@ -18,7 +18,8 @@
 namespace airlight::experiments {
 
 Journal::Journal(const std::filesystem::path& file, bool resume) : file_(file) {
-  if (!resume) return;
+  std::error_code ignored;
+  if (!resume || !std::filesystem::is_regular_file(file, ignored)) return;  // a pipe would be waited for
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     const std::size_t space = line.find(' ');
@@ -52,7 +53,7 @@ void Journal::add(const Row& row) {
   const std::string text = to_json(row).dump();
   // A torn line before this one must not swallow it: begin on a new line.
   const std::string line = fmt::format("\n{} {}\n", content_key(std::string_view(text)), text);
-  const int handle = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const int handle = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
   const bool written =
       handle >= 0 && write(handle, line.data(), line.size()) == ssize_t(line.size()) && fsync(handle) == 0;
   const int reason = errno;

@@ -33,6 +33,8 @@ constexpr double most_held_gib = 2;
 double gpu_warm_up(const Row& row) { return row.device.empty() || is_processor(row.device) ? 0 : 1; }
 
 bool is_text_of(const fs::path& file, const std::string& text) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
   std::ifstream in(file, std::ios::binary);
   return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
 }
@@ -66,6 +68,7 @@ RowKeeper::RowKeeper(Experiment experiment, const RunOptions& options)
       store_(options.folders.cache, experiments::say),
       name_(results_name(experiment.id, experiment.profile)),
       journal_(journal_file(options.folders, experiment), options.resume) {
+  if (options.folders.default_results()) scene::make_private_folder(store_.folder());  // the journal lies there, too
   outcome_.experiment = std::move(experiment);
   if (options.resume) return;
   journal_.begin_anew();

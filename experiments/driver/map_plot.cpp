@@ -6,6 +6,7 @@
 #include "experiments/driver/tables.h"
 #include "experiments/folders.h"
 #include "scene/atomic_file.h"
+#include "scene/printable.h"
 
 namespace airlight::experiments {
 namespace {
@@ -13,9 +14,10 @@ namespace {
 // One panel: the map as an image over the logarithms of its axes, and its lines on top.
 std::string panel(const Row& row, std::size_t block) {
   std::string out = fmt::format(
-      "set title \"{}{}\" noenhanced\nset xlabel \"log10 {}\" offset 0,0.5 noenhanced\nset ylabel \"log10 {}\" offset 1,0 "
-      "noenhanced\nplot data index {} using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle",
-      row.method, row.setting.empty() ? "" : " " + row.setting, row.map->x.label, row.map->y.label, block);
+      "set title {} noenhanced\nset xlabel {} offset 0,0.5 noenhanced\nset ylabel {} offset 1,0 noenhanced\n"
+      "plot data index {} using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle",
+      gnuplot_text(row.setting.empty() ? row.method : row.method + " " + row.setting),
+      gnuplot_text("log10 " + row.map->x.label), gnuplot_text("log10 " + row.map->y.label), block);
   for (std::size_t i = 0; i < row.map->lines.size(); ++i)
     out += fmt::format(", $line{} using 1:2 with lines lw 1 dt {} lc rgb \"white\" notitle", i, i + 1);
   return out + "\n";
@@ -31,7 +33,7 @@ bool write_map_plot(const std::vector<Row>& rows, const PlotCase& plot, const st
     if (!row.map) continue;
     const FigureMap& map = *row.map;
     if (!first) first = &map;
-    data += fmt::format("# {}, {}, {}\n", row.scene, row.method, row.setting);
+    data += fmt::format("# {}\n", scene::printable(fmt::format("{}, {}, {}", row.scene, row.method, row.setting)));
     for (std::size_t i = 0; i < map.x.values.size(); ++i)
       for (std::size_t k = 0; k < map.y.values.size(); ++k)
         data += fmt::format("{:.4g},{:.4g},{:.2g}\n", map.x.values[i], map.y.values[k],
@@ -45,14 +47,15 @@ bool write_map_plot(const std::vector<Row>& rows, const PlotCase& plot, const st
     const double half = 0.5 * (high - low) / double(axis.values.size() - 1);
     return fmt::format("[{:.4f}:{:.4f}]", low - half, high + half);
   };
+  const std::string name = plot_name(plot, "");
   std::string out = fmt::format(
       "# Draws {0}.svg and {0}.png from {0}.csv: run gnuplot on this file in its folder.\n"
       "data = \"{0}.csv\"\nset datafile separator comma\nset encoding utf8\n"
       "set xrange {1}\nset yrange {2}\nset cbrange [-16:2]\nset xtics 2\nset ytics 2\n"
       "set palette defined (0 \"#440154\", 1 \"#3b528b\", 2 \"#21918c\", 3 \"#5ec962\", 4 \"#fde725\", 4.5 \"#d55e00\")\n"
-      "set cblabel \"log10 of the {3}\" noenhanced\nset object rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb "
+      "set cblabel {3} noenhanced\nset object rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb "
       "\"#bbbbbb\" fillstyle solid noborder\n",
-      plot.name, range(first->x), range(first->y), first->label);
+      name, range(first->x), range(first->y), gnuplot_text("log10 of the " + first->label));
   for (std::size_t i = 0; i < first->lines.size(); ++i) {
     out += fmt::format("$line{} << EOD\n", i);
     for (const auto& [x, y] : first->lines[i]) out += fmt::format("{:.4f},{:.4f}\n", std::log10(x), std::log10(y));
@@ -63,12 +66,12 @@ bool write_map_plot(const std::vector<Row>& rows, const PlotCase& plot, const st
     const std::size_t side = svg ? 375 : 450;
     out += fmt::format(
         "set terminal {} size {},{} font \"{}\"\nset output \"{}.{}\"\nset multiplot layout {},{}\n{}unset multiplot\n",
-        svg ? "svg dynamic" : "pngcairo", side * columns, (side - 20) * across, svg ? "sans-serif,11" : "Sans,11",
-        plot.name, svg ? "svg" : "png", across, columns, panels);
+        svg ? "svg dynamic" : "pngcairo", side * columns, (side - 20) * across, svg ? "sans-serif,11" : "Sans,11", name,
+        svg ? "svg" : "png", across, columns, panels);
   }
   make_folder(folder);
-  scene::write_file_atomically((folder / (plot.name + ".csv")).string(), data);
-  scene::write_file_atomically((folder / (plot.name + ".gp")).string(), out);
+  scene::write_file_atomically((folder / (name + ".csv")).string(), data);
+  scene::write_file_atomically((folder / (name + ".gp")).string(), out);
   return true;
 }
 

@@ -24,7 +24,12 @@ scene::Film without_noise_layers(scene::Film film) {
 std::string file_name(const std::string& text) {
   std::string out;
   for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
+  if (out.starts_with('.')) out.front() = '_';  // else "..", the folder above, or a hidden file
   return out;
+}
+
+std::string picture_name(const std::string& method, const std::string& setting) {
+  return file_name(setting.empty() ? method : method + "_" + setting);
 }
 
 double exposure_of(const scene::Film& film, const std::string& layer) {

@@ -10,8 +10,10 @@
 
 namespace airlight::experiments {
 
-// Letters, digits, '-' and '.' of a text; '_' for the rest.
+// Letters, digits, '-' and '.' of a text; '_' for the rest, and for a dot that it begins with.
 std::string file_name(const std::string& text);
+// The file of a row's picture, without its ending. That of the reference is called "reference".
+std::string picture_name(const std::string& method, const std::string& setting);
 
 // Powers of two that bring the 99th percentile of the luminance to 0.8.
 double exposure_of(const scene::Film&, const std::string& layer);

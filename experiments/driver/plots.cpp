@@ -1,15 +1,24 @@
 #include "experiments/driver/plots.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
+#include "experiments/driver/pictures.h"
 #include "experiments/folders.h"
+#include "experiments/say.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/printable.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;
@@ -24,12 +33,6 @@ struct Curve {
   std::string name;
   std::vector<PlotPoint> points;
 };
-
-std::string slug(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
-  return out;
-}
 
 const Measure* measure_of(const Row& row, const std::string& name) {
   for (const Measure& m : row.measures)
@@ -157,12 +160,6 @@ struct Span {
   }
 };
 
-std::string escaped(std::string text) {
-  std::replace(text.begin(), text.end(), '"', '\'');
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 std::string script(const PlotCase& plot, const std::string& title, const std::string& name, const Drawing& drawing) {
   // Colours that the colour-blind tell apart (Okabe and Ito).
   static const char* colors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
@@ -181,8 +178,8 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   for (std::size_t i = 0; i < drawing.curves.size(); ++i) {
     const std::string style = fmt::format("lc rgb \"{}\" pt {} ps 0.7 lw 1.6", colors[i % 10], shapes[i % 10]);
     const bool dense = drawing.curves[i].points.size() > 40;
-    add(fmt::format("data index {} using 2:5 with {} {} title \"{}\"", 2 * i, dense ? "lines" : "linespoints", style,
-                    escaped(drawing.curves[i].name)));
+    add(fmt::format("data index {} using 2:5 with {} {} title {}", 2 * i, dense ? "lines" : "linespoints", style,
+                    gnuplot_text(drawing.curves[i].name)));
     if (!is_column(plot.x))
       add(fmt::format("data index {} using 2:5:3:4:6:7 with xyerrorbars lc rgb \"{}\" pt 0 lw 0.8 notitle", 2 * i,
                       colors[i % 10]));
@@ -197,12 +194,12 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
       "# Draws {0}.svg and {0}.png from {0}.csv: run gnuplot on this file in its folder.\n"
       "data = \"{0}.csv\"\n"
       "set datafile separator comma\n"
-      "set title \"{1}\" noenhanced\nset xlabel \"{2}\" noenhanced\nset ylabel \"{3}\" noenhanced\n"
+      "set title {1} noenhanced\nset xlabel {2} noenhanced\nset ylabel {3} noenhanced\n"
       "set key outside right center vertical Left reverse noenhanced\n"
       "set grid xtics ytics lt 1 lw 0.5 lc rgb \"#cccccc\"\nset border 3 lc rgb \"#444444\"\nset tics nomirror\n"
       "{4}{5}",
-      name, escaped(title), escaped(axis_label(plot.x_label, plot.x)), escaped(axis_label(plot.y_label, plot.y)),
-      x.axis("x"), y.axis("y"));
+      name, gnuplot_text(title), gnuplot_text(axis_label(plot.x_label, plot.x)),
+      gnuplot_text(axis_label(plot.y_label, plot.y)), x.axis("x"), y.axis("y"));
   for (const auto& [terminal, file] :
        {std::pair<const char*, const char*>{"svg size 820,440 dynamic font \"sans-serif,13\"", "svg"},
         {"pngcairo size 1230,660 font \"Sans,13\"", "png"}})
@@ -210,18 +207,51 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   return out;
 }
 
+// Runs a program in a folder, without a shell, and returns its exit status. Its output goes to a new file.
+int exit_status(const fs::path& folder, const fs::path& log, std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0) throw Error(fmt::format("{}: cannot be run: {}", words[0], std::strerror(failure)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 }  // namespace
+
+std::string plot_name(const PlotCase& plot, const std::string& scene) {
+  return file_name(scene.empty() ? plot.name : plot.name + "." + scene);
+}
+
+std::string gnuplot_text(std::string_view text) {
+  // A quote stands apart: gnuplot 5.4 takes two of them at the beginning for the end.
+  std::string quoted = "'";
+  for (const char c : scene::printable(text)) quoted += c == '\'' ? R"('."'".')" : std::string(1, c);
+  return quoted + "'";
+}
 
 bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
 void run_gnuplot(const fs::path& folder, const std::vector<std::string>& scripts) {
   if (!has_gnuplot()) throw Unavailable("gnuplot is not installed: no plots (Debian: gnuplot-nox)");
   for (const std::string& name : scripts) {
-    const fs::path log = folder / (name + ".log");
-    const std::string command =
-        fmt::format("cd '{}' && gnuplot '{}' >'{}' 2>&1", folder.string(), name, log.filename().string());
-    if (std::system(command.c_str()) != 0)
-      throw Error(fmt::format("gnuplot failed on {}; see {}", (folder / name).string(), log.string()));
+    const fs::path script = folder / name, log = folder / (name + ".log");
+    // gnuplot would write through a link that has one of these names.
+    for (const fs::path& written :
+         {log, fs::path(script).replace_extension("svg"), fs::path(script).replace_extension("png")})
+      fs::remove(written);
+    if (exit_status(folder, log, {"gnuplot", name}) != 0)
+      throw Error(fmt::format("gnuplot failed on {}; see {}", script.string(), log.string()));
     fs::remove(log);
   }
 }
@@ -234,8 +264,8 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
   for (const PlotCase& plot : outcome.experiment.plots) {
     if (plot.map) {
       if (!write_map_plot(outcome.rows, plot, plots)) continue;
-      scripts.push_back(plot.name + ".gp");
-      drawn.push_back({"plots/" + plot.name + ".svg", plot.title});
+      scripts.push_back(plot_name(plot, "") + ".gp");
+      drawn.push_back({"plots/" + plot_name(plot, "") + ".svg", plot.title});
       continue;
     }
     std::vector<std::string> scenes;
@@ -248,7 +278,7 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
     for (const std::string& scene : scenes) {
       const Drawing drawing = collect(outcome, plot, scene);
       if (drawing.curves.empty()) continue;
-      const std::string name = slug(scene.empty() ? plot.name : plot.name + "." + scene);
+      const std::string name = plot_name(plot, scene);
       const std::string what = !plot.title.empty() ? plot.title
                                                    : fmt::format("{} against {}", axis_label(plot.y_label, plot.y),
                                                                  axis_label(plot.x_label, plot.x));
@@ -262,7 +292,7 @@ std::vector<PlotFile> draw_plots(const Outcome& outcome, const fs::path& folder)
   }
   if (scripts.empty()) return {};
   if (!has_gnuplot()) {
-    fmt::print(stderr, "airlight: gnuplot is not installed: no plots (Debian: gnuplot-nox)\n");
+    say("gnuplot is not installed: no plots (Debian: gnuplot-nox)");
     return {};
   }
   run_gnuplot(plots, scripts);

@@ -1,6 +1,7 @@
 // Plots: a CSV file and a gnuplot script beside it, drawn as SVG and PNG. Drawing reads the CSV only.
 #pragma once
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "experiments/driver/outcome.h"
@@ -12,9 +13,15 @@ namespace airlight::experiments {
 // line on standard error says so. A plot without points is left out.
 std::vector<PlotFile> draw_plots(const Outcome&, const std::filesystem::path& folder);
 
+// The name of a plot's files without their ending; `scene` is empty where one plot shows all scenes.
+std::string plot_name(const PlotCase&, const std::string& scene);
+
 // Runs gnuplot on every script in folder/plots. Throws Unavailable without gnuplot, Error if it fails.
 void run_gnuplot(const std::filesystem::path& folder, const std::vector<std::string>& scripts);
 bool has_gnuplot();
+
+// One line of text from a file, in single quotes: gnuplot runs what stands in backquotes within double ones.
+std::string gnuplot_text(std::string_view);
 
 // The maps of these rows (row.map), side by side: data and script NAME.csv, NAME.gp in the folder. False without any.
 bool write_map_plot(const std::vector<Row>&, const PlotCase&, const std::filesystem::path& folder);

@@ -2,12 +2,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "experiments/driver/bounds.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/experiment.h"
 #include "experiments/driver/next_frames.h"
+#include "experiments/driver/pictures.h"
+#include "experiments/driver/plots.h"
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/toml_values.h"
 #include "experiments/flow_metrics.h"
@@ -67,6 +70,7 @@ class Reader {
     methods(top);
     if (numbers()) figures();
     plots(top);
+    names_apart();
     checks(top);
     if (top.has("summary")) check_summary(top);
     return experiment_;
@@ -199,14 +203,13 @@ class Reader {
       reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
       SceneCase scene;
       scene.file = folders_.root / "experiments" / reader.text("file");
-      scene.name = reader.text("name", scene.file.stem().string());
+      scene.name = reader.name("name", scene.file.stem().string());
+      scene.position = scene::load::location(table->source());
       scene.overrides = of_profile;
       for (const auto& [path, value] : overrides(*table, "overrides", reader)) scene.overrides[path] = value;
       if (reader.has("parameter")) scene.parameter = reader.number("parameter", scene::load::any_number);
       const bool wanted = in_profile(*table, reader);
-      if (wanted)
-        name_sequences(folders_, experiment_.profile, scene::load::location(table->source()), scene.overrides,
-                       experiment_.sequences);
+      if (wanted) name_sequences(folders_, experiment_.profile, scene.position, scene.overrides, experiment_.sequences);
       std::vector<SceneCase> cases{scene};
       if (auto sweep = reader.table("sweep")) {
         sweep->allow({"key", "values", "with"});
@@ -244,7 +247,8 @@ class Reader {
       reader.allow(keys);
       MethodCase method;
       method.renderer = reader.text(component_key());
-      method.name = reader.text("name", method.renderer);
+      method.name = reader.name("name", method.renderer);
+      method.position = scene::load::location(table->source());
       method.settings = settings(*table, "settings", reader);
       if (images()) {
         method.layer = reader.text("layer", experiment_.layer);
@@ -275,10 +279,11 @@ class Reader {
   void plots(const TableReader& top) {
     for (auto& [table, reader] : lists(top, "plot")) {
       PlotCase plot;
+      plot.position = scene::load::location(table->source());
       if (table->contains("map")) {
         reader.allow({"name", "title", "map"});
         plot.map = reader.flag("map", true);
-        plot.name = reader.text("name", "map");
+        plot.name = reader.name("name", "map");
         plot.title = reader.text("title", "");
         experiment_.plots.push_back(plot);
         continue;
@@ -286,7 +291,7 @@ class Reader {
       reader.allow({"name", "title", "x", "y", "x_label", "y_label", "per_scene", "methods"});
       plot.x = reader.text("x");
       plot.y = reader.text("y");
-      plot.name = reader.text("name", plot.y + "_against_" + plot.x);
+      plot.name = reader.name("name", plot.y + "_against_" + plot.x);
       plot.title = reader.text("title", "");
       plot.x_label = reader.text("x_label", "");
       plot.y_label = reader.text("y_label", "");
@@ -309,6 +314,40 @@ class Reader {
         reader.fail("y", fmt::format("{} against {}, expected both columns or none", plot.y, plot.x));
       experiment_.plots.push_back(plot);
     }
+  }
+
+  // Each row, picture and plot has a name of its own: one would overwrite the other, and nobody could tell them apart.
+  void names_apart() const {
+    using Owners = std::map<std::string, std::string>;  // of each file or row: who has it, in words
+    const auto claim = [](Owners& owners, const std::string& what, const std::string& name, const std::string& owner,
+                          const std::string& position) {
+      const auto [found, is_new] = owners.try_emplace(name, owner);
+      if (!is_new)
+        throw Error(fmt::format("{}: {} '{}' of {} is that of {}, too: expected names that differ in letters or digits",
+                                position, what, name, owner, found->second));
+    };
+    const auto folded = [this](const std::string& name) { return images() ? file_name(name) : name; };
+    Owners scenes, plots;
+    for (const SceneCase& c : experiment_.scenes) {
+      claim(scenes, images() ? "the folder of pictures" : "the name", folded(c.name), fmt::format("scene '{}'", c.name),
+            c.position);
+      Owners rows;
+      if (images() && !experiment_.reference.renderer.empty()) rows["reference"] = "the reference";
+      for (const MethodCase& m : experiment_.methods) {
+        if (!is_on(m, c)) continue;
+        const std::string owner = m.setting.empty() ? fmt::format("method '{}'", m.name)
+                                                    : fmt::format("method '{}' with setting '{}'", m.name, m.setting);
+        claim(rows, images() ? "the picture" : "the row",
+              images() ? picture_name(m.name, m.setting) : m.name + " " + m.setting, owner, m.position);
+      }
+    }
+    for (const PlotCase& plot : experiment_.plots)
+      for (const SceneCase& c : experiment_.scenes) {
+        const bool apart = plot.per_scene && !plot.map;
+        claim(plots, "the file", plot_name(plot, apart ? c.name : ""), fmt::format("plot '{}'", plot.name),
+              plot.position);
+        if (!apart) break;
+      }
   }
 
   // A name that gates and the like refer to must exist in some profile; here: in this file.

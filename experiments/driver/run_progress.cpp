@@ -124,7 +124,8 @@ void RunProgress::tick(const std::stop_token& stop) {
     if (streams_.terminal) {
       draw_progress(streams_.terminal, line_locked(false));
     } else if (steady_seconds() - last_line_ >= streams_.pause) {
-      fmt::print(streams_.lines, "{}\n", line_locked(false));
+      // Nothing may be thrown in this thread; that the stream failed is found at the program's end.
+      std::fputs((line_locked(false) + "\n").c_str(), streams_.lines);
       std::fflush(streams_.lines);
       last_line_ = steady_seconds();
     }

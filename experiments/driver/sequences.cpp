@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 #include "experiments/driver/toml_values.h"
@@ -14,8 +15,10 @@
 #include "experiments/progress.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
+#include "scene/atomic_file.h"
 #include "scene/load/parse_toml.h"
 #include "scene/nearest.h"
+#include "scene/printable.h"
 #include "scene/read_file.h"
 
 namespace airlight::experiments {
@@ -29,7 +32,18 @@ fs::path list_of(const fs::path& root) { return root / "experiments" / "sequence
 
 toml::table read_list(const fs::path& root) {
   const std::string file = list_of(root).string();
-  return scene::load::parse_toml(scene::read_whole_file(file, scene::load::most_toml_bytes), file);
+  toml::table list = scene::load::parse_toml(scene::read_whole_file(file, scene::load::most_toml_bytes), file);
+  // A name becomes that of a folder, which is removed where the sequence is made anew.
+  for (const auto& [key, table] : list) {
+    const std::string name(key.str());
+    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return std::isalnum(c) || c == '_' || c == '-';
+    });
+    if (!plain)
+      throw Error(fmt::format("{}: found the name '{}', expected letters, digits, '_' and '-'",
+                              scene::load::location(key.source()), scene::printable(name, 100)));
+  }
+  return list;
 }
 
 // Absolute: scenes look for files beside themselves.
@@ -132,6 +146,7 @@ void make_sequence(const Folders& folders, const std::string& asked, const std::
   const std::string name = name_and_kind(asked).first;
   const toml::table list = read_list(folders.root);
   const TableReader reader = reader_of(list, name);
+  scene::make_private_folder(folders.cache, "sequences");
   if (const std::string of = simulated(list, name); of != name) {
     make_sequence(folders, of, profile, threads);
     fit(folders, reader, name, of, profile, threads);

@@ -143,7 +143,8 @@ TextTable orders_of(const Outcome& outcome) { return outcome.experiment.orders ?
 }  // namespace
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  // A line that begins with '#' is a comment to those who draw the data.
+  if (text.find_first_of(",\"\n") == std::string::npos && !text.starts_with('#')) return text;
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"') out += '"';

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "reference/path_tracer/stopping.h"
+#include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
 
@@ -100,10 +101,7 @@ std::string cache_file(const std::string& folder, const Identity& id, const Opti
 
 CachedRendering render_cached(const World& world, const scene::View& view, const std::string& folder,
                               const scene::Execution& execution, double save_every) {
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code) throw Error(fmt::format("{}: cannot be created: {}", folder, code.message()));
-
+  scene::make_private_folder(folder);
   CachedRendering result;
   const Options& options = world.options();
   Accumulation samples = start_from(world, view, folder, result.notes);

@@ -7,6 +7,7 @@
 #include "reference/path_tracer/cache.h"
 #include "reference/path_tracer/refusals.h"
 #include "reference/path_tracer/stopping.h"
+#include "scene/atomic_file.h"
 #include "scene/content_store.h"
 
 namespace airlight::path_tracer {
@@ -41,6 +42,7 @@ class PreparedTracer : public scene::Prepared {
 
  private:
   scene::Rendering render_kept(const scene::View& view, const scene::Execution& execution) const {
+    scene::make_private_folder(execution.store->folder());
     const std::string folder = (execution.store->folder() / "samples").string();
     CachedRendering kept = render_cached(world_, view, folder, execution);
     for (const std::string& note : kept.notes) execution.store->say(note);

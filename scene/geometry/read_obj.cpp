@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 18> harmless = {
     "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod", "shadow_obj"};
 
 long long count_vertices(const std::string& path, const std::string& content) {
-  TextLines lines(path, content);
+  TextLines lines(path, content, /*continued=*/true);
   long long count = 0;
   while (lines.next()) count += lines.word() == "v";
   return count;
@@ -52,7 +52,7 @@ void join_vertices(PolygonMesh& mesh) {
 
 PolygonMesh read_obj(const std::string& path, const std::string& content) {
   const long long vertices = count_vertices(path, content);
-  TextLines lines(path, content);
+  TextLines lines(path, content, /*continued=*/true);
   PolygonMesh mesh;
   while (lines.next()) {
     const std::string_view kind = lines.word();
@@ -61,10 +61,7 @@ PolygonMesh read_obj(const std::string& path, const std::string& content) {
     } else if (kind == "f") {
       const std::size_t first = mesh.corners.size();
       for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-        if (word != "\\")
-          mesh.corners.push_back(int(read_corner(lines, word, (long long)mesh.vertices.size(), vertices) - 1));
-        else if (!lines.next())  // the face goes on in the next line
-          break;
+        mesh.corners.push_back(int(read_corner(lines, word, (long long)mesh.vertices.size(), vertices) - 1));
       }
       mesh.end_face();
       if (const std::size_t corners = mesh.corners.size() - first; corners < 3 || corners > most_corners)

@@ -22,8 +22,10 @@ PolygonMesh read_off(const std::string& path, const std::string& content) {
   }
   for (long long i = 0; i < faces; ++i) {
     if (!lines.next()) lines.fail(fmt::format("found the end of the file after {} faces, expected {}", i, faces));
-    for (int k = read_corner_count(lines); k > 0; --k)
+    for (int k = read_corner_count(lines); k > 0; --k) {
+      if (lines.at_end() && !lines.next()) lines.fail("found the end of the file within a face");
       mesh.corners.push_back(int(lines.integer("the index of a vertex", 0, vertices - 1)));
+    }
     mesh.end_face();
   }
   if (lines.next()) lines.fail(fmt::format("found more after the {} faces that the header announces", faces));

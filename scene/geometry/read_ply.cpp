@@ -30,7 +30,7 @@ void check_text(TextLines& lines, const Header& header, PolygonMesh& mesh) {
       for (const Property& property : element.properties) {
         if (!property.count) {
           if (const int axis = coordinate(element, property); axis >= 0)
-            place[axis] = read_coordinate(lines, "a coordinate");
+            place[axis] = lines.number("a coordinate");
           else if (lines.word().empty())
             lines.fail(fmt::format("found the end of the line, expected property {}", property.name));
           continue;
@@ -97,7 +97,7 @@ void check_binary(Bytes& bytes, const Header& header, PolygonMesh& mesh) {
           if (axis < 0) continue;
           if (!(std::abs(value) <= std::numeric_limits<float>::max()))
             bytes.fail(fmt::format("found {}, expected a coordinate that is finite in single precision", value));
-          place[axis] = float(value);
+          place[axis] = value;
           continue;
         }
         const double count = bytes.scalar(*property.count);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,15 @@
 namespace airlight::scene {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\v\f";
+constexpr std::string_view plain_blanks = " \t\r\v\f", blanks_of_continued = " \t\r\v\f\\\n";
+
+// The length of the first line, without its end.
+std::size_t line_length(std::string_view text) { return std::min(text.find('\n'), text.size()); }
+
+bool goes_on(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line.ends_with('\\') && line.find('#') == std::string_view::npos;
+}
 
 }  // namespace
 
@@ -20,10 +29,13 @@ std::string TextLines::shown(std::string_view word) { return printable(word, 40)
 
 bool TextLines::next_raw(std::string_view& line) {
   if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
+  std::size_t begin = 0, end = line_length(rest_);
+  for (++line_; continued_ && end < rest_.size() && goes_on(rest_.substr(begin, end - begin)); ++line_) {
+    begin = end + 1;
+    end = begin + line_length(rest_.substr(begin));
+  }
   line = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  ++line_;
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
   return true;
 }
 
@@ -31,24 +43,26 @@ bool TextLines::next() {
   std::string_view line;
   while (next_raw(line)) {
     words_ = line.substr(0, line.find('#'));
-    if (words_.find_first_not_of(blanks) != std::string_view::npos) return true;
+    if (words_.find_first_not_of(blanks()) != std::string_view::npos) return true;
   }
   return false;
 }
 
 std::string_view TextLines::word() {
-  const std::size_t begin = words_.find_first_not_of(blanks);
+  const std::size_t begin = words_.find_first_not_of(blanks());
   if (begin == std::string_view::npos) return words_ = {};
   words_.remove_prefix(begin);
-  const std::string_view found = words_.substr(0, words_.find_first_of(blanks));
+  const std::string_view found = words_.substr(0, words_.find_first_of(blanks()));
   words_.remove_prefix(found.size());
   return found;
 }
 
-bool TextLines::at_end() const { return words_.find_first_not_of(blanks) == std::string_view::npos; }
+std::string_view TextLines::blanks() const { return continued_ ? blanks_of_continued : plain_blanks; }
+
+bool TextLines::at_end() const { return words_.find_first_not_of(blanks()) == std::string_view::npos; }
 
 double TextLines::number(const char* what) {
-  const std::string_view found = last_ = word();
+  const std::string_view found = word();
   if (found.empty()) fail(fmt::format("found the end of the line, expected {}", what));
   const std::string_view digits = found[0] == '+' ? found.substr(1) : found;
   double value = 0;

@@ -3,11 +3,16 @@
 #include <string>
 #include <string_view>
 
+#include "scene/byte_order_mark.h"
+
 namespace airlight::scene {
 
 class TextLines {
  public:
-  TextLines(std::string path, std::string_view text) : path_(std::move(path)), rest_(text) {}
+  // A byte order mark at the beginning of the text is passed over. `continued`: a line that ends with a backslash, and is
+  // no comment, goes on in the next.
+  TextLines(std::string path, std::string_view text, bool continued = false)
+      : path_(std::move(path)), rest_(without_mark(text)), continued_(continued) {}
 
   // Moves to the next line that holds anything but blanks and comments (from '#'); false at the end.
   bool next();
@@ -16,7 +21,6 @@ class TextLines {
   bool at_end() const;  // no more words in this line
   // The next word as a number. Throws if it is none, or not finite in single precision.
   double number(const char* what);
-  std::string_view last_word() const { return last_; }  // that number() read
   // The next word as an integer in [least, greatest].
   long long integer(const char* what, long long least, long long greatest);
 
@@ -26,11 +30,13 @@ class TextLines {
   int line() const { return line_; }
 
  private:
-  bool next_raw(std::string_view& line);  // the next line as it is
+  std::string_view blanks() const;
+  bool next_raw(std::string_view& line);  // the next line as it is, with those that it goes on in
 
   std::string path_;
   std::string_view rest_;
-  std::string_view words_, last_;
+  std::string_view words_;
+  bool continued_;
   int line_ = 0;
 };
 

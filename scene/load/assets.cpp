@@ -32,7 +32,10 @@ std::string find_asset(const TableReader& reader, const std::string& key, const 
 
 std::string name_of_frame(const TableReader& reader, const std::string& key) {
   std::string name = reader.text(key);
-  const std::size_t first = name.find('#');
+  // Within the folders' names a # counts only where there is none behind them and a frame is asked for.
+  const std::size_t own = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
+  std::size_t first = name.find('#', own);
+  if (first == std::string::npos && reader.has("frame")) first = name.find('#');
   if (first == std::string::npos) {
     if (reader.has("frame")) reader.fail("frame", "frame has no effect: there is no # in the name of the file");
     return name;

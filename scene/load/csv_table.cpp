@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "scene/byte_order_mark.h"
 #include "scene/error.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
@@ -34,10 +35,9 @@ std::string shown(std::string_view text) { return printable(text, 40); }
 
 CsvTable::CsvTable(const std::string& path, std::string_view header, std::string_view other)
     : path_(path), content_(read_whole_file(path)), header_(header) {
-  const std::size_t end = std::min(content_.find('\n'), content_.size());
-  const std::string_view first = trimmed(std::string_view(content_).substr(0, end));
-  line_ = 1;
-  begin_ = end + 1;
+  begin_ = content_.size() - without_mark(content_).size();
+  const bool found = next();
+  const std::string_view first = found ? row_ : std::string_view();
   if (!other.empty() && first == other) header_ = other;
   if (first != header_) fail_at(0, fmt::format("found '{}', expected the header {}", shown(first), header));
 }
@@ -59,7 +59,8 @@ std::vector<double> CsvTable::values(const std::vector<Range>& ranges) const {
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (i >= parts.size())
       fail_at(row_.size(), fmt::format("found {} values, expected {}: {}", i, ranges.size(), header_));
-    const std::string_view cell = trimmed(parts[i]);
+    std::string_view cell = trimmed(parts[i]);
+    if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
     const auto [stop, code] = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
     const bool number = code == std::errc() && stop == cell.data() + cell.size();
     if (!number || !ranges[i].contains(values[i]))

@@ -7,6 +7,7 @@
 
 #include "scene/color_image.h"
 #include "scene/error.h"
+#include "scene/file_ending.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
@@ -28,7 +29,7 @@ Image read(const TableReader& reader, const std::string& key, const std::string&
 DepthImage read_depth(const TableReader& reader, const std::string& folder) {
   const std::string key = reader.has("depth") ? "depth" : "image";
   const std::string channel = reader.text("channel", "");
-  if (key == "image" && (channel.empty() || std::filesystem::path(reader.text("image")).extension() != ".exr"))
+  if (key == "image" && (channel.empty() || file_ending(reader.text("image")) != ".exr"))
     reader.fail("", "missing key 'depth', expected a file, or the channel of an image in .exr that is the depth");
   return read<DepthImage>(reader, key, folder, [&](const auto& path) { return read_depth_image(path, channel); });
 }

@@ -235,7 +235,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
   reader.allow({"name", "flow", "sides", "fluid", "start", "density", "source", "obstacle", "force", "particles"});
   FlowProblem problem;
   problem.file = name;
-  problem.name = reader.text("name", std::filesystem::path(name).stem().string());
+  problem.name = reader.file_name("name", std::filesystem::path(name).stem().string());
   TableReader flow = reader.required_table("flow");
   flow.allow({"dimensions", "box", "duration", "frame_rate"});
   problem.dimensions = int(flow.integer("dimensions", 2, 3, 3));

@@ -133,6 +133,24 @@ std::string TableReader::text(const std::string& key, std::optional<std::string>
   wrong(node, key, "a text in quotes");
 }
 
+std::string TableReader::checked_name(const std::string& key, std::optional<std::string> fallback, bool of_file) const {
+  const std::string value = text(key, std::move(fallback));
+  const bool leads_away = value == "." || value == ".." || value.find('/') != std::string::npos;
+  if (!value.empty() && value.size() <= 200 && printable(value) == value && !(of_file && leads_away)) return value;
+  const std::string what =
+      fmt::format("a name of 1 to 200 bytes in one line{}", of_file ? ", without '/' and other than '.' and '..'" : "");
+  if (has(key)) expected(key, what);
+  fail("", fmt::format("without a key '{}' the name is '{}', expected {}", key, printable(value, 100), what));
+}
+
+std::string TableReader::name(const std::string& key, std::optional<std::string> fallback) const {
+  return checked_name(key, std::move(fallback), false);
+}
+
+std::string TableReader::file_name(const std::string& key, std::optional<std::string> fallback) const {
+  return checked_name(key, std::move(fallback), true);
+}
+
 std::string TableReader::choice(const std::string& key, const std::vector<std::string>& choices,
                                 std::optional<std::string> fallback) const {
   if (fallback && !has(key)) return *fallback;

@@ -36,6 +36,10 @@ class TableReader {
                     std::optional<long long> fallback = {}) const;
   bool flag(const std::string& key, bool fallback) const;
   std::string text(const std::string& key, std::optional<std::string> fallback = {}) const;
+  // A text that people read and that output files are named after: one line of 1 to 200 bytes.
+  std::string name(const std::string& key, std::optional<std::string> fallback = {}) const;
+  // A name that is used as a part of a file's name as it stands: it cannot lead into another folder.
+  std::string file_name(const std::string& key, std::optional<std::string> fallback = {}) const;
   std::string choice(const std::string& key, const std::vector<std::string>& choices,
                      std::optional<std::string> fallback = {}) const;
   // A number for all three channels, or [r, g, b].
@@ -67,6 +71,7 @@ class TableReader {
   const toml::array& list(const std::string& key, const std::string& what, std::optional<std::size_t> length) const;
   [[noreturn]] void wrong(const toml::node&, const std::string& name, const std::string& expected) const;
   long long integer_in(const toml::node&, const std::string& name, long long least, long long greatest) const;
+  std::string checked_name(const std::string& key, std::optional<std::string> fallback, bool of_file) const;
   double number_in(const toml::node&, const std::string& name, const Range&) const;
   Vec3 vector_in(const std::string& key, const Range&) const;
 

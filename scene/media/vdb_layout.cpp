@@ -174,6 +174,7 @@ std::size_t end_of_grid(std::string_view file, const VdbEntry& entry) {
   walk.metadata();
   const std::string transform = walk.text();
   walk.take(transform_bytes(transform, walk.at()));
+  if (!entry.parent.empty()) return walk.at();
   const bool vectors = is_of_type(entry, vector_tree);
   TreeWalk(walk, compression, vectors ? 3 : 1, entry.type.ends_with(half_suffix)).run();
   return walk.at();
@@ -198,23 +199,23 @@ std::vector<VdbEntry> vdb_grids(std::string_view file) {
   for (std::int32_t i = 0; i < count; ++i) {
     VdbEntry entry;
     entry.descriptor = walk.at();
-    entry.name = walk.text();
-    // Grids of one name are told apart by a number behind a separator.
-    entry.name = entry.name.substr(0, entry.name.find('\x1e'));
+    entry.unique_name = walk.text();
+    entry.name = entry.unique_name.substr(0, entry.unique_name.find('\x1e'));
     entry.type = walk.text();
-    entry.is_instance = !walk.text().empty();
+    entry.parent = walk.text();
     const std::int64_t begin = walk.number<std::int64_t>(), blocks = walk.number<std::int64_t>();
     const std::int64_t end = walk.number<std::int64_t>();
     if (has_offsets) {
       if (end > std::int64_t(file.size()))
         throw std::runtime_error(
             fmt::format("truncated: grid '{}' ends at byte {}, the file at {}", entry.name, end, file.size()));
-      if (begin != std::int64_t(walk.at()) || blocks < begin || end < blocks)
+      const bool has_blocks = entry.parent.empty();  // else OpenVDB leaves their offset at zero
+      if (begin != std::int64_t(walk.at()) || end < begin || (has_blocks && (blocks < begin || end < blocks)))
         damaged(walk.at(), fmt::format("the offsets of grid '{}' are out of order", entry.name));
       entry.begin = begin;
       entry.end = end;
     } else {
-      if (!(is_of_type(entry, float_tree) || is_of_type(entry, vector_tree)) || entry.is_instance)
+      if (!(is_of_type(entry, float_tree) || is_of_type(entry, vector_tree)))
         throw std::runtime_error(fmt::format(
             "without offsets, and its grid '{}' of type {} hides where the next begins", entry.name, entry.type));
       entry.begin = walk.at();

@@ -13,7 +13,8 @@ namespace airlight::scene {
 struct VdbEntry {
   std::string name;
   std::string type;            // as OpenVDB calls it: "Tree_float_5_4_3", "Tree_vec3s_5_4_3_HalfFloat", ...
-  bool is_instance = false;    // shares another grid's samples
+  std::string unique_name;     // the name and, where several grids have it, a number behind a separator
+  std::string parent;          // unique name of the grid whose samples it shares; empty: it has its own
   std::size_t descriptor = 0;  // byte where its entry begins
   std::size_t begin = 0;       // of its metadata, transform and samples
   std::size_t end = 0;

@@ -15,6 +15,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -193,6 +194,41 @@ VoxelGrid shape_of(const openvdb::GridBase& grid, const openvdb::CoordBBox& box,
   return shape;
 }
 
+namespace {
+
+// NAME, or NAME[1] where several grids have that name, counted from 0.
+const VdbEntry& find_entry(const std::vector<VdbEntry>& entries, const std::string& name) {
+  const auto named = [&](const std::string& wanted) {
+    std::vector<const VdbEntry*> found;
+    for (const VdbEntry& entry : entries)
+      if (entry.name == wanted) found.push_back(&entry);
+    return found;
+  };
+  if (const auto found = named(name); found.size() == 1)
+    return *found.front();
+  else if (found.size() > 1)
+    throw std::runtime_error(fmt::format("has {0} grids '{1}', expected one of '{1}[0]' to '{1}[{2}]'", found.size(),
+                                         name, found.size() - 1));
+  if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
+    const auto found = named(name.substr(0, bracket));
+    std::size_t index = 0;
+    const char *begin = name.data() + bracket + 1, *end = name.data() + name.size() - 1;
+    const auto [stop, code] = std::from_chars(begin, end, index);
+    if (code == std::errc() && stop == end && index < found.size()) return *found[index];
+  }
+  std::string names;
+  for (const VdbEntry& entry : entries)
+    names += (names.empty() ? "" : ", ") + (entry.name.empty() ? "one without a name, \"\"" : entry.name);
+  throw std::runtime_error(fmt::format("has no grid '{}', only: {}", name, names.empty() ? "(none)" : names));
+}
+
+void check_entry(std::string_view file, const VdbEntry& entry, const std::string& type) {
+  if (!is_of_type(entry, type)) throw std::runtime_error(fmt::format("is of type {}, expected {}", entry.type, type));
+  check_grid(file, entry);
+}
+
+}  // namespace
+
 openvdb::GridBase::Ptr open_grid(const std::string& path, const std::string& name, const std::string& where,
                                  const std::string& type) {
   std::istringstream stream(read_whole_file(path, std::size_t(1) << 29));
@@ -202,17 +238,22 @@ openvdb::GridBase::Ptr open_grid(const std::string& path, const std::string& nam
   std::string subject = path;
   try {
     const std::vector<VdbEntry> entries = vdb_grids(file);
-    std::string names;
-    for (const VdbEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
-    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& e) { return e.name == name; });
-    if (entry == entries.end())
-      throw std::runtime_error(fmt::format("has no grid '{}', only: {}", name, names.empty() ? "(none)" : names));
+    const VdbEntry& entry = find_entry(entries, name);
     subject = where;
-    if (!is_of_type(*entry, type))
-      throw std::runtime_error(fmt::format("is of type {}, expected {}", entry->type, type));
-    if (entry->is_instance) throw std::runtime_error("shares the samples of another grid, expected its own");
-    check_grid(file, *entry);
-    return Reader().read(stream, *entry);
+    check_entry(file, entry, type);
+    const openvdb::GridBase::Ptr grid = Reader().read(stream, entry);
+    if (entry.parent.empty()) return grid;
+    // Another grid's samples, with a place and notes of its own.
+    const auto parent = std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& e) {
+      return e.unique_name == entry.parent && e.parent.empty();
+    });
+    if (parent == entries.end())
+      throw std::runtime_error(
+          fmt::format("damaged: shares the samples of a grid '{}' that is not there", entry.parent));
+    check_entry(file, *parent, type);
+    stream.seekg(0);
+    grid->setTree(Reader().read(stream, *parent)->baseTreePtr());
+    return grid;
   } catch (const std::ios_base::failure&) {
     fail(subject, "damaged: OpenVDB reads beyond its end");
   } catch (const std::exception& e) {

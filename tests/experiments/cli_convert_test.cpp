@@ -56,4 +56,32 @@ TEST_CASE("a voxel grid and a medium of a scene become Legendre boxes", "[cli][l
   CHECK_THAT(run("convert ball.toml ball.exr --medium 1", folder).err, Catch::Contains("expected a name in .csv"));
 }
 
+TEST_CASE("endings may be in capitals", "[cli]") {
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(root + "/experiments/data/plume_0024.vdb", folder.path() / "U.VDB");
+  folder.write("U.TOML", "[film]\nwidth = 8\nheight = 6\n" + camera +
+                             "[[medium]]\ntype = 'grid'\nsize = [2, 2, 2]\nvoxel_size = 0.1\norigin = [0, 0, 0]\n"
+                             "values = [1, 1, 1, 1, 1, 1, 1, 1]\n");
+  const auto good = [&](const std::string& arguments) {
+    const Result result = run(arguments, folder);
+    CAPTURE(arguments, result.err);
+    CHECK(result.code == 0);
+  };
+  good("render U.TOML -m ray_marcher -o V.EXR --png V.PNG");
+  good("convert V.EXR W.PNG");
+  good("convert V.EXR W.PFM");
+  good("convert U.VDB L.CSV --coefficients 2 --cells 2");
+  good("convert U.VDB M.EXR --pixels 4 --samples 1");
+  good("fit U.TOML -n 2 --out fitted");
+  // As a fogmap, and as picture and depth behind the media.
+  folder.write("map.toml", camera +
+                               "[[medium]]\ntype = 'fogmap'\nfile = 'M.EXR'\nchannel = 'Y'\ncell = 1\nsigma_t = 1\n"
+                               "region = { type = 'slab', lo = 0, hi = 1 }\n");
+  good("explain map.toml -m ray_marcher");
+  folder.write("back.toml",
+               "[film]\nwidth = 8\nheight = 6\n" + camera + "[backdrop]\nimage = 'V.PNG'\ndepth = 'W.PNG'\nfar = 10\n");
+  const Result back = run("explain back.toml -m ray_marcher", folder);
+  CHECK_THAT(back.err, !Catch::Contains("expected a name in"));
+}
+
 }  // namespace cli_convert_test

@@ -16,9 +16,11 @@ namespace cli_test {
 
 using airlight::read_bytes;
 using airlight::TemporaryFolder;
+using airlight::test::program;
 using airlight::test::Result;
 using airlight::test::root;
 using airlight::test::run;
+using airlight::test::run_command;
 using airlight::test::scenes;
 using Catch::Contains;
 
@@ -156,6 +158,52 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
           "found a film of 16 x 12, expected 64 x 48");
   refused(small + "a.exr -o x.exr", "not a file of path tracer samples");
   CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
+}
+
+TEST_CASE("compare says where noise is unknown", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string traced = "render " + scenes +
+                             "constant_homogeneous.toml -m path_tracer --samples 128 "
+                             "--override film.width=8 --override film.height=6 -o noisy.exr";
+  REQUIRE(run(traced, folder).code == 0);
+  CHECK(run("compare noisy.exr noisy.exr", folder).err.empty());
+  airlight::scene::Film film = airlight::scene::read_exr(folder.file("noisy.exr"));
+  std::erase_if(film.layers, [](const auto& layer) {
+    return layer.first == "se" || layer.first.ends_with(".se") || layer.first.find("batch.") != std::string::npos;
+  });
+  airlight::scene::write_exr(folder.file("bare.exr"), film);
+  const Result bare = run("compare noisy.exr bare.exr", folder);
+  CHECK(bare.code == 0);
+  CHECK(bare.error_lines() == 1);
+  CHECK_THAT(bare.err, Contains("bare.exr: warning: has 128 samples a pixel and no batches: its noise is unknown"));
+}
+
+// No room on standard error, or no standard error at all, changes no exit code; and a message never lands in a file that
+// happens to have its number.
+TEST_CASE("messages that cannot be written change nothing", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string good = "render " + scenes + "constant_homogeneous.toml -m ray_marcher -o a.exr";
+  const auto code = [&](const std::string& arguments, const std::string& streams) {
+    return run_command("( '" + program + "' " + arguments + " " + streams + " )", folder).code;
+  };
+  CHECK(code(good, "") == 0);
+  const auto picture = airlight::scene::read_exr(folder.file("a.exr")).layers;
+  for (const std::string lost : {"2>/dev/full", "2>&-", "<&- 2>&-"}) {
+    CAPTURE(lost);
+    CHECK(code("render nope.toml -m fogshop -o x.exr", lost) == 2);
+    CHECK(code("compare a.exr a.exr --max rel_l2=nan", lost) == 2);
+    CHECK(code(good, lost) == 0);
+    CHECK(code("compare a.exr a.exr", lost) == 0);
+  }
+  for (const std::string lost : {">/dev/full", ">&-", ">/dev/full 2>/dev/full", ">&- 2>&-"}) {
+    CAPTURE(lost);
+    CHECK(code("compare a.exr a.exr", lost) == 2);
+    CHECK(code("doctor", lost) == 2);
+    CHECK(code(good, lost) == 0);  // says nothing where all is well
+  }
+  CHECK((airlight::scene::read_exr(folder.file("a.exr")).layers == picture));
+  const Result full = run_command("( '" + program + "' doctor >/dev/full )", folder);
+  CHECK_THAT(full.err, Contains("standard output could not be written"));
 }
 
 TEST_CASE("explain and doctor", "[cli]") {

@@ -139,6 +139,31 @@ TEST_CASE("a fit by one thread and two writes the same files", "[fit_sequence]")
   CHECK(one.results() == two.results());
 }
 
+// Amplitudes are a hundredth of the greatest density and more; scenes take 1e-20 to 1e20.
+TEST_CASE("a fit that no scene could read is refused before it begins", "[fit_sequence]") {
+  for (const float greatest : {1e-30f, 0.9e-18f, 1.5e-18f, 0.9e20f, 1.1e20f, 1e38f}) {
+    CAPTURE(greatest);
+    const TemporaryFolder folder;
+    FitSequence s;
+    s.files = {folder.file("a.vdb")};
+    s.folder = folder.path() / "fit";
+    s.options.gaussians = 30;
+    VoxelGrid grid = puff(8, 0);
+    const float most = *std::max_element(grid.values.begin(), grid.values.end());
+    for (float& value : grid.values) value = value / most * greatest;
+    write_vdb(s.files[0], grid);
+    if (greatest > 1e-18f && greatest < 1e20f) {
+      CHECK(run(s).frames.size() == 1);
+      CHECK(scene::load::read_gaussians_csv((s.folder / "a.csv").string()).size() > 1);
+      CHECK_NOTHROW(scene::read_residual((s.folder / "a.residual").string()));
+      continue;
+    }
+    CHECK_THROWS_WITH(run(s), Catch::Contains("a.vdb: found a greatest density of ") &&
+                                  Catch::Contains("expected 0 or a number in [1e-18, 1e+20]"));
+    CHECK_FALSE(std::filesystem::exists(s.folder));
+  }
+}
+
 TEST_CASE("what a fit cannot go on with is told", "[fit_sequence]") {
   const Smoke smoke({0, 1});
   run(smoke.sequence);

@@ -169,6 +169,22 @@ TEST_CASE("Gaussians are fitted to the frames of a sequence, and again where tho
                     Contains("expected the name of a sequence that is simulated"));
 }
 
+// A sequence that is made anew has its folder removed first.
+TEST_CASE("a sequence's name leads to no other folder", "[driver][flow]") {
+  Frames project;
+  project.write("precious/file", "mine");
+  for (const std::string name : {(project.path() / "precious").string(), std::string("../../../precious"),
+                                 std::string("a/b"), std::string("a b"), std::string("a.b")}) {
+    CAPTURE(name);
+    project.write("experiments/sequences.toml", "[\"" + name + "\"]\nproblem = \"flows/puff.toml\"\n");
+    const std::string expected =
+        "sequences.toml:1:2: found the name '" + name + "', expected letters, digits, '_' and '-'";
+    CHECK_THROWS_WITH(make_sequence(project.path(), name, "quick", 1), Contains(expected));
+    CHECK_THROWS_WITH(project.read(), Contains(expected));
+    CHECK(airlight::read_bytes((project.path() / "precious/file").string()) == "mine");
+  }
+}
+
 TEST_CASE("a sequence that is not listed, or badly, is one line", "[driver][flow]") {
   Frames project;
   project.write("experiments/sequences.toml", "[puf]\nproblem = \"flows/puff.toml\"\n");

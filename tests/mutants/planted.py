@@ -50,6 +50,11 @@ LIGHT_RAYS = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/
 LIGHT_PHASES = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluids/light_pictures_test.cpp"
 PAPER_VIEW = "methods/legendre_fluids/paper_view.cpp", "methods/legendre_fluids/paper_view_test.cpp"
 PAPER_PICTURE = "methods/legendre_fluids/paper_picture.cpp", "methods/legendre_fluids/paper_view_test.cpp"
+POLYGONS = "scene/geometry/polygon_cut.cpp", "scene/polygon_cut_test.cpp"
+ATOMIC = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
+STORE = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
+INSTANCES = "scene/media/vdb_parts.cpp", "scene/media/vdb_io_test.cpp"
+COLOURS = "scene/film_exr_read.cpp", "scene/film_test.cpp"
 PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
 
 
@@ -59,6 +64,23 @@ def bug(name, place, old, new, test, compiled=()):
 
 
 MUTANTS = [
+    # Files
+    bug("corners on a diagonal lie outside", POLYGONS, "turn_of(c, a, p) >= 0) {", "turn_of(c, a, p) > 0) {",
+        "concave polygons are cut without a loss"),
+    bug("polygons that cross themselves cut", POLYGONS, "if (turn_at(at) < 0) return std::nullopt;", "",
+        "polygons without area or such as cross themselves"),
+    bug("edges of the polygon within a triangle at a shared corner", POLYGONS, "if (leads_in(before_[p]) || leads_in(after_[p])) return false;",
+        "", "corners that several parts of a polygon share"),
+    bug("edges that run back along themselves kept", POLYGONS, "if (left_ > 3 && is_fold(j)) return remove(j);", "",
+        "corners that several parts of a polygon share"),
+    bug("written through a link", ATOMIC, "if (::lstat(path", "if (::stat(path", "what a link leads to stays as it was"),
+    bug("the store for everybody", STORE, "::mkdir(folder.c_str(), 0700)", "::mkdir(folder.c_str(), 0777)",
+        "what is kept is for the user alone"),
+    bug("an instance with the place of its parent", INSTANCES,
+        "grid->setTree(Reader().read(stream, *parent)->baseTreePtr());\n    return grid;", "return Reader().read(stream, *parent);",
+        "grids that share samples are read"),
+    bug("white of other primaries", COLOURS, " ||\n      differ(found.white, expected.white))", ")",
+        "a picture with other primaries is refused"),
     # Shadow planes
     bug("edges of more than two faces count twice", SILHOUETTE, "k < edge.first + edge.count",
         "k < edge.first + std::min(edge.count, 2)", "shadow planes: edges of many faces count every one"),

@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <png.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -15,8 +16,10 @@
 #include <cstring>
 #include <random>
 
+#include "scene/environment.h"
 #include "scene/error.h"
 #include "scene/film_exr.h"
+#include "scene/grey_image.h"
 #include "tests/temporary_folder.h"
 
 namespace film_test {
@@ -57,8 +60,9 @@ std::string message_of(const std::function<void()>& action) {
 // A file with any channels, as another program might have written it.
 void write_channels(const std::string& path, const std::vector<std::string>& names, Imf::PixelType type,
                     Imf::Compression compression, const Imath::Box2i& data, const Imath::Box2i& display,
-                    int sampling = 1) {
+                    int sampling = 1, const std::function<void(Imf::Header&)>& more = {}) {
   Imf::Header header(display, data);
+  if (more) more(header);
   header.compression() = compression;
   const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
   std::vector<float> floats(std::size_t(width) * height, 0.5f);
@@ -159,6 +163,54 @@ TEST_CASE("files that are no film are refused in one line", "[film]") {
   CHECK_THAT(message_of([&] { read_exr(folder.file("")); }), Contains("not a regular file"));
 }
 
+// Green of ACES AP0 is no colour of Rec. 709: the same numbers would be another picture.
+TEST_CASE("a picture with other primaries is refused", "[film]") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("colours.exr");
+  const auto message = [&](const Imf::Chromaticities& primaries) {
+    write_channels(path, {"R", "G", "B"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, small_window, small_window, 1,
+                   [&](Imf::Header& header) { Imf::addChromaticities(header, primaries); });
+    return message_of([&] { read_exr(path); });
+  };
+  const Imath::V2f d65(0.3127f, 0.3290f);
+  CHECK_THAT(message({{0.7347f, 0.2653f}, {0, 1}, {0.0001f, -0.077f}, {0.32168f, 0.33767f}}),
+             Contains(path + ": its colours have other primaries: found chromaticities red (0.7347, 0.2653)") &&
+                 Contains("expected those of Rec. 709"));
+  CHECK_THAT(message({{0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}, d65}), Contains("green (0.17, 0.797)"));
+  // The primaries of Rec. 709 with another white, and a number that is none.
+  CHECK_THAT(message({{0.64f, 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, {0.3457f, 0.3585f}}), Contains("white (0.3457"));
+  CHECK_THAT(message({{std::nanf(""), 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, d65}), Contains("red (nan, 0.33)"));
+  CHECK(message({{0.64f, 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, {0.31271f, 0.32902f}}) == "no error");
+}
+
+TEST_CASE("a cube map is no map of longitude and latitude", "[film][environment]") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("map.exr");
+  const auto write = [&](Imf::Envmap kind) {
+    write_channels(path, {"R", "G", "B"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, small_window, small_window, 1,
+                   [&](Imf::Header& header) { Imf::addEnvmap(header, kind); });
+  };
+  write(Imf::ENVMAP_CUBE);
+  CHECK_THAT(message_of([&] { read_environment_map(path); }),
+             Contains(path + ": found a cube map, expected a map of longitude and latitude"));
+  CHECK(read_exr(path).width == 8);  // as a picture it is one
+  write(Imf::ENVMAP_LATLONG);
+  CHECK(read_environment_map(path)->width == 8);
+}
+
+// A part of a picture, or more than it: put at the corner it would be another map, or other depths.
+TEST_CASE("a grey picture has all its pixels, and no more", "[film][grey_image]") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("grey.exr");
+  const auto message = [&](const Imath::Box2i& data, const Imath::Box2i& display) {
+    write_channels(path, {"Y"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, data, display);
+    return message_of([&] { read_grey_image(path, "", 1000); });
+  };
+  CHECK_THAT(message({{2, 1}, {3, 2}}, {{0, 0}, {3, 3}}), Contains(path + ": a cropped or overscanned image"));
+  CHECK_THAT(message({{-1, -1}, {4, 4}}, {{0, 0}, {3, 3}}), Contains("cropped or overscanned"));
+  CHECK(message({{5, 6}, {8, 9}}, {{5, 6}, {8, 9}}) == "no error");
+}
+
 TEST_CASE("a film cut short anywhere is refused", "[film]") {
   const TemporaryFolder folder;
   const std::string path = folder.file("cut.exr");
@@ -250,16 +302,6 @@ TEST_CASE("films that cannot be stored are refused before anything is written", 
   film.add("two\nlines");
   CHECK_THAT(message_of([&] { write_exr(path, film, true); }), Contains("cannot be stored"));
   CHECK(folder.entries() == 0);
-}
-
-TEST_CASE("a link to a film is followed, not replaced", "[film]") {
-  const TemporaryFolder folder;
-  const Film film = sample_film();
-  write_exr(folder.file("target.exr"), film, true);
-  std::filesystem::create_symlink("target.exr", folder.file("link.exr"));
-  write_exr(folder.file("link.exr"), sample_film(5, 5), true);
-  CHECK(std::filesystem::is_symlink(folder.file("link.exr")));
-  CHECK(read_exr(folder.file("target.exr")).width == 5);
 }
 
 // sRGB of linear 0.5 is 255 * (1.055 * 0.5^(1/2.4) - 0.055) = 187.516, so 188; two stops up it is white.

@@ -10,6 +10,7 @@ import os
 import pathlib
 import shutil
 import signal
+import stat
 import struct
 import subprocess
 import sys
@@ -319,14 +320,19 @@ def queue_experiments():
 def queue_outputs():
     os.makedirs(WORK / 'folder.exr', exist_ok=True)
     os.makedirs(WORK / 'folder.png', exist_ok=True)
-    for name in ('full.exr', 'full.png'):
-        (WORK / name).symlink_to('/dev/full')
     render = ['render', 'good.toml', '-m', 'deterministic', '-o']
     case('output is a folder', [*render, 'folder.exr'])
     case('preview is a folder', [*render, 'beside.exr', '--png', 'folder.png'])
     case('output in no folder', [*render, 'none/a.exr'])
-    case('output to a full device', [*render, 'full.exr'], says='No space left')
-    case('preview to a full device', [*render, 'beside2.exr', '--png', 'full.png'], says='No space left')
+    try:
+        for name in ('full.exr', 'full.png'):
+            os.mknod(WORK / name, 0o666 | stat.S_IFCHR, os.stat('/dev/full').st_rdev)
+            with open(WORK / name, 'wb'):
+                pass
+        case('output to a full device', [*render, 'full.exr'], says='No space left')
+        case('preview to a full device', [*render, 'beside2.exr', '--png', 'full.png'], says='No space left')
+    except OSError:  # only root makes devices, and not on every file system
+        print('test skipped: output to a full device: no such device can be made here')
     case('conversion to a folder', ['convert', 'good.exr', 'folder.png'])
     if os.path.isdir('/proc/self'):
         case('output to a folder that takes no files', [*render, '/proc/self/a.exr'])

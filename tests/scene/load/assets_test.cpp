@@ -1,4 +1,7 @@
 // Files that a scene names: where they are looked for, and what is said of damaged ones.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -6,6 +9,7 @@
 
 #include "scene/data_folder.h"
 #include "scene/error.h"
+#include "scene/read_file.h"
 #include "scene/scene.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
@@ -112,6 +116,68 @@ TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
     CHECK(what.find("g.csv") != std::string::npos);
     CHECK(what.find('\n') == std::string::npos);
   }
+}
+
+// As editors, spreadsheets and other programs write them.
+TEST_CASE("tables of Gaussians in other spellings", "[load]") {
+  const TemporaryFolder folder;
+  const std::string mark = "\xEF\xBB\xBF", header = "center_x,center_y,center_z,width,amplitude\n",
+                    row = "0,0.5,0,1,2\n";
+  for (const std::string& content : {mark + header + row, "# made by hand\n" + header + row,
+                                     mark + "# made by hand\r\n\r\n" + header + row, header + "+0,+0.5,0,+1,+2e0\n"}) {
+    CAPTURE(content);
+    folder.write("g.csv", content);
+    const Scene scene =
+        parse_scene(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", "s.toml", folder.path().string());
+    const auto& gaussians = std::get<GaussianSum>(scene.media[0].field).gaussians;
+    REQUIRE(gaussians.size() == 1);
+    CHECK(gaussians[0].center == Point3(0, 0.5, 0));
+    CHECK(gaussians[0].amplitude == 2);
+  }
+  for (const std::string cell : {"+-1", "++1", "+"}) {
+    folder.write("g.csv", header + "0,0,0,1," + cell + "\n");
+    CHECK(message(camera + "[[medium]]\ntype = 'gaussians'\nfile = 'g.csv'\n", folder.path().string())
+              .find(":2:9: amplitude = ") != std::string::npos);
+  }
+}
+
+TEST_CASE("a # in the name of a folder is no digit of a frame", "[load]") {
+  const TemporaryFolder folder;
+  const auto copy = [&](const std::string& name) {
+    fs::create_directories((folder.path() / name).parent_path());
+    fs::copy_file(root + "/experiments/data/plume_0024.vdb", folder.path() / name);
+  };
+  const auto said = [&](const std::string& keys) {
+    return message(camera + "[[medium]]\ntype = 'grid'\n" + keys, folder.path().string());
+  };
+  copy("take#2/smoke.vdb");
+  copy("take#2/smoke_0007.vdb");
+  copy("frame_03/smoke.vdb");
+  CHECK(said("file = 'take#2/smoke.vdb'\n") == "");
+  CHECK(said("file = 'take#2/smoke_####.vdb'\nframe = 7\n") == "");
+  CHECK(said("file = 'frame_##/smoke.vdb'\nframe = 3\n") == "");
+  CHECK(said("file = 'take#2/smoke_####.vdb'\n").find("is a sequence, expected a frame") != std::string::npos);
+}
+
+// A pipe would be waited for, and so would some files of /proc that count as regular.
+TEST_CASE("what is no file is refused at once", "[load]") {
+  const TemporaryFolder folder;
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"a.vdb", "[[medium]]\ntype = 'grid'\n"},
+                                   {"a.csv", "[[medium]]\ntype = 'gaussians'\n"},
+                                   {"a.exr", "[[light]]\ntype = 'environment'\n"},
+                                   {"a.png", "[[medium]]\ntype = 'fogmap'\n"},
+                                   {"a.obj", "[[surface]]\ntype = 'mesh'\n"}}) {
+    CAPTURE(name);
+    const std::string keys = text + "file = '" + name + "'\n" + (name == "a.png" ? "cell = 1\nsigma_t = 1\n" : "");
+    REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
+    CHECK(message(camera + keys, folder.path().string()).find(name + ": ") != std::string::npos);
+    fs::remove(folder.path() / name);
+    fs::create_symlink("/dev/zero", folder.path() / name);
+    CHECK(message(camera + keys, folder.path().string()).find(name + ": ") != std::string::npos);
+  }
+  if (access("/proc/kmsg", R_OK) == 0) CHECK_THROWS_AS(read_whole_file("/proc/kmsg", 1 << 20), Error);
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(read_whole_file(folder.file("pipe")), Catch::Contains("found a pipe or a device"));
 }
 
 TEST_CASE("a scene file that cannot be read says why", "[load]") {

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/flow.h"
+#include "scene/media/start_grids.h"
 #include "scene/media/voxel_grid.h"
 #include "tests/scene/media/random_points.h"
 #include "tests/temporary_folder.h"
@@ -248,6 +250,61 @@ TEST_CASE("what is not a grid of densities is refused, and why is said", "[media
   nowhere.translation[1] = infinity;
   write_vdb(path, nowhere);
   says("not finite");
+}
+
+// A file as OpenVDB's own writer makes it where two grids share a tree: "smoke" has no samples of its own. Its place is
+// its own: voxels of 0.25 m like those of "density", moved by nothing.
+TEST_CASE("grids that share samples are read", "[media][vdb]") {
+  const std::string file = std::string(AIRLIGHT_SOURCE_DIR) + "/tests/scene/media/instance.vdb";
+  const VoxelGrid own = read_vdb(file, "density"), shared = read_vdb(file, "smoke");
+  CHECK(own.values.size() == 64);
+  CHECK(same(own, shared));
+  CHECK(shared.voxel_size == 0.25);
+  // With a translation, which stands behind the name of the map.
+  const Folder folder;
+  const std::string path = folder / "moved.vdb", map = "UniformScaleTranslateMap";
+  std::string bytes = read_file(file);
+  REQUIRE(bytes.find(map) != std::string::npos);
+  const Vec3 translation(3, -1, 0.5);
+  std::memcpy(bytes.data() + bytes.find(map) + map.size(), translation.data(), 24);
+  write_file(path, bytes);
+  CHECK(read_vdb(path, "smoke").translation == translation);
+  CHECK(read_vdb(path, "density").translation == own.translation);
+  CHECK(same(own, read_vdb(path, "smoke")));
+  // Its entry names a grid that is not there; it is cut short; the other's samples are damaged.
+  const std::size_t entry = bytes.find("smoke"), parent = bytes.find("density", entry);
+  std::string orphan = bytes;
+  orphan.replace(parent, 7, "nothing");
+  write_file(path, orphan);
+  CHECK(refusal(path, "smoke").find("shares the samples of a grid 'nothing' that is not there") != std::string::npos);
+  for (std::size_t length = entry; length < bytes.size(); length += 7) {
+    write_file(path, bytes.substr(0, length));
+    CHECK_FALSE(refusal(path, "smoke").empty());
+  }
+}
+
+TEST_CASE("grids of one name are told apart by a number", "[media][vdb]") {
+  const Folder folder;
+  const std::string path = folder / "two.vdb";
+  Frame frame;
+  frame.size = {2, 1, 1};
+  frame.density = {1, 2};
+  frame.densities["colours"] = {3, 4};
+  frame.velocity.assign(3 * 3 * 2 * 2, 0.0f);
+  write_frame(path, frame, {});
+  std::string bytes = read_file(path);
+  for (std::size_t at; (at = bytes.find("colours")) != std::string::npos;) bytes.replace(at, 7, "density");
+  write_file(path, bytes);
+  CHECK(refusal(path).find("has 2 grids 'density', expected one of 'density[0]' to 'density[1]'") != std::string::npos);
+  CHECK(read_vdb(path, "density[0]").values == std::vector<float>{1, 2});
+  CHECK(read_vdb(path, "density[1]").values == std::vector<float>{3, 4});
+  for (const std::string name : {"density[2]", "density[-1]", "density[]", "density[1", "smoke[0]"})
+    CHECK(refusal(path, name).find("has no grid '" + name + "', only: density, density, velocity") !=
+          std::string::npos);
+  VoxelGrid grid = some_grid({3, 3, 3});
+  write_vdb(path, grid, "");
+  CHECK(refusal(path).find("only: one without a name, \"\"") != std::string::npos);
+  CHECK(same(read_vdb(path, ""), grid));
 }
 
 // A map is stored as a matrix of 16 doubles behind its name: the first three are a row.
