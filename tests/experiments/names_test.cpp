@@ -120,7 +120,7 @@ TEST_CASE("a folder's name is no command either", "[driver][plots]") {
 }
 
 TEST_CASE("a name is one line, and is refused where it is read", "[driver][experiment]") {
-  for (const std::string name :
+  for (const std::string& name :
        {std::string("a\nb"), std::string("a\0b", 3), std::string("\x1b[31m"), std::string(), std::string(201, 'a')}) {
     const SmallProject project(box_of_fog(8, 6), experiment_of(name, "t"));
     const Result result = run("experiment run g/e --root .", project);

@@ -173,7 +173,7 @@ TEST_CASE("Gaussians are fitted to the frames of a sequence, and again where tho
 TEST_CASE("a sequence's name leads to no other folder", "[driver][flow]") {
   Frames project;
   project.write("precious/file", "mine");
-  for (const std::string name : {(project.path() / "precious").string(), std::string("../../../precious"),
+  for (const std::string& name : {(project.path() / "precious").string(), std::string("../../../precious"),
                                  std::string("a/b"), std::string("a b"), std::string("a.b")}) {
     CAPTURE(name);
     project.write("experiments/sequences.toml", "[\"" + name + "\"]\nproblem = \"flows/puff.toml\"\n");
