@@ -50,9 +50,6 @@ void Buffer::poison() { fill(~0u); }
 void Buffer::fill(GLuint word) {
   const Use use(*context_);
   context_->gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
-  // NVIDIA's driver (580) puts a fill off, beyond a dispatch that uses the buffer where it was bound before; a small upload makes it
-  // happen now.
-  context_->gl().NamedBufferSubData(id_, 0, sizeof word, &word);
   filled_ = true;
 }
 

@@ -43,7 +43,7 @@ namespace airlight::gpu {
   X(PFNGLNAMEDFRAMEBUFFERREADBUFFERPROC, NamedFramebufferReadBuffer)                                                 \
   X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus)                                               \
   X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)                                                       \
-  X(PFNGLCLEARNAMEDFRAMEBUFFERIVPROC, ClearNamedFramebufferiv) X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)          \
+  X(PFNGLCLEARNAMEDFRAMEBUFFERUIVPROC, ClearNamedFramebufferuiv) X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)          \
   X(PFNGLCREATETEXTURESPROC, CreateTextures) X(PFNGLDELETETEXTURESPROC, DeleteTextures)                              \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D) X(PFNGLREADPIXELSPROC, ReadPixels)                                  \
   X(PFNGLVIEWPORTPROC, Viewport) X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                    \

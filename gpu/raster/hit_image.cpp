@@ -13,7 +13,7 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
                                   context.renderer(), most));
   const Use use(context);
   const Gl& gl = context.gl();
-  const GLenum formats[3] = {GL_R32F, GL_R32I, GL_DEPTH_COMPONENT32F};
+  const GLenum formats[3] = {GL_R32F, GL_R32UI, GL_DEPTH_COMPONENT32F};
   const GLenum attachments[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_DEPTH_ATTACHMENT};
   GLuint id = 0;
   gl.CreateFramebuffers(1, &id);
@@ -36,9 +36,10 @@ HitImage::HitImage(Context& context, int width, int height) : context_(context),
 void HitImage::begin() const {
   const Gl& gl = context_.gl();
   const GLfloat nothing[4] = {far_away, 0, 0, 0}, farthest[1] = {1};
-  const GLint none[4] = {0, 0, 0, 0};
+  // Unsigned, with the bits of -1: of signed integers below 0 an NVIDIA GPU (driver 580) gave back 2^31 - 1.
+  const GLuint none[4] = {~0U, ~0U, ~0U, ~0U};
   gl.ClearNamedFramebufferfv(framebuffer_, GL_COLOR, 0, nothing);
-  gl.ClearNamedFramebufferiv(framebuffer_, GL_COLOR, 1, none);
+  gl.ClearNamedFramebufferuiv(framebuffer_, GL_COLOR, 1, none);
   gl.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, farthest);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   gl.Viewport(0, 0, width_, height_);
@@ -65,8 +66,8 @@ void HitImage::copy(int attachment, GLenum format, GLenum type, const Buffer& bu
 void HitImage::copy_distances(const Buffer& buffer, std::size_t offset) const {
   copy(0, GL_RED, GL_FLOAT, buffer, offset);
 }
-void HitImage::copy_numbers(const Buffer& buffer, std::size_t offset) const {
-  copy(1, GL_RED_INTEGER, GL_INT, buffer, offset);
+void HitImage::copy_primitives(const Buffer& buffer, std::size_t offset) const {
+  copy(1, GL_RED_INTEGER, GL_UNSIGNED_INT, buffer, offset);
 }
 
 }  // namespace airlight::gpu

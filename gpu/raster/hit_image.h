@@ -15,13 +15,13 @@ class HitImage {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Binds it to draw into, everything at "nothing is hit": far_away, number 0.
+  // Binds it to draw into, everything at "nothing is hit": far_away, primitive -1.
   void begin() const;
   void end() const;
 
   // Copies of the attachments in storage buffers, from byte `offset` on; row 0 first, x fastest.
-  void copy_distances(const Buffer&, std::size_t offset) const;  // 1 float [m]
-  void copy_numbers(const Buffer&, std::size_t offset) const;    // 1 int: of hit.glsl
+  void copy_distances(const Buffer&, std::size_t offset) const;   // 1 float [m]
+  void copy_primitives(const Buffer&, std::size_t offset) const;  // 1 int
 
  private:
   void copy(int attachment, GLenum format, GLenum type, const Buffer&, std::size_t offset) const;

@@ -55,10 +55,7 @@ std::vector<std::array<float, 4>> rectangles(const std::vector<Solid>& solids, c
 }  // namespace
 
 RasterPass::RasterPass(Context& context)
-    : context_(context),
-      mesh_(context.raster_program("raster/mesh")),
-      solid_(context.raster_program("raster/solid")),
-      primitives_(context.program("raster/primitives.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}})) {
+    : context_(context), mesh_(context.raster_program("raster/mesh")), solid_(context.raster_program("raster/solid")) {
   if (context.limits().vertex_storage_blocks < 3 || context.limits().fragment_storage_blocks < 3)
     throw Unavailable("gpu: the vertex shaders of " + context.renderer() + " read no storage buffers");
 }
@@ -112,13 +109,7 @@ void RasterPass::find(const SurfacesOnDevice& surfaces, const View& view, const 
   }
   image.end();
   image.copy_distances(distances, 4 * grid.first);
-  if (!primitives) return;
-  image.copy_numbers(*primitives, 4 * grid.first);
-  primitives->bind(0);
-  primitives_.set("columns", image.width());
-  primitives_.set("rows", image.height());
-  primitives_.set("first_ray", int(grid.first));
-  primitives_.dispatch(image.width(), image.height());
+  if (primitives) image.copy_primitives(*primitives, 4 * grid.first);
 }
 
 }  // namespace airlight::gpu

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "gpu/program.h"
 #include "gpu/raster/hit_image.h"
 #include "gpu/raster/surfaces_on_device.h"
 #include "gpu/raster_program.h"
@@ -39,7 +38,6 @@ class RasterPass {
 
   Context& context_;
   RasterProgram &mesh_, &solid_;
-  Program& primitives_;
   std::unique_ptr<Buffer> rectangles_;
   std::vector<std::unique_ptr<HitImage>> images_;  // of the last two sizes, the latest first
 };

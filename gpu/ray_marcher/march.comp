@@ -80,7 +80,8 @@ bool grids_alone(Part part) {
 bool march(vec3 origin, vec3 direction, int own, Approach seen) {
   float total = measure_of_all();
   ended = false;
-  // Counters of the march advance at the ends of the loops. On NVIDIA (driver 580) a `for` advances them before it returns from within.
+  // Counters of the march advance at the ends of the loops, not in the head of a `for`: on an NVIDIA GPU (driver 580) rays that stopped
+  // within one lost the rest of the step in hand. Whether this mends it was not measured there.
   while (at_part < part_count) {
     Part part = part_at(at_part);
     float share = measure(part);

@@ -55,7 +55,8 @@ TEST_CASE("each solver's frames are drawn without naming a renderer", "[cli][sim
 
 TEST_CASE("a flow's name leads nowhere", "[cli][simulation]") {
   const TemporaryFolder folder;
-  for (const std::string name : {"../evil", "/tmp/airlight_evil", "a/evil", "..", ".", "a\\u0000b", "a\\nb", ""}) {
+  for (const std::string& name :
+       std::vector<std::string>{"../evil", folder.file("evil"), "a/evil", "..", ".", "a\\u0000b", "a\\nb", ""}) {
     CAPTURE(name);
     folder.write("flow.toml", "name = \"" + name + "\"\n" + flow);
     const Result result = run("simulate flow.toml --set n=4 --out out", folder);

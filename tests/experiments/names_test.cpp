@@ -180,7 +180,8 @@ TEST_CASE("names are held apart before anything is written", "[driver][experimen
 
 // Of names that a folder cannot have the pictures lie in the project's folder all the same.
 TEST_CASE("a scene named like the folder above stays below its experiment", "[driver][experiment]") {
-  for (const std::string name : {"..", ".", ".hidden", "../../../x", "/tmp/x"}) {
+  const TemporaryFolder elsewhere;
+  for (const std::string& name : std::vector<std::string>{"..", ".", ".hidden", "../../../x", elsewhere.file("x")}) {
     CAPTURE(name);
     const SmallProject project(box_of_fog(8, 6), experiment_of(name, "t"));
     const Result result = run("experiment run g/e --root .", project);
