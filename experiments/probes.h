@@ -1,4 +1,4 @@
-// Everything that measures what is no picture. A new probe joins the list in probes.cpp.
+// Everything that measures what is no picture. A new probe joins the list in all_probes.cpp.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,6 +8,7 @@
 
 namespace airlight::experiments {
 
+// In the program `airlight` it throws NeedsStudies (studies.h).
 const std::vector<std::unique_ptr<Probe>>& all_probes();
 
 // Is it one of the words of a figure's name, as ms is of hash_ms?

@@ -8,6 +8,7 @@
 #include "experiments/machine.h"
 #include "experiments/probes.h"
 #include "experiments/renderers.h"
+#include "experiments/studies.h"
 #include "gpu/context.h"
 #include "gpu/kernel_drivers.h"
 #include "scene/error.h"
@@ -49,9 +50,13 @@ int doctor() {
   const bool gnuplot = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
   fmt::print("  plots      {}\n", gnuplot ? "gnuplot" : "none: gnuplot is not installed (tables only)");
   for (const auto& renderer : all_renderers()) fmt::print("  renderer   {}: {}\n", renderer->name(), renderer->about());
-  for (const auto& probe : all_probes()) {
-    fmt::print("  probe      {}: {}\n", probe->name(), probe->about());
-    fmt::print("             figures {}\n", fmt::join(probe->figures(), ", "));
+  try {
+    for (const auto& probe : all_probes()) {
+      fmt::print("  probe      {}: {}\n", probe->name(), probe->about());
+      fmt::print("             figures {}\n", fmt::join(probe->figures(), ", "));
+    }
+  } catch (const NeedsStudies&) {
+    fmt::print("  probes     airlight_studies doctor lists them\n");
   }
   return 0;
 }

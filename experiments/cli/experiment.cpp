@@ -71,7 +71,9 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     progress.update(double(i) / double(experiments.size()));
     check_interrupted();
     try {
-      check_experiment(e, {folders, resume, options.threads, false, false});
+      RunOptions check{folders, resume, options.threads, false};
+      check.trials = !options.in_tests;  // the gates of the tests take hardly longer than the trials would
+      check_experiment(e, check);
     } catch (const Error& error) {
       if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells
     }
@@ -149,10 +151,12 @@ int list_experiments(const ExperimentOptions& options) {
   const std::vector<std::string> ids = choose_experiments(root, options.names);
   std::size_t widest = 0;
   for (const std::string& id : ids) widest = std::max(widest, id.size());
+  std::string lines;
   for (const std::string& id : ids) {
     const Experiment e = read_experiment(root, id, options.profile);
-    fmt::print("{:{}}  {}{}{}\n", id, widest, e.title, e.paper.empty() ? "" : "; ", e.paper);
+    lines += fmt::format("{:{}}  {}{}{}\n", id, widest, e.title, e.paper.empty() ? "" : "; ", e.paper);
   }
+  fmt::print("{}", lines);
   return 0;
 }
 

@@ -18,6 +18,7 @@
 #include "experiments/metrics.h"
 #include "experiments/renderers.h"
 #include "experiments/say.h"
+#include "experiments/studies.h"
 #include "experiments/verify/verify.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
@@ -382,6 +383,13 @@ int run(int argc, char** argv) {
     std::cout.flush();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) throw Error(lost_output);
     return code;
+  } catch (const NeedsStudies&) {
+    try {
+      go_on_with_studies(argv);
+    } catch (const Error& error) {
+      say(error.what());
+      return error.exit_code();
+    }
   } catch (const Error& error) {
     say(error.what());
     return error.exit_code();

@@ -69,12 +69,13 @@ class Trial {
   scene::Film reference_;
 };
 
-void check_scene(const Experiment& e, const SceneCase& c, const Journal& finished, std::set<const MethodCase*>& tried) {
+void check_scene(const Experiment& e, const SceneCase& c, const Journal& finished, bool trials,
+                 std::set<const MethodCase*>& tried) {
   const PlannedScene planned = plan_scene(e, c);
   std::vector<const PlannedRow*> open;
   for (const PlannedRow& p : planned.rows)
     if (!finished.find(p.row.key)) open.push_back(&p);
-  if (open.empty()) return;
+  if (open.empty() || !trials) return;
   try {
     const Trial trial(e, planned);
     for (const PlannedRow* p : open)
@@ -99,7 +100,7 @@ void check_experiment(const Experiment& e, const RunOptions& options) {
     if (e.kind == "flow") return check_flows(e);
     const Journal finished(journal_file(options.folders, e), options.resume);
     std::set<const MethodCase*> tried;
-    for (const SceneCase& c : e.scenes) check_scene(e, c, finished, tried);
+    for (const SceneCase& c : e.scenes) check_scene(e, c, finished, options.trials, tried);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", e.id, error.what()), error.exit_code());
   }

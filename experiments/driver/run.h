@@ -17,6 +17,7 @@ struct RunOptions {
   bool checked = false;             // check_experiment has found no fault
   RunProgress* progress = nullptr;  // where this experiment has begun; null: of its own
   bool tables = true;               // false: only gates are wanted, so no tables, plots and record are written
+  bool trials = true;               // check_experiment renders small pictures; false: it loads and plans alone
 };
 
 // Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.

@@ -8,6 +8,10 @@
 
 #include "scene/media/voxel_grid.h"
 
+// The library has them: it instantiates grids of these trees. Without these lines both files compile each function of a tree again.
+extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
+extern template class openvdb::tree::Tree<openvdb::Vec3STree::RootNodeType>;
+
 namespace airlight::scene::vdb {
 
 // Our own writer's notes of the samples' box, which is larger than the active voxels' where samples at its sides are
