@@ -14,6 +14,37 @@ constexpr int samples_of_gaussians = 3, most_samples = 8;  // along a side of a 
 constexpr double steepest = 3;  // as far as lines that go on may rise above the nodes they come from
 constexpr int block = 4;        // nodes along a side
 
+// Whether a cell has a point of a region.
+bool meets(const scene::Region& region, const Box& cell) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&region))
+    return contains(region, sphere->center.cwiseMax(cell.lo).cwiseMin(cell.hi));
+  if (const auto* slab = std::get_if<scene::Slab>(&region)) {
+    const double middle = slab->normal.dot(cell.center()), reach = 0.5 * slab->normal.cwiseAbs().dot(cell.size());
+    return middle + reach >= slab->lo && middle - reach <= slab->hi;
+  }
+  return !intersect(cell, bounding_box(region)).empty();
+}
+
+// Regions are convex: one that has all corners of a cell has the cell.
+bool is_within(const scene::Region& region, const Box& cell) {
+  for (int corner = 0; corner < 8; ++corner) {
+    Point3 x = cell.lo;
+    for (int a = 0; a < 3; ++a)
+      if (corner >> a & 1) x[a] = cell.hi[a];
+    if (!contains(region, x)) return false;
+  }
+  return true;
+}
+
+// Along a side of a cell that no edge of a region cuts.
+int samples_within(const scene::Medium& medium, double edge) {
+  if (std::holds_alternative<scene::Homogeneous>(medium.field)) return 1;
+  if (const scene::VoxelGrid* voxels = grid_of(medium.field))
+    return std::clamp(int(std::ceil(edge / voxels->voxel_size)), 1, most_samples);
+  const bool bounded = !std::holds_alternative<scene::Unbounded>(medium.region);
+  return bounded && !std::holds_alternative<scene::GaussianSum>(medium.field) ? most_samples : samples_of_gaussians;
+}
+
 }  // namespace
 
 Point3 NodeGrid::node(Eigen::Index i) const {
@@ -44,36 +75,43 @@ NodeGrid node_grid(const Box& box, int cells) {
 }
 
 Eigen::ArrayXd mean_densities(const scene::Medium& medium, const NodeGrid& grid, int threads) {
-  const scene::VoxelGrid* voxels = grid_of(medium.field);
-  const auto* gaussians = std::get_if<scene::GaussianSum>(&medium.field);
+  const bool bounded = !std::holds_alternative<scene::Unbounded>(medium.region);
   const double edge = grid.cells.cell[0];
-  const int across = !std::holds_alternative<scene::Unbounded>(medium.region) ? most_samples
-                     : voxels ? std::clamp(int(std::ceil(edge / voxels->voxel_size)), 1, most_samples)
-                              : samples_of_gaussians;
-  // Finer samples, `across` along each side of a cell.
-  scene::VoxelGrid fine;
-  for (int a = 0; a < 3; ++a) fine.size[a] = across * grid.cells.size[std::size_t(a)];
-  fine.voxel_size = edge / across;
-  fine.translation = grid.corner + Vec3::Constant(0.5 * fine.voxel_size);
+  const int across = samples_within(medium, edge);
   Eigen::ArrayXd means = Eigen::ArrayXd::Zero(grid.cells.nodes());
-  const auto cell = [&](int i, int j, int k) {
-    return i / across +
-           Eigen::Index(grid.cells.size[0]) * (j / across + Eigen::Index(grid.cells.size[1]) * (k / across));
-  };
-  const double share = 1.0 / (double(across) * across * across);
-  if (gaussians && std::holds_alternative<scene::Unbounded>(medium.region)) {
+  const auto* gaussians = std::get_if<scene::GaussianSum>(&medium.field);
+  if (gaussians && !bounded) {
+    // Finer samples, `across` along each side of a cell.
+    scene::VoxelGrid fine;
+    for (int a = 0; a < 3; ++a) fine.size[a] = across * grid.cells.size[std::size_t(a)];
+    fine.voxel_size = edge / across;
+    fine.translation = grid.corner + Vec3::Constant(0.5 * fine.voxel_size);
     const std::vector<float> values = gaussian_samples(*gaussians, fine, threads);
+    const double share = 1.0 / (double(across) * across * across);
     std::size_t at = 0;
     for (int k = 0; k < fine.size[2]; ++k)
       for (int j = 0; j < fine.size[1]; ++j)
-        for (int i = 0; i < fine.size[0]; ++i, ++at) means[cell(i, j, k)] += share * std::max(0.0F, values[at]);
+        for (int i = 0; i < fine.size[0]; ++i, ++at) {
+          const Eigen::Index row = j / across + Eigen::Index(grid.cells.size[1]) * (k / across);
+          means[i / across + grid.cells.size[0] * row] += share * std::max(0.0F, values[at]);
+        }
     return means;
   }
   scene::parallel_rows(grid.cells.size[2], {threads, {}}, [&](int plane) {
-    for (int k = across * plane; k < across * (plane + 1); ++k)
-      for (int j = 0; j < fine.size[1]; ++j)
-        for (int i = 0; i < fine.size[0]; ++i)
-          means[cell(i, j, k)] += share * density(medium, fine.translation + fine.voxel_size * Vec3(i, j, k));
+    Eigen::Index at = plane * Eigen::Index(grid.cells.size[0]) * grid.cells.size[1];
+    for (int y = 0; y < grid.cells.size[1]; ++y)
+      for (int x = 0; x < grid.cells.size[0]; ++x, ++at) {
+        const Point3 low = grid.corner + edge * Vec3(x, y, plane);
+        const Box cell{low, low + Vec3::Constant(edge)};
+        if (bounded && !meets(medium.region, cell)) continue;
+        const int n = bounded && !is_within(medium.region, cell) ? most_samples : across;
+        const Point3 first = grid.corner + Vec3::Constant(0.5 * (edge / n));
+        double sum = 0;
+        for (int k = n * plane; k < n * (plane + 1); ++k)
+          for (int j = n * y; j < n * (y + 1); ++j)
+            for (int i = n * x; i < n * (x + 1); ++i) sum += density(medium, first + edge / n * Vec3(i, j, k));
+        means[at] = sum / (double(n) * n * n);
+      }
   });
   return means;
 }

@@ -57,10 +57,8 @@ Scene made(const char* name, std::vector<scene::Surface> surfaces, const Camera&
 
 // Numbers that tell scenes of different surfaces, rays or balls of lights apart.
 std::vector<double> hits_of(const Scene& scene) {
-  const Camera& camera = scene.camera;
-  std::vector<double> numbers{double(camera.kind), camera.vertical_fov, camera.height};
+  std::vector<double> numbers;
   const auto add = [&](const Vec3& v) { numbers.insert(numbers.end(), {v[0], v[1], v[2]}); };
-  for (const Vec3& v : {Vec3(camera.position), camera.forward, camera.up}) add(v);
   for (const scene::Surface& surface : scene.surfaces) {
     numbers.push_back(double(surface.shape.index()));
     if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) {

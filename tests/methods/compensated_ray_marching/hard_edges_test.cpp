@@ -50,6 +50,7 @@ TEST_CASE("compensated march at hard edges: no light is made in thick cells", "[
       const scene::Film whole = picture(method, scene_of(region, sigma_t, 1, even), given);
       for (const float v : whole.layer("mean")) CHECK(std::abs(v - 1) < 1e-3);
       for (const double albedo : {0.5, 0.9, 0.99}) {
+        if (sigma_t == 20 && albedo < 0.99) continue;  // seconds each, and darker than the last
         CAPTURE(albedo);
         const scene::Film part = picture(method, scene_of(region, sigma_t, albedo, even), given);
         for (const float v : part.layer("mean")) CHECK(v < 1 + 1e-5);
