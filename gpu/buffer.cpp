@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 #include "scene/error.h"
 
@@ -68,7 +69,19 @@ void Buffer::write(const void* data, std::size_t bytes) {
 void Buffer::read(void* data, std::size_t bytes) const {
   if (bytes == 0) return;
   const Use use(*context_);
-  context_->gl().GetNamedBufferSubData(id_, 0, GLsizeiptr(bytes), data);
+  const Gl& gl = context_->gl();
+  if (filled_) {
+    // NVIDIA's driver (580) gives what a fill left, whatever shaders wrote since, also after glFinish. A copy is right.
+    GLuint id = 0;
+    gl.CreateBuffers(1, &id);
+    const Handle copy(*context_, id, [](const Gl& gl, GLuint id) { gl.DeleteBuffers(1, &id); });
+    gl.NamedBufferStorage(copy, GLsizeiptr(bytes), nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+    gl.CopyNamedBufferSubData(id_, copy, 0, 0, GLsizeiptr(bytes));
+    context_->check("copying buffer '" + name_ + "'");
+    std::memcpy(data, gl.MapNamedBufferRange(copy, 0, GLsizeiptr(bytes), GL_MAP_READ_BIT), bytes);
+  } else {
+    gl.GetNamedBufferSubData(id_, 0, GLsizeiptr(bytes), data);
+  }
   context_->traffic().bytes_down += long(bytes);
   ++context_->traffic().syncs;
   context_->check("reading buffer '" + name_ + "'");

@@ -126,8 +126,8 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
       if (wants(name)) result.film.layers[name].assign(3 * result.film.pixels(), name[0] == 't' ? 1.0f : 0.0f);
     result.counters = Traffic().counters();
     for (const char* name : {"steps", "shadow_rays", "shadow_steps", "occlusion_rays"}) result.counters[name] = 0;
-  } else if (!draw(view, execution, false, result)) {
-    draw(view, execution, true, result);
+  } else if (!draw(view, execution, false, result) && !draw(view, execution, true, result)) {
+    throw Unavailable("ray_marcher_gpu: " + context_.renderer() + " reports rays as done that are not");
   }
   result.counters["rays"] = double(result.film.pixels());
   result.film.metadata = {{"method", "ray_marcher_gpu"},

@@ -10,11 +10,9 @@ Row row_at(int p) {
   return row;
 }
 Cell cell_at(int p, int stride) {
-  Cell cell = Cell(row_at(p), Row(0), Row(0), Row(0));
-  if (DEGREE > 0) cell[1] = row_at(p - stride);
-  if (DEGREE > 1) cell[2] = row_at(p - 2 * stride);
-  if (DEGREE > 2) cell[3] = row_at(p - 3 * stride);
-  return cell;
+  // At once: NVIDIA's compiler (580) loses columns that are set one by one under conditions.
+  return Cell(row_at(p), DEGREE > 0 ? row_at(p - stride) : Row(0), DEGREE > 1 ? row_at(p - 2 * stride) : Row(0),
+              DEGREE > 2 ? row_at(p - 3 * stride) : Row(0));
 }
 Row basis(float u) {
   float w = 1 - u;
