@@ -379,6 +379,7 @@ int dispatch(int argc, char** argv) {
 int run(int argc, char** argv) {
   reserve_standard_streams();
   try {
+    check_commit_of_studies();
     const int code = dispatch(argc, argv);
     std::cout.flush();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) throw Error(lost_output);

@@ -219,6 +219,24 @@ TEST_CASE("explain and doctor", "[cli]") {
 }
 
 // A path tracer that is stopped keeps its samples, and the film says how many.
+TEST_CASE("what airlight lacks airlight_studies computes, of the same commit, or one line says so", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string vectors = root + "/tests/vectors/fogshop.json --kind F";
+  const Result here = run("verify " + vectors, folder);
+  CHECK(here.code == 0);
+  CHECK_THAT(here.out, Contains(" 0 out;"));
+  const Result other = run_command("AIRLIGHT_COMMIT_BEFORE=0 '" + program + "' verify " + vectors, folder);
+  CHECK(other.code == 3);
+  CHECK(other.out.empty());
+  CHECK(other.error_lines() == 1);
+  CHECK_THAT(other.err, Contains(" of 0: scripts/build builds both"));
+  std::filesystem::copy_file(program, folder.file("airlight"));
+  const Result alone = run_command("./airlight verify " + vectors, folder);
+  CHECK(alone.code == 3);
+  CHECK(alone.error_lines() == 1);
+  CHECK_THAT(alone.err, Contains("airlight_studies: No such file or directory") && Contains("scripts/build"));
+}
+
 TEST_CASE("Ctrl-C keeps the samples of a path tracer, and no other picture is made of them", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = scenes + "constant_homogeneous.toml --override film.width=16 --override film.height=12 ";
