@@ -72,7 +72,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     check_interrupted();
     try {
       RunOptions check{folders, resume, options.threads, false};
-      check.trials = !options.in_tests;  // the gates of the tests take hardly longer than the trials would
+      check.trials = !options.in_tests;  // in a minute the run itself tells what they would
       check_experiment(e, check);
     } catch (const Error& error) {
       if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells

@@ -374,23 +374,24 @@ int dispatch(int argc, char** argv) {
   return action();
 }
 
+int dispatch_or_go_on(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const NeedsStudies&) {
+    go_on_with_studies(argv);
+  }
+}
+
 }  // namespace
 
 int run(int argc, char** argv) {
   reserve_standard_streams();
   try {
     check_commit_of_studies();
-    const int code = dispatch(argc, argv);
+    const int code = dispatch_or_go_on(argc, argv);
     std::cout.flush();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) throw Error(lost_output);
     return code;
-  } catch (const NeedsStudies&) {
-    try {
-      go_on_with_studies(argv);
-    } catch (const Error& error) {
-      say(error.what());
-      return error.exit_code();
-    }
   } catch (const Error& error) {
     say(error.what());
     return error.exit_code();
