@@ -111,8 +111,8 @@ std::string key_of(const FitSequence& s, double unit) {
   return content_key({source_id(),
                       fmt::format("{} {} {} {} {} {} {}", o.gaussians, unit, o.widths.lo, o.widths.hi, o.amplitudes.lo,
                                   o.amplitudes.hi, int(o.method)),
-                      fmt::format("{} {} {} {} {} {} {}", o.rounds, o.iterations, o.tolerance, o.teleport, o.polish,
-                                  o.later_rounds, o.later_tolerance),
+                      fmt::format("{} {} {} {} {} {} {}", o.rounds, o.iterations, o.tolerance, int(o.teleport),
+                                  o.polish, o.later_rounds, o.later_tolerance),
                       fmt::format("{} {} {} {} {}", o.deleted, o.inserted, o.allowed, o.resent, s.threshold)});
 }
 

@@ -137,7 +137,10 @@ std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
       scene::real_setting("least_width", "0.015", 1e-3, 0.08, "of the box"),
       scene::real_setting("least_voxels", "0.7", 0.1, 8, "and no width below so many"),
       scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
-      scene::flag_setting("teleport", true, "within the first frame, and of every cold one"),
+      scene::choice_setting(
+          "teleport", "greatest", scene::teleport_names(),
+          "within the first frame, and of every cold one: none; to where most is missing; there and to random "
+          "filled voxels by turns"),
       scene::integer_setting("rounds", "12", 1, 1000, "at most, each followed by teleportation"),
       scene::integer_setting("iterations", "5", 1, 1000, "a round"),
       scene::real_setting("tolerance", "2e-3", 0, 1, "rounds end where one gains less than this share"),
@@ -181,7 +184,7 @@ Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s
   options.widths.lo = s.real("least_width");
   options.least_voxels = s.real("least_voxels");
   options.method = s.choice<scene::FitMethod>("method");
-  options.teleport = s.flag("teleport");
+  options.teleport = s.choice<scene::Teleport>("teleport");
   options.rounds = int(s.integer("rounds"));
   options.iterations = int(s.integer("iterations"));
   options.tolerance = s.real("tolerance");

@@ -103,7 +103,7 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     curve->points.push_back(point);
   }
   // Against time a curve runs through the settings in their order.
-  if (plot.x == "seconds" || plot.x == "prepare_seconds") return drawing;
+  if (plot.x.ends_with("seconds")) return drawing;
   for (Curve& curve : drawing.curves)
     std::stable_sort(curve.points.begin(), curve.points.end(),
                      [](const PlotPoint& a, const PlotPoint& b) { return a.x.value < b.x.value; });
@@ -135,6 +135,7 @@ std::string axis_label(const std::string& given, const std::string& axis) {
   if (!given.empty()) return given;
   if (axis == "seconds") return "time of one render [s]";
   if (axis == "prepare_seconds") return "time of preparation [s]";
+  if (axis == "total_seconds") return "time of preparation and one render [s]";
   if (is_column(axis)) return axis.substr(7);
   return axis.starts_with("counter.") ? axis.substr(8) : axis;
 }

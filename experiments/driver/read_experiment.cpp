@@ -153,7 +153,7 @@ class Reader {
   // What a row may have for time.
   std::vector<std::string> times() const {
     if (flow()) return {"seconds", "step_seconds", "cell_seconds", "simulated_seconds"};
-    return {"seconds", "prepare_seconds"};
+    return {"seconds", "prepare_seconds", "total_seconds"};
   }
 
   void check_component(const TableReader& reader, const std::string& name, const Pairs& given) const {

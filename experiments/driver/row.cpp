@@ -133,6 +133,12 @@ std::optional<Estimate> quantity(const Row& row, const std::string& name) {
   const auto plain = [](double x) { return Estimate{x, x, x}; };
   if (name == "seconds") return row.runs ? std::optional(row.seconds) : std::nullopt;
   if (name == "prepare_seconds") return row.runs ? std::optional(plain(row.prepare_seconds)) : std::nullopt;
+  if (name == "total_seconds") {
+    const double before = row.prepare_seconds;
+    return row.runs ? std::optional(
+                          Estimate{before + row.seconds.value, before + row.seconds.low, before + row.seconds.high})
+                    : std::nullopt;
+  }
   if (const double parts = parts_of_run(row, name); parts > 0)
     return Estimate{row.seconds.value / parts, row.seconds.low / parts, row.seconds.high / parts};
   if (name == "parameter") return row.parameter ? std::optional(plain(*row.parameter)) : std::nullopt;

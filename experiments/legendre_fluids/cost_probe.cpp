@@ -37,6 +37,10 @@ Array noise(int size, unsigned seed) {
 // The matrix M_G of equation 10 times F, from the triple products that are not 0.
 class SparseProduct {
  public:
+  // Of all products of three polynomials along an axis; in three dimensions of three triples.
+  double share_of_zeros() const { return 1 - double(entries_.size()) / std::pow(double(n_), 3); }
+  double share_of_zeros_3d() const { return 1 - std::pow(1 - share_of_zeros(), 3); }
+
   explicit SparseProduct(int n) : n_(n) {
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
@@ -131,7 +135,7 @@ std::vector<scene::SettingSpec> LegendreCost::settings() const {
 }
 
 std::vector<std::string> LegendreCost::figures() const {
-  std::vector<std::string> names = {"exponent", "exponent_of_coefficients"};
+  std::vector<std::string> names = {"exponent", "exponent_of_coefficients", "zeros_64", "zeros_3d_64"};
   for (const int n : sizes) names.push_back(fmt::format("ms_{}", n));
   return names;
 }
@@ -158,6 +162,10 @@ Findings LegendreCost::run(const ProbeInput&, const scene::Settings& s, const sc
   const double exponent = slope(all_n, times);
   found.figures.push_back(exactly("exponent", exponent));
   found.figures.push_back(exactly("exponent_of_coefficients", exponent / 3));
+  if (s.text("part") == "sparse_product") {
+    found.figures.push_back(exactly("zeros_64", SparseProduct(64).share_of_zeros()));
+    found.figures.push_back(exactly("zeros_3d_64", SparseProduct(4).share_of_zeros_3d()));
+  }
   found.columns = {{"n", all_n}, {"ms", times}};
   return found;
 }

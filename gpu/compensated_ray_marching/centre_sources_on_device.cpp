@@ -53,15 +53,16 @@ std::vector<double> objects_of(const std::vector<scene::Surface>& surfaces) {
 
 CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::GaussianSum& sum,
                                              const scene::Medium& medium, const std::vector<scene::Surface>& surfaces,
-                                             const SmokeDensity* density, const Point3& middle, const Options& options,
-                                             StageTimer& timer, const scene::Execution& execution)
+                                             bool scatters, const SmokeDensity* density, const Point3& middle,
+                                             const Options& options, StageTimer& timer,
+                                             const scene::Execution& execution)
     : context_(context),
       medium_(medium),
       options_(options),
       single_only_(compensated_ray_marching::single_only(sum, medium, options)),
       count_(int(sum.gaussians.size())),
       objects_(int(spheres_of(surfaces).size())),
-      scatters_(count_ > 0 && (medium.albedo * medium.sigma_t).maxCoeff() > 0),
+      scatters_(count_ > 0 && scatters),
       tables_(context, options.order, options.paper.transmittance, sum.cutoff, objects_ > 0),
       moments_(compensated_ray_marching::phase_moments(medium.phase, options.order)) {
   std::vector<double> values;

@@ -19,7 +19,7 @@ class CentreSourcesOnDevice {
   // none. The density is that of the march, for surfaces (null: no smoke), `middle` its middle; it outlives this. Stages of the timer: what
   // passes, the matrices. Throws Unavailable where the device has no room.
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
-                        const std::vector<scene::Surface>&, const SmokeDensity*, const Point3& middle,
+                        const std::vector<scene::Surface>&, bool scatters, const SmokeDensity*, const Point3& middle,
                         const compensated_ray_marching::Options&, StageTimer&, const scene::Execution&);
 
   // A light, or another, order^2 coefficients of lookup directions. Conjugate gradients begin with the radiance before; as many as it took

@@ -13,6 +13,7 @@
 #include "gpu/compensated_ray_marching/surroundings.h"
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
+#include "scene/scattered_lights.h"
 #include "scene/single_precision.h"
 #include "scene/stopwatch.h"
 
@@ -57,6 +58,7 @@ class PreparedSmokeGpu final : public scene::Prepared {
   Options options_;
   std::string settings_;
   std::optional<SmokeField> smoke_;  // nothing where no medium extinguishes
+  bool scatters_ = false;            // the smoke, something of the light
   std::unique_ptr<MapProjection> projection_;
   std::optional<IncomingLight> incoming_;  // of grid
   std::optional<EnvironmentBands> bands_;  // of paper
@@ -99,13 +101,14 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
   if (options_.paper.store == ResidualStore::automatic) options_.paper.store = ResidualStore::bricks;
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !compensated_ray_marching::smoke_box(medium).empty()) smoke_.emplace(medium, options_);
+  scatters_ = smoke_ && scene::why_nothing_scatters(*scene_).empty();
   const Use use(context_);
   StageTimer timer(context_);
   timer.begin("upload");
   surroundings_ = std::make_unique<Surroundings>(context_, *scene_);
   append(times_, timer.times());
   begin_environments();
-  if (!paper() && smoke_) {
+  if (!paper() && scatters_) {
     grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
     append(times_, grid_->times());
   }
@@ -118,7 +121,9 @@ PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Opt
     slice_ = box.size().maxCoeff() / options_.slices;
     density_ = std::make_unique<SmokeDensity>(context_, *smoke_, middle_, paper());
     ranges_ = &program(context_, "ranges", pixel_tile, pixel_tile, density_->definitions());
-    march_ = &program(context_, "march", pixel_tile, pixel_tile, density_->definitions());
+    Definitions definitions = density_->definitions();
+    definitions["SCATTERS"] = scatters_ ? "1" : "0";
+    march_ = &program(context_, "march", pixel_tile, pixel_tile, definitions);
   }
   paper() ? begin_centres(timer, execution) : begin_grid(timer, execution);
   append(times_, timer.times());
@@ -145,6 +150,7 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
   if (!smoke_) return;
   if (surroundings_->surfaces())
     dim_ = &program(context_, "smoke_dim", pixel_tile, pixel_tile, density_->definitions());
+  if (!scatters_) return;
   columns_ = std::make_unique<SmokeColumns>(context_, *first_, *grid_, *density_, middle_);
   source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *columns_);
   source_->light(*incoming_, timer, execution);
@@ -158,7 +164,7 @@ void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& executi
     volume_ = std::make_unique<SmokeVolume>(context_, *smoke_);
   }
   centres_ = std::make_unique<CentreSourcesOnDevice>(
-      context_, smoke_ ? smoke_->centres() : no_smoke, smoke_ ? smoke_->medium() : clear, scene_->surfaces,
+      context_, smoke_ ? smoke_->centres() : no_smoke, smoke_ ? smoke_->medium() : clear, scene_->surfaces, scatters_,
       volume_ ? centre_density_.get() : density_.get(), middle_, options_, timer, execution);
 }
 
@@ -167,7 +173,8 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
                                                                     const Execution& execution) {
   if (scene->matter_hash != scene_->matter_hash ||
       !compensated_ray_marching::reasons_against(*scene, options_).empty() ||
-      (incoming_ && !incoming_->fits(scene->lights)))
+      (incoming_ && !incoming_->fits(scene->lights)) ||
+      (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
   const Use use(context_);
   scene_ = std::move(scene);
@@ -190,7 +197,7 @@ std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution
   incoming_->become(scene_->lights);
   if (surroundings_->surfaces()) surroundings_->set_lamps(*scene_, *incoming_);
   times.push_back({"environment", watch.lap()});
-  if (!smoke_) return times;
+  if (!scatters_) return times;
   timer.restart();
   source_->light(*incoming_, timer, execution);
   append(times, timer.times());
@@ -199,11 +206,11 @@ std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution
 
 std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
   const std::string none = "no medium extinguishes";
-  const bool scatters = smoke_ && (smoke_->medium().albedo * smoke_->medium().sigma_t).maxCoeff() > 0;
+  const std::string dark = smoke_ ? scene::why_nothing_scatters(*scene_) : none;
   std::string again = grid_ ? grid_->single_only() : none, how = none;
   if (grid_) how = fmt::format("{} nodes, {} directions", grid_->nodes().size(), incoming_->directions().size());
   bool multiple = grid_ && grid_->single_only().empty();
-  if (smoke_ && centres_) {
+  if (scatters_ && centres_) {
     how = fmt::format("{} centres, {} bands", centres_->centres(), options_.order);
     again = centres_->single_only();
     multiple = again.empty();
@@ -212,11 +219,8 @@ std::vector<scene::Stage> PreparedSmokeGpu::stages() const {
     again = fmt::format("{} bands, deepest cell {:.2g}; {} iterations, error about {:.1g}{}", options_.order,
                         grid_->deepest_cell(), source_->iterations(), source_->error(),
                         source_->error() > options_.tolerance ? ": more than the tolerance" : "");
-  return {{"single scattering", scatters,
-           !smoke_    ? none
-           : scatters ? how
-                      : "the albedo is 0"},
-          {"multiple scattering", multiple, again},
+  return {{"single scattering", scatters_, scatters_ ? how : dark},
+          {"multiple scattering", multiple, scatters_ ? again : dark},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
            : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
@@ -263,7 +267,7 @@ void PreparedSmokeGpu::march(const View& view) const {
   } else if (centres_) {
     centres_->sources().bind(at::centre_sources);
     p.set("least_source_density", smoke_->least_density());
-  } else {
+  } else if (scatters_) {
     source_->logarithms().bind(at::logarithms);
     set_grid(p, grid_->grid(), middle_);
     p.set("brightest", compensated_ray_marching::has_hard_edges(smoke_->medium())
@@ -343,8 +347,10 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
     surroundings_->find_ends(view, frame_);
   }
   if (smoke_) {
-    frame_.timer.begin("towards the camera");
-    centres_ ? centres_->towards(view) : source_->towards(view, middle_);
+    if (scatters_) {
+      frame_.timer.begin("towards the camera");
+      centres_ ? centres_->towards(view) : source_->towards(view, middle_);
+    }
     if (volume_) {
       frame_.timer.begin("volume pass");
       volume_->find(centres_->sources());
@@ -368,7 +374,7 @@ scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& exe
     result.counters["iterations"] = centres_->iterations();
     result.counters["multiple_error"] = centres_->residual();
     result.counters["negative_share"] = centres_->negative_share();
-  } else if (smoke_) {
+  } else if (scatters_) {
     result.counters["iterations"] = source_->iterations();
     result.counters["multiple_error"] = source_->error();
     result.counters["deepest_cell"] = grid_->deepest_cell();

@@ -1,4 +1,5 @@
 // Some slices of every camera ray: density, source radiance between nodes, composition (Zhou et al. 2008, Eq. 14, 15).
+// SCATTERS: the smoke scatters something of the light.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/opacity.glsl"
@@ -12,7 +13,7 @@ uniform vec3 sigma_t;
 #elif PAPER
 layout(std430, binding = AT_CENTRE_SOURCES) readonly buffer CentreSources { vec4 sources[]; };  // by Gaussian
 uniform float least_source_density;  // of Gaussians: below it no one knows the source
-#else
+#elif SCATTERS
 layout(std430, binding = AT_LOGARITHMS) readonly buffer Logarithms { vec4 logarithms[]; };  // of source radiance, by cell
 uniform vec3 brightest;  // of the light, times the albedo
 uniform vec3 corner;
@@ -126,15 +127,17 @@ void main() {
   for (int k = 0; k < SLICES; ++k) {
     float here = density[k];
     if (first_slice + k >= count || !(here > 0)) continue;
-#if !PAPER
+#if !PAPER && SCATTERS
     vec3 middle = origin + (range.x + (float(first_slice + k) + 0.5) * range.y) * direction;
 #endif
 #if VOLUME
     vec3 source = weighted[k] / here;
 #elif PAPER
     vec3 source = here >= least_source_density ? max(weighted[k] / here, vec3(0)) : vec3(0);
-#else
+#elif SCATTERS
     vec3 source = source_at(middle);
+#else
+    vec3 source = vec3(0);
 #endif
     vec3 depth = sigma_t * (here * range.y), seen;
     for (int c = 0; c < 3; ++c)

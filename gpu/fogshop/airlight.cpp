@@ -47,7 +47,7 @@ struct FogOnDevice::Strip {
 
 void FogOnDevice::make_programs() {
   const fogshop::Options& o = model_.options;
-  const int n = model_.gaussians.count, lights = int(model_.lights.size());
+  const int n = model_.gaussians.count, lights = model_.scattered_lights();
   programs_.composition = &program("fogshop/composition.comp", {{"LOCAL_SIZE_X", "64"}});
   if (needs_.center_depths)
     programs_.view_depths = &program("fogshop/depths.comp", {{"LOCAL_SIZE_X", std::to_string(depth_group)}});
@@ -70,8 +70,9 @@ void FogOnDevice::make_programs() {
     programs_.shares = &program("fogshop/shares.comp", sizes);
     programs_.edges = &program("fogshop/edges.comp", sizes);
     programs_.slice_depths = &program("fogshop/slice_depths.comp", with(sizes, {{"EVEN", "0"}}));
-    programs_.slice_light =
-        &program("fogshop/slice_light.comp", with(sizes, {{"EXACT_LIGHT_DEPTH", o.map ? "0" : "1"}}));
+    programs_.slice_light = &program("fogshop/slice_light.comp", with(sizes, {{"LIGHT_DEPTH", model_.clear_ways ? "0"
+                                                                                              : o.map           ? "1"
+                                                                                                      : "2"}}));
     // A Gaussian of the tile is one iteration in each pass.
     check_iterations(context_, std::max<double>(n, lights * (o.slices + 1.0) * (o.map ? 10 : 10 + n)),
                      "the airlight by slices");
@@ -109,14 +110,14 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
     frame.timer.begin(stage);
     Program& p = *programs_.homogeneous;
     set_grid(p, grid);
-    p.set("light_count", int(model_.lights.size()));
+    p.set("light_count", model_.scattered_lights());
     p.set("source_radius", o.source_radius);
     p.dispatch(grid.width(), grid.height());
     return;
   }
   const int columns = blocks(grid.width(), tile), rows = blocks(grid.height(), tile), n = model_.gaussians.count;
   const bool hands_on = sliced() || needs_.sky_volume;
-  const int fields = hands_on ? RayValues{o.slices, sliced() ? int(model_.lights.size()) : 0}.fields() : 0;
+  const int fields = hands_on ? RayValues{o.slices, sliced() ? model_.scattered_lights() : 0}.fields() : 0;
   const std::size_t row_of_lists = std::size_t(columns) * (n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
@@ -160,7 +161,7 @@ void FogOnDevice::compute_strip(const Grid& grid, const Strip& strip, Frame& fra
   if (programs_.stretch) run(programs_.stretch);
   if (programs_.paper) run(programs_.paper);
   if (sliced()) {
-    run(programs_.shares, blocks(RayValues{o.slices, int(model_.lights.size())}.nodes(), nodes_each));
+    run(programs_.shares, blocks(RayValues{o.slices, model_.scattered_lights()}.nodes(), nodes_each));
     run(programs_.edges);
     run(programs_.slice_depths, blocks(o.slices, slices_each));
     run(programs_.slice_light);

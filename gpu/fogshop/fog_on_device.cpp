@@ -181,8 +181,8 @@ float FogOnDevice::open_distance() const {
   return d < far_away ? float(d) : far_away;
 }
 
-void FogOnDevice::fill_sky_volume(const scene::Scene& scene) {
-  sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_);
+void FogOnDevice::fill_sky_volume(const scene::Scene& scene, const scene::Execution& execution) {
+  sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_, execution);
 }
 
 void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const Buffer* surface, Frame& frame) {

@@ -37,7 +37,7 @@ class FogOnDevice {
 
   // Light of the environment that airlight() adds, by Eq. 28 or by a grid and slices: before the first frame.
   void upload_environment(const fogshop::EnvironmentLighting&);
-  void fill_sky_volume(const scene::Scene&);
+  void fill_sky_volume(const scene::Scene&, const scene::Execution&);
 
   // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
   // null: every ray is infinite (or reaches to the environment's distance). Tiles first list the Gaussians that their
@@ -77,7 +77,7 @@ class FogOnDevice {
   struct Strip;
 
   std::vector<float> tables();
-  bool sliced() const { return !model_.paper() && !model_.lights.empty() && model_.gaussians.count > 0; }
+  bool sliced() const { return !model_.paper() && model_.scattered_lights() > 0 && model_.gaussians.count > 0; }
   float open_distance() const;  // [m] of rays that nothing ends
   void make_programs();
   void fill_depths(Program&, const Point3& from, std::size_t first, bool lights_too);

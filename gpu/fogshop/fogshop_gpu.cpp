@@ -54,7 +54,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
                                        [&](const std::string& stage) { timer.stage(stage); });
     if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*lighting_.environment);
     if (needs_.sky_volume) {
-      fog_.fill_sky_volume(*scene_);
+      fog_.fill_sky_volume(*scene_, execution);
       timer.stage("sky volume");
     }
     if (needs_.environment) {

@@ -32,6 +32,7 @@ enum Binding {
   psf_bands = 10,
   sky_volume = 7,
   beams = 10,
+  open_beams = 11,
   // surfaces.comp
   primitives = 1,
   materials = 2,

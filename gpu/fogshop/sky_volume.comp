@@ -1,5 +1,5 @@
 // Light of the environment at the nodes of the grid (methods/fogshop/sky_volume.cpp), a node per invocation. Each dispatch
-// adds some of the beams.
+// adds some of the beams. SURFACES: they are in the way of some.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y, local_size_z = LOCAL_SIZE_Z) in;
 #include "fogshop/fog.glsl"
 #include "fogshop/sky_volume.glsl"
@@ -12,6 +12,10 @@ struct Beam {
 };
 layout(std430, binding = AT_BEAMS) readonly buffer Beams { Beam beams[]; };
 uniform int first_beam, last_beam;
+#if SURFACES
+layout(std430, binding = AT_OPEN_BEAMS) readonly buffer OpenBeams { uint open_beams[]; };  // OpenBeams::bits
+uniform int beam_words;  // of a node
+#endif
 
 // Optical depth of all Gaussians from a point to infinity.
 float depth_beyond(vec3 from, vec3 direction) {
@@ -30,8 +34,12 @@ void main() {
   ivec3 node = ivec3(gl_GlobalInvocationID);
   if (any(greaterThan(node, ivec3(grid_last)))) return;
   vec3 x = grid_corner + grid_cell * vec3(node), sum = vec3(0);
-  for (int b = first_beam; b < last_beam; ++b)
+  for (int b = first_beam; b < last_beam; ++b) {
+#if SURFACES
+    if ((open_beams[node_place(node) / 3 * beam_words + b / 32] >> (b % 32) & 1u) == 0u) continue;
+#endif
     sum += beams[b].weight * transmittance_of(depth_beyond(x, beams[b].direction));
+  }
   int place = node_place(node);
   for (int c = 0; c < 3; ++c) node_light[place + c] += sum[c];
 }

@@ -1,6 +1,7 @@
 #include "gpu/fogshop/sky_volume.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "gpu/fogshop/fog_on_device.h"
 #include "gpu/fogshop/interface.h"
@@ -32,16 +33,25 @@ double node_count(const fogshop::SkyGrid& grid) { return (grid.last.cast<double>
 }  // namespace
 
 SkyVolumeOnDevice::SkyVolumeOnDevice(Context& context, FogOnDevice& fog, const scene::Scene& scene,
-                                     const fogshop::Model& model)
+                                     const fogshop::Model& model, const scene::Execution& execution)
     : grid_(model.gaussians, model.options.sky_cells),
       nodes_(context, "sky volume", std::size_t(node_count(grid_)) * 12) {
   const Use use_context(context);
-  const std::vector<BeamData> beams = beam_data(fogshop::sky_beams(scene, model.options.sky_directions));
-  const Buffer beam_buffer(context, "beams of the environment", beams);
-  Program& p =
-      fog.program("fogshop/sky_volume.comp", {{"LOCAL_SIZE_X", "4"}, {"LOCAL_SIZE_Y", "4"}, {"LOCAL_SIZE_Z", "4"}});
+  const std::vector<fogshop::SkyBeam> beams = fogshop::sky_beams(scene, model.options.sky_directions);
+  const Buffer beam_buffer(context, "beams of the environment", beam_data(beams));
+  // Once for the surfaces, by the tree that the host has of them.
+  std::optional<fogshop::OpenBeams> open;
+  if (scene.geometry) open.emplace(*scene.geometry, grid_, beams, execution);
+  const Buffer open_buffer(context, "open beams", open ? open->bits : std::vector<std::uint32_t>());
+  Program& p = fog.program(
+      "fogshop/sky_volume.comp",
+      {{"LOCAL_SIZE_X", "4"}, {"LOCAL_SIZE_Y", "4"}, {"LOCAL_SIZE_Z", "4"}, {"SURFACES", open ? "1" : "0"}});
   fog.bind();
   beam_buffer.bind(at::beams);
+  if (open) {
+    open_buffer.bind(at::open_beams);
+    p.set("beam_words", int(open->words));
+  }
   fog.use(p);
   use(p);
   const double each = model.gaussians.count + 2.0;  // loop iterations per beam; the one that ends a loop counts

@@ -12,7 +12,7 @@ class SkyVolumeOnDevice {
  public:
   // Computes the nodes, 12 bytes each, by as many dispatches as keep each of them short. Requires a Gaussian. Throws
   // Unavailable where the device has no storage block of that size.
-  SkyVolumeOnDevice(Context&, FogOnDevice&, const scene::Scene&, const fogshop::Model&);
+  SkyVolumeOnDevice(Context&, FogOnDevice&, const scene::Scene&, const fogshop::Model&, const scene::Execution&);
 
   // For a program that includes fogshop/sky_volume.glsl: its uniforms, and the nodes at binding 7.
   void use(Program&) const;

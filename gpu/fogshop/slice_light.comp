@@ -1,5 +1,5 @@
 // Variant S, last pass: airlight of every ray from the depths of its slices and those from the lights at their edges
-// (methods/fogshop/ray_airlight.cpp, slices.cpp).
+// (methods/fogshop/ray_airlight.cpp, slices.cpp). LIGHT_DEPTH, of the Gaussians: 0 none, 1 by maps, 2 by exact sums.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
@@ -69,7 +69,7 @@ void main() {
       float t = ray_value[value_at(edges + k, ray)], depth = k > 0 ? ray_value[value_at(slices + k, ray)] : 0;
       view_depth += depth;
       vec3 x = origin + t * direction;
-      float shadow = EXACT_LIGHT_DEPTH != 0 ? gaussian_depth(light.position, x) : light_depth(light, x);
+      float shadow = LIGHT_DEPTH == 0 ? 0 : LIGHT_DEPTH == 1 ? light_depth(light, x) : gaussian_depth(light.position, x);
       Edge here = Edge(t, view_depth + (shadow + constant * length(vec2(t - seen.along, seen.h))), shadow);
       if (k > 0) {
         vec3 scattered = scattered_by(k - 1, ray, depth);

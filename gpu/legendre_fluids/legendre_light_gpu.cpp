@@ -17,6 +17,7 @@
 #include "methods/legendre_fluids/light_options.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -122,9 +123,8 @@ bool PreparedLightGpu::scatters() const {
 }
 
 std::vector<scene::Stage> PreparedLightGpu::stages() const {
-  const std::string why = !any_medium()         ? "no medium extinguishes"
-                          : lit_.lights.empty() ? "no light shines"
-                                                : "no medium scatters";
+  const std::string dark = scene::why_nothing_scatters(*scene_);
+  const std::string why = !any_medium() ? "no medium extinguishes" : dark.empty() ? "no medium scatters" : dark;
   const bool ends = first_hits_ != nullptr, lit = surfaces_->shines();
   return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
           {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
@@ -132,8 +132,9 @@ std::vector<scene::Stage> PreparedLightGpu::stages() const {
            negative()     ? "a stretch of every ray in each round, until all are done"
            : scatters()   ? fmt::format("{} dispatches for each of {} lights, a stretch of every ray each",
                                         media_->stretches(), lit_.lights.size())
-           : any_medium() ? "columns alone: " + why
+           : any_medium() ? "columns alone"
                           : why},
+          {"airlight", scatters(), scatters() ? "along the rays" : why},
           {"clamping", negative(),
            negative() ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_share_)
                       : "no density is below 0"},

@@ -13,6 +13,7 @@
 #include "methods/legendre_fluids/paper_picture.h"
 #include "scene/background.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::gpu::legendre {
 namespace {
@@ -79,7 +80,8 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
       moving_(legendre_fluids::moving_axes(*scene_)),
       frame_(context_) {
   for (const scene::Light& light : scene_->lights)
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+        sun && (scatter(scene_->media, light) || (!scene_->backdrops.empty() && scene::shines(light))))
       lights_.push_back(*sun);
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium)) medium_ = &medium;
@@ -102,7 +104,7 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
 
 std::vector<scene::Stage> PreparedPaperGpu::stages() const {
   const bool kept = bool(systems_);
-  const std::string why = !field_ ? "no medium extinguishes" : "no directional light shines";
+  const std::string why = field_ ? scene::why_nothing_scatters(*scene_) : "no medium extinguishes";
   const std::string how =
       !kept ? ""
             : fmt::format("{} of {} unknowns",

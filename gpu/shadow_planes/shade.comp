@@ -32,6 +32,25 @@ uniform vec3 intensity;  // [W/sr], of a spot on its axis
 shared uint part_sum, crossing_total, gathering_total;
 shared bool unfinished_here;
 
+// Does the ray meet something that scatters?
+bool meets_air(Line line, double end) {
+#if !AIRLIGHT
+  return false;
+#elif PAPER_MEDIUM
+  dvec2 part = domain_of(line, end);
+  return part.y > part.x;
+#elif BOUNDED
+  bool met = false;
+  for (int m = 0; m < media_count; ++m) {
+    dvec2 inside = clip_to_region(m, line.origin, line.direction, dvec2(0, end));
+    met = met || (inside.y > inside.x && any(greaterThan(albedo_of(m) * extinction_of(m), vec3(0))));
+  }
+  return met;
+#else
+  return true;
+#endif
+}
+
 #if STENCIL
 #include "shadow_planes/stencil.glsl"
 #else

@@ -11,6 +11,7 @@
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/error.h"
 #include "scene/light_on_ray.h"
+#include "scene/scattered_lights.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {
@@ -72,7 +73,8 @@ PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> sc
 }
 
 void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
-  const bool lit = !scene_->lights.empty(), surfaces = !scene_->surfaces.empty();
+  const bool lit = std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::shines);
+  const bool surfaces = !scene_->surfaces.empty();
   const bool balls = std::any_of(scene_->lights.begin(), scene_->lights.end(),
                                  [](const scene::Light& light) { return scene::ball(light)->radius > 0; });
   StageTimer timer(context_);
@@ -96,7 +98,7 @@ void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
       if (std::holds_alternative<scene::Sphere>(surface.shape)) most += 5;
     rounds_ = std::min(2, (most - 1) / shading_->crossings_of_dispatch());
   }
-  if (options_.evaluation == Options::Evaluation::vertices)
+  if (options_.evaluation == Options::Evaluation::vertices && scene::why_nothing_scatters(*scene_).empty())
     values_ = std::make_unique<VertexValues>(context_, scene_, options_, airlight_terms_, surfaces_on_device(),
                                              silhouettes_ ? silhouettes_->most() : 0);
   times_ = timer.times();
@@ -104,7 +106,7 @@ void PreparedShadowPlanesGpu::prepare(FirstHits::Way way) {
 
 void PreparedShadowPlanesGpu::find_silhouettes() const {
   for (std::size_t l = 0; l < scene_->lights.size(); ++l)
-    silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
+    if (scene::shines(scene_->lights[l])) silhouettes_->find(scene::ball(scene_->lights[l])->center, edges_[l]);
   moved_ = false;
 }
 
@@ -112,17 +114,22 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
   std::size_t edges = 0;
   const Use use(context_);
   for (const LightEdges& of_light : edges_)
-    edges += std::size_t(of_light.state->download<int>()[offsetof(LightStateData, edge_count) / 4]);
-  const bool lit = !scene_->lights.empty();
-  const std::string dark = lit ? "one dispatch per light and air" : "no light shines";
-  const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, scene_->lights.size())
-                            : lit        ? "there are no surfaces"
-                                         : dark;
+    if (of_light.state) edges += std::size_t(of_light.state->download<int>()[offsetof(LightStateData, edge_count) / 4]);
+  const auto lights = std::size_t(std::count_if(scene_->lights.begin(), scene_->lights.end(), scene::shines));
+  const std::string clear = scene::why_nothing_scatters(*scene_);
+  const std::string found = silhouettes_ ? shadow_planes::silhouettes_found(edges, lights)
+                            : lights > 0 ? "there are no surfaces"
+                                         : "no light shines";
+  const bool surfaces = lights > 0 && !scene_->surfaces.empty();
   return {{"silhouettes", silhouettes_ != nullptr, found},
           {"counts", silhouettes_ != nullptr, silhouettes_ ? "surfaces between light and camera, by a tree" : found},
           {"edges of rays", silhouettes_ != nullptr,
            silhouettes_ ? "by angle around the line from light to camera" : found},
-          {"airlight and surfaces", lit, dark},
+          {"airlight", clear.empty(), clear.empty() ? "one dispatch per light and air" : clear},
+          {"surfaces", surfaces,
+           scene_->surfaces.empty() ? "there are none"
+           : surfaces               ? "with the first air of a light"
+                                    : "no light shines"},
           {"composition", true, "layers of the film"}};
 }
 
@@ -130,6 +137,10 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanesGpu::next(std::shared_ptr<const Scene> scene,
                                                                            const Execution&) {
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
+  for (std::size_t l = 0; l < scene->lights.size(); ++l)
+    if (scene::shines(scene->lights[l]) != scene::shines(scene_->lights[l]) ||
+        scene::scatter(scene->media, scene->lights[l]) != scene::scatter(scene_->media, scene_->lights[l]))
+      return std::nullopt;
   const Use use(context_);
   if (first_hits_ && !first_hits_->move_balls(*scene)) return std::nullopt;
   scene_ = std::move(scene);
@@ -138,6 +149,9 @@ std::optional<std::vector<scene::StageTime>> PreparedShadowPlanesGpu::next(std::
 }
 
 void PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture) const {
+  if (!scene::shines(scene_->lights[std::size_t(l)])) return;
+  const bool scattered = scene::scatter(scene_->media, scene_->lights[std::size_t(l)]);
+  if (!scattered && scene_->surfaces.empty()) return;
   const Point3 light = scene::ball(scene_->lights[l])->center;
   const scene::Camera& camera = picture.view.camera;
   PlaneShading::Edges lists;
@@ -148,9 +162,10 @@ void PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture) const {
     fan_->fill(camera, light, edges_[l]);
     lists = {&edges_[l], fan_.get()};
   }
-  if (airlight_terms_.count() == 0) {
+  if (!scattered) {
     frame_.timer.begin("airlight and surfaces");
     shading_->add(picture, l, -1, lists, nullptr, rounds_);
+    return;
   }
   for (int term = 0; term < airlight_terms_.count(); ++term) {
     if (values_) {
@@ -186,7 +201,8 @@ void PreparedShadowPlanesGpu::draw(const View& view) const {
   shading_->compose(picture, {layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")});
   frame_.download.add_values("counters", picture.counters, sizeof(CountersData));
   for (std::size_t l = 0; l < edges_.size(); ++l)
-    frame_.download.add_values(fmt::format("light {}", l), *edges_[l].state, sizeof(LightStateData));
+    if (edges_[l].state)
+      frame_.download.add_values(fmt::format("light {}", l), *edges_[l].state, sizeof(LightStateData));
 }
 
 bool PreparedShadowPlanesGpu::finish(scene::Rendering& result) const {
@@ -209,6 +225,7 @@ bool PreparedShadowPlanesGpu::finish(scene::Rendering& result) const {
   if (!values_) return true;
   double vertices = 0;
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) {
+    if (!scene::scatter(scene_->media, scene_->lights[l])) continue;
     const auto state = frame_.download.values<LightStateData>(fmt::format("light {}", l));
     const bool planes = !state.empty() && options_.shadows != Options::Shadows::none;
     const double of_planes = planes ? double(state.front().edge_count) * VertexValues::plane_rows(options_) : 0;

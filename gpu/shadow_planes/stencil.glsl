@@ -144,11 +144,11 @@ vec3 airlight_of(Line line, double end, int primitive, int m_origin, inout State
   double entry = 1e300LF;
   work = Work(0, 0, 0);
   m_end = m_origin;
-  bool more = false, drawn = part.y > part.x;
+  bool more = false, drawn = part.y > part.x && meets_air(line, end);
 #if PAPER_MEDIUM
   if (drawn && part.x > 0) entry = key_of_entry(line, part.x);
 #endif
-  for (int gathering = 0;; ++gathering) {
+  for (int gathering = 0; drawn || primitive >= 0; ++gathering) {
     bool first = resume == 0 && gathering == 0;
 #if CROSSINGS
     stencil_end = part.y;

@@ -9,6 +9,7 @@
 #include "gpu/view_uniforms.h"
 #include "methods/wavelet_fog/sun_scattering.h"
 #include "scene/media/fogmap.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {
@@ -46,7 +47,7 @@ const scene::Fogmap& fogmap(const FogOnDevice& fog) { return *std::get<scene::Fo
 std::vector<const scene::DirectionalLight*> suns_of(const scene::Scene& scene) {
   std::vector<const scene::DirectionalLight*> suns;
   for (const scene::Light& light : scene.lights)
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && scatter(scene.media, light))
       suns.push_back(sun);
   return suns;
 }

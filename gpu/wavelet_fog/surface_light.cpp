@@ -8,6 +8,7 @@
 
 #include "gpu/view_uniforms.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {
@@ -43,7 +44,8 @@ bool something_ends_rays(const scene::Scene& scene) {
 }
 
 bool lamps_light_surfaces(const scene::Scene& scene) {
-  return scene.geometry && std::any_of(scene.lights.begin(), scene.lights.end(), scene::is_delta);
+  const auto reaches = [](const scene::Light& light) { return scene::is_delta(light) && scene::shines(light); };
+  return scene.geometry && std::any_of(scene.lights.begin(), scene.lights.end(), reaches);
 }
 
 SurfaceLight::SurfaceLight(Context& context, const scene::Scene& scene, const FirstHits* first_hits)

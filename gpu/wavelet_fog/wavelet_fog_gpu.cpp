@@ -6,6 +6,7 @@
 
 #include "gpu/wavelet_fog/sun_on_device.h"
 #include "gpu/wavelet_fog/surface_light.h"
+#include "methods/wavelet_fog/sun_scattering.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "scene/error.h"
 #include "scene/single_precision.h"
@@ -61,7 +62,7 @@ PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene,
     if (extinguishes(medium))
       fogs_.push_back(
           std::make_unique<FogOnDevice>(context_, medium, options_, int(fogs_.size()), lamps_light_surfaces(*scene_)));
-  if (options_.sun && !fogs_.empty() && !suns_of(*scene_).empty())
+  if (options_.sun && wavelet_fog::why_no_sun(*scene_).empty())
     sun_ = std::make_unique<SunOnDevice>(context_, *scene_, fogs_, first_hits_.get(), options_);
   composition_ = &program(context_, "composition", 64);
   timer.begin("maps");
@@ -83,8 +84,7 @@ std::vector<scene::Stage> PreparedWaveletFogGpu::stages() const {
           {"airlight", sun_ != nullptr,
            sun_            ? "directional lights, scattered once"
            : !options_.sun ? "sun is not asked for"
-           : fogs_.empty() ? none
-                           : "no directional light shines"},
+                           : wavelet_fog::why_no_sun(*scene_)},
           {"surfaces", lit,
            lit ? "lamps through the fog, the environment" : "no surface is lit, and there is no environment"},
           {"composition", true, "layers of the film"}};
@@ -101,7 +101,8 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size() ||
       scene->media.size() != scene_->media.size() || !wavelet_fog::reasons_against(*scene, options_).empty() ||
       !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light) ||
-      (options_.sun && suns_of(*scene).empty() != suns_of(*scene_).empty()))
+      lamps_light_surfaces(*scene) != lamps_light_surfaces(*scene_) ||
+      (options_.sun && wavelet_fog::why_no_sun(*scene).empty() != wavelet_fog::why_no_sun(*scene_).empty()))
     return std::nullopt;
   std::vector<const scene::Medium*> media;
   for (std::size_t i = 0; i < scene->media.size(); ++i) {

@@ -39,7 +39,7 @@ Rgb CentreSources::irradiance(const Point3& x, const Vec3& normal, int surface) 
   return radiance_->irradiance(x, normal, [&](std::size_t object) { return surface_of_[object] != surface; });
 }
 
-void CentreSources::light(const std::vector<scene::Light>& lights, const scene::Execution& execution) {
+void CentreSources::light(const std::vector<scene::Light>& lights, bool scatters, const scene::Execution& execution) {
   scene::Stopwatch watch;
   times_.clear();
   SourceLight light{bands_.of(lights), {}};
@@ -48,11 +48,15 @@ void CentreSources::light(const std::vector<scene::Light>& lights, const scene::
                     std::move(light), options_.paper.transmittance, transmittance_directions(), objects_);
   sources_.resize(sum_.gaussians.size());
   times_.push_back({"environment", watch.lap()});
+  iterations_ = 0;
+  residual_ = negative_share_ = 0;
+  if (!scatters) {
+    sources_.assign(sources_.size(), std::vector<Rgb>(1, Rgb::Zero()));
+    return;
+  }
   scene::parallel_rows(int(sources_.size()), execution,
                        [&](int i) { sources_[std::size_t(i)] = radiance_->at(sum_.gaussians[std::size_t(i)].center); });
   times_.push_back({"single scattering", watch.lap()});
-  iterations_ = 0;
-  residual_ = negative_share_ = 0;
   if (!single_only_.empty()) return;
   scatter_again();
   times_.push_back({"multiple scattering", watch.lap()});

@@ -20,8 +20,9 @@ class CentreSources {
   CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const std::vector<scene::Surface>&,
                 const Options&);
 
-  // A light, or another. Conjugate gradients begin with the radiance before.
-  void light(const std::vector<scene::Light>&, const scene::Execution&);
+  // A light, or another. Conjugate gradients begin with the radiance before. `scatters`: the smoke does; else all sources are 0, and
+  // light on surfaces is what is found.
+  void light(const std::vector<scene::Light>&, bool scatters, const scene::Execution&);
 
   // At each centre, towards the camera, at least 0 where it is asked for between centres [W/m^2/sr].
   std::vector<Rgb> towards(const scene::Camera&) const;

@@ -12,6 +12,8 @@
 namespace airlight::compensated_ray_marching {
 namespace {
 
+constexpr double largest_blunt = 10;  // size up to which 24 levels of directions are exact to 1e-8
+
 int order_of(const Harmonics& f) { return int(std::lround(std::sqrt(double(f.size())))); }
 
 // Its size without the mean.
@@ -76,19 +78,24 @@ Harmonics exact_exponential(const Harmonics& f) {
 LinearExponential::LinearExponential(const std::vector<Harmonics>& family, double longest, int steps)
     : longest_(longest), log_a_(std::size_t(steps) + 1, 0.0), log_b_(std::size_t(steps) + 1, 0.0) {
   if (family.empty()) throw Error("a linear exponential of an empty family");
-  const Sphere sphere(order_of(family[0]), 24, 48);
   Eigen::VectorXd a = Eigen::VectorXd::Zero(steps + 1), b = a;
-  for (const Harmonics& h : family)
-    for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
-      const double value = sphere.value(h, i), weight = sphere.directions[i].weight;
-      const double factor = std::exp(-longest / steps * value);
-      double power = 1;
-      for (int k = 1; k <= steps; ++k) {
-        power = k % 16 ? power * factor : std::exp(-longest * k / steps * value);
-        a[k] += weight * power;
-        b[k] -= weight * power * value;
+  const auto add = [&](const Sphere& sphere, int first, int last) {
+    for (const Harmonics& h : family)
+      for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
+        const double value = sphere.value(h, i), weight = sphere.directions[i].weight;
+        const double factor = std::exp(-longest / steps * value);
+        double power = 0;
+        for (int k = first; k <= last; ++k) {
+          power = k != first && k % 16 ? power * factor : std::exp(-longest * k / steps * value);
+          a[k] += weight * power;
+          b[k] -= weight * power * value;
+        }
       }
-    }
+  };
+  // The larger the size, the sharper the peak that the rule has to see.
+  const int blunt = std::min(steps, int(steps * largest_blunt / longest));
+  if (blunt > 0) add(Sphere(order_of(family[0]), 24, 48), 1, blunt);
+  if (blunt < steps) add(Sphere(order_of(family[0]), 40, 80), blunt + 1, steps);
   for (int k = 1; k <= steps; ++k) {
     const double s = longest * k / steps, members = double(family.size());
     log_a_[std::size_t(k)] = std::log(a[k] / (4 * pi * members));

@@ -12,6 +12,7 @@
 #include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/math/special_functions.h"
+#include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::compensated_ray_marching {
@@ -50,9 +51,7 @@ class PreparedPicture final : public scene::Prepared {
   bool paper() const { return options_.variant == Options::Variant::paper; }
   std::vector<scene::StageTime> light(const Execution&);
   // Of several orders, in what is drawn.
-  bool multiple() const {
-    return (grid_ && grid_->single_only().empty()) || (centres_ && centres_->single_only().empty());
-  }
+  bool multiple() const { return scatters_ && (grid_ ? grid_->single_only() : centres_->single_only()).empty(); }
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
@@ -65,6 +64,7 @@ class PreparedPicture final : public scene::Prepared {
   Options options_;
   std::string settings_;
   std::optional<SmokeField> smoke_;  // nothing where no medium extinguishes
+  bool scatters_ = false;            // the smoke, something of the light
   double slice_ = 0;                 // [m] across
   std::optional<IncomingLight> incoming_;
   std::optional<LitGrid> grid_;
@@ -78,6 +78,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
     : scene_(std::move(scene)), options_(options), settings_(std::move(settings)) {
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !smoke_box(medium).empty()) smoke_.emplace(medium, options_);
+  scatters_ = smoke_ && scene::why_nothing_scatters(*scene_).empty();
   scene::Stopwatch watch;
   if (!paper()) {
     incoming_.emplace(scene_->lights, EnvironmentBands(options_.grid.levels));
@@ -98,7 +99,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
       volume_.emplace(*smoke_, execution);
       times_.push_back({"densities", watch.lap()});
     }
-  } else {
+  } else if (scatters_) {
     grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
     times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
   }
@@ -108,7 +109,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
 
 std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution) {
   if (centres_) {
-    centres_->light(scene_->lights, execution);
+    centres_->light(scene_->lights, scatters_, execution);
     return centres_->times();
   }
   if (!grid_) return {};
@@ -120,7 +121,8 @@ std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution)
 std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_ptr<const Scene> scene,
                                                                    const Execution& execution) {
   if (scene->matter_hash != scene_->matter_hash || !reasons_against(*scene, options_).empty() ||
-      (incoming_ && !incoming_->fits(scene->lights)))
+      (incoming_ && !incoming_->fits(scene->lights)) ||
+      (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
   kept_.push_back(std::exchange(scene_, std::move(scene)));
   kept_.resize(1);  // the first, whose smoke is marched through
@@ -137,7 +139,7 @@ std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_p
 
 std::vector<scene::Stage> PreparedPicture::stages() const {
   const std::string none = "no medium extinguishes";
-  const bool scatters = smoke_ && (smoke_->medium().albedo * smoke_->medium().sigma_t).maxCoeff() > 0;
+  const std::string dark = smoke_ ? scene::why_nothing_scatters(*scene_) : none;
   std::string how, again, march;
   if (grid_) {
     const auto& size = grid_->grid().cells.size;
@@ -154,11 +156,8 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
     if (again.empty())
       again = fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
   }
-  return {{"single scattering", smoke_ && scatters,
-           !smoke_    ? none
-           : scatters ? how
-                      : "the albedo is 0"},
-          {"multiple scattering", multiple(), !smoke_ ? none : again},
+  return {{"single scattering", scatters_, scatters_ ? how : dark},
+          {"multiple scattering", multiple(), scatters_ ? again : dark},
           {"residual", smoke_ && smoke_->with_residual(),
            !smoke_                   ? none
            : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
@@ -228,6 +227,10 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
       ++p.slices;
       const Rgb depth = smoke_->medium().sigma_t * here * slices.step, lost = one_minus_exp(depth);
       Rgb source = Rgb::Zero();
+      if (!scatters_) {
+        p.transmittance *= 1 - lost;
+        continue;
+      }
       if (grid_)
         source = exponentials(between_nodes(grid_->grid(), towards, x)).min(brightest);
       else if (volume_)
@@ -259,7 +262,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
   std::vector<Rgb> towards;
   if (grid_) towards = grid_->towards(view.camera, execution);
   if (centres_) towards = centres_->towards(view.camera);
-  if (smoke_) result.times.push_back({"towards the camera", watch.lap()});
+  if (scatters_) result.times.push_back({"towards the camera", watch.lap()});
   SmokeVolume::Values voxels;
   if (volume_) {
     voxels = volume_->values(towards, execution);
@@ -299,7 +302,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
     slices += row_slices;
     samples += row_samples;
   });
-  result.times.push_back({"march", watch.lap()});
+  result.times.push_back({smoke_ ? "march" : "camera rays", watch.lap()});
   result.counters = {
       {"rays", double(film.pixels())}, {"slices", double(slices)}, {"gaussian_samples", double(samples)}};
   if (grid_) {

@@ -41,7 +41,8 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
   scene::Stopwatch watch;
   model_ = make_model(*scene_, options);
   plan_ = make_plan(*scene_, model_);
-  times_.push_back({"gaussians", watch.lap()});
+  const double seconds = watch.lap();
+  if (model_.gaussians.count > 0) times_.push_back({"gaussians", seconds});
   const Needs& needs = plan_.needs;
   if (needs.center_depths) {
     for (LightModel& light : model_.lights)

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "methods/fogshop/map_error.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::fogshop {
 
@@ -101,10 +102,20 @@ Options read_options(const scene::Settings& settings) {
 
 namespace {
 
+// Light on its way through all Gaussians, one after another along their axes, loses more than on any other way.
+void judge_ways(Model& model) {
+  if (model.paper()) return;
+  double column = 0;
+  for (const scene::Gaussian& g : model.fog.sum.gaussians) column += std::sqrt(pi) * g.width * g.amplitude;
+  model.taken = -std::expm1(-column);
+  model.clear_ways = model.taken < 0.1 * model.options.depth_threshold;
+}
+
 // Where the maps' even grids miss what matters, sums replace them: small Gaussians in great ones, above all.
 void judge_maps(Model& model, const Point3& eye) {
   Options& o = model.options;
-  if (model.paper() || !o.map || model.gaussians.count == 0) return;
+  if (model.paper() || !o.map || model.scattered_lights() == 0 || model.clear_ways || model.gaussians.count == 0)
+    return;
   for (const LightModel& light : model.lights)
     model.map_error = std::max(model.map_error, map_error(model.gaussians, light.position, eye, o.map_directions,
                                                           o.map_edges, o.erf, model.evaluations));
@@ -128,12 +139,17 @@ Model make_model(const scene::Scene& scene, const Options& options) {
     const double reach = noise_reach(options.noise_scale);
     for (int i = 0; i < model.gaussians.count; ++i) model.gaussians.radius_squared[i] *= reach * reach;
   }
+  bool scattered = false;
   for (const scene::Light& light : scene.lights) {
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
       model.environment |= !environment->sh.empty() || environment_power(*environment) > 0;
     const auto* point = std::get_if<scene::PointLight>(&light);
-    if (point && (point->intensity > 0).any()) model.lights.push_back({point->position, point->intensity, {}, nullptr});
+    if (!point || !scene::shines(light)) continue;
+    model.lights.push_back({point->position, point->intensity, {}, nullptr});
+    scattered = scattered || scatter(scene.media, light);
   }
+  model.scatters = scattered;
+  judge_ways(model);
   judge_maps(model, scene.camera.position);
   return model;
 }

@@ -67,14 +67,20 @@ struct Model {
   GaussianArrays gaussians;
   int dropped = 0;                 // Gaussians that nothing would see
   double threshold = 0;            // CulledGaussians::threshold
-  std::vector<LightModel> lights;  // the point lights
+  std::vector<LightModel> lights;  // the point lights that shine
+  bool scatters = true;            // false: the media scatter nothing of any
   bool environment = false;        // an environment light shines
+  // Variant S: what the Gaussians take of a point light on any way, at most, if it is too little to be looked at: less than
+  // a tenth of eps_T. Their depths from lights are then 0.
+  double taken = 0;
+  bool clear_ways = false;
   std::unique_ptr<FTable> f_table;
   std::unique_ptr<Noise> noise;    // null: none
   std::unique_ptr<SkyVolume> sky;  // the same
   double evaluations = 0;          // of the error function
   double map_error = 0;            // of light maps, estimated; where it is too great options.map is false
 
+  int scattered_lights() const { return scatters ? int(lights.size()) : 0; }
   bool paper() const { return options.variant == Options::Variant::paper; }
 };
 

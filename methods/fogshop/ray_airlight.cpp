@@ -18,7 +18,7 @@ LightFromRay light_from_ray(const Point3& light, const Line& line) {
 ViewModel make_view_model(const Model& model, const Point3& view, const scene::Execution& execution,
                           double& evaluations) {
   ViewModel result;
-  if (!model.paper() || model.lights.empty()) return result;
+  if (!model.paper() || model.scattered_lights() == 0) return result;
   const std::vector<double> to_center = depths_to_centers(model, view, execution, evaluations);
   Crossings crossings;
   for (const LightModel& light : model.lights) {
@@ -51,7 +51,7 @@ void RayAirlight::evaluate(const GaussianArrays& near, const Line& line, Rgb& ai
   if (model_.fog.sum.constant > 0) depth += model_.fog.sum.constant * line.length;
   airlight.setZero();
   if (model_.sky) airlight = sky(line) * model_.fog.albedo;
-  if (model_.lights.empty()) return;
+  if (model_.scattered_lights() == 0) return;
   seen_.clear();
   for (const LightModel& light : model_.lights) seen_.push_back(light_from_ray(light.position, line));
   Rgb points;
@@ -160,6 +160,10 @@ Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
 // Depths from a light to points of the ray, without the constant; `t` is padded to whole vectors.
 void RayAirlight::depths_from_light(const LightModel& light, const Line& line, const Interval& range,
                                     const std::vector<double>& t, int count, std::vector<double>& depth) {
+  if (model_.clear_ways) {
+    std::fill_n(depth.begin(), count, 0.0);
+    return;
+  }
   if (light.map) {
     light.map->depths(line, t.data(), count, depth.data());
     return;
@@ -202,7 +206,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
   for (std::size_t l = 0; l < model_.lights.size(); ++l) {
     const LightModel& light = model_.lights[l];
     depths_from_light(light, line, range, t_, padded(slices + 1), light_depth_);
-    if (!light.map) evaluations += 2.0 * double(places_.size()) * (slices + 1);
+    if (!light.map && !model_.clear_ways) evaluations += 2.0 * double(places_.size()) * (slices + 1);
     const double last_shadow = light_depth_[slices];
     const double h2 = seen_[l].h * seen_[l].h;
     for (int k = 0; constant > 0 && k <= slices; ++k) {

@@ -3,9 +3,10 @@
 //
 // Eq. 28 of Zhou et al. 2007 takes one depth, that of the view ray, for the way in and the way out, and is dark where a
 // cloud is thick. Here the way in has depths of its own: J(x) = 1/(4 pi) integral L(w) e^-T(x,w) dw at the nodes of a
-// grid, trilinear between them, and a ray adds up J (e^-T_k - e^-T_k+1) over slices with exact depths T_k. One grid
+// grid, trilinear between them, surfaces in the way of L included, and a ray adds up J (e^-T_k - e^-T_k+1) over slices with exact depths T_k. One grid
 // serves all rays, and those that end at a surface too.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "methods/fogshop/fog.h"
@@ -29,6 +30,21 @@ struct SkyGrid {
   Point3 corner;
   double cell;          // [m]
   Eigen::Array3i last;  // greatest node index per axis, >= 1
+
+  std::size_t nodes() const { return std::size_t((last + 1).cast<double>().prod()); }  // x fastest
+  Point3 node(std::size_t) const;
+};
+
+// Which beams surfaces let through to the nodes of a grid. Nodes that none reaches, inside or below surfaces, count as the
+// nearest that has one: between them and nodes outside values are interpolated.
+struct OpenBeams {
+  OpenBeams(const scene::Geometry&, const SkyGrid&, const std::vector<SkyBeam>&, const scene::Execution&);
+
+  bool open(std::size_t node, std::size_t beam) const { return bits[node * words + beam / 32] >> beam % 32 & 1; }
+
+  std::size_t words;                // of a node
+  std::vector<std::uint32_t> bits;  // [node][beam / 32]
+  double rays = 0;
 };
 
 class SkyVolume {
@@ -42,12 +58,13 @@ class SkyVolume {
   Rgb at(const Point3& x) const;
 
   double evaluations() const { return evaluations_; }  // of the error function
+  double shadow_rays() const { return shadow_rays_; }
   std::size_t nodes() const { return values_.size(); }
 
  private:
   SkyGrid grid_;
   std::vector<Rgb> values_;  // x fastest
-  double evaluations_ = 0;
+  double evaluations_ = 0, shadow_rays_ = 0;
 };
 
 }  // namespace airlight::fogshop

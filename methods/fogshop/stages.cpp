@@ -8,6 +8,7 @@
 #include "methods/fogshop/domain.h"
 #include "methods/fogshop/map_error.h"
 #include "methods/fogshop/radiance_transfer.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::fogshop {
 namespace {
@@ -68,8 +69,9 @@ std::string reflected_by(const Options& o) {
 Plan make_plan(const scene::Scene& scene, const Model& model) {
   const Options& o = model.options;
   const bool paper = model.paper(), surfaces = !scene.surfaces.empty();
-  const bool lit = !model.lights.empty(), gaussians = model.gaussians.count > 0, constant = model.fog.sum.constant > 0;
-  const List::WhyNot no_lights{!lit, "no point light shines"},
+  const bool lit = model.scattered_lights() > 0, shone = !model.lights.empty(), gaussians = model.gaussians.count > 0,
+             constant = model.fog.sum.constant > 0;
+  const List::WhyNot no_lights{!lit, shone ? "the albedo is 0 where point lights shine" : "no point light shines"},
       no_gaussians{!gaussians, "no Gaussian reaches the threshold"};
   const List::WhyNot no_surfaces{!surfaces, "there are no surfaces"};
   const List::WhyNot no_medium{!gaussians && !constant, "there is no medium"};
@@ -78,6 +80,7 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
   const List::WhyNot dark{
       !model.environment || walled_in,
       model.environment ? "the constant medium has no end: none of its light arrives" : "no environment light shines"};
+  const List::WhyNot black{(model.fog.albedo == 0).all(), "the albedo is 0"};
   const List::WhyNot direct{o.reflectance == Options::Reflectance::direct, "reflectance = direct"};
   List stage;
   Needs needs{};
@@ -104,6 +107,8 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
         stage("light maps",
               {no_gaussians,
                no_lights,
+               {model.clear_ways,
+                fmt::format("Gaussians take at most {:.1g} of a light, and depths from it count as 0", model.taken)},
                {model.map_error > greatest_map_error,
                 fmt::format("maps would be off by {:.2g} % (estimated), more than {:g} %: sums per edge instead",
                             100 * model.map_error, 100 * greatest_map_error)},
@@ -123,15 +128,13 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
         "one per Gaussian: it scales what scatters, not what extinguishes");
   stage("noise", {{!(o.noise_scale > 0), "noise_scale = 0"}, no_gaussians},
         fmt::format("rays bent by up to {:g} radii", o.noise_scale));
-  needs.surfaces = stage("surfaces", {{!surfaces, "there are none"}, {!lit && dark.holds, "no light reaches them"}},
+  needs.surfaces = stage("surfaces", {{!surfaces, "there are none"}, {!shone && dark.holds, "no light reaches them"}},
                          "direct light through the medium, Eq. 29");
   stage("ambient in-scatter",
         {{(scene.ambient_in_scatter > 0).any(), "the method has none: its airlight is that of the lights"},
          {true, "the scene has none"}},
         "");
-  stage("shadows of surfaces in the medium",
-        {no_surfaces, {true, "the method does not know them: airlight behind an occluder is not darkened"}}, "");
-  needs.scattered = needs.surfaces && !no_medium.holds && !direct.holds;
+  needs.scattered = needs.surfaces && !no_medium.holds && !direct.holds && !black.holds;
   needs.point_harmonics =
       stage("airlight reflected by surfaces", {no_surfaces, no_lights, no_medium, direct}, reflected_by(o));
   const double vertices = mesh_vertices(scene);
@@ -142,22 +145,26 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
              {vertices == 0, "there are no meshes, and other shapes have no vertices"}},
             fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays, vertices, o.sh_order));
   needs.environment = stage("background", {dark}, "the environment through the medium, Eq. 29, where no surface is");
-  needs.sky_volume = needs.environment && gaussians && o.sky_volume;
-  const bool by_psf = needs.environment && needs.airlight && !needs.sky_volume;
+  needs.sky_volume = needs.environment && gaussians && o.sky_volume && !black.holds;
+  const bool by_psf = needs.environment && needs.airlight && !needs.sky_volume && !black.holds;
+  stage(
+      "shadows of surfaces in the medium",
+      {no_surfaces, {!needs.sky_volume, "the method does not know them: airlight behind an occluder is not darkened"}},
+      "of the sky, at the nodes of the grid; light of points is not darkened");
   needs.environment_psf = by_psf || (needs.environment && needs.scattered);
   needs.environment_harmonics =
       stage("harmonics of the environment", {dark, {!by_psf && !surfaces, "nothing reads them"}},
             fmt::format("{} bands", o.sh_order));
   const std::string psf = psf_name(o.environment_psf);
   needs.environment_airlight =
-      stage("airlight of the environment", {dark, no_medium},
+      stage("airlight of the environment", {dark, no_medium, black},
             needs.sky_volume ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions",
                                            o.slices, o.sky_cells, o.sky_directions)
                              : fmt::format("Eq. 28, {}, {}", psf,
                                            o.environment_everywhere ? "before surfaces too" : "where no surface is"));
   const bool sky_on_surfaces = stage("environment on surfaces", {no_surfaces, dark},
                                      no_medium.holds    ? "no medium is in the way"
-                                     : !needs.scattered ? "Eq. 27 without what is scattered: reflectance = direct"
+                                     : !needs.scattered ? "Eq. 27 without what is scattered"
                                                         : fmt::format("Eqs. 26 and 27, {}", psf));
   needs.depth_tree =
       stage("tree of average depths",

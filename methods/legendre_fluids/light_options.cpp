@@ -4,6 +4,7 @@
 
 #include "methods/legendre_fluids/paper_picture.h"
 #include "scene/background.h"
+#include "scene/scattered_lights.h"
 #include "scene/sky_directions.h"
 
 namespace airlight::legendre_fluids {
@@ -11,10 +12,7 @@ namespace {
 
 constexpr int least_gmres = 5;  // coefficients along an axis from which on GMRES is faster than dense factors
 
-bool scatters(const scene::Scene& scene) {
-  return std::any_of(scene.media.begin(), scene.media.end(),
-                     [](const scene::Medium& m) { return (m.albedo * m.sigma_t).maxCoeff() > 0; });
-}
+bool scatters(const scene::Scene& scene) { return scene::why_nothing_scatters(scene).empty(); }
 
 }  // namespace
 

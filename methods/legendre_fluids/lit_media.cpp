@@ -4,6 +4,7 @@
 
 #include "scene/background.h"
 #include "scene/math/legendre_range.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::legendre_fluids {
 namespace {
@@ -124,7 +125,8 @@ bool may_shadow(const scene::Surface& surface, const Box& box, const Vec3& to_li
 
 LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
   for (const scene::Light& light : scene.lights)
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && !(sun->irradiance == 0).all())
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+        sun && (scatter(scene.media, light) || (scene.geometry && scene::shines(light))))
       lights.push_back(*sun);
   for (const scene::Medium& medium : scene.media) {
     if (!extinguishes(medium)) continue;

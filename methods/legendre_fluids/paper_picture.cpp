@@ -11,6 +11,7 @@
 #include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::legendre_fluids {
@@ -26,7 +27,7 @@ class PreparedPaper final : public scene::Prepared {
   scene::Rendering render(const scene::View&, const scene::Execution&) const override;
 
  private:
-  bool scatters() const { return field_ && !lights_.empty(); }
+  bool scatters() const { return field_ && scene::why_nothing_scatters(*scene_).empty(); }
   bool behind_kept() const {
     return (scene_->geometry && !lights_.empty()) || scene::has_environment(*scene_) || !scene_->backdrops.empty();
   }
@@ -65,7 +66,8 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), moving_(moving_axes(*scene_)) {
   scene::Stopwatch watch;
   for (const scene::Light& light : scene_->lights)
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); sun && sun->irradiance.maxCoeff() > 0)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+        sun && (scatter(scene_->media, light) || (scene_->geometry && scene::shines(light))))
       lights_.push_back(*sun);
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium)) medium_ = &medium;
@@ -80,16 +82,16 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
       negative_direct_ = std::max(negative_direct_, negative_share(light_->shape(), e));
   }
   if (field_->negative()) negative_density_ = negative_share(field_->shape(), field_->coefficients());
-  times_ = {{"direct systems", watch.lap()}};
+  times_ = {{lights_.empty() ? "operators" : "direct systems", watch.lap()}};
 }
 
 std::vector<scene::Stage> PreparedPaper::stages() const {
-  const bool kept = scatters();
-  const std::string why = !field_ ? "no medium extinguishes" : "no directional light shines";
+  const bool kept = scatters(), direct = field_ && !lights_.empty();
+  const std::string why = kept || field_ ? scene::why_nothing_scatters(*scene_) : "no medium extinguishes";
   const std::string how = !field_ ? ""
                                   : fmt::format("{} of {} unknowns", options_.solver.dense ? "dense" : "GMRES",
                                                 scene::tensor_size(light_->shape()));
-  return {{"direct systems", kept, kept ? how : why},
+  return {{"direct systems", direct, direct ? how : why},
           {"scattered systems", kept, kept ? how : why},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
           {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
@@ -199,7 +201,7 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
     met += row.met;
     negative += row.negative;
   });
-  result.times.push_back({"image", watch.lap()});
+  result.times.push_back({scatters() ? "image" : "camera rays", watch.lap()});
   result.counters["rays"] = double(film.pixels());
   if (!scatters()) return result;
   result.counters["unknowns"] = double(scene::tensor_size(light_->shape()));

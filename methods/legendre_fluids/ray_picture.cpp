@@ -7,6 +7,7 @@
 
 #include "scene/background.h"
 #include "scene/camera_rays.h"
+#include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::legendre_fluids {
@@ -61,9 +62,8 @@ std::vector<scene::Stage> PreparedRays::stages() const {
   int polynomials = 0, faces = 0;
   for (const LitMedium& m : lit.media)
     for (const LightColumns& columns : m.columns) polynomials += columns.polynomials(), faces += columns.face_count();
-  const std::string why = lit.media.empty()    ? "no medium extinguishes"
-                          : lit.lights.empty() ? "no light shines"
-                                               : "no medium scatters";
+  const std::string dark = scene::why_nothing_scatters(*scene_);
+  const std::string why = !any_medium() ? "no medium extinguishes" : dark.empty() ? "no medium scatters" : dark;
   return {{"polynomials of light paths", polynomials > 0,
            lit.media.empty() || lit.lights.empty() ? why
                                                    : fmt::format("of {} of {} faces that light comes in by; the others "

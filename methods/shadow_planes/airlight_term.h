@@ -1,5 +1,6 @@
 // What gives airlight of its own: all media together, or in the paper's way each alone.
 #pragma once
+#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -27,6 +28,16 @@ inline std::vector<AirlightTerm> airlight_terms(const std::vector<scene::Medium>
 // L [W/m^2/sr] of a point or spot light over a lit part of the ray, which may be infinite.
 inline Rgb airlight(const AirlightTerm& term, const scene::Light& light, const Ray& ray, Interval lit) {
   return std::visit([&](const auto& a) { return Rgb(a(light, ray, lit)); }, term);
+}
+
+// Where on the ray the term's media are, within `t`; empty if nowhere.
+inline Interval extent(const AirlightTerm& term, const Ray& ray, Interval t) {
+  return std::visit([&](const auto& a) { return a.extent(ray, t); }, term);
+}
+inline bool in_air(const std::vector<AirlightTerm>& terms, const Ray& ray, double end) {
+  return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
+    return !extent(term, ray, {0, end}).empty();
+  });
 }
 
 }  // namespace airlight::shadow_planes

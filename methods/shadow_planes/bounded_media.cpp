@@ -65,6 +65,15 @@ Rgb BoundedMedia::depth(const Ray& ray, double length) const {
   return sum;
 }
 
+Interval BoundedMedia::extent(const Ray& ray, Interval t) const {
+  Interval all;
+  for (const Medium& medium : media_)
+    if (const Interval inside = clip(medium.region, ray, t);
+        !inside.empty() && (medium.albedo * medium.extinction > 0).any())
+      all = {std::min(all.lo, inside.lo), std::max(all.hi, inside.hi)};
+  return all;
+}
+
 std::vector<double> BoundedMedia::stretches(const Ray& ray, const Point3& light, Interval lit) const {
   std::vector<double> places;
   for (const Medium& medium : media_) {

@@ -23,6 +23,9 @@ class BoundedMedia {
   template <class Intensity>
   Rgb airlight(const MappedRule<double>&, const Ray&, const Point3& light, Interval lit, Intensity&& intensity) const;
 
+  // From where the ray enters the first medium to where it leaves the last; empty if it meets none.
+  Interval extent(const Ray&, Interval t) const;
+
   // Places along the ray between which all is smooth, `lit`'s ends included, ascending.
   std::vector<double> stretches(const Ray&, const Point3& light, Interval lit) const;
 

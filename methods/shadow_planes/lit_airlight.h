@@ -15,6 +15,8 @@ class LitAirlight {
 
   // L [W/m^2/sr] of a point or spot light over [begin, end] of the ray; end may be infinite.
   Rgb operator()(const scene::Light&, const Ray&, Interval lit) const;
+  // Where on the ray the media are, from the first to the last; empty if nowhere.
+  Interval extent(const Ray& ray, Interval t) const { return alone_ ? t : bounded_.extent(ray, t); }
 
  private:
   Rgb part(const scene::Light&, const Point3& light, const Ray&, Interval) const;

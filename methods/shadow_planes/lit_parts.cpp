@@ -7,10 +7,15 @@ namespace airlight::shadow_planes {
 namespace {
 
 Rgb over(const LitLight& lit, const Ray& ray, Interval part, Counts& counts) {
-  counts.parts += 1;
-  counts.by_pixel += double(lit.airlight_terms.size());
   Rgb sum = Rgb::Zero();
-  for (const AirlightTerm& term : lit.airlight_terms) sum += airlight(term, lit.light, ray, part);
+  int terms = 0;
+  for (const AirlightTerm& term : lit.airlight_terms) {
+    if (extent(term, ray, part).empty()) continue;
+    ++terms;
+    sum += airlight(term, lit.light, ray, part);
+  }
+  counts.parts += terms > 0;
+  counts.by_pixel += terms;
   return sum;
 }
 
@@ -42,8 +47,11 @@ void add_lit_parts(const LitLight& lit, std::optional<int> count, std::vector<Pi
   std::vector<ShadowVolumes::Interval> of_ray, parts;
   std::vector<std::size_t> first{0};
   const bool counted = lit.shadows && lit.how == Options::Shadows::counted;
-  // Sorts the crossings and finds the lit parts; m of the origin.
+  // Sorts the crossings and finds the lit parts, none where the ray meets no medium; m of the origin.
   const auto find = [&](const Pixel& pixel) {
+    crossings.clear();
+    of_ray.clear();
+    if (!in_air(lit.airlight_terms, pixel.ray, pixel.end.t)) return 0;
     const Ray ray = ray_in_general_position(pixel.ray, lit.shadows->light());
     const int m = count ? *count : lit.shadows->count(ray.origin);
     lit.fan->of_ray(ray, edges);

@@ -24,6 +24,7 @@ class PaperMedium {
 
   // L [W/m^2/sr] of a point or spot light over the part of `lit` in the medium, by the evaluator of the options.
   Rgb operator()(const scene::Light&, const Ray&, Interval lit) const;
+  Interval extent(const Ray& ray, Interval t) const { return clip(region_, ray, t); }
 
  private:
   template <class Intensity>

@@ -82,19 +82,18 @@ struct PaperStages::Work {
   std::vector<Rgb> sum;
 };
 
-PaperStages::PaperStages(const scene::Scene& scene, const Options& options,
+PaperStages::PaperStages(const scene::Scene& scene, const std::vector<scene::Light>& lights, const Options& options,
                          const std::vector<AirlightTerm>& airlight_terms, const std::vector<ShadowVolumes>& shadows,
                          const scene::Camera& camera, int threads)
-    : scene_(scene), options_(options), airlight_terms_(airlight_terms), shadows_(shadows) {
+    : scene_(scene), lights_(lights), options_(options), airlight_terms_(airlight_terms), shadows_(shadows) {
   const bool vertices = options.evaluation == Options::Evaluation::vertices;
-  const Box everywhere{Point3::Constant(-infinity), Point3::Constant(infinity)};
   scene::Stopwatch watch;
-  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+  for (std::size_t l = 0; l < lights.size(); ++l) {
     std::vector<Part>& of_light = parts_.emplace_back();
     for (const AirlightTerm& term : airlight_terms) {
       Part& part = of_light.emplace_back();
       part.medium = std::get_if<PaperMedium>(&term);
-      if (vertices) part.at_vertices.emplace(term, scene.lights[l], camera.position);
+      if (vertices) part.at_vertices.emplace(term, lights[l], camera.position);
       part.planes_end = vertices && !part.medium && all_end(scene.media);
       if (l >= shadows.size()) continue;
       part.left_out.assign(shadows[l].edges().size(), false);
@@ -105,8 +104,8 @@ PaperStages::PaperStages(const scene::Scene& scene, const Options& options,
   }
   check_memory();
   for (const ShadowVolumes& s : shadows) orders_.emplace_back(s, camera, options.edge_split);
-  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-    const Point3 at = scene::ball(scene.lights[l])->center;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const Point3 at = scene::ball(lights[l])->center;
     const Vec3 to_camera = (camera.position - at).normalized();
     for (Part& part : parts_[l]) {
       if (!part.medium) continue;
@@ -162,7 +161,7 @@ void PaperStages::check_memory() const {
         fmt::format("{}: shadow_planes would hold {:.1f} GB for {} lights and {} media with edge_split = {}, "
                     "plane_levels = {} and boundary_cells = {}, expected at most {} GB: fewer plane_levels, "
                     "edge_split or boundary_cells",
-                    scene_.name, bytes / 1e9, scene_.lights.size(), scene_.media.size(), options_.edge_split,
+                    scene_.name, bytes / 1e9, lights_.size(), scene_.media.size(), options_.edge_split,
                     options_.plane_levels, options_.boundary_cells, most_bytes / 1e9));
 }
 
@@ -181,7 +180,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   for (const Pixel& pixel : pixels) work.sum.push_back(pixel.in_air);  // the frame buffer is that of all lights
   std::vector<int> at_origin(pixels.size(), 0), edges;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (!shadows_.empty()) {
+    if (!shadows_.empty() && in_air(airlight_terms_, pixels[i].ray, pixels[i].end.t)) {
       const Ray ray = ray_in_general_position(pixels[i].ray, shadows_[l].light());
       fan->of_ray(ray, edges);
       shadows_[l].cross_edges(ray, pixels[i].end.t, edges, work.crossings);
@@ -214,6 +213,8 @@ void PaperStages::draw_ends(std::size_t l, std::size_t a, const std::vector<Pixe
     work.domain[i] = {0, pixels[i].end.t};
     if (medium) work.domain[i] = clip(medium->region(), pixels[i].ray, work.domain[i]);
     if (parts_[l][a].planes_end) work.domain[i] = within(scene_.media, pixels[i].ray, pixels[i].end.t);
+    if (!work.domain[i].empty() && extent(airlight_terms_[a], pixels[i].ray, work.domain[i]).empty())
+      work.domain[i] = {};
     if (work.domain[i].empty()) continue;
     for (std::size_t k = work.first[i]; k < work.first[i + 1]; ++k)
       if (work.crossings[k].x < work.domain[i].hi) work.stencil[i] += work.crossings[k].change;
@@ -231,7 +232,7 @@ Rgb PaperStages::to_end(std::size_t l, std::size_t a, const Pixel& pixel, Interv
       if (const auto value = part.at_vertices->on_surface(scene_.surfaces, *pixel.end.hit)) return *value;
   }
   counts.by_pixel += 1;
-  return airlight(airlight_terms_[a], scene_.lights[l], pixel.ray, {0, domain.hi});
+  return airlight(airlight_terms_[a], lights_[l], pixel.ray, {0, domain.hi});
 }
 
 // Stage 5, with the stencil's rules put right: each plane adds or takes away all light in front of it.
@@ -259,7 +260,7 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
         add(work.sum[i], sign * part.at_vertices->on_plane(crossing));
       } else {
         counts.by_pixel += 1;
-        add(work.sum[i], sign * airlight(airlight_terms_[a], scene_.lights[l], pixels[i].ray, {0, crossing.x}));
+        add(work.sum[i], sign * airlight(airlight_terms_[a], lights_[l], pixels[i].ray, {0, crossing.x}));
       }
     }
   }

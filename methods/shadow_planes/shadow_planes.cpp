@@ -10,6 +10,7 @@
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/stage_list.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::shadow_planes {
 namespace {
@@ -21,7 +22,7 @@ using scene::View;
 constexpr int tile_side = 16;  // pixels
 
 struct Needs {
-  bool medium, shadows, surfaces;
+  bool medium = false, shadows = false, surfaces = false;
 };
 
 // Of a tile.
@@ -41,20 +42,8 @@ struct Frame {
 
 class PreparedShadowPlanes final : public scene::Prepared {
  public:
-  PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options)
-      : scene_(std::move(scene)), options_(options) {
-    const bool lit = !scene_->lights.empty();
-    const bool medium = std::any_of(scene_->media.begin(), scene_->media.end(),
-                                    [](const scene::Medium& m) { return (extinction_of(m) > 0).any(); });
-    needs_ = {medium, medium && lit && !scene_->surfaces.empty() && options.shadows != Options::Shadows::none,
-              lit && !scene_->surfaces.empty()};
-    scene::Stopwatch watch;
-    if (medium) airlight_terms_ = airlight_terms(scene_->media, options);
-    if (!needs_.shadows) return;
-    occluders_ = std::make_shared<const Occluders>(scene_);
-    times_.push_back({"edges", watch.lap()});
-    shadows_ = silhouettes();
-    times_.push_back({"silhouettes", watch.lap()});
+  PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options) : options_(options) {
+    times_ = light(std::move(scene));
   }
 
   std::vector<scene::Stage> stages() const override;
@@ -63,7 +52,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  std::vector<ShadowVolumes> silhouettes() const;
+  std::vector<scene::StageTime> light(std::shared_ptr<const Scene>);
   void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
   bool in_stages() const;  // of the paper
@@ -71,7 +60,8 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   Needs needs_;
-  std::vector<AirlightTerm> airlight_terms_;    // empty: no medium
+  std::vector<scene::Light> lights_;            // those that the media scatter
+  std::vector<AirlightTerm> airlight_terms_;    // empty: there are none
   std::shared_ptr<const Occluders> occluders_;  // null: nothing casts shadows
   std::vector<ShadowVolumes> shadows_;          // by light; empty: the same
   std::vector<scene::StageTime> times_;
@@ -80,27 +70,44 @@ class PreparedShadowPlanes final : public scene::Prepared {
 std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   std::size_t edges = 0;
   for (const ShadowVolumes& s : shadows_) edges += s.edges().size();
-  return stage_list(*scene_, options_, {needs_.medium, needs_.shadows, needs_.surfaces, in_stages(), edges});
+  return stage_list(*scene_, options_, {lights_.size(), needs_.shadows, needs_.surfaces, in_stages(), edges});
 }
 
-std::vector<ShadowVolumes> PreparedShadowPlanes::silhouettes() const {
-  std::vector<ShadowVolumes> result;
-  for (const scene::Light& light : scene_->lights) result.emplace_back(occluders_, scene::ball(light)->center);
-  return result;
+// For a scene with other lights: what it needs, and the silhouettes if it needs them.
+std::vector<scene::StageTime> PreparedShadowPlanes::light(std::shared_ptr<const Scene> scene) {
+  scene_ = std::move(scene);
+  lights_ = scene::scattered_lights(*scene_);
+  const bool surfaces = !scene_->surfaces.empty();
+  needs_.medium = std::any_of(scene_->media.begin(), scene_->media.end(), scene::extinguishes);
+  needs_.surfaces = surfaces && std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::shines);
+  const Box air = scattering_box(scene_->media);
+  needs_.shadows = surfaces && options_.shadows != Options::Shadows::none &&
+                   std::any_of(lights_.begin(), lights_.end(), [&](const scene::Light& each) {
+                     return any_may_shadow(scene_->surfaces, scene::ball(each)->center, air);
+                   });
+  airlight_terms_.clear();
+  if (!lights_.empty()) airlight_terms_ = airlight_terms(scene_->media, options_);
+  shadows_.clear();
+  if (!needs_.shadows) return {};
+  std::vector<scene::StageTime> times;
+  scene::Stopwatch watch;
+  if (!occluders_) {
+    occluders_ = std::make_shared<const Occluders>(scene_);
+    times.push_back({"edges", watch.lap()});
+  }
+  for (const scene::Light& each : lights_) shadows_.emplace_back(occluders_, scene::ball(each)->center, air);
+  times.push_back({"silhouettes", watch.lap()});
+  return times;
 }
 
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanes::next(std::shared_ptr<const Scene> scene,
                                                                         const Execution&) {
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
-  scene_ = std::move(scene);
-  if (!needs_.shadows) return std::vector<scene::StageTime>{};
-  scene::Stopwatch watch;
-  shadows_ = silhouettes();
-  return std::vector<scene::StageTime>{{"silhouettes", watch.lap()}};
+  return light(std::move(scene));
 }
 
 bool PreparedShadowPlanes::in_stages() const {
-  if (!needs_.medium || scene_->lights.empty()) return false;
+  if (lights_.empty()) return false;
   return options_.evaluation == Options::Evaluation::vertices ||
          (needs_.shadows && options_.shadows == Options::Shadows::stencil);
 }
@@ -135,16 +142,15 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
       if (needs_.medium) pixel.visible = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
       if (pixel.end.hit) pixel.on_surface = pixel.visible * reflected(*pixel.end.hit, -pixel.ray.direction);
     }
-  for (std::size_t l = 0; l < scene_->lights.size() && needs_.medium; ++l) {
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
     const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
     const EdgeFan* fan = needs_.shadows ? &frame.fans[l] : nullptr;
     tally.seconds.scene += watch.lap();
     if (frame.stages)
       frame.stages->draw(l, fan, count, pixels, tally.counts, tally.seconds);
     else
-      add_lit_parts(
-          {airlight_terms_, scene_->lights[l], needs_.shadows ? &frame.shadows[l] : nullptr, fan, options_.shadows},
-          count, pixels, tally.counts, tally.seconds);
+      add_lit_parts({airlight_terms_, lights_[l], needs_.shadows ? &frame.shadows[l] : nullptr, fan, options_.shadows},
+                    count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
   std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
@@ -178,7 +184,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
       frame.at_camera.push_back(shadows.count(origin_in_general_position(view.camera.position, shadows.light())));
   const double fans = watch.lap();
   std::optional<PaperStages>& stages = frame.stages;
-  if (in_stages()) stages.emplace(*scene_, options_, airlight_terms_, frame.shadows, view.camera, execution.threads);
+  if (in_stages())
+    stages.emplace(*scene_, lights_, options_, airlight_terms_, frame.shadows, view.camera, execution.threads);
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
@@ -203,10 +210,12 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   if (stages) {
     add_time("surfaces and stencil", fans + of.scene * share);
     add_time("medium on surfaces", once.ends + of.ends * share);
-    add_time("sort", once.sort + of.sort * share);
-    add_time("shadow planes", once.planes + of.planes * share);
+    if (needs_.shadows) {
+      add_time("sort", once.sort + of.sort * share);
+      add_time("shadow planes", once.planes + of.planes * share);
+    }
   } else {
-    add_time("surfaces", fans + of.scene * share);
+    add_time(needs_.surfaces ? "surfaces" : "camera rays", fans + of.scene * share);
     if (of.planes > 0) add_time("airlight", of.planes * share);
   }
   const double vertices = stages ? double(stages->vertices()) : 0;

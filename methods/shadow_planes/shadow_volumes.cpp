@@ -19,10 +19,17 @@ void add_roots(double a, double b, double c, std::vector<double>& roots) {
 
 }  // namespace
 
-ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const Point3& light)
-    : occluders_(std::move(occluders)), count_(occluders_, light), light_(light) {
-  for (const MeshEdges& mesh : occluders_->meshes()) {
-    const std::vector<SilhouetteEdge> of_mesh = silhouette(mesh, light);
+Box scattering_box(const std::vector<scene::Medium>& media) {
+  Box all;
+  for (const scene::Medium& medium : media)
+    if (extinguishes(medium) && (medium.albedo * medium.sigma_t > 0).any()) all = unite(all, bounding_box(medium));
+  return all;
+}
+
+ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const Point3& light, const Box& air)
+    : occluders_(std::move(occluders)), count_(occluders_, light, air), light_(light) {
+  for (const std::size_t m : count_.meshes()) {
+    const std::vector<SilhouetteEdge> of_mesh = silhouette(occluders_->meshes()[m], light);
     edges_.insert(edges_.end(), of_mesh.begin(), of_mesh.end());
   }
   all_.resize(edges_.size());

@@ -23,9 +23,14 @@ struct Crossing {
   double order = 0;  // plane_order.h; of edges set by whoever needs it
 };
 
+// The box around all media that scatter; infinite where one fills all space.
+Box scattering_box(const std::vector<scene::Medium>&);
+
 class ShadowVolumes {
  public:
-  ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light);
+  // Of meshes that cannot stand between the light and a place in `air` nothing is looked at, and places outside are not
+  // asked for.
+  ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light, const Box& air = everywhere);
 
   const Point3& light() const { return light_; }
   const std::vector<SilhouetteEdge>& edges() const { return edges_; }

@@ -2,22 +2,27 @@
 
 #include <fmt/format.h>
 
+#include "scene/scattered_lights.h"
+
 namespace airlight::shadow_planes {
 
 std::vector<scene::Stage> stage_list(const scene::Scene& scene, const Options& options, const StageNeeds& needs) {
-  const bool lit = !scene.lights.empty();
-  const std::string dark = !lit ? "no light shines" : "", clear = !needs.medium ? "there is no medium" : dark;
+  const std::string clear = scene::why_nothing_scatters(scene);
   const auto unless = [](const std::string& reason, const std::string& otherwise) {
     return reason.empty() ? otherwise : reason;
   };
-  const std::string no_shadows = unless(clear, scene.surfaces.empty() ? "there are no surfaces" : "shadows = none");
+  const std::string no_shadows =
+      unless(clear, scene.surfaces.empty()                      ? "there are no surfaces"
+                    : options.shadows == Options::Shadows::none ? "shadows = none"
+                                                                : "no surface stands between a light and the media");
   const std::string evaluator = options.evaluator == Options::Evaluator::rule ? fmt::format("{} nodes", options.nodes)
                                 : options.annex ? std::string("the polynomials of the annex")
                                                 : fmt::format("polynomials of degree {}", options.degree);
-  const std::string surfaces =
-      scene.surfaces.empty() ? "there are none" : unless(dark, "direct light through the media");
+  const std::string surfaces = scene.surfaces.empty() ? "there are none"
+                               : needs.surfaces       ? "direct light through the media"
+                                                      : "no light shines";
   std::vector<scene::Stage> result{
-      {"silhouettes", needs.shadows, needs.shadows ? silhouettes_found(needs.edges, scene.lights.size()) : no_shadows}};
+      {"silhouettes", needs.shadows, needs.shadows ? silhouettes_found(needs.edges, needs.lights) : no_shadows}};
   if (needs.paper_stages) {
     const bool vertices = options.evaluation == Options::Evaluation::vertices;
     const std::string by_pixel = evaluator + " for every pixel";
@@ -35,7 +40,7 @@ std::vector<scene::Stage> stage_list(const scene::Scene& scene, const Options& o
                                                    options.plane_levels + 1)
                                      : by_pixel});
   } else {
-    result.push_back({"airlight", needs.medium && lit, unless(clear, evaluator + " on each lit part")});
+    result.push_back({"airlight", needs.lights > 0, unless(clear, evaluator + " on each lit part")});
     result.push_back({"surfaces", needs.surfaces, surfaces});
   }
   result.push_back({"ambient in-scatter", options.ambient,

@@ -6,7 +6,8 @@
 namespace airlight::shadow_planes {
 
 struct StageNeeds {
-  bool medium, shadows, surfaces;
+  std::size_t lights;  // that the media scatter
+  bool shadows, surfaces;
   bool paper_stages;  // the paper's, not lit parts of rays
   std::size_t edges;  // of all lights
 };

@@ -13,7 +13,40 @@ bool is_below(const Vec3& y, const Vec3& a, int number_of_a, const Vec3& b, int 
   return number_of_a < number_of_b ? y.dot(a.cross(b)) < 0 : !(y.dot(b.cross(a)) < 0);
 }
 
+Box bounds(const scene::Surface& surface) {
+  return scene::match(
+      surface.shape,
+      [](const scene::TriangleMesh& mesh) {
+        Box box;
+        for (const Point3& vertex : mesh.vertices) box = unite(box, {vertex, vertex});
+        return box;
+      },
+      [](const scene::Sphere& sphere) { return bounding_box(sphere); },
+      [](const scene::Plane&) {
+        return Box{Point3::Constant(-infinity), Point3::Constant(infinity)};
+      });
+}
+
+// May something in `box` stand between the light and a place in `air`? Only within the box around both, and in the cone
+// from the light around the ball around `air`.
+bool may_shadow(const Box& box, const Point3& light, const Box& air) {
+  if (!air.size().allFinite() || !box.size().allFinite()) return true;
+  if ((box.hi.array() < air.lo.cwiseMin(light).array()).any() ||
+      (box.lo.array() > air.hi.cwiseMax(light).array()).any())
+    return false;
+  const Vec3 to_air = air.center() - light, to_box = box.center() - light;
+  const double of_air = 0.5 * air.size().norm() / to_air.norm(), of_box = 0.5 * box.size().norm() / to_box.norm();
+  if (!(of_air < 1) || !(of_box < 1)) return true;
+  const double between = std::acos(std::clamp(to_air.normalized().dot(to_box.normalized()), -1.0, 1.0));
+  return between <= std::asin(of_air) + std::asin(of_box) + 1e-9;
+}
+
 }  // namespace
+
+bool any_may_shadow(const std::vector<scene::Surface>& surfaces, const Point3& light, const Box& air) {
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [&](const scene::Surface& surface) { return may_shadow(bounds(surface), light, air); });
+}
 
 bool hides(const Vec3& c, double radius, const Vec3& y) {
   const double length = y.norm();
@@ -35,9 +68,15 @@ Occluders::Occluders(std::shared_ptr<const scene::Scene> scene) : scene_(std::mo
     }
 }
 
-SurfaceCount::SurfaceCount(std::shared_ptr<const Occluders> occluders, const Point3& light)
+SurfaceCount::SurfaceCount(std::shared_ptr<const Occluders> occluders, const Point3& light, const Box& air)
     : occluders_(std::move(occluders)), light_(light) {
+  const std::vector<scene::Surface>& surfaces = occluders_->scene().surfaces;
+  counts_.resize(surfaces.size());
   for (std::size_t m = 0; m < occluders_->meshes().size(); ++m) {
+    const auto surface = std::size_t(occluders_->surface(m));
+    if (!may_shadow(bounds(surfaces[surface]), light, air)) continue;
+    meshes_.push_back(m);
+    counts_[surface] = true;
     const MeshEdges& mesh = occluders_->meshes()[m];
     for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
       const auto& t = mesh.triangles()[i];
@@ -82,7 +121,7 @@ int SurfaceCount::at(const Point3& point) const {
   if (!occluders_->scene().geometry || !(distance > 0)) return 0;
   int sum = 0;
   for (const scene::Hit& hit : occluders_->scene().geometry->all_hits({light_, offset / distance}, distance))
-    sum += hit.triangle >= 0 && !is_wall(hit);
+    sum += hit.triangle >= 0 && counts_[std::size_t(hit.surface)] && !is_wall(hit);
   for (const Wall& wall : walls_) sum += is_behind(wall, offset);
   for (const scene::Sphere& sphere : spheres_) sum += hides(sphere.center - light_, sphere.radius, offset) ? 2 : 0;
   for (const scene::Plane& plane : planes_) {

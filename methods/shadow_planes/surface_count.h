@@ -23,9 +23,17 @@ class Occluders {
   std::vector<int> surfaces_;
 };
 
+inline const Box everywhere = {Point3::Constant(-infinity), Point3::Constant(infinity)};
+
+// May one of the surfaces stand between the light and a place in `air`?
+bool any_may_shadow(const std::vector<scene::Surface>&, const Point3& light, const Box& air);
+
 class SurfaceCount {
  public:
-  SurfaceCount(std::shared_ptr<const Occluders>, const Point3& light);
+  // Meshes that cannot stand between the light and a place in `air` do not count, and places outside are not asked for.
+  SurfaceCount(std::shared_ptr<const Occluders>, const Point3& light, const Box& air = everywhere);
+
+  const std::vector<std::size_t>& meshes() const { return meshes_; }  // the occluders' numbers of those that count
 
   // m(X), the number of surfaces, of either facing, that the open segment from the light to X crosses. Spheres count
   // twice for all points that they hide. A light that lies on a triangle is before it (faces_light), on a
@@ -47,7 +55,9 @@ class SurfaceCount {
 
   std::shared_ptr<const Occluders> occluders_;
   Point3 light_;
-  std::vector<Wall> walls_;  // by surface and triangle
+  std::vector<std::size_t> meshes_;
+  std::vector<char> counts_;  // by surface of the scene: a mesh that counts
+  std::vector<Wall> walls_;   // by surface and triangle
   std::vector<scene::Sphere> spheres_;
   std::vector<scene::Plane> planes_;
 };

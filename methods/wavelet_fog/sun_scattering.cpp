@@ -5,6 +5,7 @@
 
 #include "scene/math/gauss_legendre.h"
 #include "scene/media/fogmap.h"
+#include "scene/scattered_lights.h"
 
 namespace airlight::wavelet_fog {
 namespace {
@@ -76,6 +77,16 @@ Visibility visibility(const scene::Geometry& geometry, const Ray& ray, const Vec
 
 }  // namespace
 
+std::string why_no_sun(const scene::Scene& scene) {
+  const auto is_sun = [](const scene::Light& light) { return std::holds_alternative<scene::DirectionalLight>(light); };
+  const auto shines = [&](const scene::Light& light) { return is_sun(light) && scene::shines(light); };
+  const auto scattered = [&](const scene::Light& light) { return is_sun(light) && scatter(scene.media, light); };
+  if (std::any_of(scene.lights.begin(), scene.lights.end(), scattered)) return "";
+  if (std::none_of(scene.media.begin(), scene.media.end(), scene::extinguishes)) return "no fog extinguishes";
+  return std::none_of(scene.lights.begin(), scene.lights.end(), shines) ? "no directional light shines"
+                                                                        : "the albedo is 0 where a sun shines";
+}
+
 struct SunScattering::Along {
   Along(const Sun& of, const Ray& over, std::size_t points)
       : sun(of), ray(over), extinction(points), scattering(points), to_sun(points) {}
@@ -123,7 +134,7 @@ SunScattering::SunScattering(const scene::Scene& scene, const Options& options, 
   rule_ = rule_of(points);
   for (const scene::Light& light : scene.lights) {
     const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-    if (!sun || !(sun->irradiance.maxCoeff() > 0)) continue;
+    if (!sun || !scatter(scene.media, light)) continue;
     suns_.push_back({*sun, {}});
     for (const Medium* medium : media_)
       suns_.back().maps.emplace_back(*medium, sun->to_light, options.sun_step, execution);

@@ -6,6 +6,7 @@
 // along a ray, cell by cell: Gauss points of each cell, where the densities are polynomials; the transmittance to them is
 // carried along, that to the sun read from one map per sun and fog (sun_map.h). Surfaces stand in the way by shadow rays.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "methods/wavelet_fog/options.h"
@@ -18,6 +19,9 @@ namespace airlight::wavelet_fog {
 struct SunVisits {
   long points = 0, shadow_rays = 0;
 };
+
+// Why no sun is scattered: no fog, no directional light, or an albedo of 0 where it shines; empty if one is.
+std::string why_no_sun(const scene::Scene&);
 
 class SunScattering {
  public:

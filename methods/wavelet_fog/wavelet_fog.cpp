@@ -13,6 +13,7 @@
 #include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/error.h"
+#include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
 namespace airlight::wavelet_fog {
@@ -63,16 +64,11 @@ class PreparedWaveletFog final : public scene::Prepared {
  private:
   std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>, std::vector<LeveledFog> known, const Execution&);
   bool lit() const {
-    return scene_->geometry && std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::is_delta);
+    const auto reaches = [](const scene::Light& light) { return scene::is_delta(light) && scene::shines(light); };
+    return scene_->geometry && std::any_of(scene_->lights.begin(), scene_->lights.end(), reaches);
   }
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !fogs_.empty(); }
-  bool sunlit() const {
-    const auto shines = [](const scene::Light& light) {
-      const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-      return sun && sun->irradiance.maxCoeff() > 0;
-    };
-    return options_.sun && !fogs_.empty() && std::any_of(scene_->lights.begin(), scene_->lights.end(), shines);
-  }
+  bool sunlit() const { return options_.sun && why_no_sun(*scene_).empty(); }
   bool ends() const { return scene_->geometry || !scene_->lights.empty() || !scene_->backdrops.empty(); }
   Rgb depth(const Ray&, double length, Visits&, const std::vector<PolarTable>& tables = {}) const;
   Rgb behind(const Ray&, const scene::RayEnd&, Visits&) const;
@@ -140,8 +136,7 @@ std::vector<scene::Stage> PreparedWaveletFog::stages() const {
           {"airlight", sun_.has_value(),
            sun_            ? "directional lights, scattered once"
            : !options_.sun ? "sun is not asked for"
-           : fogs_.empty() ? none
-                           : "no directional light shines"},
+                           : why_no_sun(*scene_)},
           {"surfaces", lit(), lit() ? "lights through the fog" : "no surface is lit"}};
 }
 
@@ -234,7 +229,7 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     of_sun.points += sun_visits.points;
     of_sun.shadow_rays += sun_visits.shadow_rays;
   });
-  result.times.push_back({"transmittance", watch.lap()});
+  result.times.push_back({fogs_.empty() ? "camera rays" : "transmittance", watch.lap()});
   result.counters = {
       {"rays", double(film.pixels())}, {"cells", double(total.cells)}, {"coefficients", double(total.coefficients)}};
   if (!tables.empty()) result.counters["lookups"] = double(total.lookups);

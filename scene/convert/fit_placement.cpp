@@ -5,6 +5,8 @@
 #include <numeric>
 #include <queue>
 
+#include "scene/math/random.h"
+
 namespace airlight::scene {
 namespace {
 
@@ -108,7 +110,23 @@ std::vector<Point3> missing_places(const FitObjective<float>& objective, const F
   return places;
 }
 
-int teleport(FitObjective<float>& objective, const FitBounds& bounds, std::vector<Gaussian>& gaussians, int most) {
+std::vector<Point3> random_places(const Eigen::Vector3i& size, const float* values, std::uint32_t seed,
+                                  std::size_t most) {
+  std::vector<std::size_t> filled;
+  for (std::size_t i = 0; i < std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]); ++i)
+    if (values[i] > 0) filled.push_back(i);
+  std::vector<Point3> places;
+  for (std::uint32_t k = 0; k < most && !filled.empty(); ++k) {
+    const double share = uniform32(philox4x32_10({k, seed, 0, 0}, {2008, 1})[0]);
+    const std::size_t i = filled[std::size_t(share * double(filled.size()))];
+    const auto nx = std::size_t(size[0]), ny = std::size_t(size[1]);
+    places.emplace_back(double(i % nx), double(i / nx % ny), double(i / nx / ny));
+  }
+  return places;
+}
+
+int teleport(FitObjective<float>& objective, const FitBounds& bounds, std::vector<Gaussian>& gaussians, int most,
+             const std::vector<Point3>& given) {
   const std::vector<Gaussian> before = gaussians;
   const double value = objective.value(gaussians);
   std::vector<std::size_t> order(gaussians.size());
@@ -118,7 +136,7 @@ int teleport(FitObjective<float>& objective, const FitBounds& bounds, std::vecto
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return loss(a) < loss(b); });
   std::size_t moved = 0;
-  for (const Point3& place : missing_places(objective, bounds, 2 * std::size_t(most))) {
+  for (const Point3& place : given.empty() ? missing_places(objective, bounds, 2 * std::size_t(most)) : given) {
     if (moved == std::min(std::size_t(most), order.size())) break;
     Gaussian& g = gaussians[order[moved]];
     const auto [with_error, with_itself] = objective.correlation(g);

@@ -76,11 +76,16 @@ class Frame {
   }
 
   void minimise() {
+    const bool alternating = options_.teleport == Teleport::alternating;
     double before = objective_.value(gaussians_);
+    int in_vain = 0;  // rounds in a row
     for (int round = 0; round < options_.rounds; ++round) {
       const double value = run(options_.method, options_.iterations, options_.tolerance);
-      const int moved = options_.teleport && round + 1 < options_.rounds ? send_least(20) : 0;
-      if (!(before - value > options_.tolerance * before) && moved <= int(gaussians_.size()) / 100) break;
+      const bool sends = options_.teleport != Teleport::none && round + 1 < options_.rounds;
+      const int moved = sends ? send_least(20, alternating && round % 2 == 1 ? round : 0) : 0;
+      const bool good = before - value > options_.tolerance * before || moved > int(gaussians_.size()) / 100;
+      in_vain = good ? 0 : in_vain + 1;
+      if (in_vain > int(alternating)) break;  // both ways have failed
       before = value;
     }
   }
@@ -157,9 +162,14 @@ class Frame {
   }
 
  private:
-  // At most one of `share`.
-  int send_least(int share) {
-    const int moved = teleport(objective_, bounds_, gaussians_, std::max(1, int(gaussians_.size()) / share));
+  // At most one of `share`; with a number above 0 to random places, others for each number.
+  int send_least(int share, int random = 0) {
+    const int most = std::max(1, int(gaussians_.size()) / share);
+    const int moved =
+        random > 0
+            ? teleport(objective_, bounds_, gaussians_, most,
+                       random_places(grid_.size, grid_.values.data(), std::uint32_t(random), 2 * std::size_t(most)))
+            : teleport(objective_, bounds_, gaussians_, most);
     teleported_ += moved;
     return moved;
   }
@@ -194,6 +204,8 @@ class Frame {
 };
 
 }  // namespace
+
+std::vector<std::string> teleport_names() { return {"none", "greatest", "alternating"}; }
 
 std::vector<std::string> fit_method_names() { return {"gauss_newton", "lbfgs", "lbfgs_blocks", "trust_region"}; }
 

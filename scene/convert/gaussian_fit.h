@@ -26,6 +26,11 @@ enum class FitMethod { gauss_newton, lbfgs, lbfgs_blocks, trust_region };
 std::vector<std::string> fit_method_names();         // in the order of the enumeration
 FitMethod fit_method_from(const std::string& name);  // throws Error
 
+// Where the least significant Gaussians are sent between rounds: nowhere; where density is missing most; there and to random filled
+// voxels by turns, as Zhou et al. 2008, section 5.1, have it.
+enum class Teleport { none, greatest, alternating };
+std::vector<std::string> teleport_names();  // in the order of the enumeration
+
 struct FitOptions {
   int gaussians = 1000;  // 1 to most_fit_gaussians; fewer where fewer voxels are filled
   // Of lengths [m]; 0: the cube root of the volume of the grid's box, voxels counted as cubes, whatever its sides.
@@ -41,7 +46,7 @@ struct FitOptions {
   // The same of later frames, which begin near where they end.
   int later_rounds = 6;
   double later_tolerance = 1e-2;
-  bool teleport = true;
+  Teleport teleport = Teleport::greatest;
   bool polish = true;  // amplitudes alone at the end, by bounded linear least squares
   // A sequence: how many of the least significant go; and, where the squared ratio is above `allowed` times that of the first frame, how
   // many come where density is missing; with `resent`, others are teleported there too, as new ones with new ids. The publication's

@@ -55,6 +55,17 @@ TEST_CASE("speed-ups of two curves by hand", "[comparisons]") {
   CHECK(cell(table, 1, "over times") == "1 s to 10 s");
 }
 
+// 30 s before each picture of `fast` (t from 1 to 10): times 31 to 40 against 1 to 100, ratios 1/31 to 2.5.
+TEST_CASE("speed-ups with preparation count it for each picture", "[comparisons]") {
+  std::vector<Row> rows = two_curves;
+  CHECK(cell(equal_error_and_time(outcome_of(rows)), 1, "times faster with preparation") == "3.16");
+  for (Row& each : rows)
+    if (each.method == "fast") each.prepare_seconds = 30;
+  CHECK(quantity(rows[2], "total_seconds")->value == 31);
+  CHECK(cell(equal_error_and_time(outcome_of(rows)), 1, "times faster with preparation") == "0.284");
+  CHECK_THAT(cell(equal_error_and_time(outcome_of(rows)), 1, "times faster at equal error"), Catch::StartsWith("3.16"));
+}
+
 // A row whose interval reaches 0 says nothing but an upper end: with it `fast` would seem to reach 1e-4, and `slow`
 // too.
 TEST_CASE("rows below the noise floor are on no curve", "[comparisons]") {

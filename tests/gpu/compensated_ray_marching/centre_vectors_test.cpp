@@ -274,7 +274,7 @@ TEST_CASE("light is convolved with the phase function on the device as the oracl
     options.paper.multiple = Options::Paper::Multiple::none;
     options.paper.transmittance = Transmittance::series;
     gpu::StageTimer timer(*context);
-    gpu::smoke::CentreSourcesOnDevice centres(*context, sum, medium, {}, nullptr, {}, options, timer, {1, {}});
+    gpu::smoke::CentreSourcesOnDevice centres(*context, sum, medium, {}, true, nullptr, {}, options, timer, {1, {}});
     std::vector<Rgb> bands;
     for (const double b : light) bands.push_back(Rgb::Constant(b));
     centres.light(bands, timer, {1, {}});

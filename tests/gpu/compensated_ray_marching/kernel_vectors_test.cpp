@@ -211,7 +211,9 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums", "[gp
         logarithms(*context, "logarithms", std::vector<float>(4, float(std::log(J))));
     using namespace gpu::smoke;
     gpu::Program& find = program(*context, "ranges", 8, 8, density.definitions());
-    gpu::Program& march = program(*context, "march", 8, 8, density.definitions());
+    auto definitions = density.definitions();
+    definitions["SCATTERS"] = "1";
+    gpu::Program& march = program(*context, "march", 8, 8, definitions);
     for (const auto& [weight, name] : {std::pair(0, "paper_sum_without_background"), {1, "exact_without_background"}}) {
       CAPTURE(v.at("id").get<std::string>(), name);
       using compensated_ray_marching::SliceWeight;

@@ -88,7 +88,9 @@ class MarchOnDevice {
     const Buffer ranges(context_, "ranges",
                         std::vector<float>{0, float(thickness / slope), float(count), float(slope)}),
         airlight(context_, "airlight", 12), column(context_, "column", 4);
-    gpu::Program& march = gpu::smoke::program(context_, "march", 8, 8, density_.definitions());
+    auto definitions = density_.definitions();
+    definitions["SCATTERS"] = "1";
+    gpu::Program& march = gpu::smoke::program(context_, "march", 8, 8, definitions);
     ranges.bind(at::ranges);
     airlight.bind(at::airlight);
     column.bind(at::column);

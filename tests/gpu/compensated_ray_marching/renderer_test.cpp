@@ -186,7 +186,9 @@ TEST_CASE("compensated march on the device: other lights on surfaces in the next
     return scene;
   };
   const auto dark = lit_by(scene::make_constant_environment(Rgb::Zero()));
-  const auto prepared = device.prepare(dark, {device.settings(), small}, {1, {}});
+  // What was left out in the dark is prepared anew.
+  CHECK(!device.prepare(dark, {device.settings(), small}, {1, {}})->next(lit_by(uneven(1)), {1, {}}));
+  const auto prepared = device.prepare(lit_by(uneven(2)), {device.settings(), small}, {1, {}});
   for (const auto& scene : {lit_by(uneven(1)), dark, lit_by(uneven(0.3))}) {
     REQUIRE(prepared->next(scene, {1, {}}));
     compare(picture(cpu, scene, small), prepared->render(view_of(*scene), {1, {}}).film);

@@ -3,6 +3,7 @@
 
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
+#include "methods/compensated_ray_marching/ordinate_directions.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
@@ -200,6 +201,28 @@ TEST_CASE("exponentials of depths of a thousand are finite", "[compensated_ray_m
     for (double& value : depth) value *= -scale;
     for (const Harmonics& e : {linear(depth), squared_exponential(depth, linear), series_exponential(depth)})
       for (const double value : e) CHECK(std::isfinite(value));
+  }
+}
+
+// Against a rule of twice as many levels.
+TEST_CASE("tables of the linear exponential are exact up to their longest size", "[compensated_ray_marching]") {
+  const std::vector<Harmonics> family = depth_family(4, {1, 2, 4, 16, 64}, 4);
+  const LinearExponential linear(family, 40, 8);
+  const std::vector<Ordinate> directions = ordinate_directions(80, 160, false);
+  for (const double size : {5., 10., 15., 20., 30., 40.}) {
+    double constant = 0, slope = 0;
+    for (const Ordinate& d : directions) {
+      const std::vector<double> harmonics = scene::evaluate_sh(4, d.direction);
+      for (const Harmonics& h : family) {
+        double value = 0;
+        for (std::size_t k = 0; k < h.size(); ++k) value += h[k] * harmonics[k];
+        constant += d.weight * std::exp(-size * value) / (4 * pi * double(family.size()));
+        slope -= d.weight * std::exp(-size * value) * value / (size * double(family.size()));
+      }
+    }
+    CAPTURE(size);
+    CHECK(linear.constant(size) == Approx(constant).epsilon(1e-8));
+    CHECK(linear.slope(size) == Approx(slope).epsilon(1e-8));
   }
 }
 

@@ -106,10 +106,16 @@ TEST_CASE("shadow planes: media one by one with a stencil", "[shadow_planes]") {
   CHECK(sum(render(both, {}).film) < 0.97 * apart({}));
 }
 
-// A second box, out of sight, whose planes cross rays between the camera and the media.
+// Two boxes out of sight, the planes of one of which cross rays between the camera and the media. The other, below the floor, makes the
+// mesh reach as far as the media do.
 TEST_CASE("shadow planes: planes in front of a medium change nothing", "[shadow_planes]") {
   const auto scene = two_media(), more = two_media();
-  more->surfaces.push_back({"small", scene::make_box({{0.3, 1.95, 0.5}, {0.5, 2.05, 0.7}}), scene::Lambert{}});
+  scene::TriangleMesh boxes = scene::make_box({{0.3, 1.95, 0.5}, {0.5, 2.05, 0.7}});
+  const scene::TriangleMesh below = scene::make_box({{-0.1, -3.2, -0.1}, {0.1, -3, 0.1}});
+  const int first = int(boxes.vertices.size());
+  boxes.vertices.insert(boxes.vertices.end(), below.vertices.begin(), below.vertices.end());
+  for (const auto& t : below.triangles) boxes.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  more->surfaces.push_back({"boxes", boxes, scene::Lambert{}});
   finish(*more);
   for (const Given& given : {Given{{"shadows", "stencil"}}, by_vertices}) {
     const scene::Rendering a = render(scene, with(given, {{"bounded", "paper"}})),

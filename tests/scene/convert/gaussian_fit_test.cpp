@@ -352,4 +352,26 @@ TEST_CASE("a fit's table is a medium's table", "[gaussian_fit][convert]") {
   }
 }
 
+TEST_CASE("Gaussians are sent to random filled voxels by turns", "[gaussian_fit][convert]") {
+  VoxelGrid grid;
+  grid.size = {12, 10, 11};
+  for (int i = 0; i < 12 * 10 * 11; ++i)
+    grid.values.push_back(i % 12 < 4 ? 0 : float(1 + std::sin(0.37 * i) * std::cos(0.011 * i)));
+  const auto places = random_places(grid.size, grid.values.data(), 3, 50);
+  REQUIRE(places.size() == 50);
+  for (const Point3& p : places) CHECK(p[0] >= 4);
+  CHECK(places == random_places(grid.size, grid.values.data(), 3, 50));
+  CHECK(places != random_places(grid.size, grid.values.data(), 4, 50));
+  FitOptions options;
+  options.gaussians = 40;
+  options.threads = 1;
+  options.teleport = Teleport::none;
+  const GaussianFit none = fit_gaussians(grid, options);
+  options.teleport = Teleport::alternating;
+  const GaussianFit both = fit_gaussians(grid, options);
+  CHECK(none.teleported == 0);
+  CHECK(both.teleported > 0);
+  CHECK(both.errors.squared_ratio < none.errors.squared_ratio);
+}
+
 }  // namespace gaussian_fit_test
