@@ -28,8 +28,9 @@ class BallTransport {
   // A place on a chord: distance of the chord from the centre, and the way from its middle, in the direction of the light.
   double depth_from_face(double impact, double along) const;
   // What each unknown (moment l at node i) adds to the radiance there.
-  void gather(double impact, double along, double factor, Eigen::RowVectorXd& row) const;
-  Eigen::RowVectorXd moment_row(int l, double radius, double& reduced) const;
+  Eigen::RowVectorXd gathered(double impact, double along) const;
+  // What each unknown adds to the moments at that distance from the centre: a row for each.
+  Eigen::MatrixXd moment_rows(double radius) const;
 
   BallLight light_;
   int bands_;

@@ -45,6 +45,10 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
   difference_ = root.cwiseInverse().asDiagonal() *
                 scene::DefiniteFactors(sides[1]).solve(mu_.asDiagonal() * weighted * rate_.asDiagonal());
   even_ = 2 * light.emission / (1 - light.albedo);
+  moments_ = Eigen::MatrixXd::Zero(Eigen::Index(light.phase.size()), directions);
+  for (int l = 0; l < int(light.phase.size()); ++l)
+    for (int i = 0; i < directions; ++i)
+      moments_.row(l) += 0.5 * weight_[i] * legendre(l, mu_[i]) * (l % 2 ? difference_ : sum_).row(i);
 
   // What comes in: (S + D) / 2 at the top, (S - D) / 2 at the bottom.
   const Eigen::VectorXd far = (-light.thickness * rate_).array().exp();
@@ -80,6 +84,9 @@ double SlabTransport::flux_leaving(bool top) const {
 }
 
 double SlabTransport::gathered(double depth, double mu, bool turned) const {
+  std::vector<double> factors;
+  for (int l = 0; l < int(light_.phase.size()); ++l)
+    factors.push_back(light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * legendre(l, mu));
   // Mode by mode: a source exp(-k t), and exp(-k (T - t)), with T where the modes that grow begin.
   const double rest = light_.thickness - depth;
   const Eigen::VectorXd &first = turned ? growing_ : falling_, &second = turned ? falling_ : growing_;
@@ -90,11 +97,8 @@ double SlabTransport::gathered(double depth, double mu, bool turned) const {
         depth / mu * (x > 0 ? std::exp(-k * depth) * mean_left(x) : std::exp(-depth / mu) * mean_left(-x));
     const double against = (std::exp(-k * rest) - std::exp(-k * light_.thickness - depth / mu)) / (1 + k * mu);
     for (int l = 0; l < int(light_.phase.size()); ++l) {
-      // Moments of the mode; odd ones turn with the mode, and with the slab.
-      double moment = 0;
-      const Eigen::VectorXd& of = l % 2 ? difference_.col(j) : sum_.col(j);
-      for (Eigen::Index i = 0; i < mu_.size(); ++i) moment += 0.5 * weight_[i] * legendre(l, mu_[i]) * of[i];
-      const double scattered = light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * moment * legendre(l, mu);
+      // Odd moments turn with the mode, and with the slab.
+      const double scattered = factors[std::size_t(l)] * moments_(l, j);
       sum += scattered * (first[j] * with + (l % 2 ? -1 : 1) * second[j] * against);
     }
   }

@@ -34,6 +34,7 @@ class SlabTransport {
   SlabLight light_;
   Eigen::VectorXd mu_, weight_, rate_;
   Eigen::MatrixXd sum_, difference_;   // of a mode; of a growing one the difference has the other sign
+  Eigen::MatrixXd moments_;            // by band, of a mode
   Eigen::VectorXd falling_, growing_;  // shares of exp(-k depth), and of exp(-k (thickness - depth))
   double even_ = 0;                    // sum of opposite directions that the emission makes far from the faces
 };

@@ -22,6 +22,7 @@ class Builder {
       Box box;
       for (const Point3& p : t) box = unite(box, {p, p});
       boxes_.push_back(box);
+      centers_.push_back(box.center());
       all = unite(all, box);
     }
     slack_ = 1e-6 * (all.size().maxCoeff() + all.lo.cwiseAbs().maxCoeff() + all.hi.cwiseAbs().maxCoeff());
@@ -41,24 +42,29 @@ class Builder {
   int cut(int begin, int end, int& axis) {
     Box centers;
     for (int i = begin; i < end; ++i) {
-      const Point3 c = boxes_[order_[i]].center();
+      const Point3& c = centers_[order_[i]];
       centers = unite(centers, {c, c});
     }
     double least = infinity;
     int best = 0;
+    const Vec3 size = centers.size();
     const auto bin_of = [&](int triangle, int a) {
-      const double share = (boxes_[triangle].center()[a] - centers.lo[a]) / centers.size()[a];
+      const double share = (centers_[triangle][a] - centers.lo[a]) / size[a];
       return std::clamp(int(bins * share), 0, bins - 1);
     };
-    for (int a = 0; a < 3; ++a) {
-      if (!(centers.size()[a] > 0)) continue;
-      std::array<Box, bins> box;
-      std::array<int, bins> count{};
-      for (int i = begin; i < end; ++i) {
+    std::array<std::array<Box, bins>, 3> boxes;
+    std::array<std::array<int, bins>, 3> counts{};
+    for (int i = begin; i < end; ++i)
+      for (int a = 0; a < 3; ++a) {
+        if (!(size[a] > 0)) continue;
         const int bin = bin_of(order_[i], a);
-        box[bin] = unite(box[bin], boxes_[order_[i]]);
-        ++count[bin];
+        boxes[a][bin] = unite(boxes[a][bin], boxes_[order_[i]]);
+        ++counts[a][bin];
       }
+    for (int a = 0; a < 3; ++a) {
+      if (!(size[a] > 0)) continue;
+      const std::array<Box, bins>& box = boxes[a];
+      const std::array<int, bins>& count = counts[a];
       std::array<double, bins> below{};
       Box side;
       for (int bin = 0, n = 0; bin + 1 < bins; ++bin) {
@@ -77,10 +83,10 @@ class Builder {
     const auto first = order_.begin() + begin, last = order_.begin() + end;
     if (least < infinity)
       return int(std::partition(first, last, [&](int t) { return bin_of(t, axis) < best; }) - order_.begin());
-    centers.size().maxCoeff(&axis);
+    size.maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
     std::nth_element(first, order_.begin() + middle, last,
-                     [&](int a, int b) { return boxes_[a].center()[axis] < boxes_[b].center()[axis]; });
+                     [&](int a, int b) { return centers_[a][axis] < centers_[b][axis]; });
     return middle;
   }
 
@@ -111,6 +117,7 @@ class Builder {
   const std::vector<std::array<Point3, 3>>& triangles_;
   Occluders& out_;
   std::vector<Box> boxes_;
+  std::vector<Point3> centers_;
   double slack_;
   std::vector<int> order_;
 };

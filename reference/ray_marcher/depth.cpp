@@ -70,21 +70,26 @@ double deep_column(const Layer& layer, const Options& options, const Ray& ray, I
                    long long& steps) {
   const double whole = extent.length() / count, limit = deepest_shadow_step(options), extinction = layer.thickest;
   double column = 0;
-  // [from, from + width] of a step, in shares of it: dyadic, so exact.
+  const auto density_at = [&](double t) { return varied_density(layer, ray.at(t)); };
+  double first = density_at(extent.lo);
+  // [from, from + width] of a step, in shares of it: dyadic, so exact. Densities are looked up once where steps share a place.
   for (int i = 0; i < count && column * extinction < 750; ++i) {
+    double last = density_at(extent.lo + (i + 1) * whole);
     for (double from = 0, width = 1; from < 1;) {
       const double lo = extent.lo + (i + from) * whole, h = width * whole;
-      const double first = varied_density(layer, ray.at(lo)), middle = varied_density(layer, ray.at(lo + 0.5 * h)),
-                   last = varied_density(layer, ray.at(lo + h));
+      const double middle = density_at(lo + 0.5 * h);
       if (column * extinction < deepest_shaded && width > std::ldexp(1.0, -most_halvings) &&
           std::max({first, middle, last}) * extinction * h > limit) {
         width *= 0.5;
+        last = middle;
         continue;
       }
       column += (first + 4 * middle + last) / 6 * h;
       ++steps;
       from += width;
+      first = last;
       while (from < 1 && std::fmod(from, 2 * width) == 0) width *= 2;
+      if (from < 1) last = density_at(extent.lo + (i + from + width) * whole);
     }
   }
   return column;

@@ -33,7 +33,8 @@ TEST_CASE("compensated march on the device, stress list: the processor's picture
       given["variant"] = "paper";
       given["iterations"] = "6";  // before rounding steers: paper_test.cpp
     } else {
-      given.try_emplace("cells", "12");
+      // Few, but where the row's bounds on brightness are those of twelve.
+      given.try_emplace("cells", s.row == 5 || s.row == 7 ? "12" : "8");
     }
     const std::string passing = given.count("transmittance") ? given.at("transmittance") : "hyb";
     CAPTURE(paper, s.row, s.what, s.sigma, passing);
@@ -44,10 +45,11 @@ TEST_CASE("compensated march on the device, stress list: the processor's picture
       CHECK_THAT(reasons.front(), Contains("in single precision"));
       continue;
     }
-    const scene::Film film = picture(device, s.scene, given), truth = picture(cpu, s.scene, given);
+    const scene::Film film = picture(device, s.scene, given);
     check_stress(s, film, paper);
     if (s.row == 22) deep.insert(passing);
     if (s.sigma > 50) continue;
+    const scene::Film truth = picture(cpu, s.scene, given);
     for (const char* layer : {"mean", "airlight", "transmittance"}) {
       CAPTURE(layer);
       CHECK(relative_l2(film, truth, layer) <= 1e-4 + 20 * gpu::test::injected_error());

@@ -53,10 +53,11 @@ TEST_CASE("legendre fluids on the device, extremes: no step and no viscosity mak
       for (const double viscosity : {0.0, 1e-12, 1e-3, 1.0, 1e3})
         for (const double dt : {1e-4, 0.1, 10.0}) {
           // Seconds on a software device: 64 parts of a step each; between the ends of viscosity.
-          if (n == 16 && dimensions == 3 && (dt == 10 || (viscosity > 0 && viscosity < 1e3))) continue;
+          const bool between = viscosity > 0 && viscosity < 1e3;
+          if (dimensions == 3 && ((n == 16 && (dt == 10 || between)) || (n == 8 && dt == 10 && between))) continue;
           const auto flow = start(swirl_and_blob(dimensions, viscosity), n);
           const scene::Totals before = flow->totals();
-          for (int step = 0; step < 2; ++step) flow->step(dt);
+          for (int step = 0; step < (dt == 10 ? 1 : 2); ++step) flow->step(dt);
           const scene::Totals after = flow->totals();
           CAPTURE(dimensions, n, viscosity, dt);
           for (const double value : {after.energy, after.enstrophy, after.mass, after.density_least,

@@ -41,10 +41,12 @@ std::shared_ptr<scene::Scene> scene_of(const scene::Region& region, double sigma
 // In an even light of 1 nothing is brighter than 1: at albedo 1 smoke cannot be told from what is behind it.
 TEST_CASE("compensated march at hard edges: no light is made in thick cells", "[compensated_ray_marching]") {
   const scene::Light even = scene::make_constant_environment(Rgb::Ones());
-  for (const scene::Region& region :
-       {scene::Region(scene::Sphere{Point3::Zero(), 1}), scene::Region(Box{{-1, -0.7, -0.4}, {0.8, 1, 1}}),
-        scene::Region(Box{{-1, -1, -1}, {1, 1, 1}})})
+  const scene::Region ball = scene::Sphere{Point3::Zero(), 1}, box = Box{{-1, -0.7, -0.4}, {0.8, 1, 1}},
+                      cube = Box{{-1, -1, -1}, {1, 1, 1}};
+  for (const scene::Region& region : {ball, box, cube})
     for (const auto& [sigma_t, cells] : {std::pair(5.0, "8"), std::pair(20.0, "32"), std::pair(1.0, "8")}) {
+      // Seconds each: cells as deep as at 5, four times as many along a side. Of the boxes the cube has most of them.
+      if (sigma_t == 20 && std::holds_alternative<Box>(region) && std::get<Box>(region).hi[0] < 1) continue;
       CAPTURE(region_name(region), sigma_t);
       const Given given{{"cells", cells}};
       const scene::Film whole = picture(method, scene_of(region, sigma_t, 1, even), given);

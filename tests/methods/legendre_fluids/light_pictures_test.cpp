@@ -144,7 +144,7 @@ TEST_CASE("legendre light: pictures equal the quadrature's and the path tracer's
 }
 
 TEST_CASE("legendre light: what an environment scatters equals the path tracer's", "[legendre_fluids][light]") {
-  auto scene = lit_scene(smoke(random_density({4, 4, 4}, 3), 1.5), oblique_light, oblique_view, 24, 18, 3);
+  auto scene = lit_scene(smoke(random_density({4, 4, 4}, 3), 1.5), oblique_light, oblique_view, 16, 12, 3);
   scene->media[0].sigma_t = {0.5, 1.5, 4};
   scene->media[0].albedo = {0.9, 0.5, 0.7};
   scene->media[0].phase = scene::HenyeyGreenstein{0.5};
@@ -159,7 +159,7 @@ TEST_CASE("legendre light: what an environment scatters equals the path tracer's
       finish(*scene);
       const scene::Film fine = picture(method, scene, {{"environment_directions", "2048"}}, 0);
       const scene::Film traced =
-          picture(path_tracer::PathTracer(), scene, {{"samples", "1024"}, {"max_order", "1"}}, 0);
+          picture(path_tracer::PathTracer(), scene, {{"samples", "2304"}, {"max_order", "1"}}, 0);
       const experiments::Equality e = experiments::compare_equal(fine, traced, "mean", {}, 2.5e-4);
       CHECK(e.equal);
       CHECK(e.detectable_bias < 0.01);

@@ -1,4 +1,8 @@
 // Pictures against the path tracer capped at one scattering: statistical tests of equality, seeds fixed.
+//
+// The gates of experiments/shadow_planes/path_tracer.toml, which scripts/test judges, compare sixteen scenes with 4096 samples, and would find
+// a bias of 0.2 to 2 % in the other scenes, but only one of 4 % under lamps close above a ball, where most of the noise is in a few pixels.
+// Two of those scenes, a beam on a ball and the shadow of a mesh, get the samples here that a bias of 3 % takes.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -14,24 +18,10 @@ namespace path_tracer_test {
 using namespace airlight;
 using airlight::test::picture;
 
-// False alarms: 1e-3 for all scenes together.
+// False alarms: 1e-3 for both scenes together.
 TEST_CASE("shadow planes agree with the path tracer", "[shadow_planes][slow]") {
-  const std::pair<const char*, const char*> samples_of[] = {
-      {"shadow_planes/lamp", "128"},
-      {"shadow_planes/boxes_1", "128"},
-      {"shadow_planes/boxes_8", "128"},
-      {"shadow_planes/spot", "12288"},  // most light is in a few pixels by the lamp
-      {"shadow_planes/media", "768"},
-      {"elephant_fog", "256"},
-      {"shadow_planes/fig1", "512"},
-      {"shadow_planes/fig7", "8192"},
-      {"shadow_planes/fig7_shade", "10240"},
-      {"shadow_planes/fig8a", "256"},
-      {"shadow_planes/fig8b", "2048"},
-      {"shadow_planes/fig8c", "256"},
-      {"shadow_planes/edges", "128"},
-      {"shadow_planes/layers_elephant", "128"},
-      {"shadow_planes/layers_knot1", "256"}};
+  const std::pair<const char*, const char*> samples_of[] = {{"shadow_planes/spot", "8192"},
+                                                            {"shadow_planes/fig7_shade", "7168"}};
   const double alpha = 1e-3 / double(std::size(samples_of));
   for (const auto& [file, samples] : samples_of) {
     const auto scene = std::make_shared<scene::Scene>(

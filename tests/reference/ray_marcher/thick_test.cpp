@@ -39,7 +39,7 @@ std::shared_ptr<scene::Scene> thick(int kind, double extinction) {
 
 // The airlight of every pixel by the quadrature.
 std::vector<Rgb> truth_of(const scene::Scene& scene, const scene::View& view) {
-  const deterministic::AirlightIntegrator truth(scene, {1e-6, 2000000});
+  const deterministic::AirlightIntegrator truth(scene, {1e-5, 2000000});
   std::vector<Rgb> pixels;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
