@@ -94,6 +94,22 @@ TEST_CASE("a store does not write through links", "[atomic_file][content_store]"
   CHECK(read_bytes(store.find("entry.exr")->string()) == "content");
 }
 
+TEST_CASE("an entry of a store stands for no other", "[atomic_file][content_store]") {
+  const TemporaryFolder folder;
+  std::vector<std::string> said;
+  const ContentStore store(folder.path(), [&](const std::string& line) { said.push_back(line); });
+  for (const std::string name : {"a/one", "a/two"})
+    store.keep(name, [&](const fs::path& file) { write_file_atomically(file.string(), name); });
+  CHECK(store.find("a/one"));
+  CHECK(store.find("a/two"));
+  CHECK(said.empty());
+  for (const std::string end : {"", ".xxh128"})
+    fs::rename(folder.path() / ("a/two" + end), folder.path() / ("a/one" + end));
+  CHECK_FALSE(store.find("a/one"));
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Contains(folder.file("a/one") + ": its checksum names another entry, computing it anew"));
+}
+
 // In place of an entry or its checksum: a folder, a pipe that nobody writes to, a device without an end.
 TEST_CASE("an entry of a store that is no file is made anew", "[atomic_file][content_store]") {
   const TemporaryFolder folder;
