@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM as a flag: work in progress stops at its next check and keeps what is done. A second signal ends
+// Ctrl-C, SIGTERM and SIGHUP as a flag: work in progress stops at its next check and keeps what is done. A second signal ends
 // the program at once.
 #pragma once
 #include "scene/renderer.h"

@@ -279,6 +279,23 @@ TEST_CASE("Ctrl-C keeps the samples of a path tracer, and no other picture is ma
   CHECK(fewer.layers == whole.layers);
 }
 
+// The terminal is closed. Under nohup, which has the signal ignored, work goes on.
+TEST_CASE("SIGHUP stops a render with a line, but not under nohup", "[cli]") {
+  const TemporaryFolder folder;
+  const auto hung_up = [&](const std::string& before, const std::string& steps) {
+    return run_command("( " + before + "'" + program + "' render " + scenes +
+                           "constant_homogeneous.toml -m ray_marcher -o a.exr --set steps=" + steps +
+                           " & pid=$!; sleep 0.3; kill -HUP $pid; wait $pid )",
+                       folder);
+  };
+  const Result r = hung_up("", "100000");
+  CHECK(r.code == 130);
+  CHECK(r.err == "airlight: interrupted\n");
+  CHECK_FALSE(std::filesystem::exists(folder.file("a.exr")));
+  CHECK(hung_up("trap '' HUP; ", "1500").code == 0);
+  CHECK(std::filesystem::exists(folder.file("a.exr")));
+}
+
 TEST_CASE("Ctrl-C stops a render and leaves nothing half-written", "[cli]") {
   const TemporaryFolder folder;
   const Result r = run("render " + scenes +
