@@ -4,6 +4,9 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <fstream>
+#include <thread>
 
 #include "scene/content_store.h"
 #include "tests/temporary_folder.h"
@@ -55,6 +58,25 @@ TEST_CASE("a pipe is written through the link that the system made for it", "[at
   close(ends[0]);
   close(ends[1]);
   CHECK_NOTHROW(write_file_atomically("/dev/null", "new"));
+}
+
+TEST_CASE("a pipe that nobody reads from is no place to wait", "[atomic_file]") {
+  const TemporaryFolder folder;
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(write_file_atomically(folder.file("pipe"), "new"),
+                    Contains("pipe: cannot write: found a pipe that nobody reads from"));
+  // Its reader may come late, and be slow.
+  const std::string bytes(200'000, 'x');
+  std::string read;
+  std::thread reader([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::ifstream in(folder.file("pipe"), std::ios::binary);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    read.assign(std::istreambuf_iterator<char>(in), {});
+  });
+  write_file_atomically(folder.file("pipe"), bytes);
+  reader.join();
+  CHECK(read == bytes);
 }
 
 TEST_CASE("what is kept is for the user alone", "[atomic_file][content_store]") {

@@ -111,7 +111,9 @@ class Runner:
             wrong = stranger
         if wrong and self.options.keep:
             kept = pathlib.Path(self.options.keep) / f'{target}_{index}'
-            shutil.copytree(self.box.folder, kept, dirs_exist_ok=True)
+            shutil.rmtree(kept, ignore_errors=True)
+            shutil.copytree(self.box.folder, kept, symlinks=True,
+                            ignore=lambda folder, names: [n for n in names if pathlib.Path(folder, n).is_fifo()])
             (kept / 'arguments.json').write_text(json.dumps(arguments))
         return result, wrong, arguments
 
