@@ -134,9 +134,10 @@ def fit_folder(r, box):
 def residual(r, box):
     restored(box, 'fits', lambda: fits(box))
     csv, rest = ((box.folder / f'fits/f.0001.{kind}').read_bytes() for kind in ('csv', 'residual'))
-    if r.random() < 0.8:
+    which = r.random()
+    if which < 0.75:
         rest = mutate.binary(r, rest, 120)
-    else:
+    elif which < 0.9:  # the others as they were: each belongs to the other
         csv = mutate.text(r, csv.decode())
     box.write('a.csv', csv)
     box.write('a.residual', rest)
