@@ -4,9 +4,11 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "experiments/build_info.h"
+#include "experiments/folder_lock.h"
 #include "experiments/json.h"
 #include "experiments/json_value.h"
 #include "scene/atomic_file.h"
@@ -152,6 +154,12 @@ FittedFrame frame_from(const json& j) {
   return f;
 }
 
+// Of all of a record but the checksum itself.
+std::string checksum_of(json record) {
+  record.erase("checksum");
+  return content_key(record.dump());
+}
+
 // The folder with what is done in it.
 class Folder {
  public:
@@ -190,6 +198,7 @@ class Folder {
       record_["next_id"] = fit.next_id;
     }
     record_["frames"].push_back(std::move(entry));
+    record_["checksum"] = checksum_of(record_);
     scene::write_file_atomically(at("record.json"), record_.dump(1) + "\n");
   }
 
@@ -203,6 +212,8 @@ class Folder {
         throw Error(fmt::format(
             "{}: holds a fit with other options or by another program, expected an empty folder or another one",
             s_.folder.string()));
+      if (there.at("checksum") != checksum_of(there))
+        throw Error(fmt::format("{}: is not what was written there; expected an empty folder or all files", path));
       const json& done = there.at("frames");
       for (std::size_t i = 0; i < done.size(); ++i) {
         if (i >= all_.frames.size() || done[i].at("content") != all_.frames[i].content)
@@ -250,6 +261,8 @@ FitReport fit_sequence(const FitSequence& s, const scene::Execution& execution,
   options.unit = all.unit;
   options.threads = execution.threads;
   Folder folder(s, all);
+  std::optional<FolderLock> lock;
+  if (!s.locked) lock.emplace(s.folder);
   GaussianFit previous;
   FitReport report;
   report.unit = all.unit;

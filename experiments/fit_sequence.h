@@ -23,6 +23,7 @@ struct FitSequence {
   int threshold = 0;               // of the residual: levels of this size or less are dropped
   std::filesystem::path folder;
   bool begin_anew = false;  // where the folder holds another fit; else that is an error
+  bool locked = false;      // the caller holds the folder's FolderLock
 };
 
 struct FittedFrame {
@@ -42,7 +43,8 @@ struct FitReport {
 };
 
 // Every file is read and checked before anything is computed. `done(frame)` after each frame that this run made. Throws Error, one line:
-// what cannot be read, a folder that holds another fit, a file of it that was changed; Interrupted where it was asked to stop.
+// what cannot be read, a folder that holds another fit or that another process
+// writes into, a file of it that was changed; Interrupted where it was asked to stop.
 FitReport fit_sequence(const FitSequence&, const scene::Execution&,
                        const std::function<void(const FittedFrame&)>& done = {});
 

@@ -46,9 +46,20 @@ void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
     ++on_device_;
   else
     prepared_ = prepared_with(flow.medium());
+  write(png);
+  seconds_ += watch.lap();
+}
+
+void FlowPictures::draw(const scene::DensityField& density, const std::string& png) {
+  scene::Stopwatch watch;
+  prepared_ = prepared_with(density);
+  write(png);
+  seconds_ += watch.lap();
+}
+
+void FlowPictures::write(const std::string& png) const {
   const scene::Rendering rendering = prepared_->render(scene::view_of(scene_), execution_);
   scene::write_png(png, rendering.film, "mean", exposure_);
-  seconds_ += watch.lap();
 }
 
 }  // namespace airlight::experiments

@@ -17,11 +17,14 @@ class FlowPictures {
   // As a PNG. From where flow and picture lie on a device if both are legendre_fluids_gpu, else prepared anew. Throws NotSupported
   // where the renderer cannot show the flow's density, Error where the file cannot be written.
   void draw(const scene::Flow&, const std::string& png);
+  // Of a frame of which there is the density alone.
+  void draw(const scene::DensityField&, const std::string& png);
 
   int on_device() const { return on_device_; }  // pictures that did not leave it before they were done
   double seconds() const { return seconds_; }   // of all
 
  private:
+  void write(const std::string& png) const;
   std::unique_ptr<scene::Prepared> prepared_with(const scene::DensityField&) const;
 
   const scene::Scene& scene_;

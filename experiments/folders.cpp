@@ -7,6 +7,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "experiments/say.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 
@@ -17,6 +18,15 @@ namespace {
 bool is_root(const fs::path& folder) {
   std::error_code ignored;
   return fs::exists(folder / "experiments" / "README.md", ignored);
+}
+
+// That folder or one above it; empty if none is a project's.
+fs::path root_above(fs::path folder) {
+  while (!is_root(folder)) {
+    if (folder.empty() || folder == folder.root_path()) return {};
+    folder = folder.parent_path();
+  }
+  return folder;
 }
 
 }  // namespace
@@ -38,12 +48,13 @@ fs::path project_root(const std::string& given) {
     return given;
   }
   std::error_code ignored;
-  for (const fs::path& start : {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored).parent_path()})
-    for (fs::path folder = start; !folder.empty(); folder = folder.parent_path()) {
-      if (is_root(folder)) return folder;
-      if (folder == folder.root_path()) break;
-    }
-  throw Error("no folder above the current one holds experiments/README.md; name the project's folder with --root");
+  if (const fs::path root = root_above(fs::current_path(ignored)); !root.empty()) return root;
+  const fs::path root = root_above(fs::read_symlink("/proc/self/exe", ignored).parent_path());
+  if (root.empty())
+    throw Error("no folder above the current one holds experiments/README.md; name the project's folder with --root");
+  say(fmt::format("no project above the current folder (experiments/README.md): using {}, above the program",
+                  root.string()));
+  return root;
 }
 
 void make_folder(const fs::path& folder) {

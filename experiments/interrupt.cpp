@@ -4,11 +4,18 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <mutex>
+
+#include "scene/error.h"
+#include "scene/limits.h"
 
 namespace airlight::experiments {
 namespace {
 
 std::atomic<int> signals{0};
+std::atomic<bool> stopped{false};
+std::mutex reason_mutex;
+std::string reason;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void on_signal(int) {
@@ -24,11 +31,24 @@ void catch_interrupts() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // Ignored under nohup.
+  struct sigaction hangup {};
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
-bool interrupted() { return signals.load() > 0; }
+bool interrupted() { return signals.load() > 0 || stopped; }
+
+void stop_with(const std::string& why) {
+  const std::lock_guard lock(reason_mutex);
+  if (!stopped) reason = why;
+  stopped = true;
+}
+
+const std::string& stopped_by() { return reason; }
 
 void check_interrupted() {
+  if (stopped) throw Error(reason);
+  scene::check_time();
   if (interrupted()) throw scene::Interrupted("interrupted");
 }
 

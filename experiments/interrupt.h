@@ -1,14 +1,20 @@
-// Ctrl-C and SIGTERM as a flag: work in progress stops at its next check and keeps what is done. A second signal ends
+// Ctrl-C, SIGTERM and SIGHUP as a flag: work in progress stops at its next check and keeps what is done. A second signal ends
 // the program at once.
 #pragma once
+#include <string>
+
 #include "scene/renderer.h"
 
 namespace airlight::experiments {
 
 void catch_interrupts();
-bool interrupted();
+bool interrupted();  // by a signal, or by stop_with
 
-// Throws scene::Interrupted if a signal came.
+// Ends work in progress like a signal, for a reason that is then told instead (exit code 2). From any thread; the first reason counts.
+void stop_with(const std::string& reason);
+const std::string& stopped_by();  // empty: by a signal, or not at all
+
+// Throws scene::Interrupted if a signal came, Error if stop_with was called or the time that --limit allows is over.
 void check_interrupted();
 
 // Settings for a render that only watches for signals.

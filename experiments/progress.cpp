@@ -6,6 +6,8 @@
 
 #include "experiments/interrupt.h"
 #include "experiments/say.h"
+#include "scene/error.h"
+#include "scene/limits.h"
 
 namespace airlight::experiments {
 namespace {
@@ -49,6 +51,7 @@ Progress::~Progress() {
 void Progress::update(double fraction) {
   const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
+  if (scene::seconds_allowed() < infinity) hold_to_limit(fraction, std::chrono::duration<double>(now - start_).count());
   if (std::chrono::duration<double>(now - last_).count() < (terminal_ ? 0.1 : 30)) return;
   last_ = now;
   shown_ = terminal_;
@@ -59,6 +62,17 @@ void Progress::update(double fraction) {
     draw_progress(stderr, line);
   else
     say(line);
+}
+
+// What the first second showed of the rest.
+void Progress::hold_to_limit(double fraction, double spent) const {
+  if (spent < 1) return;
+  try {
+    scene::check_time();
+    if (fraction > 0) scene::require_time(spent * (1 - fraction) / fraction, what_);
+  } catch (const Error& error) {
+    stop_with(error.what());
+  }
 }
 
 scene::Execution Progress::execution(int threads) {

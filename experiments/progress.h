@@ -36,6 +36,8 @@ class Progress {
   scene::Execution execution(int threads);
 
  private:
+  void hold_to_limit(double fraction, double spent) const;
+
   using Clock = std::chrono::steady_clock;
   std::string what_;
   bool terminal_;

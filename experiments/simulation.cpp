@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "experiments/build_info.h"
+#include "experiments/folder_lock.h"
 #include "experiments/frames.h"
 #include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/convert/legendre_projection.h"
 #include "scene/error.h"
 #include "scene/flow_particles.h"
+#include "scene/load/parts.h"
 #include "scene/media/legendre_box.h"
+#include "scene/media/voxel_grid.h"
 #include "scene/read_file.h"
 #include "scene/stopwatch.h"
 
@@ -34,22 +37,42 @@ std::string history_row(int frame, double time, const scene::Totals& totals) {
   return line + "\n";
 }
 
-// The first two lines of `state`: of what it is; after which frame, and how many files of coefficients each has.
 std::string key_of(const Simulation& s) {
   return content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()});
 }
+
+constexpr std::size_t most_bytes = std::size_t(1) << 36;
+std::string checksum_of(const std::string& file) { return content_key(scene::read_whole_file(file, most_bytes)); }
+
+// What `state` begins with: key, last frame and files of coefficients of each, then a checksum and a name for each file that is complete.
+// Particles and flow follow, then a checksum of all that.
 struct Kept {
-  std::string key;
+  std::string key, bytes, files;  // files: those lines
   int last = -1, coefficients = 0;
+  std::size_t end = 0;  // of the beginning
 };
-std::optional<Kept> what_is_in(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(folder / "state", ignored)) return std::nullopt;
-  std::ifstream in(folder / "state", std::ios::binary);
+Kept read_state(const std::string& path) {
   Kept kept;
-  if (std::getline(in, kept.key) && in >> kept.last >> kept.coefficients) return kept;
-  return std::nullopt;
+  kept.bytes = scene::read_whole_file(path, most_bytes);
+  kept.key = kept.bytes.substr(0, kept.bytes.find('\n'));
+  const std::size_t sum = content_key(std::string_view()).size();
+  const std::string_view all = kept.bytes;
+  if (all.size() < sum || content_key(all.substr(0, all.size() - sum)) != all.substr(all.size() - sum))
+    throw Error(fmt::format("{}: damaged: its checksum does not match; expected an empty folder or all files", path));
+  const std::size_t files = kept.bytes.find('\n', kept.key.size() + 1) + 1, end = kept.bytes.find("\n\n", files - 1);
+  std::istringstream in(kept.bytes.substr(0, files));
+  if (!(in >> kept.key >> kept.last >> kept.coefficients) || kept.last < 0 || files == 0 || end == std::string::npos)
+    throw Error(fmt::format("{}: is no state of a simulation; expected an empty folder or another one", path));
+  kept.files = kept.bytes.substr(files, end + 1 - files);
+  kept.end = end + 2;
+  kept.bytes.resize(kept.bytes.size() - sum);
+  return kept;
 }
+
+class OfAnother : public Error {
+ public:
+  using Error::Error;
+};
 
 class Folder {
  public:
@@ -59,49 +82,70 @@ class Folder {
     if (code) throw Error(fmt::format("{}: {}", s.folder.string(), code.message()));
   }
 
-  std::string frame_name(int frame) const {
-    return (s_.folder / fmt::format("{}.{:04d}.vdb", s_.problem->name, frame)).string();
-  }
+  std::string at(const std::string& name) const { return (s_.folder / name).string(); }
+  std::string frame_name(int frame) const { return fmt::format("{}.{:04d}.vdb", s_.problem->name, frame); }
   std::string coefficients_name(int density, int frame) const {
     const std::string of = density == 0 ? "" : "." + scene::density_name(*s_.problem, density);
-    return (s_.folder / fmt::format("{}{}.{:04d}.csv", s_.problem->name, of, frame)).string();
+    return fmt::format("{}{}.{:04d}.csv", s_.problem->name, of, frame);
   }
   std::string particles_name(int frame) const {
-    return (s_.folder / fmt::format("{}.particles.{:04d}.csv", s_.problem->name, frame)).string();
+    return fmt::format("{}.particles.{:04d}.csv", s_.problem->name, frame);
   }
-  // The first file that is gone, of the frames up to the last; nothing where all are there.
-  std::string missing(const Kept& kept) const {
-    for (int frame = 0; frame <= kept.last; ++frame) {
-      std::vector<std::string> files{frame_name(frame)};
-      for (int density = 0; density < kept.coefficients; ++density) files.push_back(coefficients_name(density, frame));
-      if (!s_.problem->particles.empty()) files.push_back(particles_name(frame));
-      for (const std::string& file : files)
-        if (!fs::exists(file)) return file;
-    }
-    return "";
+  std::vector<std::string> names(int frame, int coefficients) const {
+    std::vector<std::string> all{frame_name(frame)};
+    for (int density = 0; density < coefficients; ++density) all.push_back(coefficients_name(density, frame));
+    if (!s_.problem->particles.empty()) all.push_back(particles_name(frame));
+    return all;
+  }
+
+  // What `state` says, if all files are as they were written: nothing where there is no state. Throws Error.
+  std::optional<Kept> verified() {
+    if (!fs::exists(at("state"))) return std::nullopt;
+    Kept kept = read_state(at("state"));
+    if (kept.key != key_)
+      throw OfAnother(
+          fmt::format("{}: of another problem, solver, settings or program, expected an empty folder or another one",
+                      s_.folder.string()));
+    std::istringstream lines(kept.files);
+    const auto check = [&](const std::string& name, const std::string& sum) {
+      std::string line;
+      if (!std::getline(lines, line) || line != sum + " " + name)
+        throw Error(fmt::format("{}: is not what was written there; expected an empty folder or all frames", at(name)));
+    };
+    for (int frame = 0; frame <= kept.last; ++frame)
+      for (const std::string& name : names(frame, kept.coefficients)) {
+        if (!fs::exists(at(name)))
+          throw Error(fmt::format(
+              "{}: is gone, and the simulation is beyond it; expected an empty folder or all frames", at(name)));
+        check(name, checksum_of(at(name)));
+      }
+    history_ = rows_up_to(kept.last);
+    check("history.csv", content_key(history_));
+    files_ = kept.files.substr(0, kept.files.rfind('\n', kept.files.size() - 2) + 1);
+    return kept;
   }
 
   // The last frame that is complete, -1 where there is none, and into `flow` and its particles what followed it.
   int resume(scene::Flow& flow, scene::FlowParticles& particles) {
-    const std::string path = (s_.folder / "state").string();
-    if (!fs::exists(path)) return -1;
-    const std::string bytes = scene::read_whole_file(path, std::size_t(1) << 36);
-    const std::size_t line = bytes.find('\n'), next = bytes.find('\n', line + 1);
-    if (line == std::string::npos || next == std::string::npos || bytes.substr(0, line) != key_)
-      throw Error(
-          fmt::format("{}: of another problem, solver, settings or program, expected an empty folder or another one",
-                      s_.folder.string()));
-    const Kept kept = what_is_in(s_.folder).value();
-    const int last = kept.last;
-    if (const std::string gone = missing(kept); !gone.empty())
-      throw Error(
-          fmt::format("{}: is gone, and the simulation is beyond it; expected an empty folder or all frames", gone));
-    history_ = rows_up_to(last);
+    const std::optional<Kept> kept = verified();
+    if (!kept) return -1;
     const std::size_t of_particles = particles.state().size();
-    if (bytes.size() - (next + 1) < of_particles) throw Error(path + ": shorter than expected");
-    particles.restore(bytes.substr(next + 1, of_particles));
-    flow.restore(bytes.substr(next + 1 + of_particles));
-    return last;
+    try {
+      particles.restore(kept->bytes.substr(kept->end, of_particles));
+      flow.restore(kept->bytes.substr(std::min(kept->end + of_particles, kept->bytes.size())));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", at("state"), error.what()));
+    }
+    coefficients_ = kept->coefficients;
+    return kept->last;
+  }
+
+  // The density of a frame that is there; `flow` says in which box, where it lies there as coefficients.
+  scene::DensityField density(int frame, const scene::Flow& flow) const {
+    if (coefficients_ == 0) return std::make_shared<const scene::VoxelGrid>(scene::read_vdb(at(frame_name(frame))));
+    const auto& now = *std::get<scene::LegendrePointer>(flow.medium());
+    return std::make_shared<const scene::LegendreBox>(
+        now.box(), now.shape(), scene::load::read_legendre_csv(at(coefficients_name(0, frame)), now.shape()));
   }
 
   void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
@@ -110,41 +154,45 @@ class Folder {
       const scene::DensityField medium = flow.medium(density);
       const auto* box = std::get_if<scene::LegendrePointer>(&medium);
       if (!box) break;
-      scene::write_legendre_csv(coefficients_name(density, frame), **box);
+      scene::write_legendre_csv(at(coefficients_name(density, frame)), **box);
       ++coefficients;
     }
-    if (!particles.empty()) scene::write_file_atomically(particles_name(frame), particles.csv());
-    scene::write_frame(frame_name(frame), flow.frame(),
+    if (!particles.empty()) scene::write_file_atomically(at(particles_name(frame)), particles.csv());
+    scene::write_frame(at(frame_name(frame)), flow.frame(),
                        {{"frame", std::to_string(frame)},
                         {"time", fmt::format("{}", flow.time())},
                         {"dt", fmt::format("{}", dt)},
                         {"problem", s_.problem->name + " " + s_.problem->hash},
                         {"solver", s_.solver.name() + " " + s_.settings.canonical()},
                         {"commit", commit()}});
+    for (const std::string& name : names(frame, coefficients)) files_ += checksum_of(at(name)) + " " + name + "\n";
+    if (history_.empty()) history_ = history_header();
     history_ += history_row(frame, flow.time(), flow.totals());
-    scene::write_file_atomically((s_.folder / "history.csv").string(), history_header() + history_);
+    scene::write_file_atomically(at("history.csv"), history_);
     std::string state = flow.state();  // as long as the flow itself
-    state.insert(0, fmt::format("{}\n{} {}\n{}", key_, frame, coefficients, particles.state()));
-    scene::write_file_atomically((s_.folder / "state").string(), state);
+    state.insert(0, fmt::format("{}\n{} {}\n{}{} history.csv\n\n{}", key_, frame, coefficients, files_,
+                                content_key(history_), particles.state()));
+    state += content_key(state);
+    scene::write_file_atomically(at("state"), state);
   }
 
  private:
   // A run that ended between two files may have left a row too many.
   std::string rows_up_to(int last) const {
-    const std::string path = (s_.folder / "history.csv").string();
+    const std::string path = at("history.csv");
     const std::string text = scene::read_whole_file(path, std::size_t(1) << 30);
     std::size_t end = text.find('\n') + 1;
-    const std::size_t begin = end;
     for (int frame = 0; frame <= last; ++frame) {
       if (text.compare(end, std::to_string(frame).size() + 1, std::to_string(frame) + ",") != 0 || end == 0)
         throw Error(fmt::format("{}: has no row of frame {}", path, frame));
       end = text.find('\n', end) + 1;
     }
-    return text.substr(begin, end - begin);
+    return text.substr(0, end);
   }
 
   const Simulation& s_;
-  std::string key_, history_;
+  std::string key_, files_, history_;
+  int coefficients_ = 0;
 };
 
 // Particles, and unless they lie where the flow does, the flow as it was a step before, between which and now they move.
@@ -180,10 +228,15 @@ class Carried {
 
 }  // namespace
 
-int frames_there(const Simulation& s) {
-  const auto found = what_is_in(s.folder);
-  if (!found || found->key != key_of(s) || !Folder(s).missing(*found).empty()) return 0;
-  return found->last + 1;
+FramesThere frames_there(const Simulation& s) {
+  try {
+    const auto kept = Folder(s).verified();
+    return {kept ? kept->last + 1 : 0, ""};
+  } catch (const OfAnother&) {
+    return {};
+  } catch (const Error& error) {
+    return {0, error.what()};
+  }
 }
 
 SimulationReport simulate(const Simulation& s, const scene::Execution& execution) {
@@ -194,9 +247,15 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
   const auto flow = s.solver.start(s.problem, s.settings, execution);
   Carried carried(s, *flow, execution);
   Folder folder(s);
+  std::optional<FolderLock> lock;
+  if (!s.locked) lock.emplace(s.folder);
   SimulationReport report;
   const int last = folder.resume(*flow, carried.particles);
   report.resumed = last + 1;
+  for (int frame = 0; s.look_back && frame <= last; ++frame) {
+    s.look_back(frame, folder.density(frame, *flow));
+    if (execution.progress && !execution.progress(0)) throw scene::Interrupted("interrupted");
+  }
   for (int frame = last + 1; frame < plan.frames; ++frame) {
     carried.from(*flow);
     if (frame > 0)

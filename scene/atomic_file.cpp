@@ -97,10 +97,21 @@ int write_named(const std::string& target, std::string_view bytes) {
   return error;
 }
 
+// A pipe that nobody reads would be waited for without an end: its reader gets a second to come.
+int open_pipe_or_device(const std::string& path, int flags) {
+  int descriptor;
+  for (int attempt = 0; (descriptor = ::open(path.c_str(), flags | O_NONBLOCK)) < 0 && errno == ENXIO; ++attempt) {
+    if (attempt == 50) throw CannotWrite(fmt::format("{}: cannot write: found a pipe that nobody reads from", path));
+    ::usleep(20'000);
+  }
+  if (descriptor < 0) fail(path, errno);
+  ::fcntl(descriptor, F_SETFL, 0);  // from here on a slow reader is waited for
+  return descriptor;
+}
+
 // Into a pipe or a device; `follow`: also through a link.
 void write_directly(const std::string& path, std::string_view bytes, bool follow) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW));
-  if (descriptor < 0) fail(path, errno);
+  const int descriptor = open_pipe_or_device(path, O_WRONLY | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW));
   int error = write_all(descriptor, bytes);
   if (::close(descriptor) != 0 && error == 0) error = errno;
   if (error != 0) fail(path, error);

@@ -18,7 +18,8 @@ class CannotWrite : public Error {
 // to the disk and gives it its name. Whatever fails (no such folder, read-only, disk full), the old file stays as it
 // was, no temporary is left, and CannotWrite is one line with the path and the system's reason. A symbolic link is
 // replaced and what it leads to stays as it is: whoever may write into a folder could otherwise have any file replaced.
-// Something that is not a regular file (a pipe, a device, /dev/stdout) is written to directly.
+// Something that is not a regular file (a pipe, a device, /dev/stdout) is written to directly; a pipe
+// must have a reader within a second.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 // Makes the folder `root` and folders below it where they are not there yet, for the user alone (mode 0700); what is

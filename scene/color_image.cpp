@@ -14,6 +14,7 @@
 #include "scene/file_ending.h"
 #include "scene/film.h"
 #include "scene/grey_image_parts.h"
+#include "scene/limits.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
 
@@ -55,8 +56,11 @@ ColorImage read_png(const std::string& path) {
     throw Error(fmt::format("{}: has an alpha channel, expected a picture without", path));
   png.format = PNG_FORMAT_RGB;
   png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
+  require_memory(double(PNG_IMAGE_SIZE(png)) * (1 + sizeof(float)),
+                 fmt::format("{}: {} x {} pixels", path, png.width, png.height));
   std::vector<png_byte> bytes(PNG_IMAGE_SIZE(png));
   ColorImage image{int(png.width), int(png.height), {}};
+  image.rgb.reserve(bytes.size());
   if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr)) throw damaged();
   const std::array<float, 256> linear = linear_of_srgb();
   for (const png_byte byte : bytes) image.rgb.push_back(linear[byte]);

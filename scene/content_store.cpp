@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
 #include "scene/read_file.h"
@@ -20,6 +19,11 @@ std::string bytes_of(const fs::path& path) {
 
 fs::path checksum_of(fs::path file) { return file += ".xxh128"; }
 
+// As xxh128sum prints it. The name is that of the entry in its store: with its checksum, too, no other entry stands for it.
+std::string checksum_line(std::string_view bytes, const std::string& name) {
+  return fmt::format("{}  {}\n", content_key(bytes), name);
+}
+
 }  // namespace
 
 std::optional<fs::path> ContentStore::find(const std::string& name) const {
@@ -28,8 +32,12 @@ std::optional<fs::path> ContentStore::find(const std::string& name) const {
   if (!fs::exists(file, ignored) || !fs::exists(checksum_of(file), ignored)) return std::nullopt;
   std::string reason;
   try {
-    if (content_key(std::string_view(bytes_of(file))) == bytes_of(checksum_of(file))) return file;
-    reason = fmt::format("{}: checksum differs", file.string());
+    const std::string found = checksum_line(bytes_of(file), name), noted = bytes_of(checksum_of(file));
+    if (found == noted) return file;
+    const std::size_t sum = found.find(' ');
+    reason = fmt::format(
+        "{}: {}", file.string(),
+        found.compare(0, sum, noted, 0, sum) == 0 ? "its checksum names another entry" : "checksum differs");
   } catch (const Error& error) {  // a folder, a pipe, no permission
     reason = error.what();
   }
@@ -46,7 +54,7 @@ void ContentStore::keep(const std::string& name, const std::function<void(const 
   try {
     write(part);
     // A file between two checksums counts as damaged.
-    const std::string checksum = content_key(std::string_view(bytes_of(part)));
+    const std::string checksum = checksum_line(bytes_of(part), name);
     fs::rename(part, file);
     write_file_atomically(checksum_of(file).string(), checksum);
   } catch (const fs::filesystem_error& error) {

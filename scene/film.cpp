@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/error.h"
+#include "scene/limits.h"
 
 namespace airlight::scene {
 namespace {
@@ -21,6 +22,7 @@ std::size_t offset_of(const Film& film, int x, int y) {
 
 std::vector<float>& Film::add(const std::string& name) {
   std::vector<float>& values = layers[name];
+  if (values.empty()) require_memory(12.0 * double(pixels()), fmt::format("a film of {} x {}", width, height));
   values.resize(3 * pixels(), 0.0f);
   return values;
 }

@@ -16,6 +16,7 @@
 #include "scene/error.h"
 #include "scene/exr_header.h"
 #include "scene/film.h"
+#include "scene/limits.h"
 #include "scene/printable.h"
 
 namespace airlight::scene {
@@ -128,6 +129,7 @@ Layout check_layout(const std::string& path, const Imf::Header& header, std::siz
   if (bytes > double(max_bytes))
     throw Error(fmt::format("{}: {} x {} pixels and {} channels need {:.0f} bytes, allowed are {}", path, width, height,
                             channels.size(), bytes, max_bytes));
+  require_memory(bytes, fmt::format("{}: {} x {} pixels", path, width, height));
   if (channels.size() > 40) channels.resize(40);
   if (layout.layers.empty())
     throw Error(fmt::format("{}: no channels R, G, B; it has: {}", path, fmt::join(channels, ", ")));

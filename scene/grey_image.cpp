@@ -18,6 +18,7 @@
 #include "scene/exr_memory.h"
 #include "scene/file_ending.h"
 #include "scene/grey_image_parts.h"
+#include "scene/limits.h"
 #include "scene/printable.h"
 
 namespace airlight::scene {
@@ -51,6 +52,7 @@ GreyImage decode(const std::string& path, const std::string& wish, std::size_t m
   if (channel.xSampling != 1 || channel.ySampling != 1)
     throw Error(fmt::format("{}: channel '{}' is subsampled", path, name));
   if (!file.isComplete()) throw Error(fmt::format("{}: incomplete: pixels are missing", path));
+  require_memory(12.0 * double(width) * double(height), fmt::format("{}: {} x {} pixels", path, width, height));
   std::vector<float> values(std::size_t(width) * std::size_t(height));
   Imf::FrameBuffer pixels;
   pixels.insert(name,

@@ -11,6 +11,7 @@
 #include "scene/error.h"
 #include "scene/grey_image.h"
 #include "scene/grey_image_parts.h"
+#include "scene/limits.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
 
@@ -94,6 +95,8 @@ GreyImage read_grey_png(const std::string& path, std::size_t most_pixels) {
   if (!read_header(r, header)) throw damaged();
   require_pixels(path, header.width, header.height, most_pixels);
   const std::size_t row = png_get_rowbytes(r.png, r.info);
+  require_memory(double(row) * header.height + 8.0 * header.width * header.height,
+                 fmt::format("{}: {} x {} pixels", path, header.width, header.height));
   std::vector<png_byte> bytes(row * header.height);
   std::vector<png_bytep> rows;
   for (std::size_t y = 0; y < header.height; ++y) rows.push_back(bytes.data() + y * row);

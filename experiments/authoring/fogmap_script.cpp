@@ -9,9 +9,10 @@
 #include <optional>
 
 #include "experiments/authoring/operation.h"
-#include "scene/atomic_file.h"
+#include "experiments/authoring/write_scene.h"
 #include "scene/error.h"
 #include "scene/grey_image.h"
+#include "scene/load/parse_toml.h"
 #include "scene/load/ranges.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/printable.h"
@@ -197,11 +198,12 @@ std::string write(const DrawnFogmap& drawn, const std::string& script, const std
   const std::string name = fs::path(out).stem().string() + (fits ? ".png" : ".exr");
   const std::string path = (fs::path(out).parent_path() / name).string();
   scene::write_grey_image(path, {canvas.width(), canvas.height(), values, ""});
-  scene::write_file_atomically(
-      out, fmt::format(
-               "# Made by `airlight author {}`: change that and not this.\n{}\n[[medium]]\ntype = \"fogmap\"\nfile = "
-               "\"{}\"\n{}",
-               scene::printable(fs::path(script).filename().string(), 200), drawn.scene, name, drawn.medium));
+  write_checked(
+      fmt::format(
+          "# Made by `airlight author {}`: change that and not this.\n{}\n[[medium]]\ntype = \"fogmap\"\nfile = {}\n{}",
+          scene::printable(fs::path(script).filename().string(), 200), drawn.scene, scene::load::toml_string(name),
+          drawn.medium),
+      out, {name});
   return name;
 }
 

@@ -7,12 +7,16 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <string_view>
 
 #include "scene/atomic_file.h"
 #include "scene/error.h"
+#include "scene/load/assets.h"
 #include "scene/load/parse_toml.h"
+#include "scene/load/table_reader.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
+#include "scene/scene.h"
 
 namespace airlight::experiments::authoring {
 namespace {
@@ -31,10 +35,21 @@ std::size_t offset_of(const std::string& text, const toml::source_position& posi
   return at;
 }
 
-std::string toml_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  return '"' + out + '"';
+// Keys of a scene whose text names a file.
+bool names_file(std::string_view key) {
+  for (const char* name : {"file", "image", "depth", "gaussians", "residual"})
+    if (key == name) return true;
+  return false;
+}
+
+// Of a sequence: the file of its frame.
+std::string file_of(const toml::table& table, const std::string& key, const std::string& text) {
+  if (text.find('#') == std::string::npos) return text;
+  scene::load::TableReader reader(table, "");
+  std::vector<std::string> keys{"frame"};
+  for (const auto& [name, value] : table) keys.emplace_back(name.str());
+  reader.allow(keys);
+  return scene::load::name_of_frame(reader, key);
 }
 
 // The text with the names of files in `from` made to hold for a scene in `to`. A file that is not beside the scene is
@@ -49,8 +64,8 @@ std::string with_moved_assets(std::string text, const fs::path& from, const fs::
     for (const auto& [key, value] : *table) {
       walk(value);
       const auto* file = value.as_string();
-      if (!file || key.str() != "file" || fs::path(file->get()).is_absolute()) continue;
-      if (fs::exists(from / file->get()))
+      if (!file || !names_file(key.str()) || fs::path(file->get()).is_absolute()) continue;
+      if (fs::exists(from / file_of(*table, std::string(key.str()), file->get())))
         changes.emplace_back(file->source(), fs::proximate(from / file->get(), to).generic_string());
     }
   };
@@ -59,7 +74,7 @@ std::string with_moved_assets(std::string text, const fs::path& from, const fs::
   std::sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) { return b.first.begin < a.first.begin; });
   for (const auto& [where, path] : changes) {
     const std::size_t begin = offset_of(text, where.begin), end = offset_of(text, where.end);
-    text.replace(begin, end - begin, toml_text(path));
+    text.replace(begin, end - begin, scene::load::toml_string(path));
   }
   return text;
 }
@@ -117,23 +132,39 @@ SceneFiles scene_files(const Authored& authored, const std::string& script, cons
     table.name = media.size() == 1 ? stem + ".csv" : fmt::format("{}.{}.csv", stem, i + 1);
     table.csv = "center_x,center_y,center_z,width,amplitude\n" + table.csv;
     files.toml += fmt::format("\n[[medium]]\ntype = \"gaussians\"\nname = \"authored{}\"\nfile = {}\n",
-                              media.size() == 1 ? "" : fmt::format(" {}", i + 1), toml_text(table.name));
+                              media.size() == 1 ? "" : fmt::format(" {}", i + 1), scene::load::toml_string(table.name));
     if ((color != 1).any()) files.toml += fmt::format("albedo = [{}, {}, {}]\n", color[0], color[1], color[2]);
     files.tables.push_back(std::move(table));
   }
   try {
     scene::load::parse_toml(files.toml, out);
   } catch (const Error& e) {
-    throw Error(
-        fmt::format("{}: media cannot be added at its end ({}), expected [[medium]] tables", authored.base, e.what()));
+    throw Error(fmt::format("{}: media cannot be added at its end ({}), expected [[medium]] tables",
+                            authored.base.empty() ? script : authored.base, e.what()));
   }
   return files;
 }
 
+void write_checked(const std::string& toml, const std::string& out, const std::vector<std::string>& beside) {
+  const fs::path folder = fs::absolute(out).parent_path();
+  try {
+    scene::parse_scene(toml, out, folder.string());
+  } catch (const Error& error) {
+    std::error_code ignored;
+    for (const std::string& name : beside) fs::remove(folder / name, ignored);
+    throw Error(fmt::format("{}: not written, since no command could read it: {}", out, error.what()));
+  }
+  scene::write_file_atomically(out, toml);
+}
+
 void write(const SceneFiles& files, const std::string& out) {
   const fs::path folder = fs::path(out).parent_path();
-  for (const auto& table : files.tables) scene::write_file_atomically((folder / table.name).string(), table.csv);
-  scene::write_file_atomically(out, files.toml);
+  std::vector<std::string> names;
+  for (const auto& table : files.tables) {
+    scene::write_file_atomically((folder / table.name).string(), table.csv);
+    names.push_back(table.name);
+  }
+  write_checked(files.toml, out, names);
 }
 
 }  // namespace airlight::experiments::authoring

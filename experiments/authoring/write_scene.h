@@ -22,7 +22,10 @@ struct SceneFiles {
 // script. Throws Error if there is neither, or if `out` is the base scene.
 SceneFiles scene_files(const Authored&, const std::string& script, const std::string& out);
 
-// The tables first and the scene last, each whole or not at all.
+// The tables first and the scene last, each whole or not at all. Throws Error where the scene could not be read back.
 void write(const SceneFiles&, const std::string& out);
+
+// Writes a scene whose other files are there. One that cannot be read is not written: Error, and the files `beside` it are removed.
+void write_checked(const std::string& toml, const std::string& out, const std::vector<std::string>& beside);
 
 }  // namespace airlight::experiments::authoring

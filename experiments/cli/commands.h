@@ -45,7 +45,8 @@ struct ConvertOptions {
   std::vector<std::string> files;  // in, out, in, out, ...
   std::string layer = "mean";
   double exposure = 0;
-  double depth_scale = 0;  // > 0: of a PNG, grey with 16 bits: the layer's first channel, this many metres are white
+  std::optional<double>
+      depth_scale;               // of a PNG, grey with 16 bits: the layer's first channel, this many metres are white
   std::string grid = "density";  // of an OpenVDB file
   int pixels = 64, samples = 2, degree = 1;
   std::string medium = "0";              // of a scene: its name, or its number

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "experiments/cli/commands.h"
@@ -12,6 +13,7 @@
 #include "scene/file_ending.h"
 #include "scene/film.h"
 #include "scene/grey_image.h"
+#include "scene/load/parse_toml.h"
 #include "scene/media/legendre_box.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
@@ -35,8 +37,9 @@ void convert_columns(const std::string& in, const std::string& out, const Conver
   scene::write_grey_image(out, {pixels.width, pixels.height, fog.map.map.coefficients(), ""});
   fmt::print("# columns: relative L2 error {:.2g}, sum {:.6f} of the grid's; density: relative L2 error {:.2g}\n",
              fog.column_error, fog.column_ratio, fog.density_error);
-  fmt::print("[[medium]]\ntype = \"fogmap\"\nfile = \"{}\"\ncell = {}\ncorner = [{}, {}]\ndegree = {}\n",
-             std::filesystem::path(out).filename().string(), pixels.cell, pixels.x0, pixels.z0, options.degree);
+  fmt::print("[[medium]]\ntype = \"fogmap\"\nfile = {}\ncell = {}\ncorner = [{}, {}]\ndegree = {}\n",
+             scene::load::toml_string(std::filesystem::path(out).filename().string()), pixels.cell, pixels.x0,
+             pixels.z0, options.degree);
   fmt::print("region = {{ type = \"slab\", lo = {}, hi = {} }}\n", fog.heights.lo, fog.heights.hi);
 }
 
@@ -78,17 +81,17 @@ void convert_projection(const std::string& in, const std::string& out, const Con
              result.error, result.clamped_error, result.mass_ratio, result.values.lo, result.values.hi);
   fmt::print("# negative in {:.2g} of the box, limiter {:.4f}\n", result.negative_share, result.theta);
   const Box& box = result.field->box();
-  fmt::print("[[medium]]\ntype = \"legendre\"\nfile = \"{}\"\nsize = [{}, {}, {}]\nlo = {}\nhi = {}\n",
-             std::filesystem::path(out).filename().string(), projection.shape[0], projection.shape[1],
-             projection.shape[2], list(box.lo), list(box.hi));
+  fmt::print("[[medium]]\ntype = \"legendre\"\nfile = {}\nsize = [{}, {}, {}]\nlo = {}\nhi = {}\n",
+             scene::load::toml_string(std::filesystem::path(out).filename().string()), projection.shape[0],
+             projection.shape[1], projection.shape[2], list(box.lo), list(box.hi));
 }
 
 void convert(const std::string& in, const std::string& out, const ConvertOptions& options) {
   const scene::Film film = scene::read_exr(in);
-  if (kind_of(out) == ".png" && options.depth_scale > 0) {
+  if (kind_of(out) == ".png" && options.depth_scale) {
     scene::GreyImage grey{film.width, film.height, {}, ""};
     const std::vector<float>& depth = film.layer(options.layer);
-    for (std::size_t i = 0; i < depth.size(); i += 3) grey.values.push_back(depth[i] / options.depth_scale);
+    for (std::size_t i = 0; i < depth.size(); i += 3) grey.values.push_back(float(depth[i] / *options.depth_scale));
     scene::write_grey_image(out, grey);
     return;
   }
@@ -109,6 +112,8 @@ void convert(const std::string& in, const std::string& out, const ConvertOptions
 
 int convert(const ConvertOptions& options) {
   const std::vector<std::string>& files = options.files;
+  if (const auto& scale = options.depth_scale; scale && !(*scale > 0 && std::isfinite(*scale)))
+    throw Error(fmt::format("--depth-scale {}: expected metres above 0", *scale));
   for (std::size_t i = 0; i < files.size(); i += 2) {
     if (is_table(files[i + 1]) && (is_grid(files[i]) || is_scene(files[i]))) continue;
     if (is_scene(files[i])) throw Error(fmt::format("{}: expected a name in .csv for a Legendre box", files[i + 1]));

@@ -213,10 +213,11 @@ int plot_experiments(const ExperimentOptions& options) {
   return 0;
 }
 
-int gates(const ExperimentOptions& options) {
+namespace {
+
+int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& results) {
   check_profile(options);
   const Folders folders = folders_of(options);
-  std::vector<GateResult> results;
   // What an earlier run of this very program finished is not computed again.
   const std::vector<Experiment> experiments = read_and_check(options, folders, true);
   RunProgress progress(planned_work(experiments, folders.root / "results"), RunProgress::standard_streams(false));
@@ -246,6 +247,19 @@ int gates(const ExperimentOptions& options) {
   if (!options.junit.empty()) write_junit(options.junit, results);
   fmt::print("{}\n", gates_text(results));
   return name_failures(results);
+}
+
+}  // namespace
+
+int gates(const ExperimentOptions& options) {
+  std::vector<GateResult> results;
+  try {
+    return judge_gates(options, results);
+  } catch (const Error& error) {
+    // What ends the command says nothing about accuracy: an error beside the gates that were judged.
+    if (!options.junit.empty()) write_junit(options.junit, results, error.what());
+    throw;
+  }
 }
 
 }  // namespace airlight::experiments::cli

@@ -25,6 +25,7 @@
 #include "scene/convert/gaussian_fit.h"
 #include "scene/data_folder.h"
 #include "scene/error.h"
+#include "scene/limits.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -52,6 +53,7 @@ int dispatch(int argc, char** argv) {
   app.option_defaults()->always_capture_default(false);
   std::string data;
   std::optional<std::string> gpu;
+  std::vector<std::string> limits;
   std::function<int()> action;
   const auto command = [&](CLI::App& parent, const std::string& name, const std::string& doc) {
     CLI::App* c = parent.add_subcommand(name, doc);
@@ -67,6 +69,13 @@ int dispatch(int argc, char** argv) {
                   "device: its number, a part of its or its vendor's name, surfaceless, none, or auto, the first that "
                   "works (default: the variable AIRLIGHT_GPU; airlight doctor lists them)")
         ->type_name("WHICH");
+  };
+  const auto limit_option = [&](CLI::App* c) {
+    c->add_option(
+         "--limit", limits,
+         "memory (2GiB) or time (10min, 90s) that the command may take; more is refused before the work where it can be "
+         "estimated (default: the memory of the machine)")
+        ->type_name("AMOUNT");
   };
   app.footer("Commands that may use a GPU (render, experiment run, gates, explain, doctor) take --gpu WHICH.");
   app.allow_extras();
@@ -87,6 +96,7 @@ int dispatch(int argc, char** argv) {
                 "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
   add_pairs(c, "--set", render_options.settings, "a setting of the method (airlight explain lists them)");
   add_pairs(c, "--override", render_options.overrides, "a value of the scene file, e.g. film.width=64");
+  limit_option(c);
   data_option(c);
   gpu_option(c);
   c->final_callback([&] {
@@ -105,6 +115,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("PART", merge_options.parts, "files written by render --samples A..B: OUT.samples");
   c->add_option("--out,-o", merge_options.out, "OpenEXR file to write");
   add_pairs(c, "--override", merge_options.overrides, "a value of the scene file, as for the parts");
+  limit_option(c);
   data_option(c);
   c->final_callback([&] {
     action = [&] {
@@ -163,6 +174,7 @@ int dispatch(int argc, char** argv) {
       ->check(CLI::Range(1, 48));
   c->add_flag("--no-lanczos", convert_options.no_lanczos, "do not damp the waves that a jump leaves");
   c->add_flag("--no-limiter", convert_options.no_limiter, "do not draw it towards its mean until it is positive");
+  limit_option(c);
   c->final_callback([&] {
     action = [&] {
       require(convert_options.files.empty() ? "" : convert_options.files.front(), "IN");
@@ -195,6 +207,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--method,-m", fit_options.method,
                 fmt::format("one of {}", fmt::join(scene::fit_method_names(), ", ")));
   c->add_option("--threads", fit_options.threads, "0: all")->check(CLI::Range(0, 4096));
+  limit_option(c);
   data_option(c);
   c->final_callback([&] {
     action = [&] {
@@ -225,6 +238,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--exposure", simulate_options.exposure, "of the pictures, in powers of two");
   c->add_option("--profile", simulate_options.profile, "of that sequence: quick (default) or paper");
   c->add_option("--threads", simulate_options.threads, "0: all")->check(CLI::Range(0, 4096));
+  limit_option(c);
   data_option(c);
   c->final_callback([&] {
     action = [&] {
@@ -263,6 +277,7 @@ int dispatch(int argc, char** argv) {
         ->type_name("FOLDER");
     e->add_option("--threads", experiment_options.threads, "number of threads (default 0: all)")
         ->check(CLI::Range(0, 4096));
+    limit_option(e);
     data_option(e);
     gpu_option(e);
   };
@@ -305,6 +320,7 @@ int dispatch(int argc, char** argv) {
   c->add_option("--method,-m", explain_options.method, "only this one");
   add_pairs(c, "--set", explain_options.settings, "a setting of the method");
   add_pairs(c, "--override", explain_options.overrides, "a value of the scene file");
+  limit_option(c);
   data_option(c);
   gpu_option(c);
   c->final_callback([&] {
@@ -323,6 +339,7 @@ int dispatch(int argc, char** argv) {
                 "operations, one JSON object a line (methods/fogshop/README.md; maps: methods/wavelet_fog/README.md)");
   c->add_option("--out,-o", author_options.out,
                 "scene file to write; its Gaussians go into CSV beside it, its map into PNG or EXR");
+  limit_option(c);
   data_option(c);
   c->final_callback([&] {
     action = [&] {
@@ -365,6 +382,9 @@ int dispatch(int argc, char** argv) {
   refuse_extras(app);
   if (!action) throw Error(fmt::format("expected a command: {}", fmt::join(command_names(app), ", ")));
   if (!data.empty()) scene::set_data_folder(data);
+  scene::reset_limits();
+  for (const std::string& limit : limits) scene::set_limit(limit);
+  scene::on_long_work(say);
   if (gpu) {
     gpu::Context::choose_device(*gpu);
     // A device that is not there is told at once, whatever the command would make of it; doctor tells it in its table.
@@ -396,6 +416,10 @@ int run(int argc, char** argv) {
     say(error.what());
     return error.exit_code();
   } catch (const scene::Interrupted&) {
+    if (const std::string& line = stopped_by(); !line.empty()) {
+      say(line);
+      return 2;
+    }
     say("interrupted");
     return 130;
   } catch (const std::filesystem::filesystem_error& error) {

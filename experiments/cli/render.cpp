@@ -60,7 +60,8 @@ int render(const RenderOptions& options) {
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));
-  const scene::ContentStore store(options.cache, say);
+  std::optional<scene::CannotWrite> not_kept;
+  const scene::ContentStore store(options.cache, say, [&](const scene::CannotWrite& error) { not_kept = error; });
   scene::Execution execution = progress.execution(options.threads);
   if (!options.cache.empty()) execution.store = &store;
   const auto start = std::chrono::steady_clock::now();
@@ -74,8 +75,9 @@ int render(const RenderOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.distance) add_distance(*scene, film);
   write(options, renderer, *scene, settings, seconds, film);
+  if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
   check_interrupted();
-  return 0;
+  return not_kept ? not_kept->exit_code() : 0;
 }
 
 }  // namespace airlight::experiments::cli

@@ -56,10 +56,13 @@ int simulate(const SimulateOptions& options) {
   const auto problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(options.problem, options.overrides));
   Pictured pictured(options, solver);
   Simulation simulation{problem, solver, settings, options.out};
-  if (pictured.pictures)
-    simulation.look = [&](int frame, const scene::Flow& flow) {
-      pictured.pictures->draw(flow, fmt::format("{}/{}.{:04d}.png", options.out, problem->name, frame));
+  if (pictured.pictures) {
+    const auto draw = [&](int frame, const auto& smoke) {
+      pictured.pictures->draw(smoke, fmt::format("{}/{}.{:04d}.png", options.out, problem->name, frame));
     };
+    simulation.look = draw;
+    simulation.look_back = draw;
+  }
   const SimulationReport report = [&] {
     Progress progress(fmt::format("{} {}", options.method, problem->name));
     return experiments::simulate(simulation, progress.execution(options.threads));

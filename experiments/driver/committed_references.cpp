@@ -52,7 +52,7 @@ std::string committed_checksum(const fs::path& file) {
         fmt::format("{0}: committed reference without its checksum {0}.xxh128; `git checkout -- {0}.xxh128` gets it "
                     "back, `airlight experiment run NAME --fresh-references` makes both again",
                     file.string()));
-  return sum;
+  return sum.substr(0, sum.find(' '));  // the film's name follows
 }
 
 scene::Film read_committed(const fs::path& file) {

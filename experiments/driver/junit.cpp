@@ -26,12 +26,12 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-void write_junit(const std::string& file, const std::vector<GateResult>& gates) {
+void write_junit(const std::string& file, const std::vector<GateResult>& gates, const std::string& error) {
   const GateCounts counts = count(gates);
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"airlight gates\" tests=\"{}\" "
-      "failures=\"{}\" skipped=\"{}\">\n",
-      gates.size(), counts.failed, counts.skipped);
+      "failures=\"{}\" skipped=\"{}\" errors=\"{}\">\n",
+      gates.size() + !error.empty(), counts.failed, counts.skipped, int(!error.empty()));
   for (const GateResult& gate : gates) {
     const std::string group = gate.name.substr(0, gate.name.find(':'));
     out += fmt::format("<testcase classname=\"{}\" name=\"{}\">", escaped(group), escaped(gate.name));
@@ -40,6 +40,9 @@ void write_junit(const std::string& file, const std::vector<GateResult>& gates) 
                          : fmt::format("<failure message=\"{}\"/>", escaped(gate.text));
     out += "</testcase>\n";
   }
+  if (!error.empty())
+    out += fmt::format("<testcase classname=\"airlight\" name=\"gates\"><error message=\"{}\"/></testcase>\n",
+                       escaped(error));
   scene::write_file_atomically(file, out + "</testsuite>\n</testsuites>\n");
 }
 

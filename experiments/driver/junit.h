@@ -7,7 +7,7 @@
 
 namespace airlight::experiments {
 
-// Atomic. Throws Error.
-void write_junit(const std::string& file, const std::vector<GateResult>&);
+// Atomic. `error`, unless empty: what ended the command before all gates were judged. Throws Error.
+void write_junit(const std::string& file, const std::vector<GateResult>&, const std::string& error = "");
 
 }  // namespace airlight::experiments

@@ -9,10 +9,12 @@
 
 #include "experiments/driver/toml_values.h"
 #include "experiments/fit_sequence.h"
+#include "experiments/folder_lock.h"
 #include "experiments/frames.h"
 #include "experiments/json.h"
 #include "experiments/json_value.h"
 #include "experiments/progress.h"
+#include "experiments/say.h"
 #include "experiments/simulation.h"
 #include "experiments/solvers.h"
 #include "scene/atomic_file.h"
@@ -117,7 +119,7 @@ void name_sequences(const Folders& folders, const std::string& profile, const st
   for (auto& [key, value] : overrides) {
     if (value.size() < 2 || value.compare(1, mark.size(), mark) != 0) continue;  // in quotes of TOML
     const std::string name = value.substr(1 + mark.size(), value.size() - mark.size() - 2);
-    value = fmt::format("\"{}\"", sequence_files(folders, name, profile, where));
+    value = scene::load::toml_string(sequence_files(folders, name, profile, where));
     const std::string plain = name_and_kind(name).first;
     if (std::find(names.begin(), names.end(), plain) == names.end()) names.push_back(plain);
   }
@@ -133,6 +135,9 @@ void fit(const Folders& folders, const TableReader& reader, const std::string& n
   fitted.options.gaussians = int(of_profile.integer("gaussians", 1, scene::most_fit_gaussians));
   fitted.folder = folder_of(folders, name, profile);
   fitted.begin_anew = true;
+  make_folder(fitted.folder);
+  const FolderLock lock = FolderLock::wait_for(fitted.folder);
+  fitted.locked = true;
   for (const auto& entry : fs::directory_iterator(folder_of(folders, of, profile)))
     if (entry.path().extension() == ".vdb") fitted.files.push_back(entry.path().string());
   std::sort(fitted.files.begin(), fitted.files.end());
@@ -159,10 +164,15 @@ void make_sequence(const Folders& folders, const std::string& asked, const std::
   const scene::Settings chosen(solver.settings(), settings(raw, "settings", of_profile), name);
   const auto problem = std::make_shared<const scene::FlowProblem>(
       scene::load_flow(problem_of(folders.root, reader).string(), overrides(raw, "overrides", of_profile)));
-  const Simulation simulation{problem, solver, chosen, folder_of(folders, name, profile)};
-  const int there = frames_there(simulation);
-  if (there == frame_steps(*problem, solver, chosen).frames) return;
-  if (there == 0) fs::remove_all(simulation.folder);
+  Simulation simulation{problem, solver, chosen, folder_of(folders, name, profile)};
+  make_folder(simulation.folder);
+  const FolderLock lock = FolderLock::wait_for(simulation.folder);
+  simulation.locked = true;
+  const FramesThere there = frames_there(simulation);
+  if (there.frames == frame_steps(*problem, solver, chosen).frames) return;
+  if (!there.damage.empty()) say(there.damage + "; simulating the sequence anew");
+  if (there.frames == 0)  // the folder itself is locked
+    for (const auto& entry : fs::directory_iterator(simulation.folder)) fs::remove_all(entry.path());
   Progress progress(fmt::format("sequence {} ({})", name, profile));
   simulate(simulation, progress.execution(threads));
 }

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "reference/path_tracer/stopping.h"
-#include "scene/atomic_file.h"
 #include "scene/content_key.h"
 #include "scene/error.h"
 
@@ -124,7 +123,14 @@ CachedRendering render_cached(const World& world, const scene::View& view, const
     };
     const std::uint64_t before = samples.counters.paths;
     result.complete = render_to_target(world, view, pass, samples);
-    if (samples.counters.paths != before && (result.complete || !adaptive)) write_range_file(path, samples);
+    if (samples.counters.paths != before && (result.complete || !adaptive)) {
+      result.not_kept.reset();
+      try {
+        write_range_file(path, samples);
+      } catch (const scene::CannotWrite& error) {  // a full disk does not take the picture
+        result.not_kept = error;
+      }
+    }
     if (result.complete || asked_to_stop) break;
   }
   if (samples.least_samples() == 0) throw scene::Interrupted("interrupted before every pixel had a sample");

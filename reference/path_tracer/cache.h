@@ -9,10 +9,12 @@
 // whole.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reference/path_tracer/accumulation.h"
+#include "scene/atomic_file.h"
 
 namespace airlight::path_tracer {
 
@@ -23,6 +25,7 @@ struct CachedRendering {
   std::uint64_t found = 0;         // samples of every pixel that were there already
   std::vector<std::string> notes;  // a damaged file that was set aside, one line each
   bool complete = true;
+  std::optional<scene::CannotWrite> not_kept;  // why the folder does not have these samples
 };
 
 // Where the samples of a picture are kept, for so many samples and that target error.
@@ -30,7 +33,8 @@ std::string cache_file(const std::string& folder, const Identity&, const Options
 
 // Renders options().samples per pixel, or to its target error, through the folder (created if needed). Where progress
 // returns false it keeps and writes what is done; throws Interrupted if there is a pixel without any. A file that
-// cannot be read is renamed to *.damaged, noted and not used. `save_every` is in seconds.
+// cannot be read is renamed to *.damaged, noted and not used. A file that cannot be written takes nothing from the
+// picture: `not_kept` says why. Throws CannotWrite where the folder cannot be made. `save_every` is in seconds.
 CachedRendering render_cached(const World&, const scene::View&, const std::string& folder, const scene::Execution&,
                               double save_every = 10);
 

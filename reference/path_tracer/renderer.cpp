@@ -46,6 +46,7 @@ class PreparedTracer : public scene::Prepared {
     const std::string folder = (execution.store->folder() / "samples").string();
     CachedRendering kept = render_cached(world_, view, folder, execution);
     for (const std::string& note : kept.notes) execution.store->say(note);
+    if (kept.not_kept) execution.store->lost(*kept.not_kept);
     return {std::move(kept.film), {{"paths", kept.seconds}}, kept.counters.named()};
   }
 

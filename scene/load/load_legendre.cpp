@@ -18,8 +18,10 @@ constexpr std::string_view legendre_header = "i,j,k,coefficient";
 
 constexpr Range coefficient = either_sign(density_range);
 
+}  // namespace
+
 // Rows in any order; coefficients that are not named are 0.
-Eigen::VectorXd read_csv(const std::string& path, const TensorShape& shape) {
+Eigen::VectorXd read_legendre_csv(const std::string& path, const TensorShape& shape) {
   CsvTable table(path, legendre_header);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(tensor_size(shape));
   std::vector<bool> given(std::size_t(values.size()));
@@ -38,8 +40,6 @@ Eigen::VectorXd read_csv(const std::string& path, const TensorShape& shape) {
   return values;
 }
 
-}  // namespace
-
 LegendrePointer read_legendre(TableReader& reader, const std::string& folder) {
   reader.allow(medium_keys_and({"lo", "hi", "size", "coefficients", "file", "frame"}));
   const Box box = read_corners(reader);
@@ -47,7 +47,7 @@ LegendrePointer read_legendre(TableReader& reader, const std::string& folder) {
   const TensorShape shape = {int(size[0]), int(size[1]), int(size[2])};
   Eigen::VectorXd coefficients;
   if (reader.one_of({"coefficients", "file"}) == "file") {
-    coefficients = read_csv(find_asset(reader, "file", name_of_frame(reader), folder), shape);
+    coefficients = read_legendre_csv(find_asset(reader, "file", name_of_frame(reader), folder), shape);
   } else {
     reader.allow(medium_keys_and({"lo", "hi", "size", "coefficients"}));
     const std::vector<double> values = reader.numbers("coefficients", coefficient);

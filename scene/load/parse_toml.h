@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <string>
+#include <string_view>
 
 namespace airlight::scene::load {
 
@@ -15,5 +16,8 @@ inline constexpr int most_toml_levels = 32;
 
 // Throws Error, one line: "name:line:column: what", before anything is parsed where the text is too long or too deep.
 toml::table parse_toml(const std::string& text, const std::string& name);
+
+// Text as a string of TOML, in quotes: what the parser reads back is the text, if it is UTF-8.
+std::string toml_string(std::string_view text);
 
 }  // namespace airlight::scene::load

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/load/table_reader.h"
+#include "scene/math/legendre.h"
 #include "scene/scene.h"
 
 namespace airlight::scene::load {
@@ -41,6 +42,9 @@ FittedPointer read_fitted(TableReader&, const std::string& folder);
 // The Gaussians of a CSV file. Throws Error (file, line, column).
 // Their ids into `ids`, if the table has some; else that is empty.
 std::vector<Gaussian> read_gaussians_csv(const std::string& path, std::vector<int>* ids = nullptr);
+
+// The coefficients of a CSV file, in the order of LegendreBox. Throws Error (file, line, column).
+Eigen::VectorXd read_legendre_csv(const std::string& path, const TensorShape&);
 
 // Surfaces that become meshes by a rule (load_shapes.cpp): their types; the mesh of one of them, before `transform`.
 const std::vector<std::string>& procedural_types();

@@ -24,6 +24,7 @@
 #include <sstream>
 
 #include "scene/error.h"
+#include "scene/limits.h"
 #include "scene/media/vdb_layout.h"
 #include "scene/printable.h"
 #include "scene/read_file.h"
@@ -189,6 +190,7 @@ VoxelGrid shape_of(const openvdb::GridBase& grid, const openvdb::CoordBBox& box,
   double all = 1;
   for (int a = 0; a < 3; ++a) all *= double(box.max()[a]) - box.min()[a] + 1;
   if (all > double(max_voxels)) fail(where, fmt::format("spans {:.0f} voxels, expected at most {}", all, max_voxels));
+  require_memory(all * sizeof(float), fmt::format("{}: {:.0f} voxels", where, all));
   shape.size = {box.dim().x(), box.dim().y(), box.dim().z()};
   shape.origin_index = {box.min().x(), box.min().y(), box.min().z()};
   return shape;

@@ -94,6 +94,30 @@ TEST_CASE("a drawn fogmap is a scene that can be read", "[authoring][wavelet_fog
   CHECK(image.values[6 * 16 + 7] == Approx(7.4).epsilon(1e-6));
 }
 
+TEST_CASE("a map that is blurred further than it reaches is its mean", "[authoring][wavelet_fog]") {
+  const TemporaryFolder folder;
+  const double mean = sum(run(folder, stroke)) / (16 * 12);
+  for (const std::string deviation : {"127", "128", "1e5", "1e300"}) {  // 4 times its longer side is 128 m
+    CAPTURE(deviation);
+    const DrawnFogmap drawn = run(folder, stroke + R"({"op": "blur", "deviation": )" + deviation + "}");
+    for (const double value : drawn.canvas.values()) CHECK(value == Approx(mean).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a drawn fogmap may have any name, and no range but a scene's", "[authoring][wavelet_fog]") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("a\"b\\c\nd.toml");
+  write(run(folder, stroke), "s.jsonl", out);
+  CHECK(scene::load_scene(out).media.size() == 1);
+  std::filesystem::remove_all(out);
+  const DrawnFogmap far = run(folder, stroke);
+  DrawnFogmap beyond = far;
+  beyond.medium.insert(beyond.medium.find("corner = [-16") + 13, "e30");
+  CHECK_THROWS_WITH(write(beyond, "s.jsonl", folder.file("far.toml")), Contains("far.toml: not written, since"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("far.png")));
+  CHECK_FALSE(std::filesystem::exists(folder.file("far.toml")));
+}
+
 TEST_CASE("a drawn fogmap: what is wrong is named", "[authoring][wavelet_fog]") {
   const TemporaryFolder folder;
   CHECK_THAT(refusal(folder, R"({"op": "stroke", "points": [[0, 0]], "radius": 0})"),

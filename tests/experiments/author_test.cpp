@@ -8,7 +8,10 @@
 #include "experiments/authoring/script.h"
 #include "experiments/authoring/write_scene.h"
 #include "scene/convert/gaussian_fit.h"
+#include "scene/convert/residual_file.h"
 #include "scene/error.h"
+#include "scene/grey_image.h"
+#include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 
@@ -128,6 +131,61 @@ type = "plane"
   }
   CHECK_THAT(read_bytes(folder.file("elsewhere/deep/out.toml")), Contains("file = \"../../in/old.csv\" # kept"));
   CHECK_THROWS_WITH(scene_files(a, folder.file("in/s.jsonl"), folder.file("in/base.toml")), Contains("base scene"));
+}
+
+// Whatever key names the file: pictures of a backdrop, frames of a sequence, both files of a fitted grid.
+TEST_CASE("all files of a base scene are found from elsewhere", "[authoring]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "in");
+  airlight::scene::write_grey_image(folder.file("in/picture.png"), {2, 1, {0.25, 0.75}, ""});
+  airlight::scene::write_grey_image(folder.file("in/far.png"), {2, 1, {0.5, 1}, ""});
+  airlight::scene::VoxelGrid grid;
+  grid.size = {2, 2, 2};
+  grid.voxel_size = 1;
+  grid.values.assign(8, 0.5f);
+  airlight::scene::write_vdb(folder.file("in/smoke.0003.vdb"), grid);
+  airlight::scene::GaussianSum sum;
+  sum.cutoff = airlight::scene::fit_cutoff;
+  sum.gaussians = {{{1, 1, 1}, 0.5, 0.4}};
+  airlight::scene::write_residual(folder.file("in/fit.0003.residual"),
+                                  airlight::scene::residual_of(grid, sum, {1, {}, true}));
+  folder.write("in/fit.0003.csv", "center_x,center_y,center_z,width,amplitude\n1,1,1,0.5,0.4\n");
+  folder.write("in/base.toml", R"([camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+[backdrop]
+image = "picture.png"
+depth = "far.png"
+[[medium]]
+type = "grid"
+file = "smoke.####.vdb"
+frame = 3
+[[medium]]
+type = "fitted"
+gaussians = "fit.####.csv"
+residual = "fit.####.residual"
+frame = 3
+)");
+  folder.write("in/s.jsonl", "{\"op\": \"scene\", \"base\": \"base.toml\"}\n" + stroke + "\n");
+  const Authored a = run_script(folder.file("in/s.jsonl"), [] {});
+  std::filesystem::create_directories(folder.path() / "else\"where\n\\");
+  const std::string out = folder.file("else\"where\n\\/a\"b\\c\nd.toml");  // and names that need escapes
+  write(scene_files(a, folder.file("in/s.jsonl"), out), out);
+  const auto scene = airlight::scene::load_scene(out);
+  CHECK(scene.media.size() == 3);
+  CHECK(scene.backdrops.size() == 1);
+}
+
+TEST_CASE("a scene that could not be read is not written", "[authoring]") {
+  const TemporaryFolder folder;
+  const std::string far = R"({"op": "view", "position": [1e300, 0, 5], "look_at": [0, 0, 0]})";
+  const std::string wide = R"({"op": "paint", "stroke": [[0,0,0]], "a": 1e-300, "c": 1})";
+  for (const std::string& script : {far + "\n" + stroke, view + "\n" + wide}) {
+    const Authored a = run(folder, script);
+    CHECK_THROWS_WITH(write(scene_files(a, folder.file("s.jsonl"), folder.file("a.toml")), folder.file("a.toml")),
+                      Catch::StartsWith(folder.file("a.toml") + ": not written, since no command could read it: "));
+    CHECK(folder.entries() == 1);
+  }
 }
 
 TEST_CASE("between frames of a fit Gaussians go over by their ids", "[authoring]") {

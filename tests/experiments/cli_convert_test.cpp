@@ -1,6 +1,8 @@
 // `airlight convert` of media: what it prints is a medium that loads.
 #include <catch2/catch.hpp>
 
+#include "scene/film.h"
+#include "scene/grey_image.h"
 #include "scene/math/legendre.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
@@ -54,6 +56,24 @@ TEST_CASE("a voxel grid and a medium of a scene become Legendre boxes", "[cli][l
   CHECK(run("convert ball.toml ball.csv --medium 1 --coefficients 3,3", folder).code == 2);
   CHECK(run("convert ball.toml ball.csv --medium 1 --coefficients 33", folder).code == 2);
   CHECK_THAT(run("convert ball.toml ball.exr --medium 1", folder).err, Catch::Contains("expected a name in .csv"));
+}
+
+TEST_CASE("a depth scale is a length", "[cli]") {
+  const TemporaryFolder folder;
+  scene::Film film;
+  film.width = film.height = 2;
+  film.add("mean");
+  for (int i = 0; i < 4; ++i) film.set("mean", i % 2, i / 2, Rgb::Constant(i));
+  scene::write_exr(folder.file("a.exr"), film);
+  for (const std::string scale : {"-1", "0", "nan", "inf", "-inf"}) {
+    const Result refused = run("convert a.exr a.png --depth-scale " + scale, folder);
+    CAPTURE(scale, refused.err);
+    CHECK(refused.code == 2);
+    CHECK(refused.err == "airlight: --depth-scale " + scale + ": expected metres above 0\n");
+    CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
+  }
+  REQUIRE(run("convert a.exr a.png --depth-scale 4", folder).code == 0);
+  CHECK(scene::read_grey_image(folder.file("a.png"), "", 10).values[3] == Approx(0.75).epsilon(1e-4));
 }
 
 TEST_CASE("endings may be in capitals", "[cli]") {

@@ -53,6 +53,29 @@ TEST_CASE("each solver's frames are drawn without naming a renderer", "[cli][sim
   }
 }
 
+// From the files of the frames, whoever wrote them: without pictures, or with pictures of another scene.
+TEST_CASE("frames of an earlier run are drawn, too", "[cli][simulation]") {
+  const TemporaryFolder folder;
+  folder.write("flow.toml", flow + "blob = [ { center = [0.4, 0.4, 0.5], width = 0.4, density = 1 } ]\n");
+  folder.write("scene.toml", scene);
+  for (const std::string method : {" --set n=4", " --method legendre_fluids --set n=4"}) {
+    CAPTURE(method);
+    const std::string simulate = "simulate flow.toml" + method;
+    REQUIRE(run(simulate + " --scene scene.toml --out whole", folder).code == 0);
+    REQUIRE(run(simulate + " --out later", folder).code == 0);
+    folder.write("later/flow.0001.png", "of another scene");
+    const Result result = run(simulate + " --scene scene.toml --out later", folder);
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Contains("3 frames, 3 of them from an earlier run"));
+    for (const std::string frame : {"0000", "0001", "0002"})
+      CHECK(read_bytes(folder.file("later/flow." + frame + ".png")) ==
+            read_bytes(folder.file("whole/flow." + frame + ".png")));
+    fs::remove_all(folder.path() / "whole");
+    fs::remove_all(folder.path() / "later");
+  }
+}
+
 TEST_CASE("a flow's name leads nowhere", "[cli][simulation]") {
   const TemporaryFolder folder;
   for (const std::string& name :

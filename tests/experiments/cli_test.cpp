@@ -206,6 +206,30 @@ TEST_CASE("messages that cannot be written change nothing", "[cli]") {
   CHECK_THAT(full.err, Contains("standard output could not be written"));
 }
 
+// The cache's disk is full (here: its file would be too long) after all the work was done.
+TEST_CASE("a picture whose samples cannot be kept is written all the same", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string render =
+      "'" + program + "' render " + scenes +
+      "constant_homogeneous.toml --override film.width=16 --override film.height=12 -m path_tracer "
+      "--samples 256 -o ";
+  REQUIRE(run_command(render + "good.exr --cache kept", folder).code == 0);
+  std::uintmax_t samples = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(folder.path() / "kept"))
+    if (file.is_regular_file()) samples = std::max(samples, file.file_size());
+  const std::uintmax_t blocks = std::filesystem::file_size(folder.file("good.exr")) / 512 + 1;  // that a shell counts
+  REQUIRE(samples > 512 * blocks);
+  const Result lost = run_command(
+      "trap '' XFSZ && ulimit -f " + std::to_string(blocks) + " && " + render + "a.exr --cache full", folder);
+  CAPTURE(lost.err);
+  CHECK(lost.code == 2);
+  CHECK(lost.error_lines() == 1);
+  CHECK_THAT(lost.err, Catch::StartsWith("airlight: warning: full/samples/") &&
+                           Contains("cannot write: File too large; a.exr is written, its samples are not kept"));
+  CHECK((airlight::scene::read_exr(folder.file("a.exr")).layers ==
+         airlight::scene::read_exr(folder.file("good.exr")).layers));
+}
+
 TEST_CASE("explain and doctor", "[cli]") {
   const TemporaryFolder folder;
   const Result explained = run("explain " + scenes + "constant_homogeneous.toml", folder);
@@ -253,6 +277,23 @@ TEST_CASE("Ctrl-C keeps the samples of a path tracer, and no other picture is ma
              whole = airlight::scene::read_exr(folder.file("c.exr"));
   CHECK(fewer.metadata.at("samples") == "1024");
   CHECK(fewer.layers == whole.layers);
+}
+
+// The terminal is closed. Under nohup, which has the signal ignored, work goes on.
+TEST_CASE("SIGHUP stops a render with a line, but not under nohup", "[cli]") {
+  const TemporaryFolder folder;
+  const auto hung_up = [&](const std::string& before, const std::string& steps) {
+    return run_command("( " + before + "'" + program + "' render " + scenes +
+                           "constant_homogeneous.toml -m ray_marcher -o a.exr --set steps=" + steps +
+                           " & pid=$!; sleep 0.3; kill -HUP $pid; wait $pid )",
+                       folder);
+  };
+  const Result r = hung_up("", "100000");
+  CHECK(r.code == 130);
+  CHECK(r.err == "airlight: interrupted\n");
+  CHECK_FALSE(std::filesystem::exists(folder.file("a.exr")));
+  CHECK(hung_up("trap '' HUP; ", "1500").code == 0);
+  CHECK(std::filesystem::exists(folder.file("a.exr")));
 }
 
 TEST_CASE("Ctrl-C stops a render and leaves nothing half-written", "[cli]") {

@@ -204,6 +204,9 @@ TEST_CASE("rows are kept only while the committed film stays as it is", "[commit
   make_committed(other, {});
   for (const std::string end : {"", ".xxh128"})
     fs::copy_file(other.file.string() + end, r.file.string() + end, fs::copy_options::overwrite_existing);
+  CHECK_THROWS_WITH(project.run(true), Contains("damaged committed reference"));  // another one, moved here
+  airlight::write_bytes(r.file.string() + ".xxh128",
+                        committed_checksum(other.file) + "  " + r.file.filename().string() + "\n");
   CHECK(project.run(true).rows.at(0).key != first);
 }
 

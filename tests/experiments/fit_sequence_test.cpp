@@ -199,6 +199,13 @@ TEST_CASE("what a fit cannot go on with is told", "[fit_sequence]") {
     smoke.folder.write("fit/record.json", "{");
     CHECK(what(other).find("record.json") != std::string::npos);
   }
+  SECTION("a changed record") {
+    std::string record = read_bytes(smoke.folder.file("fit/record.json"));
+    const std::size_t digit = record.find("\"rms\": ") + 9;
+    record[digit] = record[digit] == '1' ? '2' : '1';
+    smoke.folder.write("fit/record.json", record);
+    CHECK(what(other).find("record.json: is not what was written there") != std::string::npos);
+  }
   SECTION("files of one name") {
     other.files.push_back(smoke.sequence.files[0]);
     CHECK(what(other).find("expected another name") != std::string::npos);

@@ -2,10 +2,12 @@
 #include "experiments/simulation.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "experiments/folder_lock.h"
 #include "experiments/solvers.h"
 #include "scene/error.h"
 #include "scene/media/legendre_box.h"
@@ -180,9 +182,9 @@ blob = [ { center = [0.6, 1, 0.5], width = 0.4, density = 1 } ]
   }
   CHECK(files_of(broken.path()) == all);
   const Simulation again{problem, solver, settings, broken.path()};
-  CHECK(frames_there(again) == 5);
+  CHECK(frames_there(again).frames == 5);
   std::filesystem::remove(broken.path() / "two.red.0002.csv");
-  CHECK(frames_there(again) == 0);
+  CHECK(frames_there(again).frames == 0);
   CHECK_THROWS_WITH(simulate(again, {}), Contains("two.red.0002.csv: is gone"));
 }
 
@@ -198,6 +200,95 @@ TEST_CASE("a folder of another simulation is refused", "[simulation]") {
   Simulation elsewhere = simulation(folder);
   elsewhere.folder = "/proc/nowhere";
   CHECK_THROWS_AS(simulate(elsewhere, {}), Error);
+}
+
+// One bit, a cut, another frame, something that is no file: none of it is taken for what was written.
+TEST_CASE("a simulation's files that changed are refused, and named", "[simulation][particles]") {
+  const TemporaryFolder folder;
+  const scene::Solver& solver = find_solver("stable_fluids", "test");
+  const auto problem = std::make_shared<const scene::FlowProblem>(scene::parse_flow(
+      "name = \"f\"\n[flow]\nduration = 0.2\nframe_rate = 10\nbox = { lo = [0, 0, 0], hi = [1, 1, 1] }\n[start]\n"
+      "blob = [ { center = [0.4, 0.5, 0.5], width = 0.4, density = 1, temperature = 9 } ]\n[fluid]\n"
+      "gravity = [0, -9.81, 0]\nexpansion = 0.0033\n[[particles]]\ncount = 3\n",
+      "f.toml", ""));
+  const Simulation s{problem, solver, {solver.settings(), {{"n", "4"}}}, folder.path()};
+  simulate(s, {});
+  const auto all = files_of(folder.path());
+  REQUIRE(all.size() == 3 * 2 + 2);
+  const auto refused = [&](const std::string& name) {
+    CAPTURE(name);
+    CHECK_THROWS_WITH(simulate(s, {}), Catch::StartsWith((folder.path() / name).string() + ": "));
+    CHECK(frames_there(s).frames == 0);
+    CHECK_THAT(frames_there(s).damage, Contains(name));
+    std::filesystem::remove_all(folder.path() / name);
+    write_bytes(folder.file(name), all.at(name));
+  };
+  for (const auto& [name, bytes] : all) {
+    // In `state`: the last frame ('2' to '0'), a checksum, the particles, the flow.
+    const std::size_t number = name == "state" ? bytes.find('\n') + 1 : bytes.size() / 7;
+    const std::size_t particles = name == "state" ? bytes.find("\n\n") + 5 : bytes.size() / 5;
+    for (const std::size_t at : {number, number + 20, particles, bytes.size() / 2, bytes.size() - 1}) {
+      CAPTURE(at);
+      std::string changed = bytes;
+      changed[at] = char(changed[at] ^ 2);
+      write_bytes(folder.file(name), changed);
+      refused(name);
+    }
+    for (const std::size_t size : {std::size_t(0), bytes.size() / 3, bytes.size() - 1}) {
+      write_bytes(folder.file(name), bytes.substr(0, size));
+      refused(name);
+    }
+    std::filesystem::remove(folder.path() / name);
+    std::filesystem::create_directory(folder.path() / name);
+    refused(name);
+    std::filesystem::remove(folder.path() / name);
+    REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
+    refused(name);
+  }
+  for (const std::string kind : {".", ".particles."}) {
+    const std::string end = kind == "." ? ".vdb" : ".csv", first = "f" + kind + "0001" + end;
+    write_bytes(folder.file(first), all.at("f" + kind + "0002" + end));
+    write_bytes(folder.file("f" + kind + "0002" + end), all.at(first));
+    CHECK_THROWS_WITH(simulate(s, {}), Contains(first + ": is not what was written there"));
+    write_bytes(folder.file(first), all.at(first));
+    write_bytes(folder.file("f" + kind + "0002" + end), all.at("f" + kind + "0002" + end));
+  }
+  CHECK(simulate(s, {}).resumed == 3);
+  CHECK(files_of(folder.path()) == all);
+}
+
+// The kernel ends a lock with its process: that an end by kill -9 is gone on with is held above.
+TEST_CASE("two simulations at once in one folder are refused", "[simulation]") {
+  const TemporaryFolder folder;
+  folder.write("smoke.toml", rising_smoke);
+  std::filesystem::create_directory(folder.path() / "out");
+  {
+    const FolderLock lock(folder.path() / "out");
+    const auto result = airlight::test::run_command(airlight::test::simulate_smoke + "out", folder);
+    CHECK(result.code == 2);
+    CHECK(result.err ==
+          "airlight: out: another airlight writes into this folder, expected one at a time or another folder\n");
+    CHECK(files_of(folder.path() / "out").empty());
+  }
+  CHECK(airlight::test::run_command(airlight::test::simulate_smoke + "out", folder).code == 0);
+}
+
+TEST_CASE("of two problems at once in one folder one is simulated", "[simulation]") {
+  const TemporaryFolder folder;
+  folder.write("smoke.toml", rising_smoke);
+  const std::string other = airlight::test::simulate_smoke + "both --override flow.duration=0.2";
+  for (int round = 0; round < 4; ++round) {
+    const auto result = airlight::test::run_command(
+        fmt::format("({}both & echo $! >pid; {}; echo $? >second; wait $(cat pid); echo $? >first)",
+                    airlight::test::simulate_smoke, other),
+        folder);
+    const std::string first = read_bytes(folder.file("first")), second = read_bytes(folder.file("second"));
+    CAPTURE(result.err);
+    CHECK(((first == "0\n" && second == "2\n") || (first == "2\n" && second == "0\n")));
+    CHECK(result.error_lines() == 1);
+    CHECK(int(files_of(folder.path() / "both").size()) == (first == "0\n" ? 11 : 5) + 2);
+    std::filesystem::remove_all(folder.path() / "both");
+  }
 }
 
 TEST_CASE("particles that a simulation carries come back with it, whenever it was interrupted",
@@ -244,7 +335,7 @@ count = 3
   CHECK(first != last);
 
   std::filesystem::remove(broken.path() / "thrown.particles.0001.csv");
-  CHECK(frames_there(simulation(broken)) == 0);
+  CHECK(frames_there(simulation(broken)).frames == 0);
   CHECK_THROWS_WITH(simulate(simulation(broken), {}), Contains("is gone"));
 }
 

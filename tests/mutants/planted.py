@@ -53,6 +53,10 @@ PAPER_PICTURE = "methods/legendre_fluids/paper_picture.cpp", "methods/legendre_f
 POLYGONS = "scene/geometry/polygon_cut.cpp", "scene/polygon_cut_test.cpp"
 ATOMIC = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
 STORE = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
+ENTRIES = "scene/content_store.cpp", "scene/atomic_file_test.cpp"
+SIMULATION = "experiments/simulation.cpp", "experiments/simulation_test.cpp"
+WRITE_SCENE = "experiments/authoring/write_scene.cpp", "experiments/author_test.cpp"
+TOML = "scene/load/parse_toml.cpp", "experiments/author_test.cpp"
 INSTANCES = "scene/media/vdb_parts.cpp", "scene/media/vdb_io_test.cpp"
 COLOURS = "scene/film_exr_read.cpp", "scene/film_test.cpp"
 PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
@@ -76,6 +80,18 @@ MUTANTS = [
     bug("written through a link", ATOMIC, "if (::lstat(path", "if (::stat(path", "what a link leads to stays as it was"),
     bug("the store for everybody", STORE, "::mkdir(folder.c_str(), 0700)", "::mkdir(folder.c_str(), 0777)",
         "what is kept is for the user alone"),
+    bug("another entry with its checksum", ENTRIES, "if (found == noted) return file;",
+        "if (found.substr(0, 32) == noted.substr(0, 32)) return file;", "an entry of a store stands for no other"),
+    bug("a state without a checksum", SIMULATION, "all.size() < sum || content_key(all.substr(0, all.size() - sum)) != all.substr(all.size() - sum)",
+        "all.size() < sum", "a simulation's files that changed are refused, and named"),
+    bug("frames without a checksum", SIMULATION, 'line != sum + " " + name', 'line.substr(33) != name',
+        "a simulation's files that changed are refused, and named"),
+    bug("a history without a checksum", SIMULATION, 'check("history.csv", content_key(history_));', "",
+        "a simulation's files that changed are refused, and named"),
+    bug("backdrops stay where they were", WRITE_SCENE, '"image", "depth", ', "", "all files of a base scene are found from elsewhere"),
+    bug("sequences stay where they were", WRITE_SCENE, "if (text.find('#') == std::string::npos) return text;", "return text;",
+        "all files of a base scene are found from elsewhere"),
+    bug("line ends in names of TOML", TOML, "static_cast<unsigned char>(c) < 0x20 || ", "", "all files of a base scene are found from elsewhere"),
     bug("an instance with the place of its parent", INSTANCES,
         "grid->setTree(Reader().read(stream, *parent)->baseTreePtr());\n    return grid;", "return Reader().read(stream, *parent);",
         "grids that share samples are read"),

@@ -4,6 +4,9 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <fstream>
+#include <thread>
 
 #include "scene/content_store.h"
 #include "tests/temporary_folder.h"
@@ -57,6 +60,25 @@ TEST_CASE("a pipe is written through the link that the system made for it", "[at
   CHECK_NOTHROW(write_file_atomically("/dev/null", "new"));
 }
 
+TEST_CASE("a pipe that nobody reads from is no place to wait", "[atomic_file]") {
+  const TemporaryFolder folder;
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(write_file_atomically(folder.file("pipe"), "new"),
+                    Contains("pipe: cannot write: found a pipe that nobody reads from"));
+  // Its reader may come late, and be slow.
+  const std::string bytes(200'000, 'x');
+  std::string read;
+  std::thread reader([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::ifstream in(folder.file("pipe"), std::ios::binary);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    read.assign(std::istreambuf_iterator<char>(in), {});
+  });
+  write_file_atomically(folder.file("pipe"), bytes);
+  reader.join();
+  CHECK(read == bytes);
+}
+
 TEST_CASE("what is kept is for the user alone", "[atomic_file][content_store]") {
   const TemporaryFolder folder;
   const mode_t before = umask(0);
@@ -92,6 +114,22 @@ TEST_CASE("a store does not write through links", "[atomic_file][content_store]"
   CHECK(read_bytes(folder.file("victim")) == "mine");
   REQUIRE(store.find("entry.exr"));
   CHECK(read_bytes(store.find("entry.exr")->string()) == "content");
+}
+
+TEST_CASE("an entry of a store stands for no other", "[atomic_file][content_store]") {
+  const TemporaryFolder folder;
+  std::vector<std::string> said;
+  const ContentStore store(folder.path(), [&](const std::string& line) { said.push_back(line); });
+  for (const std::string name : {"a/one", "a/two"})
+    store.keep(name, [&](const fs::path& file) { write_file_atomically(file.string(), name); });
+  CHECK(store.find("a/one"));
+  CHECK(store.find("a/two"));
+  CHECK(said.empty());
+  for (const std::string end : {"", ".xxh128"})
+    fs::rename(folder.path() / ("a/two" + end), folder.path() / ("a/one" + end));
+  CHECK_FALSE(store.find("a/one"));
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Contains(folder.file("a/one") + ": its checksum names another entry, computing it anew"));
 }
 
 // In place of an entry or its checksum: a folder, a pipe that nobody writes to, a device without an end.

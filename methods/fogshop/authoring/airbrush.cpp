@@ -6,6 +6,7 @@
 
 #include "methods/fogshop/authoring/draws.h"
 #include "scene/error.h"
+#include "scene/limits.h"
 
 namespace airlight::fogshop::authoring {
 namespace {
@@ -56,6 +57,8 @@ std::vector<Id> airbrush(GaussianList& list, const Airbrush& op, const scene::Ge
   if (!((births + double(particles.size())) * op.steps <= 1e9))
     throw Error(fmt::format("{} steps of {:g} particles, expected at most 1e9 moves", op.steps,
                             births + double(particles.size())));
+  scene::require_time(1e-7 * (births + double(particles.size()) + 1) * op.steps,
+                      fmt::format("airbrush of {} steps", op.steps));
   const std::size_t old = particles.size();
   for (int step = 0; step < op.steps; ++step) {
     each_step();

@@ -1,10 +1,14 @@
 #include "methods/wavelet_fog/authoring/canvas.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "scene/convert/fogmap_columns.h"
 #include "scene/error.h"
+#include "scene/limits.h"
 #include "scene/math/elementary.h"
 #include "scene/math/random.h"
 
@@ -104,6 +108,14 @@ void Canvas::noise(const Noise& n) {
 
 void Canvas::blur(double deviation) {
   const double pixels = deviation / cell_;
+  // Its longest wave is twice the map; at this width it falls by exp(-8 pi^2).
+  if (pixels >= 4.0 * std::max(width_, height_)) {
+    std::fill(values_.begin(), values_.end(),
+              std::accumulate(values_.begin(), values_.end(), 0.0) / double(values_.size()));
+    return;
+  }
+  scene::require_time(1e-9 * 2 * 8 * (pixels + 1) * double(values_.size()),
+                      fmt::format("a blur of {:g} pixels over {} x {}", pixels, width_, height_));
   std::vector<double> kernel;
   double sum = 0;
   for (int d = 0; d == 0 || d <= 4 * pixels; ++d) {

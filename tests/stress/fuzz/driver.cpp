@@ -6,7 +6,7 @@
 //   {"code": N or null, "signal": N or null, "seconds": of the processor, "kib": most memory held,
 //    "error": standard error}
 // A command that begins with "seal" is run without that word, once the checksums of the files that a mutation left
-// wrong are made right: of *.samples in the working folder, and of the rows of journals below project/results.
+// wrong are made right: of *.samples, *.residual and frames/state in the working folder, and of the rows of journals below project/results.
 //
 // usage: airlight_fuzz SECONDS [COMMANDS]
 // SECONDS of the processor after which a command is killed; by SIGALRM after ten times that on the clock. COMMANDS that
@@ -105,10 +105,23 @@ void seal_journal(const std::filesystem::path& path) {
   std::ofstream(path, std::ios::binary) << sealed;
 }
 
+// Files that end with the checksum of all before: what `simulate` goes on with, and residuals.
+void seal_end(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return;
+  std::string bytes = bytes_of(path);
+  if (bytes.size() < 32) return;
+  bytes.resize(bytes.size() - 32);
+  std::ofstream(path, std::ios::binary) << bytes << airlight::content_key(bytes);
+}
+
 void seal() {
   namespace fs = std::filesystem;
   for (const auto& file : fs::directory_iterator("."))
-    if (file.path().extension() == ".samples") seal_samples(file.path());
+    if (file.path().extension() == ".samples")
+      seal_samples(file.path());
+    else if (file.path().extension() == ".residual")
+      seal_end(file.path());
+  seal_end("frames/state");
   if (fs::exists("project/results"))
     for (const auto& file : fs::recursive_directory_iterator("project/results"))
       if (file.path().extension() == ".jsonl") seal_journal(file.path());

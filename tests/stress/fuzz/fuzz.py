@@ -21,8 +21,10 @@ import tempfile
 import time
 import unicodedata
 
+import flow_targets
 import targets
 
+ALL = targets.ALL | flow_targets.ALL
 MOST_KIB = 2 << 20
 
 
@@ -77,9 +79,20 @@ class Runner:
                 return f'not a clear line: {text[:300]!r}'
         return None
 
+    def strange(self):
+        """What no command may do: write through a link, run a name, or write beside the folder."""
+        victim = self.box.folder / 'victim'
+        if victim.is_symlink() or victim.read_text() != targets.VICTIM:
+            self.box.write('victim', targets.VICTIM)
+            return 'a file was written through a link'
+        for name in ('run', '../run', '../evil', '/evil'):
+            if (self.box.folder / name).exists():
+                return f'{name} was made'
+        return None
+
     def one(self, target, index):
         r = random.Random(f'{self.options.seed} {target} {index}')
-        arguments = (targets.ALL | targets.COSTLY)[target](r, self.box)
+        arguments = (ALL | targets.COSTLY)[target](r, self.box)
         self.driver.stdin.write(json.dumps(arguments) + '\n')
         self.driver.stdin.flush()
         answer = self.driver.stdout.readline()
@@ -94,9 +107,13 @@ class Runner:
             (self.box.folder / name).unlink()
         if not wrong and left:
             wrong = f'left behind: {left}'
+        if not wrong and (stranger := self.strange()):
+            wrong = stranger
         if wrong and self.options.keep:
             kept = pathlib.Path(self.options.keep) / f'{target}_{index}'
-            shutil.copytree(self.box.folder, kept, dirs_exist_ok=True)
+            shutil.rmtree(kept, ignore_errors=True)
+            shutil.copytree(self.box.folder, kept, symlinks=True,
+                            ignore=lambda folder, names: [n for n in names if pathlib.Path(folder, n).is_fifo()])
             (kept / 'arguments.json').write_text(json.dumps(arguments))
         return result, wrong, arguments
 
@@ -136,7 +153,7 @@ def main():
     parser.add_argument('--first', type=int, default=0, help='index of the first input of each target')
     parser.add_argument('--seconds', type=float, default=1e9, help='ends after that time, whatever is left')
     parser.add_argument('--seed', type=int, default=1)
-    parser.add_argument('--targets', default=','.join(targets.ALL))
+    parser.add_argument('--targets', default=','.join(ALL))
     parser.add_argument('--limit', type=int, default=20, help='seconds of the processor that an input may take')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--only', help='TARGET:INDEX, this input alone')
@@ -144,8 +161,8 @@ def main():
     parser.add_argument('--quiet', action='store_true')
     options = parser.parse_args()
     names = options.targets.split(',')
-    if unknown := [n for n in names if n not in targets.ALL | targets.COSTLY]:
-        sys.exit(f'unknown targets {unknown}, expected some of {list(targets.ALL | targets.COSTLY)}')
+    if unknown := [n for n in names if n not in ALL | targets.COSTLY]:
+        sys.exit(f'unknown targets {unknown}, expected some of {list(ALL | targets.COSTLY)}')
     if options.only:
         target, index = options.only.split(':')
         items = [(target, int(index))]
@@ -169,8 +186,8 @@ def main():
     print(f'{done} inputs in {time.monotonic() - begin:.0f} s, {len(failures)} failures; at most {most[0]:.1f} s and {most[1] / 2 ** 10:.0f} MiB')
     # A target that never succeeds, or is never refused, tests nothing.
     for target, counts in codes.items():
-        # A journal is passed over where it is damaged: no input of that target is refused.
-        refused = counts.get(2, 0) > 0 or target == 'journal'
+        # A journal is passed over where it is damaged, a link is replaced: no input of those targets need be refused.
+        refused = counts.get(2, 0) > 0 or target in ('journal', 'links')
         if sum(counts.values()) >= 100 and (not refused or counts.get(0, 0) + counts.get(1, 0) == 0):
             print(f'FAILED {target}: all of its inputs end alike')
             failures.append((target, -1, 'alike'))

@@ -29,6 +29,8 @@ SCRIPT = ('{"op": "scene", "base": "base.toml"}\n'
           '{"op": "import", "file": "frames.csv", "frame": 1.5}\n{"op": "undo"}\n{"op": "freeze"}\n')
 FRAMES = 'frame,id,x,y,z,radius,density\n1,1,0,0,0,1,1\n2,1,1,0,0,1,1\n2,2,1,0.5,0,1,1\n'
 CSV = '\n'.join(['center_x,center_y,center_z,width,amplitude', '# a comment', '0,0,0,1,1', '0.5,0.1,-0.2,0.4,2', '-1,0.5,0,0.7,-0.3', ''])
+NASTY_NAMES = ['`touch run`', '$(touch run)', ';touch run', '"', "'", '..', '../evil', '/evil', 'state', '%d', 'a b', '-o', '.hidden', '####']
+VICTIM = 'of somebody else'
 PLOT = '[[plot]]\nx = "setting"\ny = "rel_l2"\nname = "p"\n'
 EXPERIMENT = ('title = "t"\nmetrics = ["rel_l2", "bias"]\n[[scene]]\nfile = "scenes/one.toml"\nname = "one"\n'
               'overrides = { "medium.0.sigma_t" = 1 }\n[reference]\nrenderer = "deterministic"\nsettings = { max_evaluations = 300 }\n'
@@ -59,7 +61,9 @@ class Box:
         self.write('data/satin.brdf', brdf)
         self.vdb = [(data / 'plume_0024.vdb').read_bytes()]
         self.write('seed.toml', CAMERA + LIGHT + FOG)
+        self.write('victim', VICTIM)
         self.samples = self.journal = None
+        self.made = {}
         self.settings = {method: self.settings_of(method) for method in METHODS}
 
     def write(self, name, content):

@@ -1,0 +1,25 @@
+// What a command may take of the machine. Whoever begins work that can be large estimates it first, and where that is too much one line
+// says so instead of a machine that swaps or a user who waits.
+#pragma once
+#include <functional>
+#include <string>
+
+namespace airlight::scene {
+
+// "2GiB", "500MiB": memory; "90s", "10min", "2h": of the clock, from now on. By default: the memory of the machine (or of the
+// control group), and no end. Throws Error.
+void set_limit(const std::string& text);
+void reset_limits();
+double seconds_allowed();  // infinity without a limit
+
+// Where work without a limit will take more than a minute, it is told here.
+void on_long_work(std::function<void(const std::string& line)>);
+
+// Throws Error where these bytes, beside what the process holds now, are more than it may: "WHAT: would take this program to about 6.4 GiB, ...".
+void require_memory(double bytes, const std::string& what);
+// Throws Error where that is more than is left of the time allowed.
+void require_time(double seconds, const std::string& what);
+// Throws Error if the time allowed is over.
+void check_time();
+
+}  // namespace airlight::scene
