@@ -80,10 +80,7 @@ TEST_CASE("compensated march: rays out of a ball of smoke under an even sky", "[
     s->width = s->height = 1;
     finish(*s);
     std::vector<double> errors;
-    for (
-        const int cells :
-        {3,
-         6}) {  // a radius; directions with them. At 4 and g = 0 errors cancel: 0.0007; at 8 they are below 0.002, 0.004
+    for (const int cells : {3, 8}) {  // a radius; directions with them. At 4 and g = 0 errors cancel: 0.0007
       const Given given{{"cells", std::to_string(6 * cells + 1)},
                         {"levels", std::to_string(2 * cells)},
                         {"ordinate_levels", std::to_string((cells + 1) / 2)},
@@ -105,8 +102,8 @@ TEST_CASE("compensated march: rays out of a ball of smoke under an even sky", "[
       errors.push_back(std::sqrt(error / size));
     }
     CAPTURE(v.at("id").get<std::string>(), errors[0], errors[1]);
-    CHECK(errors[1] < (number(in.at("albedo")) < 0.95 ? 0.00135 : 0.0066));
-    CHECK(errors[1] < 0.2 * errors[0]);
+    CHECK(errors[1] < (number(in.at("albedo")) < 0.95 ? 0.002 : 0.004));
+    CHECK(errors[1] < 0.4 * errors[0]);
   }
 }
 
