@@ -17,7 +17,7 @@ class FlowPictures {
   // As a PNG. From where flow and picture lie on a device if both are legendre_fluids_gpu, else prepared anew. Throws NotSupported
   // where the renderer cannot show the flow's density, Error where the file cannot be written.
   void draw(const scene::Flow&, const std::string& png);
-  // Of a frame of which there is the density alone.
+  // Draws a frame of an earlier run, of which only the density is known. Errors as above.
   void draw(const scene::DensityField&, const std::string& png);
 
   int on_device() const { return on_device_; }  // pictures that did not leave it before they were done

@@ -42,7 +42,7 @@ bool names_file(std::string_view key) {
   return false;
 }
 
-// Of a sequence: the file of its frame.
+// The file that a key names. Where the key names a sequence ("name#.vdb"), that of the frame which its table gives.
 std::string file_of(const toml::table& table, const std::string& key, const std::string& text) {
   if (text.find('#') == std::string::npos) return text;
   scene::load::TableReader reader(table, "");

@@ -47,9 +47,9 @@ bool is_processor(const std::string& device);
 nlohmann::json to_json(const Row&);
 Row row_from_json(const nlohmann::json&);
 
-// A metric, "seconds", "prepare_seconds", "total_seconds" (the sum of both), "parameter", "setting" or "counter.NAME"; of a flow "step_seconds" (of one step),
-// "cell_seconds" (of one step, over its cells) and "simulated_seconds" (of one simulated second). Nothing where the row
-// has none.
+// A metric, "seconds", "prepare_seconds", "total_seconds" (the sum of both), "parameter", "setting" or "counter.NAME"; of a
+// flow "step_seconds" (of one step), "cell_seconds" (of one step, over its cells) and "simulated_seconds" (of one simulated
+// second). Nothing where the row has none.
 std::optional<Estimate> quantity(const Row&, const std::string& name);
 
 }  // namespace airlight::experiments

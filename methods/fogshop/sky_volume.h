@@ -3,8 +3,8 @@
 //
 // Eq. 28 of Zhou et al. 2007 takes one depth, that of the view ray, for the way in and the way out, and is dark where a
 // cloud is thick. Here the way in has depths of its own: J(x) = 1/(4 pi) integral L(w) e^-T(x,w) dw at the nodes of a
-// grid, trilinear between them, surfaces in the way of L included, and a ray adds up J (e^-T_k - e^-T_k+1) over slices with exact depths T_k. One grid
-// serves all rays, and those that end at a surface too.
+// grid, where surfaces stand in the way of L, and trilinear between them. A ray adds up J (e^-T_k - e^-T_k+1) over slices
+// with exact depths T_k. One grid serves all rays, and those that end at a surface too.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -21,11 +21,12 @@ double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light
 
 class PaperStages {
  public:
-  // What is done once per picture: keys of planes, vertices. Of the lights that the media scatter; `shadows` by light, empty: nothing casts shadows. Keeps
-  // references to all but the camera. Throws Error, naming the scene and the settings, if keys and vertices would take
-  // more than 1.5 GB.
-  PaperStages(const scene::Scene&, const std::vector<scene::Light>&, const Options&, const std::vector<AirlightTerm>&,
-              const std::vector<ShadowVolumes>& shadows, const scene::Camera&, int threads);
+  // What is done once per picture: keys of planes, vertices. `lights` are those that the media scatter; `shadows` by light,
+  // empty: nothing casts shadows. Keeps references to all but the camera. Throws Error, naming the scene and the settings,
+  // if keys and vertices would take more than 1.5 GB.
+  PaperStages(const scene::Scene&, const std::vector<scene::Light>& lights, const Options&,
+              const std::vector<AirlightTerm>&, const std::vector<ShadowVolumes>& shadows, const scene::Camera&,
+              int threads);
 
   // Adds the airlight of a light to pixels. `fan`: null if nothing casts shadows; `count`: of surfaces between
   // light and camera; of a ray's own origin where there is none.

@@ -32,7 +32,8 @@ void add(const Tables<float>& tables, int z0, int z1, float* sums) {
   }
 }
 
-// Of the boxes that Gaussians reach to, each sample at the 0.7 ns that were measured for wide ones.
+// Refuses a sum that would take longer than the program may. The estimate adds up the samples in the boxes that the Gaussians reach to;
+// a sample takes 0.7 ns, as was measured for wide Gaussians.
 void require_cost(const GaussianSum& sum, const VoxelGrid& grid, int threads) {
   const double samples = double(grid.size[0]) * grid.size[1] * grid.size[2];
   const std::string what = fmt::format("{} Gaussians in {:.0f} samples", sum.gaussians.size(), samples);
