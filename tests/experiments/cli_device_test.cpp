@@ -90,7 +90,7 @@ TEST_CASE("the device is chosen by --gpu, and one that is not there is one line 
   CHECK_THAT(run("--help", folder).out, Contains("--gpu WHICH"));
 }
 
-TEST_CASE("the device: the option is stronger than the variable, and an old driver is passed over", "[cli]") {
+TEST_CASE("the device: the option is stronger than the variable, and an old driver is passed over", "[cli][skips]") {
   const TemporaryFolder folder;
   const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
   setenv("AIRLIGHT_GPU", "no such device", 1);

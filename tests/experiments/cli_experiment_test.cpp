@@ -246,7 +246,7 @@ budget = 0
 }
 
 // The shader that writes the airlight, made half as bright again: a relative error of 0.5.
-TEST_CASE("gates see a shader that was changed by hand", "[cli]") {
+TEST_CASE("gates see a shader that was changed by hand", "[cli][skips]") {
   const Project project;
   project.write("experiments/g/e.toml", against_quadrature({{"marcher", "ray_marcher_gpu", "1e-3", "steps = 64"}}));
   const Result first = run("gates --root .", project);

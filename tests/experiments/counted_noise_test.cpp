@@ -109,7 +109,7 @@ TEST_CASE("counted noise of few samples: intervals from standard errors", "[metr
   }
 }
 
-TEST_CASE("counted noise of sixteen batches: intervals from the jackknife", "[metrics]") {
+TEST_CASE("counted noise of sixteen batches: intervals from the jackknife", "[metrics][thorough]") {
   SECTION("against a noisy reference") {
     check_coverage(
         0.05, [](unsigned seed) { return noisy(width, height, biased, 0.05, seed); },

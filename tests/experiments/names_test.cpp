@@ -77,7 +77,7 @@ std::set<std::string> files_below(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("gnuplot shows every text as it is, and runs nothing of it", "[driver][plots]") {
+TEST_CASE("gnuplot shows every text as it is, and runs nothing of it", "[driver][plots][skips]") {
   if (!experiments::has_gnuplot()) {
     WARN("test skipped: gnuplot is not installed");
     return;
@@ -106,7 +106,7 @@ TEST_CASE("gnuplot shows every text as it is, and runs nothing of it", "[driver]
   }
 }
 
-TEST_CASE("a folder's name is no command either", "[driver][plots]") {
+TEST_CASE("a folder's name is no command either", "[driver][plots][skips]") {
   if (!experiments::has_gnuplot()) {
     WARN("test skipped: gnuplot is not installed");
     return;

@@ -58,7 +58,7 @@ TEST_CASE("a simulation whose files grow too long stops with a line, and goes on
   CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
 }
 
-TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on with the same bits", "[simulation]") {
+TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on with the same bits", "[simulation][skips]") {
   const TemporaryFolder folder;
   if (!can_mount(folder)) {
     WARN("test skipped: no file system can be mounted here");
@@ -88,7 +88,7 @@ TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on w
   }
 }
 
-TEST_CASE("a simulation into a folder that takes no files stops with a line", "[simulation]") {
+TEST_CASE("a simulation into a folder that takes no files stops with a line", "[simulation][skips]") {
   const TemporaryFolder folder;
   folder.write("smoke.toml", rising_smoke);
   REQUIRE(run_command(simulate_smoke + "whole", folder).code == 0);

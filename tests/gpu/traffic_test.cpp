@@ -32,7 +32,7 @@ double sum(const std::vector<scene::StageTime>& times) {
 
 }  // namespace
 
-TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][slow]") {
+TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][slow][thorough]") {
   if (!gpu::test::device()) return;
   const gpu::FogshopGpu fogshop;
   const gpu::ShadowPlanesGpu planes;

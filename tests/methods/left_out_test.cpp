@@ -298,7 +298,7 @@ TEST_CASE("table of what methods leave out", "[.left_out_table]") {
 
 TEST_CASE("methods leave out what the table says a scene does not need", "[left_out]") { check_all(false); }
 
-TEST_CASE("methods on the device leave out what the table says a scene does not need", "[left_out][gpu]") {
+TEST_CASE("methods on the device leave out what the table says a scene does not need", "[left_out][gpu][thorough]") {
   if (!gpu::test::device()) return;
   check_all(true);
 }

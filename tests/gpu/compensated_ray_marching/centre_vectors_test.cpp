@@ -218,7 +218,7 @@ TEST_CASE("depths of Gaussians in harmonics on the device are the oracle's", "[g
 }
 
 TEST_CASE("exponentials in harmonics on the device go as near the oracle as the processor's",
-          "[gpu][compensated_ray_marching]") {
+          "[gpu][compensated_ray_marching][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);

@@ -34,7 +34,7 @@ double difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
 
 }  // namespace
 
-TEST_CASE("maps are projected on the device as on the processor", "[gpu][compensated_ray_marching]") {
+TEST_CASE("maps are projected on the device as on the processor", "[gpu][compensated_ray_marching][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);

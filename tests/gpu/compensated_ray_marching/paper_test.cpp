@@ -119,7 +119,7 @@ TEST_CASE("paper on the device: stages kept and left out as on the CPU", "[gpu][
   }
 }
 
-TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper]") {
+TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper][thorough]") {
   if (!gpu::test::device()) return;
   const auto grey = scene_of(cloud(70), 6, 0.8, scene::make_constant_environment(Rgb::Ones()));
   auto coloured = scene_of(cloud(70), 6, 0.8, uneven());
@@ -258,7 +258,7 @@ TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][
 }
 
 TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the smoke's on them",
-          "[gpu][compensated_ray_marching][paper]") {
+          "[gpu][compensated_ray_marching][paper][thorough]") {
   if (!gpu::test::device()) return;
   auto scene = scene_of(puffs(), 4, 0.9, uneven());
   scene->camera = scene::look_at({0.3, 1.7, 3.4}, {0, 0, 0}, Vec3::UnitY());

@@ -331,7 +331,7 @@ TEST_CASE("ordinates on the device are the processor's, cell by cell", "[gpu][co
 }
 
 TEST_CASE("a ball of smoke with all orders on the device goes where the oracle is",
-          "[gpu][compensated_ray_marching][slow]") {
+          "[gpu][compensated_ray_marching][slow][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);

@@ -71,7 +71,7 @@ void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = sm
 
 }  // namespace
 
-TEST_CASE("compensated march on the device: thin to thick, albedo to 1", "[gpu][compensated_ray_marching][slow]") {
+TEST_CASE("compensated march on the device: thin to thick, albedo to 1", "[gpu][compensated_ray_marching][slow][thorough]") {
   if (!gpu::test::device()) return;
   for (const double sigma_t : {1e-3, 0.3, 4.0, 20.0})
     for (const double albedo : {0.5, 1.0}) {
@@ -240,7 +240,7 @@ TEST_CASE("compensated march on the device: the next frame's light as if prepare
 }
 
 TEST_CASE("compensated march on the device: a map that turns, and another, in the next frame",
-          "[gpu][compensated_ray_marching]") {
+          "[gpu][compensated_ray_marching][thorough]") {
   if (!gpu::test::device()) return;
   const auto map = rough_map(64, 32);
   const auto at = [&](double turn) { return scene_of(puffs(), 4, 0.9, rough_sky(turn, map)); };
@@ -252,7 +252,7 @@ TEST_CASE("compensated march on the device: a map that turns, and another, in th
 }
 
 TEST_CASE("compensated march on the device: suns that move, come and go, for a bit a node",
-          "[gpu][compensated_ray_marching]") {
+          "[gpu][compensated_ray_marching][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const Given few{{"cells", "8"}, {"tolerance", "1e-5"}, {"levels", "6"}};
@@ -293,7 +293,7 @@ TEST_CASE("compensated march on the device: suns that move, come and go, for a b
 }
 
 TEST_CASE("compensated march on the device: black smoke and phase functions at their ends stay finite",
-          "[gpu][compensated_ray_marching][slow]") {
+          "[gpu][compensated_ray_marching][slow][thorough]") {
   if (!gpu::test::device()) return;
   const Given any_depth{{"cells", "6"}, {"deepest_cell", "1e9"}, {"iterations", "100"}};
   for (const double sigma_t : {1e-6, 7e3})

@@ -21,7 +21,7 @@ const gpu::CompensatedRayMarchingGpu device;
 }  // namespace
 
 TEST_CASE("compensated march on the device, stress list: the processor's pictures",
-          "[gpu][stress][compensated_ray_marching][slow]") {
+          "[gpu][stress][compensated_ray_marching][slow][thorough]") {
   if (!gpu::test::device()) return;
   const bool paper = GENERATE(false, true);
   std::set<int> compared;

@@ -56,7 +56,7 @@ Scene fog_banks(int count, double scale) {
 
 }  // namespace
 
-TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[gpu]") {
+TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   const test::Given tree{{"reflectance", "npsf"}, {"erf", "erf10"}},
       exact{{"reflectance", "npsf"}, {"erf", "erf10"}, {"average_depth", "exact"}};

@@ -108,7 +108,7 @@ TEST_CASE("fogshop: GPU agrees with CPU under an environment", "[gpu]") {
 }
 
 // llvmpipe ends loops after 65535 iterations in all: what would need more is refused, what comes close is whole.
-TEST_CASE("fogshop: many Gaussians and slices on the device", "[gpu]") {
+TEST_CASE("fogshop: many Gaussians and slices on the device", "[gpu][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const auto scene = scene_named("count_967");
@@ -156,7 +156,7 @@ TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
 
 // Section 5.4. Which pixels are edges is a comparison of distances: one that lies at the bound to single precision may
 // differ, so the 99th percentile of a film of this size allows for a dozen.
-TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu]") {
+TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(
       AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/posts.toml", {{"film.width", "27"}, {"film.height", "19"}}));
@@ -183,7 +183,7 @@ TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu]") {
 }
 
 // Media of different albedo: a colour per Gaussian, and one of the constant.
-TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu]") {
+TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   auto scene = std::make_shared<scene::Scene>(*scene_named("f100_constant"));
   scene::Medium other = scene->media[0];
@@ -223,7 +223,7 @@ TEST_CASE("fogshop: culling, GPU agrees with CPU", "[gpu]") {
 }
 
 // Section 5.5, the phase beyond a period included.
-TEST_CASE("fogshop: noise, GPU agrees with CPU", "[gpu]") {
+TEST_CASE("fogshop: noise, GPU agrees with CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   for (const char* name : {"f100", "a30", "tube"})
     for (const char* variant : {"S", "paper"}) {

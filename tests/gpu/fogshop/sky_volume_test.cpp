@@ -58,7 +58,7 @@ struct Differences {
 
 }  // namespace
 
-TEST_CASE("fogshop: sky volume, GPU agrees with CPU", "[gpu]") {
+TEST_CASE("fogshop: sky volume, GPU agrees with CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   const ScenePointer sky = cloud(), both = std::make_shared<scene::Scene>(*sky);
   both->lights.emplace_back(scene::PointLight{Point3(0.5, 1.2, 7), Rgb(300, 200, 100), 0});  // among the Gaussians

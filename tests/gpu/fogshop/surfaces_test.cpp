@@ -116,7 +116,7 @@ TEST_CASE("fogshop: surfaces on the GPU agree with the CPU", "[gpu]") {
 
 // Tables, lobes sharper than a quadrature in the shader would resolve, the form without harmonics, shadows of scattered
 // light.
-TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu]") {
+TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu][thorough]") {
   if (!gpu::test::device()) return;
   for (const Rgb& sigma_t : {Rgb(1, 1, 1), Rgb(1, 0.6, 0)}) {
     Scene scene = things(sigma_t);
@@ -135,7 +135,7 @@ TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu]") 
 }
 
 // Eqs. 26 and 27, and the background: a map, harmonics and a constant, with and without lamps and visibility.
-TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU", "[gpu][slow]") {
+TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU", "[gpu][slow][thorough]") {
   if (!gpu::test::device()) return;
   const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(0.3, 1, 0.2).normalized()).toRotationMatrix();
   const std::vector<scene::Light> skies = {

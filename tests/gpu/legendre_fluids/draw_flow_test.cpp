@@ -84,7 +84,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0.5);
   const scene::Film drawn = drawn_while_nothing_comes_down(*flow, {});
@@ -97,7 +97,7 @@ TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendr
   }
 }
 
-TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0.5);
   for (const char* closure : {"upwind", "least_squares"}) {
@@ -111,7 +111,7 @@ TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's s
 }
 
 // Whether the systems were solved to the end is looked at where no layer is asked for, too.
-TEST_CASE("legendre fluids on the device: systems of frames that nobody sees", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre fluids on the device: systems of frames that nobody sees", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0.01), dark = rising_blob(0, 1e300);
   Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
@@ -198,7 +198,7 @@ TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time",
 }
 
 // What rings below 0 around a blob is taken as 0, as the processor does, in a few stretches of each ray.
-TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0);
   for (int frame = 0; frame < 3; ++frame) {

@@ -46,7 +46,7 @@ std::string objection(int n) {
 
 // dt = 10 is divided by the rule of Runge-Kutta, as on the processor; viscosity times a step up to 1e4.
 TEST_CASE("legendre fluids on the device, extremes: no step and no viscosity makes a value that is no number",
-          "[gpu][legendre_fluids][slow]") {
+          "[gpu][legendre_fluids][slow][thorough]") {
   if (!gpu::test::device()) return;
   for (const int dimensions : {2, 3})
     for (const int n : {2, 3, 8, 16})
@@ -92,7 +92,7 @@ TEST_CASE("legendre fluids on the device, extremes: counts and numbers that are 
 
 // Rounding of depths: 2.5e-7 of the whole, of 24 bits (light_test.cpp).
 TEST_CASE("legendre light on the device, extremes: every row by rays and by the paper's systems",
-          "[gpu][legendre_fluids]") {
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const legendre_fluids::LegendreLight on_cpu;
   const gpu::LegendreLightGpu on_device;

@@ -88,7 +88,7 @@ std::vector<std::string> objections(const FlowProblem& problem, const Given& set
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   struct Case {
     int dimensions;
@@ -121,7 +121,7 @@ TEST_CASE("legendre fluids on the device: flows agree with the CPU after many st
 }
 
 TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without divergence",
-          "[gpu][legendre_fluids][slow]") {
+          "[gpu][legendre_fluids][slow][thorough]") {
   if (!gpu::test::device()) return;
   using namespace legendre_fluids;
   const std::pair<int, int> cases[] = {{2, 8}, {2, 16}, {3, 8}};
@@ -176,7 +176,7 @@ TEST_CASE("legendre fluids on the device: restart gives the same bits", "[gpu][l
   CHECK(whole->state() == again->state());
 }
 
-TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   FlowProblem problem = box(3);
   problem.velocity = scene::Swirl{1};

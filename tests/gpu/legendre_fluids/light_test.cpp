@@ -56,7 +56,7 @@ ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 
 
 }  // namespace
 
-TEST_CASE("legendre light on the device: optical depths from thin to black", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: optical depths from thin to black", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   for (const double depth : {1e-3, 0.1, 1.0, 5.0, 20.0, 100.0, 5e3}) {
     CAPTURE(depth);
@@ -103,7 +103,7 @@ TEST_CASE("legendre light on the device: colours, several media and lights, came
 }
 
 TEST_CASE("legendre light on the device: an environment lights the smoke and a wall behind it",
-          "[gpu][legendre_fluids]") {
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   ScenePointer scene = oblique({4, 5, 3}, 2);
   scene->media[0].sigma_t = Rgb(0.5, 1, 2);
@@ -137,7 +137,7 @@ TEST_CASE("legendre light on the device: surfaces behind and within the medium",
 }
 
 // What is below 0 is taken as 0, on rays and on the way of the light.
-TEST_CASE("legendre light on the device: densities that are below 0 in places", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: densities that are below 0 in places", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto rough = [](const scene::TensorShape& n, unsigned seed, double mean, const Box& box = unit_box) {
     Eigen::VectorXd c = random_density(n, seed, 1, box)->coefficients();

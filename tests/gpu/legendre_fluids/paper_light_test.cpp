@@ -65,7 +65,7 @@ ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 
 
 }  // namespace
 
-TEST_CASE("legendre light on the device: the paper's systems from thin to black", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: the paper's systems from thin to black", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   for (const char* closure : {"upwind", "least_squares"})
     for (const double depth : {1e-6, 0.1, 1.0, 5.0, 20.0, 100.0}) {
@@ -74,7 +74,7 @@ TEST_CASE("legendre light on the device: the paper's systems from thin to black"
     }
 }
 
-TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   compare("8", oblique({4, 4, 4}, 5), paper("upwind", 8));
   compare("8", oblique({6, 6, 6}, 5), paper("least_squares", 8));
@@ -84,7 +84,7 @@ TEST_CASE("legendre light on the device: the paper's systems with up to 16 coeff
 }
 
 TEST_CASE("legendre light on the device: the paper's systems by colours, lights, boxes, truncations",
-          "[gpu][legendre_fluids]") {
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const Box flat{{-1, 0, 2}, {3, 0.7, 3}};
   auto scene = lit_scene(smoke(random_density({4, 3, 2}, 5, 1, flat), 1), {1, 0, 0}, {0.2, -1, 0.1}, 24, 12, 4);
@@ -115,7 +115,7 @@ TEST_CASE("legendre light on the device: the paper's systems by colours, lights,
 }
 
 // Depths in front of the box, in it, behind it, and none; flakes, drawn by the camera.
-TEST_CASE("legendre light on the device: the paper's systems before pictures with depth", "[gpu][legendre_fluids]") {
+TEST_CASE("legendre light on the device: the paper's systems before pictures with depth", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto with_ends = [](ScenePointer scene, double step) {
     auto picture = std::make_shared<scene::Backdrop>();

@@ -103,7 +103,7 @@ TEST_CASE("particles on the device stay on their stream lines to the fourth orde
   CHECK(std::log2(middle / fine) > 3.7);
 }
 
-TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre_fluids][particles]") {
+TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre_fluids][particles][thorough]") {
   if (!gpu::test::device()) return;
   for (const int dimensions : {2, 3})
     for (const Leaving leaving : {Leaving::stay, Leaving::wrap, Leaving::respawn})
@@ -124,7 +124,7 @@ TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre
       }
 }
 
-TEST_CASE("particles on the device never leave the box", "[gpu][legendre_fluids][particles]") {
+TEST_CASE("particles on the device never leave the box", "[gpu][legendre_fluids][particles][thorough]") {
   if (!gpu::test::device()) return;
   scene::FlowProblem problem = swirl(3, 200);
   problem.velocity = scene::Swirl{30};

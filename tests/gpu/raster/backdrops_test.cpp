@@ -92,7 +92,7 @@ void compare(const scene::Renderer& processor, const scene::Renderer& device, co
 }  // namespace
 
 TEST_CASE("ray marcher: the device sees backdrops and particles as the processor does",
-          "[gpu][ray_marcher][backdrop]") {
+          "[gpu][ray_marcher][backdrop][thorough]") {
   if (!gpu::test::device()) return;
   const std::string more = GENERATE("", "[[surface]]\ntype = 'sphere'\ncenter = [0, 0, -2]\nradius = 1\n");
   compare(ray_marcher::RayMarcher(), gpu::RayMarcherGpu(), with_backdrops(lamp, more),
@@ -100,7 +100,7 @@ TEST_CASE("ray marcher: the device sees backdrops and particles as the processor
 }
 
 TEST_CASE("Legendre light: the device sees backdrops and particles as the processor does",
-          "[gpu][legendre_fluids][backdrop]") {
+          "[gpu][legendre_fluids][backdrop][thorough]") {
   if (!gpu::test::device()) return;
   compare(legendre_fluids::LegendreLight(), gpu::LegendreLightGpu(), with_backdrops(sun, ""), {});
 }

@@ -98,7 +98,7 @@ Scene scaled(double scale, const Vec3& shift) {
 
 }  // namespace
 
-TEST_CASE("first hits of the experiments' scenes", "[gpu][raster][slow]") {
+TEST_CASE("first hits of the experiments' scenes", "[gpu][raster][slow][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   int scenes = 0;

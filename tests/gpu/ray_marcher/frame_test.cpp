@@ -22,7 +22,7 @@ struct ManyRounds {
 
 // Counters go into tables: every one of them the same in every run, however busy the machine is. The first frame learns
 // how many rounds there are (gpu/ray_marcher/rounds.h); a warm one takes them without a look, and gives the same bits.
-TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher]") {
+TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher][thorough]") {
   if (!gpu::test::device()) return;
   const ManyRounds many;
   for (const auto& [name, scene] : assorted_scenes()) {

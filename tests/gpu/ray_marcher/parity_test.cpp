@@ -132,7 +132,7 @@ TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_march
   }
 }
 
-TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray_marcher]") {
+TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray_marcher][thorough]") {
   if (!gpu::test::device()) return;
   // Two of them, of different sizes, one turned.
   const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 2) / 3).toRotationMatrix();
@@ -156,7 +156,7 @@ TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray
 }
 
 // More than a storage buffer of llvmpipe holds: automatic storage changes over, and a buffer is refused in one line.
-TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_marcher]") {
+TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_marcher][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   if (context->limits().storage_block > std::size_t(128) << 20) {

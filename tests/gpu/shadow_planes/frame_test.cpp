@@ -68,7 +68,7 @@ TEST_CASE("shadow planes: a warm frame stays on the device", "[gpu][shadow_plane
 }
 
 // Buffers hold NaN and -1 before each frame: whoever reads what nobody wrote shows another picture.
-TEST_CASE("shadow planes: no pass reads what none has written", "[gpu][shadow_planes]") {
+TEST_CASE("shadow planes: no pass reads what none has written", "[gpu][shadow_planes][thorough]") {
   if (!gpu::test::device()) return;
   const auto picture = [](const std::shared_ptr<const scene::Scene>& scene, const Pairs& given) {
     const gpu::ShadowPlanesGpu method;

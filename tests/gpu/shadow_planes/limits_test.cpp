@@ -73,7 +73,7 @@ TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow
 }
 
 // A hundred crossings on a ray and thousands of edges beside it: llvmpipe's limit on loops is not met, or said to be.
-TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow_planes]") {
+TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow_planes][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const auto scene = std::make_shared<scene::Scene>(scene::load_scene(

@@ -61,7 +61,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][s
 
 // Two lights, one of them a spot; an orthographic camera; cameras and lights inside occluders; spheres; grey and
 // coloured media, boxes and slabs that overlap.
-TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes]") {
+TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes][thorough]") {
   if (!gpu::test::device()) return;
   const auto scene = scene_of("shadow_planes/boxes_3", 20, 15);
   scene->name = "two lights and a ball";
@@ -103,7 +103,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_plan
 }
 
 // The paper's own evaluation: Gamma at vertices, a constant R in media, boundaries sorted in among the planes.
-TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][shadow_planes]") {
+TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][shadow_planes][thorough]") {
   if (!gpu::test::device()) return;
   const Pairs vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}};
   const auto with = [](Pairs given, const Pairs& more) {

@@ -25,7 +25,7 @@ double greatest_difference(const scene::Film& a, const scene::Film& b, const std
 }  // namespace
 
 // A depth that is off by the tolerance moves the transmittance by at most as much.
-TEST_CASE("wavelet fog: bound keeps its tolerance on the GPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: bound keeps its tolerance on the GPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   double worst = 0;
   for (int degree = 0; degree <= 2; ++degree)
@@ -101,7 +101,7 @@ TEST_CASE("wavelet fog: cells are counted as on the CPU", "[gpu][wavelet_fog]") 
 }
 
 // The coefficients go up, everything made of them is made there.
-TEST_CASE("wavelet fog: a map that changes every frame stays on the device", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: a map that changes every frame stays on the device", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   const gpu::WaveletFogGpu method;
   const auto scene_with = [](unsigned seed) {
@@ -166,7 +166,7 @@ TEST_CASE("wavelet fog: maps far away, small, or large keep their digits on the 
 }
 
 // More iterations than one dispatch may have on llvmpipe: rays are done in parts.
-TEST_CASE("wavelet fog: a map of 8 million cells on the GPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: a map of 8 million cells on the GPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   const auto scene =
       scene_of(patches(2, 4096, 2048, 0.01, 3, scene::ExponentialFall{0, 3}), 0.2, {-21, 1, -10.5}, {0, 0.9, 0});

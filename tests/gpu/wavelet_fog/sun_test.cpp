@@ -29,7 +29,7 @@ std::shared_ptr<scene::Scene> sunny(int degree, const scene::HeightProfile& prof
 
 }  // namespace
 
-TEST_CASE("wavelet fog: a sun on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: a sun on the GPU is that of the CPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   const scene::PhaseFunction phases[] = {scene::Isotropic{}, scene::Rayleigh{}, scene::HenyeyGreenstein{0.7},
                                          scene::Hazy{}, scene::Murky{}};
@@ -114,7 +114,7 @@ void compare_under_sun(const std::shared_ptr<const scene::Scene>& scene, const G
 
 }  // namespace
 
-TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   // The ten scenes in which the CPU is judged by the quadrature and the path tracer, with the map's cells that it is judged with, and
   // those without houses with houses too. Columns through thick fog are differences of
@@ -135,7 +135,7 @@ TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "
   }
 }
 
-TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   for (const auto& view : views) {
     const auto scene = sunny(1, profiles[0], view, {0.5, 0.4, 0.3});
@@ -155,7 +155,7 @@ TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU"
   }
 }
 
-TEST_CASE("wavelet fog: suns in several media on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+TEST_CASE("wavelet fog: suns in several media on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
   if (!gpu::test::device()) return;
   const scene::PhaseFunction phases[] = {scene::HenyeyGreenstein{0.6}, scene::Rayleigh{}, scene::Isotropic{}};
   for (const auto& view : views)
@@ -194,7 +194,7 @@ scene::Film rows_of(const scene::Film& film, int first, int last) {
 
 }  // namespace
 
-TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU", "[gpu][wavelet_fog][slow]") {
+TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU", "[gpu][wavelet_fog][slow][thorough]") {
   if (!gpu::test::device()) return;
   // Rays along 2048 cells: more loops than a dispatch has on llvmpipe.
   const auto large = sunny(1, profiles[1], {{-25, 1.2, 0.1}, {20, 0.9, 0}}, {0.5, 0.4, 0.3});

@@ -212,7 +212,7 @@ struct Ball {
 
 }  // namespace
 
-TEST_CASE("discrete ordinates: a ball of smoke under an even sky", "[compensated_ray_marching][slow]") {
+TEST_CASE("discrete ordinates: a ball of smoke under an even sky", "[compensated_ray_marching][slow][thorough]") {
   for (const json& v : vectors_of(file, "multiple_scattering_sphere")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     std::vector<double> errors;

@@ -63,7 +63,7 @@ TEST_CASE("compensated march: what scatters everything is not seen in an even li
   CHECK(fine < 0.7 * coarse);
 }
 
-TEST_CASE("compensated march: rays out of a ball of smoke under an even sky", "[compensated_ray_marching][slow]") {
+TEST_CASE("compensated march: rays out of a ball of smoke under an even sky", "[compensated_ray_marching][slow][thorough]") {
   for (const json& v : vectors_of("compensated_ray_marching", "multiple_scattering_sphere")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const json& rbf = in.at("rbf_x_y_z_r_w").at(0);

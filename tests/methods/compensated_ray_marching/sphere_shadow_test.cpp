@@ -59,7 +59,7 @@ TEST_CASE("shadows of spheres: visibility in closed form", "[compensated_ray_mar
 }
 
 TEST_CASE("shadows of spheres: exponentials of the table's logarithms are visibility",
-          "[compensated_ray_marching][slow]") {
+          "[compensated_ray_marching][slow][thorough]") {
   const ShadowTable by_series(4, series());
   const LinearExponential linear(depth_family(4, {1, 2, 4}, 20));
   const ShadowTable by_hyb(4, [&](const Harmonics& f) { return squared_exponential(f, linear, 0.5); });
@@ -95,7 +95,7 @@ TEST_CASE("shadows of spheres: exponentials of the table's logarithms are visibi
     }
 }
 
-TEST_CASE("shadows of spheres: several, and smoke", "[compensated_ray_marching]") {
+TEST_CASE("shadows of spheres: several, and smoke", "[compensated_ray_marching][thorough]") {
   const Point3 x(0.3, -0.2, 0.1);
   const auto at = [&](double angle, const Vec3& axis) {
     scene::Sphere sphere = hiding(angle, axis);

@@ -196,7 +196,7 @@ TEST_CASE("the result does not depend on the majorants", "[path_tracer]") {
   CHECK(results[2].counters.lookups > 3 * results[0].counters.lookups);
 }
 
-TEST_CASE("forced first collisions change the noise and nothing else", "[path_tracer]") {
+TEST_CASE("forced first collisions change the noise and nothing else", "[path_tracer][thorough]") {
   const Ray ray = ray_of({0.2, 0.1, 3}, {0.02, 0, -1});
   const Box unit{{-1, -1, -1}, {1, 1, 1}};
   const scene::Light inside = scene::PointLight{{0.3, 0.5, -0.2}};

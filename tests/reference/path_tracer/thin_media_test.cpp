@@ -141,7 +141,7 @@ TEST_CASE("thin media and the light of surfaces: flat relative error", "[path_tr
 }
 
 // Where paths split (thin scenes with surfaces), and where they do not: the same means, order by order, as analog ones.
-TEST_CASE("forced collisions before surfaces change the noise and nothing else", "[path_tracer][slow]") {
+TEST_CASE("forced collisions before surfaces change the noise and nothing else", "[path_tracer][slow][thorough]") {
   const double limit = threshold(1e-3, 4 * 2 * 3 * 3 * 3);
   const scene::Surface ball{"ball", scene::Sphere{Point3(-0.6, -0.2, -0.3), 0.3}, scene::Lambert{Rgb(0.9, 0.6, 0.3)}};
   const std::vector<std::vector<scene::Light>> lights = {

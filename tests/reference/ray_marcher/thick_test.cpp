@@ -70,7 +70,7 @@ double error_of(const scene::Film& film, const std::vector<Rgb>& truth) {
 // most 2 % as the second step, exp(-2x) (1 - x/sinh(x)) at x = 1. Columns err by about as much again, and a grid begins
 // with a kink within a step, of order 1. Without steps that follow the depth all light is lost: 0 at 1e6 where .005 is
 // right.
-TEST_CASE("ray marcher: media of any thickness", "[ray_marcher][slow]") {
+TEST_CASE("ray marcher: media of any thickness", "[ray_marcher][slow][thorough]") {
   const scene::View view = from_the_front();
   for (int kind = 0; kind < 3; ++kind)
     for (double extinction = 1; extinction < 2e9; extinction *= kind == 0 && extinction < 1e3 ? 2 : 10) {
