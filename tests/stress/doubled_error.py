@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Would a gate object if the error of a method doubled?
 
-doubled_error.py [ROOT] [--profile quick|paper] [--gates]
+doubled_error.py [ROOT] [--profile quick|paper] [--gates] [--in-tests]
 
 Reads the gates of experiments/*/*.toml, the bounds by row beside them and the rows of results/*/*/run.json, and doubles every error that a gate bounds
 (four times where it is a square); its interval stays as wide as it was, so an error in the noise of its reference is not
@@ -86,6 +86,7 @@ def main():
     p.add_argument("root", nargs="?", default=".")
     p.add_argument("--profile", default="quick", choices=("quick", "paper"))
     p.add_argument("--gates", action="store_true", help="every gate that would object")
+    p.add_argument("--in-tests", action="store_true", help="only gates that scripts/test judges")
     a = p.parse_args()
     found = {}
     folder = os.path.join(a.root, "experiments")
@@ -99,7 +100,7 @@ def main():
                 experiment = tomllib.load(f)
             name = f"{group}/{file[:-5]}"
             record = os.path.join(a.root, "results", name + (".paper" if a.profile == "paper" else ""), "run.json")
-            if not os.path.exists(record):
+            if not os.path.exists(record) or (a.in_tests and not experiment.get("in_tests")):
                 continue
             with open(record) as f:
                 rows = [r for r in json.load(f)["rows"] if r["runs"]]
