@@ -13,7 +13,7 @@ struct Silhouettes::Arrays {
 Silhouettes::Arrays Silhouettes::arrays(const shadow_planes::Occluders& occluders) {
   Arrays all;
   for (std::size_t m = 0; m < occluders.meshes().size(); ++m) {
-    const shadow_planes::MeshEdges& mesh = occluders.meshes()[m];
+    const shadow_planes::MeshEdges& mesh = *occluders.meshes()[m];
     const int vertex = int(all.vertices.size() / 3), triangle = int(all.triangles.size() / 3);
     const int side = int(all.sides.size());
     const std::size_t number = all.numbers.size();  // surfaces without triangles lie between the meshes

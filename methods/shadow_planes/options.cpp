@@ -98,7 +98,9 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       reasons.push_back("annex = true: the annex has no coefficients for media in regions");
     for (const scene::Light& light : scene.lights)
       if (std::holds_alternative<scene::SpotLight>(light))
-        reasons.push_back("evaluator = polynomial is for point lights: a spot's edge has no Taylor series");
+        reasons.push_back(
+            "evaluator = polynomial is for point lights: the paper's series is of light alike in all directions, and a "
+            "spot's edge has none");
     if (options.annex && scene.media.size() == 1 &&
         std::holds_alternative<scene::HenyeyGreenstein>(scene.media.front().phase))
       reasons.push_back("annex = true: the annex has no coefficients for Henyey-Greenstein");
@@ -114,6 +116,34 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
       reasons.push_back("evaluation = vertices is for perspective cameras: vertices are seen from one point");
   }
   return reasons;
+}
+
+bool same_media(const std::vector<scene::Medium>& all, const std::vector<scene::Medium>& others) {
+  const auto g = [](const scene::PhaseFunction& phase) {
+    const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase);
+    return hg ? hg->g : 0;
+  };
+  const auto same_region = [](const scene::Region& a, const scene::Region& b) {
+    return scene::match(
+        a, [&](const scene::Unbounded&) { return std::holds_alternative<scene::Unbounded>(b); },
+        [&](const Box& box) {
+          const auto* other = std::get_if<Box>(&b);
+          return other && box.lo == other->lo && box.hi == other->hi;
+        },
+        [&](const scene::Sphere& ball) {
+          const auto* other = std::get_if<scene::Sphere>(&b);
+          return other && ball.center == other->center && ball.radius == other->radius;
+        },
+        [&](const scene::Slab& slab) {
+          const auto* other = std::get_if<scene::Slab>(&b);
+          return other && slab.normal == other->normal && slab.lo == other->lo && slab.hi == other->hi;
+        });
+  };
+  return std::equal(
+      all.begin(), all.end(), others.begin(), others.end(), [&](const scene::Medium& a, const scene::Medium& b) {
+        return (extinction_of(a) == extinction_of(b)).all() && (a.albedo == b.albedo).all() &&
+               same_region(a.region, b.region) && a.phase.index() == b.phase.index() && g(a.phase) == g(b.phase);
+      });
 }
 
 Rgb extinction_of(const scene::Medium& medium) { return medium.sigma_t * homogeneous_density(medium.field).value(); }

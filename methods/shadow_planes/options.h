@@ -43,5 +43,7 @@ std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
 
 // Of a medium in a scene against which there are no reasons: it is homogeneous [1/m].
 Rgb extinction_of(const scene::Medium&);
+// Whether both scatter alike in the same places. Of such media.
+bool same_media(const std::vector<scene::Medium>&, const std::vector<scene::Medium>&);
 
 }  // namespace airlight::shadow_planes

@@ -43,7 +43,7 @@ struct Frame {
 class PreparedShadowPlanes final : public scene::Prepared {
  public:
   PreparedShadowPlanes(std::shared_ptr<const Scene> scene, const Options& options) : options_(options) {
-    times_ = light(std::move(scene));
+    times_ = begin(std::move(scene));
   }
 
   std::vector<scene::Stage> stages() const override;
@@ -52,7 +52,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  std::vector<scene::StageTime> light(std::shared_ptr<const Scene>);
+  std::vector<scene::StageTime> begin(std::shared_ptr<const Scene>);
   void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
   Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
   bool in_stages() const;  // of the paper
@@ -64,6 +64,7 @@ class PreparedShadowPlanes final : public scene::Prepared {
   std::vector<AirlightTerm> airlight_terms_;    // empty: there are none
   std::shared_ptr<const Occluders> occluders_;  // null: nothing casts shadows
   std::vector<ShadowVolumes> shadows_;          // by light; empty: the same
+  int terms_made_ = 0, silhouettes_made_ = 0;   // for this frame; others are of frames before
   std::vector<scene::StageTime> times_;
 };
 
@@ -73,9 +74,10 @@ std::vector<scene::Stage> PreparedShadowPlanes::stages() const {
   return stage_list(*scene_, options_, {lights_.size(), needs_.shadows, needs_.surfaces, in_stages(), edges});
 }
 
-// For a scene with other lights: what it needs, and the silhouettes if it needs them.
-std::vector<scene::StageTime> PreparedShadowPlanes::light(std::shared_ptr<const Scene> scene) {
-  scene_ = std::move(scene);
+// For a first scene, or one where lights, media or occluders have moved: what it needs, and the silhouettes that the
+// frame before has not (section 5.1.1: of moving casters, and all of a light that moves).
+std::vector<scene::StageTime> PreparedShadowPlanes::begin(std::shared_ptr<const Scene> scene) {
+  const std::shared_ptr<const Scene> before = std::exchange(scene_, std::move(scene));
   lights_ = scene::scattered_lights(*scene_);
   const bool surfaces = !scene_->surfaces.empty();
   needs_.medium = std::any_of(scene_->media.begin(), scene_->media.end(), scene::extinguishes);
@@ -85,25 +87,36 @@ std::vector<scene::StageTime> PreparedShadowPlanes::light(std::shared_ptr<const 
                    std::any_of(lights_.begin(), lights_.end(), [&](const scene::Light& each) {
                      return any_may_shadow(scene_->surfaces, scene::ball(each)->center, air);
                    });
-  airlight_terms_.clear();
-  if (!lights_.empty()) airlight_terms_ = airlight_terms(scene_->media, options_);
-  shadows_.clear();
+  terms_made_ = 0;
+  if (lights_.empty() || !before || !same_media(before->media, scene_->media)) airlight_terms_.clear();
+  if (!lights_.empty() && airlight_terms_.empty()) {
+    airlight_terms_ = airlight_terms(scene_->media, options_);
+    terms_made_ = int(airlight_terms_.size());
+  }
+  const std::vector<ShadowVolumes> shadows = std::exchange(shadows_, {});
+  silhouettes_made_ = 0;
   if (!needs_.shadows) return {};
   std::vector<scene::StageTime> times;
   scene::Stopwatch watch;
-  if (!occluders_) {
-    occluders_ = std::make_shared<const Occluders>(scene_);
+  if (!occluders_ || occluders_->scene().geometry != scene_->geometry) {
+    occluders_ = std::make_shared<const Occluders>(scene_, occluders_.get());
     times.push_back({"edges", watch.lap()});
   }
-  for (const scene::Light& each : lights_) shadows_.emplace_back(occluders_, scene::ball(each)->center, air);
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    shadows_.emplace_back(occluders_, scene::ball(lights_[l])->center, air,
+                          shadows.size() == lights_.size() ? &shadows[l] : nullptr);
+    silhouettes_made_ += shadows_.back().silhouettes_made();
+  }
   times.push_back({"silhouettes", watch.lap()});
   return times;
 }
 
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanes::next(std::shared_ptr<const Scene> scene,
                                                                         const Execution&) {
-  if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size()) return std::nullopt;
-  return light(std::move(scene));
+  if (scene->surfaces.size() != scene_->surfaces.size() || scene->lights.size() != scene_->lights.size() ||
+      !reasons_against(*scene, options_).empty())
+    return std::nullopt;
+  return begin(std::move(scene));
 }
 
 bool PreparedShadowPlanes::in_stages() const {
@@ -222,6 +235,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   result.counters["rays"] = double(result.film.pixels());
   result.counters["lit_parts"] = all.counts.parts;
   result.counters["crossings"] = all.counts.crossings;
+  result.counters["airlight_terms_made"] = terms_made_;
+  result.counters["silhouettes_made"] = silhouettes_made_;
   result.counters["gamma_evaluations"] = all.counts.by_pixel + vertices;
   if (stages) result.counters["planes"] = double(stages->planes());
   if (options_.evaluation == Options::Evaluation::vertices) result.counters["vertices"] = vertices;

@@ -26,11 +26,25 @@ Box scattering_box(const std::vector<scene::Medium>& media) {
   return all;
 }
 
-ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const Point3& light, const Box& air)
+ShadowVolumes::ShadowVolumes(std::shared_ptr<const Occluders> occluders, const Point3& light, const Box& air,
+                             const ShadowVolumes* before)
     : occluders_(std::move(occluders)), count_(occluders_, light, air), light_(light) {
   for (const std::size_t m : count_.meshes()) {
-    const std::vector<SilhouetteEdge> of_mesh = silhouette(occluders_->meshes()[m], light);
-    edges_.insert(edges_.end(), of_mesh.begin(), of_mesh.end());
+    const std::shared_ptr<const MeshEdges>& mesh = occluders_->meshes()[m];
+    const OfMesh* kept = nullptr;
+    if (before && before->light_ == light)
+      for (const OfMesh& was : before->of_meshes_)
+        if (was.mesh == mesh) kept = &was;
+    const std::size_t first = edges_.size();
+    if (kept) {
+      const auto begin = before->edges_.begin() + long(kept->first);
+      edges_.insert(edges_.end(), begin, begin + long(kept->count));
+    } else {
+      const std::vector<SilhouetteEdge> made = silhouette(*mesh, light);
+      edges_.insert(edges_.end(), made.begin(), made.end());
+      ++silhouettes_made_;
+    }
+    of_meshes_.push_back({mesh, first, edges_.size() - first});
   }
   all_.resize(edges_.size());
   std::iota(all_.begin(), all_.end(), 0);

@@ -29,12 +29,14 @@ Box scattering_box(const std::vector<scene::Medium>&);
 class ShadowVolumes {
  public:
   // Of meshes that cannot stand between the light and a place in `air` nothing is looked at, and places outside are not
-  // asked for.
-  ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light, const Box& air = everywhere);
+  // asked for. `before`, of the last frame or null: of the same light, meshes that have not moved keep their silhouettes.
+  ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light, const Box& air = everywhere,
+                const ShadowVolumes* before = nullptr);
 
   const Point3& light() const { return light_; }
   const std::vector<SilhouetteEdge>& edges() const { return edges_; }
   const std::vector<int>& all_edges() const { return all_; }  // their numbers
+  int silhouettes_made() const { return silhouettes_made_; }  // of meshes, by the constructor
 
   int count(const Point3& point) const { return count_.at(point); }  // m(X)
 
@@ -56,8 +58,14 @@ class ShadowVolumes {
   std::shared_ptr<const Occluders> occluders_;
   SurfaceCount count_;
   Point3 light_;
+  struct OfMesh {
+    std::shared_ptr<const MeshEdges> mesh;
+    std::size_t first, count;  // of its edges
+  };
   std::vector<SilhouetteEdge> edges_;
+  std::vector<OfMesh> of_meshes_;
   std::vector<int> all_;
+  int silhouettes_made_ = 0;
 };
 
 }  // namespace airlight::shadow_planes

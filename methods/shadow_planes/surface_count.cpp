@@ -60,10 +60,14 @@ bool hides(const Vec3& c, double radius, const Vec3& y) {
   return far > least && ((near > -least && near < length) || far < length);
 }
 
-Occluders::Occluders(std::shared_ptr<const scene::Scene> scene) : scene_(std::move(scene)) {
+Occluders::Occluders(std::shared_ptr<const scene::Scene> scene, const Occluders* before) : scene_(std::move(scene)) {
   for (std::size_t i = 0; i < scene_->surfaces.size(); ++i)
     if (const auto* mesh = std::get_if<scene::TriangleMesh>(&scene_->surfaces[i].shape)) {
-      meshes_.emplace_back(*mesh);
+      const std::size_t m = meshes_.size();
+      const bool known = before && m < before->meshes_.size() && before->surfaces_[m] == int(i);
+      const auto* was = known ? std::get_if<scene::TriangleMesh>(&before->scene_->surfaces[i].shape) : nullptr;
+      const bool still = was && was->vertices == mesh->vertices && was->triangles == mesh->triangles;
+      meshes_.push_back(still ? before->meshes_[m] : std::make_shared<const MeshEdges>(*mesh));
       surfaces_.push_back(int(i));
     }
 }
@@ -77,7 +81,7 @@ SurfaceCount::SurfaceCount(std::shared_ptr<const Occluders> occluders, const Poi
     if (!may_shadow(bounds(surfaces[surface]), light, air)) continue;
     meshes_.push_back(m);
     counts_[surface] = true;
-    const MeshEdges& mesh = occluders_->meshes()[m];
+    const MeshEdges& mesh = *occluders_->meshes()[m];
     for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
       const auto& t = mesh.triangles()[i];
       const Vec3 a = mesh.vertices()[t[0]] - light, b = mesh.vertices()[t[1]] - light,

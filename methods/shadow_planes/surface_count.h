@@ -11,15 +11,16 @@ namespace airlight::shadow_planes {
 // The meshes of a scene by their edges: the same for every light.
 class Occluders {
  public:
-  explicit Occluders(std::shared_ptr<const scene::Scene>);
+  // `before`, of the last frame or null: meshes of the same number that have not moved keep their edges.
+  explicit Occluders(std::shared_ptr<const scene::Scene>, const Occluders* before = nullptr);
 
   const scene::Scene& scene() const { return *scene_; }
-  const std::vector<MeshEdges>& meshes() const { return meshes_; }
+  const std::vector<std::shared_ptr<const MeshEdges>>& meshes() const { return meshes_; }
   int surface(std::size_t mesh) const { return surfaces_[mesh]; }  // which it is of the scene's
 
  private:
   std::shared_ptr<const scene::Scene> scene_;
-  std::vector<MeshEdges> meshes_;
+  std::vector<std::shared_ptr<const MeshEdges>> meshes_;
   std::vector<int> surfaces_;
 };
 
