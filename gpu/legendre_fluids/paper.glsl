@@ -3,7 +3,8 @@
 // points; where tables and parts of `work` begin are definitions of paper_systems.cpp.
 layout(local_size_x = LOCAL_SIZE_X) in;
 layout(std430, binding = AT_TABLES) readonly buffer Tables { double tables[]; };
-layout(std430, binding = AT_POINTS) buffer Points { double density[]; };  // there
+layout(std430, binding = AT_POINTS) buffer Points { double density[]; };  // there; after it what scatters of it, where that is a field
+int of_density = 0;                                                        // which of these `product` takes
 layout(std430, binding = AT_WORK) coherent buffer Work { double work[]; };
 uniform double sigma_t[SYSTEMS];  // [1/m]
 uniform int directions[SYSTEMS];  // of the light that a system is about
@@ -71,7 +72,7 @@ int product(bool transposed, int from) {
     to_points(N, ANALYSIS_AT, ivec3(1), M, from, one, two);
   else
     to_points(N, VALUES_AT, N, ivec3(1), from, one, two);
-  for (int e = lane; e < ALL_POINTS; e += LOCAL_SIZE_X) work[one + e] *= density[e];
+  for (int e = lane; e < ALL_POINTS; e += LOCAL_SIZE_X) work[one + e] *= density[of_density * ALL_POINTS + e];
   together();
   ivec3 table = transposed ? VALUES_AT : ANALYSIS_AT, rows = transposed ? ivec3(1) : M, columns = transposed ? N : ivec3(1);
   transform(table.z, ivec2(rows.z, columns.z), N.z, M.z, M.x * M.y, 1, one, two);

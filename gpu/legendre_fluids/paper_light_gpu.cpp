@@ -57,8 +57,8 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
   legendre_fluids::PaperOptions options_;
   std::string settings_;
   Context& context_;
-  const scene::Medium* medium_ = nullptr;
-  scene::LegendrePointer field_;  // null where nothing extinguishes
+  legendre_fluids::PaperMedium media_;
+  scene::LegendrePointer field_;  // of those; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::array<bool, 3> moving_;
   std::unique_ptr<PaperSystems> systems_;  // null: no light scatters
@@ -83,14 +83,13 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene, const leg
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
         sun && (scatter(scene_->media, light) || (!scene_->backdrops.empty() && scene::shines(light))))
       lights_.push_back(*sun);
-  for (const scene::Medium& medium : scene_->media)
-    if (extinguishes(medium)) medium_ = &medium;
-  if (medium_) field_ = legendre_fluids::field_within_region(*medium_);
+  media_ = legendre_fluids::paper_medium(*scene_);
+  field_ = media_.density;
   if (!field_ || lights_.empty()) return;
   const Use use(context_);
   StageTimer timer(context_);
   timer.begin("upload");
-  systems_ = std::make_unique<PaperSystems>(context_, *field_, *medium_, lights_, options_, moving_);
+  systems_ = std::make_unique<PaperSystems>(context_, media_, lights_, options_, moving_);
   if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
   Definitions definitions = systems_->definitions();
   define_columns(field_->shape(), bool(backdrops_), definitions);
@@ -112,6 +111,8 @@ std::vector<scene::Stage> PreparedPaperGpu::stages() const {
                           scene::tensor_size(systems_->shape()));
   return {{"direct systems", kept, kept ? how : why},
           {"scattered systems", kept, kept ? how : why},
+          {"albedo", bool(media_.scattering[0]),
+           media_.scattering[0] ? "a field: of several densities in one box" : "the same everywhere"},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
           {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
           {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"}};
@@ -134,7 +135,7 @@ void PreparedPaperGpu::draw(const View& view) const {
     ends.bind(at::ray_ends);
     seen.bind(at::seen);
     all.insert(all.end(), {{"surface", at::surface}, {"transmittance", at::transmittance}});
-    p.set("sigma_t", medium_->sigma_t);
+    p.set("sigma_t", media_.medium->sigma_t);
   }
   for (const auto& [name, binding] : all) {
     const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);

@@ -3,7 +3,7 @@
 layout(std430, binding = AT_DIRECT) readonly buffer Direct { double direct[]; };  // E_d: [light][extinction][coefficient]
 uniform int scatters;
 uniform double amounts[SYSTEMS * LIGHTS];  // of each light: scattering along the ray per density [1/m]
-uniform int extinctions[SYSTEMS];
+uniform int extinctions[SYSTEMS], scatterers[SYSTEMS];
 
 // What stands on the right for light 1 that comes in: on a face a constant has one coefficient, twice its value.
 double inflow_side(int e) {
@@ -27,7 +27,9 @@ void main() {
   }
   together();
   if (scatters != 0) {
+    of_density = scatterers[system];
     int from = product(false, x), to = UPWIND != 0 ? right : x;
+    of_density = 0;
     for (int e = lane; e < UNKNOWNS; e += LOCAL_SIZE_X) work[to + e] = work[from + e];
     together();
     if (UPWIND == 0) {

@@ -45,22 +45,23 @@ int most_on_the_way(const TensorShape& from, const TensorShape& to) {
 
 }  // namespace
 
-PaperSystems::PaperSystems(Context& context, const scene::LegendreBox& field, const scene::Medium& medium,
+PaperSystems::PaperSystems(Context& context, const legendre_fluids::PaperMedium& media,
                            const std::vector<scene::DirectionalLight>& lights,
                            const legendre_fluids::PaperOptions& options, const std::array<bool, 3>& moving)
     : context_(context),
-      field_(field),
-      medium_(medium),
+      media_(media),
+      field_(*media.density),
+      medium_(*media.medium),
       lights_(lights),
       options_(options),
-      shape_(legendre_fluids::intensity_shape(field.shape(), options.n, moving)) {
+      shape_(legendre_fluids::intensity_shape(field_.shape(), options.n, moving)) {
   group_ = unknowns() > 1000 ? 256 : 128;
   tolerance_ = options.solver.tolerance * (upwind() ? 1 : squared);
-  const DensityProduct product(field.coefficients(), field.shape(), shape_, options.truncation);
+  const DensityProduct product(field_.coefficients(), field_.shape(), shape_, options.truncation);
   for (int c = 0; c < 3; ++c) {
-    const auto same = std::find(extinctions_.begin(), extinctions_.end(), medium.sigma_t[c]);
+    const auto same = std::find(extinctions_.begin(), extinctions_.end(), medium_.sigma_t[c]);
     extinction_of_[std::size_t(c)] = int(same - extinctions_.begin());
-    if (same == extinctions_.end()) extinctions_.push_back(medium.sigma_t[c]);
+    if (same == extinctions_.end()) extinctions_.push_back(medium_.sigma_t[c]);
   }
   find_channels();
   direct_.count = int(lights.size() * extinctions_.size());
@@ -71,8 +72,16 @@ PaperSystems::PaperSystems(Context& context, const scene::LegendreBox& field, co
   right_ = &program(context, "paper_right", group_, 1, definitions_);
   steps_ = &program(context, upwind() ? "paper_gmres" : "paper_gradients", group_, 1, definitions_);
   kept_ = &program(context, "paper_kept", group_, 1, definitions_);
-  const std::vector<float> coefficients(field.coefficients().data(),
-                                        field.coefficients().data() + field.coefficients().size());
+  // The density, then what scatters of it in each channel.
+  std::vector<double> at_points(product.density().begin(), product.density().end());
+  for (const scene::LegendrePointer& part : media_.scattering)
+    if (part) {
+      const DensityProduct scatters(part->coefficients(), part->shape(), shape_, options.truncation);
+      at_points.insert(at_points.end(), scatters.density().begin(), scatters.density().end());
+    }
+  points_->upload(at_points);
+  const std::vector<float> coefficients(field_.coefficients().data(),
+                                        field_.coefficients().data() + field_.coefficients().size());
   densities_ = std::make_unique<Buffer>(context, "coefficients of the density", coefficients);
   density_from(*densities_, 0);
 }
@@ -85,10 +94,10 @@ void PaperSystems::find_channels() {
     mine.resize(Eigen::Index(lights_.size()));
     for (std::size_t l = 0; l < lights_.size(); ++l) mine[Eigen::Index(l)] = lights_[l].irradiance[c];
     const double most = mine.maxCoeff();
-    scale_[c] = medium_.albedo[c] * most;
+    scale_[c] = (media_.scattering[0] ? 1 : medium_.albedo[c]) * most;
     if (most > 0) mine /= most;
     int same = 0;
-    while (same < c && (medium_.sigma_t[same] != medium_.sigma_t[c] || light[std::size_t(same)] != mine)) ++same;
+    while (same < c && (!media_.alike(std::size_t(same), std::size_t(c)) || light[std::size_t(same)] != mine)) ++same;
     system_of_[std::size_t(c)] = same < c ? system_of_[std::size_t(same)] : scattered_.count++;
   }
 }
@@ -152,7 +161,7 @@ void PaperSystems::layout(const DensityProduct& product) {
     return std::make_unique<Buffer>(context_, name, 8 * count, Contents::undefined);
   };
   table_ = std::make_unique<Buffer>(context_, "tables of light", tables_);
-  points_ = doubles("density at points", points);
+  points_ = doubles("density at points", points * (media_.scattering[0] ? 4 : 1));
   work_ = doubles("systems of light", systems * size);
   direct_values_ = doubles("direct light", std::size_t(direct_.count) * n);
   faces_ = std::make_unique<Buffer>(
@@ -189,7 +198,8 @@ void PaperSystems::density_from(const Buffer& coefficients, std::size_t first) {
 
 bool PaperSystems::take(const DensityOnDevice& d) {
   const int n = d.coefficients;
-  if (field_.shape() != TensorShape{n, n, n} || field_.box().lo != d.box.lo || field_.box().hi != d.box.hi)
+  if (media_.scattering[0] || field_.shape() != TensorShape{n, n, n} || field_.box().lo != d.box.lo ||
+      field_.box().hi != d.box.hi)
     return false;
   density_from(d.state, d.field * std::size_t(n * n * n));
   return true;
@@ -219,6 +229,7 @@ void PaperSystems::start(const Kind& kind) {
   for (int c = 0; c < 3 && scatters; ++c) {
     const auto system = std::size_t(system_of_[std::size_t(c)]);
     p.set(at_index("extinctions", system), extinction_of_[std::size_t(c)]);
+    p.set(at_index("scatterers", system), media_.scattering[0] ? 1 + c : 0);
     double most = 0;
     for (const scene::DirectionalLight& light : lights_) most = std::max(most, light.irradiance[c]);
     for (std::size_t l = 0; l < lights_.size(); ++l) {

@@ -18,17 +18,16 @@ constexpr double most_weight = 1000;  // of least squares: single precision's 7e
 
 class PaperSystems {
  public:
-  // Of the field, which is the medium's within its region, under lights that shine, one or more. Keeps references. Throws Unavailable as
-  // Buffer does.
-  PaperSystems(Context&, const scene::LegendreBox& field, const scene::Medium&,
-               const std::vector<scene::DirectionalLight>&, const legendre_fluids::PaperOptions&,
-               const std::array<bool, 3>& moving);
+  // Of a medium that extinguishes, under lights that shine, one or more. Keeps references. Throws Unavailable as Buffer does.
+  PaperSystems(Context&, const legendre_fluids::PaperMedium&, const std::vector<scene::DirectionalLight>&,
+               const legendre_fluids::PaperOptions&, const std::array<bool, 3>& moving);
 
   // E_d of all lights, to the end: waits. Throws Error where a system does not converge.
   void begin();
   // Its coefficients, 1 where light comes in, by light and extinction. Waits.
   std::vector<Eigen::VectorXd> direct() const;
-  // The density becomes that of a flow, false where it has another box or other coefficients. E_d is that of before.
+  // The density becomes that of a flow, false where it has another box or other coefficients, or an albedo that is a field. E_d is that of
+  // before.
   bool take(const DensityOnDevice&);
 
   // As many steps as the last of each kind took, and what frame.download says of them goes to keep_up().
@@ -66,7 +65,8 @@ class PaperSystems {
   int unknowns() const { return scene::tensor_size(shape_); }
 
   Context& context_;
-  const scene::LegendreBox& field_;
+  const legendre_fluids::PaperMedium& media_;
+  const scene::LegendreBox& field_;  // the density
   const scene::Medium& medium_;
   const std::vector<scene::DirectionalLight>& lights_;
   legendre_fluids::PaperOptions options_;

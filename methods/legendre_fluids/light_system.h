@@ -34,6 +34,7 @@ class DensityProduct {
   };
   const Matrices& matrices() const { return matrices_; }
   const scene::TensorShape& points() const { return points_; }
+  const Eigen::VectorXd& density() const { return density_; }  // there
 
  private:
   scene::TensorShape n_, points_;

@@ -1,8 +1,76 @@
 #include "methods/legendre_fluids/paper_light.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "methods/legendre_fluids/lit_media.h"
+
 namespace airlight::legendre_fluids {
+namespace {
+
+struct Part {
+  const scene::Medium* medium;
+  scene::LegendrePointer field;
+};
+std::vector<Part> parts_of(const scene::Scene& scene) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < scene.media.size(); ++i)
+    if (extinguishes(scene.media[i]) && field_against(scene.media, i).empty())
+      parts.push_back({&scene.media[i], field_within_region(scene.media[i])});
+  return parts;
+}
+
+double mean_cosine_of(const scene::PhaseFunction& phase) {
+  const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase);
+  return hg ? hg->g : 0;
+}
+
+}  // namespace
+
+bool PaperMedium::alike(std::size_t channel, std::size_t other) const {
+  return medium->sigma_t[Eigen::Index(channel)] == medium->sigma_t[Eigen::Index(other)] &&
+         (!scattering[0] || scattering[channel]->coefficients() == scattering[other]->coefficients());
+}
+
+PaperMedium paper_medium(const scene::Scene& scene) {
+  const std::vector<Part> parts = parts_of(scene);
+  if (parts.empty()) return {};
+  PaperMedium all{parts.back().medium, parts.back().field, {}};
+  if (parts.size() == 1) return all;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(all.density->coefficients().size());
+  std::array<Eigen::VectorXd, 3> scatters{sum, sum, sum};
+  bool one = true;
+  for (const Part& part : parts) {
+    sum += part.field->coefficients();
+    for (std::size_t c = 0; c < 3; ++c)
+      scatters[c] += part.medium->albedo[Eigen::Index(c)] * part.field->coefficients();
+    one = one && (part.medium->albedo == all.medium->albedo).all();
+  }
+  const auto field = [&](const Eigen::VectorXd& coefficients) {
+    return std::make_shared<const scene::LegendreBox>(all.density->box(), all.density->shape(), coefficients);
+  };
+  for (std::size_t c = 0; c < 3 && !one; ++c) all.scattering[c] = field(scatters[c]);
+  all.density = field(sum);
+  return all;
+}
+
+std::string several_against(const scene::Scene& scene) {
+  const std::vector<Part> parts = parts_of(scene);
+  for (const Part& part : parts) {
+    const Part& first = parts.front();
+    const bool same = part.field && first.field && part.field->box().lo == first.field->box().lo &&
+                      part.field->box().hi == first.field->box().hi && part.field->shape() == first.field->shape();
+    if (parts.size() > 1 && (!same || (part.medium->sigma_t != first.medium->sigma_t).any() ||
+                             part.medium->phase.index() != first.medium->phase.index() ||
+                             mean_cosine_of(part.medium->phase) != mean_cosine_of(first.medium->phase)))
+      return fmt::format(
+          "variant = paper with {} media: found different boxes, sigma_t or phase functions, expected one medium, or "
+          "densities that differ in albedo alone",
+          parts.size());
+  }
+  return "";
+}
 
 scene::TensorShape intensity_shape(const scene::TensorShape& density, int n, const std::array<bool, 3>& moving) {
   scene::TensorShape shape;
@@ -21,9 +89,9 @@ Eigen::VectorXd PaperLight::direct(const Vec3& direction, double sigma, int* ite
 }
 
 Eigen::VectorXd PaperLight::scattered(const Eigen::VectorXd& direct, const Vec3& direction, double sigma,
-                                      double scattering, int* iterations) const {
+                                      double scattering, const DensityProduct* what_scatters, int* iterations) const {
   const LightSystem system(product_, rate(direction), sigma, options_.solver);
-  return system.solve(scattering * product_(direct), 0, iterations);
+  return system.solve(scattering * (what_scatters ? *what_scatters : product_)(direct), 0, iterations);
 }
 
 Eigen::VectorXd PaperLight::on_face(const Eigen::VectorXd& coefficients, int axis, int side) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include "methods/legendre_fluids/light_system.h"
 #include "scene/media/legendre_box.h"
+#include "scene/scene.h"
 
 namespace airlight::legendre_fluids {
 
@@ -10,6 +11,20 @@ struct PaperOptions {
   LightTruncation truncation = LightTruncation::l2;
   LightSolver solver = {Closure::least_squares};
 };
+
+// The medium of a scene as the systems see it: a density with an extinction and a phase function. Several densities in one box that have
+// both in common are one, whose albedo is a field: section 7, Figure 14.
+struct PaperMedium {
+  const scene::Medium* medium = nullptr;
+  scene::LegendrePointer density;  // within the medium's region; null where nothing extinguishes
+  // What scatters of it, by channel: the sum of albedo times density; null: the medium's albedo times the density.
+  std::array<scene::LegendrePointer, 3> scattering;
+  // Channels that scatter alike, but for a factor where there is one albedo.
+  bool alike(std::size_t channel, std::size_t other) const;
+};
+PaperMedium paper_medium(const scene::Scene&);
+// Why the media are none such; empty if they are.
+std::string several_against(const scene::Scene&);
 
 // Of E_d and E_s: n along every axis, but 1 where the density is constant along it and nothing moves.
 scene::TensorShape intensity_shape(const scene::TensorShape& density, int n, const std::array<bool, 3>& moving);
@@ -22,10 +37,10 @@ class PaperLight {
 
   // Coefficients of E_d for light that travels along a unit direction of the world, 1 where it comes in (eq. 22).
   Eigen::VectorXd direct(const Vec3& direction, double sigma, int* iterations = nullptr) const;
-  // Of E_s along a direction, for `scattering` (beta Omega) times the density as it scatters (eq. 23). Linear in E_d: of several lights it
-  // takes the sum of theirs, weighted.
+  // Of E_s along a direction, for `scattering` (beta Omega) times the density as it scatters (eq. 23), or, unless it is null, times what
+  // scatters of it. Linear in E_d: of several lights it takes the sum of theirs, weighted.
   Eigen::VectorXd scattered(const Eigen::VectorXd& direct, const Vec3& direction, double sigma, double scattering,
-                            int* iterations = nullptr) const;
+                            const DensityProduct* what_scatters = nullptr, int* iterations = nullptr) const;
   // Of n x n functions on the face `side` (-1 or 1) of an axis: the shape with 1 along it, whose function is L_0 (eq. 24).
   Eigen::VectorXd on_face(const Eigen::VectorXd& coefficients, int axis, int side) const;
 

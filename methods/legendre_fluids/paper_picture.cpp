@@ -40,10 +40,12 @@ class PreparedPaper final : public scene::Prepared {
   std::shared_ptr<const scene::Scene> scene_;
   PaperOptions options_;
   std::string settings_;
-  const scene::Medium* medium_ = nullptr;
-  scene::LegendrePointer field_;  // null where nothing extinguishes
+  PaperMedium media_;
+  const scene::Medium* medium_ = nullptr;  // of those
+  scene::LegendrePointer field_;           // likewise; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::optional<PaperLight> light_;
+  std::array<std::optional<DensityProduct>, 3> scatters_;  // of an albedo that is a field
   std::array<bool, 3> moving_;
   std::vector<Coefficients> direct_;  // E_d of each light, 1 where it comes in
   int iterations_ = 0;
@@ -69,11 +71,13 @@ PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const Pa
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
         sun && (scatter(scene_->media, light) || (scene_->geometry && scene::shines(light))))
       lights_.push_back(*sun);
-  for (const scene::Medium& medium : scene_->media)
-    if (extinguishes(medium)) medium_ = &medium;
-  if (medium_) field_ = field_within_region(*medium_);
+  media_ = paper_medium(*scene_);
+  medium_ = media_.medium;
+  field_ = media_.density;
   if (!field_) return;
   light_.emplace(*field_, options_, moving_);
+  for (std::size_t c = 0; c < 3 && media_.scattering[0]; ++c)
+    scatters_[c].emplace(media_.scattering[c]->coefficients(), field_->shape(), light_->shape(), options_.truncation);
   for (const scene::DirectionalLight& light : lights_) {
     direct_.emplace_back();
     for_extinctions(medium_->sigma_t, direct_.back(),
@@ -93,6 +97,8 @@ std::vector<scene::Stage> PreparedPaper::stages() const {
                                                 scene::tensor_size(light_->shape()));
   return {{"direct systems", direct, direct ? how : why},
           {"scattered systems", kept, kept ? how : why},
+          {"albedo", bool(media_.scattering[0]),
+           media_.scattering[0] ? "a field: of several densities in one box" : "the same everywhere"},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
           {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
           {"transmittance", field_ && ends(),
@@ -115,15 +121,16 @@ Scattered PreparedPaper::scattered(const Vec3& direction) const {
     shares[c].resize(Eigen::Index(lights_.size()));
     for (std::size_t l = 0; l < lights_.size(); ++l) shares[c][Eigen::Index(l)] = lights_[l].irradiance[channel];
     const double most = shares[c].maxCoeff(), sigma = medium_->sigma_t[channel];
-    all.scale[channel] = medium_->albedo[channel] * most;
+    all.scale[channel] = (scatters_[c] ? 1 : medium_->albedo[channel]) * most;
     if (most > 0) shares[c] /= most;
     std::size_t same = 0;
-    while (medium_->sigma_t[Eigen::Index(same)] != sigma || shares[same] != shares[c]) ++same;
+    while (!media_.alike(same, c) || shares[same] != shares[c]) ++same;
     all.of_channel[c] = same < c ? all.of_channel[same] : all.series.size();
     if (same < c) continue;
     Eigen::VectorXd direct = shares[c][0] * omega[0] * direct_[0][c];
     for (std::size_t l = 1; l < lights_.size(); ++l) direct += shares[c][Eigen::Index(l)] * omega[l] * direct_[l][c];
-    all.series.push_back(light_->scattered(direct, direction, sigma, sigma, &all.iterations));
+    all.series.push_back(
+        light_->scattered(direct, direction, sigma, sigma, scatters_[c] ? &*scatters_[c] : nullptr, &all.iterations));
   }
   return all;
 }
@@ -257,11 +264,9 @@ std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const 
     if (const std::string why = scene::unknown_light<scene::DirectionalLight, scene::EnvironmentLight>(scene.lights, i);
         !why.empty())
       reasons.push_back(why);
-  std::size_t media = 0;
   int unknowns = 0;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     if (!extinguishes(scene.media[i])) continue;
-    ++media;
     if (surface_may_shadow(scene, i))
       reasons.push_back(
           "variant = paper knows no shadows within the medium: a surface may stand between it and a light");
@@ -276,7 +281,7 @@ std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const 
                           "expected no fewer",
                           options.n, n, scene::label(scene.media, i)));
   }
-  if (media > 1) reasons.push_back(fmt::format("variant = paper with {} media, expected one", media));
+  if (const std::string why = several_against(scene); !why.empty()) reasons.push_back(why);
   if (options.solver.dense && unknowns > LightSystem::most_dense)
     reasons.push_back(
         fmt::format("n = {}: a dense system of {} unknowns, expected at most {}; closure = upwind has "

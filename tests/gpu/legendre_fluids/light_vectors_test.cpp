@@ -151,10 +151,10 @@ TEST_CASE("legendre light on the device: upwind systems of the vectors, and thei
     options.n = v.at("n");
     options.solver.closure = legendre_fluids::Closure::upwind;
     const std::vector<scene::DirectionalLight> lights{std::get<scene::DirectionalLight>(scene->lights[0])};
-    const scene::LegendrePointer field = std::get<scene::LegendrePointer>(scene->media[0].field);
     gpu::Context& context = gpu::Context::get();
     const gpu::Use use(context);
-    gpu::legendre::PaperSystems systems(context, *field, scene->media[0], lights, options, {true, true, !flat(v)});
+    const legendre_fluids::PaperMedium media = legendre_fluids::paper_medium(*scene);
+    gpu::legendre::PaperSystems systems(context, media, lights, options, {true, true, !flat(v)});
     systems.begin();
     // In two dimensions L_0 along z is left out of the coefficients.
     const double scale = (flat(v) ? std::sqrt(0.5) : 1) * test::number(v.at("E_in"));

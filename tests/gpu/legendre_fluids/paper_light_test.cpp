@@ -114,6 +114,16 @@ TEST_CASE("legendre light on the device: the paper's systems by colours, lights,
   for (const char* closure : {"upwind", "least_squares"}) compare("one", scene, paper(closure, 1));
 }
 
+TEST_CASE("legendre light on the device: the paper's systems with an albedo that is a field",
+          "[gpu][legendre_fluids]") {
+  if (!gpu::test::device()) return;
+  auto colours = with_albedo_field(oblique({4, 3, 5}, 2), {4, 3, 5}, 5);
+  for (scene::Medium& medium : colours->media) medium.sigma_t = {0.4, 0.8, 0.4};
+  colours->lights.push_back(scene::DirectionalLight{Vec3(0.1, 1, 0.1).normalized(), {3, 1, 1}});
+  finish(*colours);
+  for (const char* closure : {"upwind", "least_squares"}) compare("albedo", colours, paper(closure, 4));
+}
+
 // Depths in front of the box, in it, behind it, and none; flakes, drawn by the camera.
 TEST_CASE("legendre light on the device: the paper's systems before pictures with depth", "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;

@@ -37,6 +37,18 @@ inline scene::Medium smoke(scene::LegendrePointer field, double sigma_t, double 
   return medium;
 }
 
+// Two densities that differ in albedo alone, beside each other in all channels: a medium whose albedo is a field.
+inline std::shared_ptr<scene::Scene> with_albedo_field(std::shared_ptr<scene::Scene> scene, const scene::TensorShape& n,
+                                                       unsigned seed) {
+  scene::Medium other = scene->media[0];
+  other.field = random_density(n, seed);
+  scene->media[0].albedo = {1, 0.6, 0};
+  other.albedo = {0, 0.6, 1};
+  scene->media.push_back(other);
+  finish(*scene);
+  return scene;
+}
+
 // Light travels along (.48, .6, -.64), what is seen along (-.36, .48, .8): the directions of the specification's table.
 inline const Vec3 oblique_light(-0.48, -0.6, 0.64), oblique_view(0.36, -0.48, -0.8);
 
