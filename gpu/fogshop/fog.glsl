@@ -15,6 +15,7 @@ layout(std430, binding = AT_GAUSSIANS) readonly buffer Gaussians { Gaussian gaus
 uniform int gaussian_count;
 uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m]
 uniform vec3 hue;        // extinction per channel over the greatest
+uniform float phase_g;   // of the phase function, Henyey-Greenstein's; 0: isotropic
 uniform vec3 albedo;
 #if COLOURED || NOISE || F_TABLE
 layout(std430, binding = AT_FOG_TABLES) readonly buffer FogTables { float fog_table[]; };  // each from its place on
@@ -26,6 +27,12 @@ vec3 colour_of(int gaussian) {
 }
 uniform vec3 constant_colour;
 #endif
+
+// 4 pi times the phase function, of light that goes along a direction whose cosine with the view ray is given, towards the viewer.
+float phase_of(float along) {
+  float square = 1 + phase_g * phase_g + 2 * phase_g * along;
+  return (1 - phase_g * phase_g) / (square * sqrt(square));
+}
 
 // erfc(|x|): what the error function lacks to its limit. Two of these can be subtracted far out in the tails of a
 // Gaussian, where two error functions are both 1.

@@ -128,6 +128,7 @@ void FogOnDevice::use(Program& p) const {
   p.set("gaussian_count", model_.gaussians.count);
   p.set("constant", model_.fog.sum.constant);
   p.set("hue", model_.fog.hue);
+  p.set("phase_g", model_.fog.g);
   p.set("albedo", model_.fog.albedo);
 }
 

@@ -49,6 +49,7 @@ void main() {
         float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
                          depth_at(towards, distance_) - before;
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
+        if (phase_g != 0) weight *= phase_of(dot(offset, direction) / max(distance_, 1e-30));  // k(alpha) of Eq. 12
         vec3 term = hue * weight * exp(hue * exponent);
 #if COLOURED
         term *= colour_of(int(g.place));

@@ -28,12 +28,25 @@ struct Edge {
   float t, depth, shadow;  // the depth of both ways with the constant; that of the Gaussians towards the light alone
 };
 
+// The angle of a slice, seen from the light that passes at h, and that times the mean of the phase function over it (Boole's rule).
+struct Angle {
+  float plain, weighted;
+};
+Angle angle_of_slice(LightFromRay seen, float h, float begin, float end) {
+  float xa = begin - seen.along, xb = end - seen.along, beside = max(seen.h, least_h);
+  float plain = angle_of(h * (end - begin), h * h + xa * xb);
+  if (phase_g == 0) return Angle(plain, plain);
+  vec2 a = normalize(vec2(xa, beside)), b = normalize(vec2(xb, beside)), middle = normalize(a + b);
+  float ends = phase_of(a.x) + phase_of(b.x);
+  float quarters = phase_of(normalize(a + middle).x) + phase_of(normalize(middle + b).x);
+  return Angle(plain, plain * (7 * ends + 32 * quarters + 12 * phase_of(middle.x)) / 90);
+}
+
 // Light that a slice scatters, per channel; `scattered` is its optical depth, coloured.
-vec3 light_of_slice(LightFromRay seen, float h, Edge begin, Edge end, vec3 scattered) {
+vec3 light_of_slice(float angle, float h, Edge begin, Edge end, vec3 scattered) {
   float length_ = end.t - begin.t;
   if (!(length_ > 0)) return vec3(0);
-  float xa = begin.t - seen.along, xb = end.t - seen.along;
-  float mean_inverse_square = angle_of(h * length_, h * h + xa * xb) / (h * length_);
+  float mean_inverse_square = angle / (h * length_);
   vec3 e0 = exp(-hue * begin.depth), q = hue * (end.depth - begin.depth), mean;
   vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
   for (int c = 0; c < 3; ++c) mean[c] = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * end.depth)) / q[c];
@@ -65,6 +78,7 @@ void main() {
     float h = max(length(vec2(seen.h, source_radius)), least_h), view_depth = before;
     vec3 sum = vec3(0), half_sum = vec3(0), pair_scattered = vec3(0);
     Edge last = Edge(0, 0, 0), pair = last;
+    float pair_angle = 0, pair_phase = 0;
     for (int k = 0; k <= SLICES; ++k) {
       float t = ray_value[value_at(edges + k, ray)], depth = k > 0 ? ray_value[value_at(slices + k, ray)] : 0;
       view_depth += depth;
@@ -73,13 +87,21 @@ void main() {
       Edge here = Edge(t, view_depth + (shadow + constant * length(vec2(t - seen.along, seen.h))), shadow);
       if (k > 0) {
         vec3 scattered = scattered_by(k - 1, ray, depth);
-        sum += light_of_slice(seen, h, last, here, scattered);
+        Angle angle = angle_of_slice(seen, h, last.t, here.t);
+        sum += light_of_slice(angle.weighted, h, last, here, scattered);
         pair_scattered += scattered;
+        pair_phase += angle.weighted;
+        pair_angle += angle.plain;
       }
       if (extrapolate != 0 && k % 2 == 0) {  // the same of two slices at a time
-        if (k > 0) half_sum += light_of_slice(seen, h, pair, here, pair_scattered);
+        if (k > 0) {
+          float angle = angle_of_slice(seen, h, pair.t, here.t).plain;
+          half_sum += light_of_slice(phase_g == 0 ? angle : angle * pair_phase / max(pair_angle, 1e-30), h, pair, here,
+                                     pair_scattered);
+        }
         pair = here;
         pair_scattered = vec3(0);
+        pair_phase = pair_angle = 0;
       }
       last = here;
     }

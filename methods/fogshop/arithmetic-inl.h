@@ -69,6 +69,13 @@ HWY_INLINE V share_up_to(V t, V a, V middle, V base) {
 struct PaperTerm {
   V weight, exponent;
 };
+// 4 pi times Henyey-Greenstein's phase function, of light that goes along a direction whose cosine with the view ray is
+// given, towards the viewer.
+HWY_INLINE V phase_of(double g, V along) {
+  const V square = hn::MulAdd(set(2 * g), along, set(1 + g * g));
+  return hn::Div(set(1 - g * g), hn::Mul(square, hn::Sqrt(square)));
+}
+
 // `center` and `nearest` (b_i^r) as seen from the light; `own` is the light's E_i (PaperLight), `softness` r_s^2.
 template <Erf kind>
 HWY_INLINE PaperTerm paper_term(const Vectors& center, const Vectors& nearest, V a, V half_depth, V own, V to_nearest,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scene/error.h"
 #include "scene/media/fitted.h"
@@ -21,6 +22,13 @@ using scene::GridPointer;
 using scene::Homogeneous;
 using scene::LegendrePointer;
 using scene::Medium;
+// Of the phase functions that are known.
+std::optional<double> mean_cosine_of(const scene::PhaseFunction& phase) {
+  if (std::holds_alternative<scene::Isotropic>(phase)) return 0;
+  const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase);
+  return hg ? std::optional(hg->g) : std::nullopt;
+}
+
 std::string objection_to(const GaussianSum& sum) {
   if (sum.cutoff < 6) return fmt::format("cuts its Gaussians at {} widths, and this method's have no end", sum.cutoff);
   if (std::any_of(sum.gaussians.begin(), sum.gaussians.end(), [](const auto& g) { return g.amplitude < 0; }))
@@ -47,8 +55,12 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
     if (!why.empty()) object(why);
     if (!std::holds_alternative<scene::Unbounded>(medium.region))
       object("is bounded, and the closed forms know no boundary");
-    if (!std::holds_alternative<scene::Isotropic>(medium.phase))
-      object(fmt::format("has phase function {}, expected isotropic", phase_name(medium.phase)));
+    const auto g = mean_cosine_of(medium.phase);
+    if (!g) object(fmt::format("has phase function {}, expected isotropic or hg", phase_name(medium.phase)));
+    if (g.value_or(0) != 0 && constant_part(medium.field) > 0)
+      object("has a constant and phase function hg: its closed form (Eq. 17) is of the isotropic one");
+    if (first && mean_cosine_of(first->phase) && g && g != mean_cosine_of(first->phase))
+      object("has another phase function than the first");
     if (!first) {
       first = &medium;
       continue;
@@ -71,6 +83,7 @@ Fog make_fog(const std::vector<Medium>& media) {
     if (first) {
       fog.hue = medium.sigma_t / strength;
       fog.albedo = medium.albedo;
+      fog.g = mean_cosine_of(medium.phase).value();
       first = false;
     }
     const auto add_constant = [&](double extinction) {

@@ -18,6 +18,7 @@ struct Fog {
   // scattering and not the extinction: the "color" of the paper's sections 6 and 7.
   std::vector<Rgb> colours;
   Rgb constant_colour = Rgb::Ones();
+  double g = 0;  // mean cosine of the phase function, Henyey-Greenstein's; 0: isotropic
 
   bool grey() const { return (hue == 1).all(); }
   bool one_albedo() const { return colours.empty(); }
@@ -25,8 +26,9 @@ struct Fog {
 };
 
 // Why these media are none such; empty if they are. Accepted: any number of homogeneous media and Gaussian sums, each
-// unbounded, isotropic, without negative amplitudes or a cutoff that shows (below 6 widths, e^-36 of the peak), with
-// sigma_t that differ by a factor; albedos may differ. Media that do not extinguish are ignored.
+// unbounded, without negative amplitudes or a cutoff that shows (below 6 widths, e^-36 of the peak), with sigma_t that
+// differ by a factor and one phase function: isotropic, or of Gaussians alone Henyey-Greenstein's; albedos may differ.
+// Media that do not extinguish are ignored.
 std::vector<std::string> objections(const std::vector<scene::Medium>&);
 
 // Requires that there are no objections.

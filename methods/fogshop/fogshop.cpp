@@ -186,6 +186,9 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
       reasons.push_back("the media differ in albedo, and Eq. 25 has one: reflectance = direct leaves it out");
     if (!fog.one_albedo() && has_environment(scene))
       reasons.push_back("the media differ in albedo, and Eq. 28 has one: expected point lights only");
+    if (fog.g != 0 && (options.reflectance != Options::Reflectance::direct || has_environment(scene)))
+      reasons.push_back(
+          "phase function hg: NPSF is that of isotropic scattering, expected reflectance = direct and point lights only");
     const std::string objection = objection_to_view(scene, fog, options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);
   }

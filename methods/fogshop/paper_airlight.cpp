@@ -19,6 +19,11 @@ double optical_depth(const scene::GaussianSum& medium, const Point3& a, const Po
   return depth;
 }
 
+double relative_phase(double g, double cosine) {
+  const double square = 1 + g * g - 2 * g * cosine;
+  return g == 0 ? 1 : (1 - g * g) / (square * std::sqrt(square));
+}
+
 double paper_airlight(const scene::GaussianSum& medium, const Point3& s, double intensity, const Ray& ray, double d_r,
                       const PaperOptions& options) {
   const Point3& v = ray.origin;
@@ -34,7 +39,9 @@ double paper_airlight(const scene::GaussianSum& medium, const Point3& s, double 
                             optical_depth(g, v, g.center) - optical_depth(medium, s, g.center) -
                             optical_depth(medium, v, g.center);
     const double depth = scene::line_integral(g, ray, d_r);  // Eq. 31
-    if (depth > 0) airlight += intensity / (4 * pi * ((x - s).squaredNorm() + soft2)) * std::exp(exponent) * depth;
+    const double phase = relative_phase(options.g, -(x - s).normalized().dot(ray.direction));
+    if (depth > 0)
+      airlight += intensity * phase / (4 * pi * ((x - s).squaredNorm() + soft2)) * std::exp(exponent) * depth;
   }
 
   // Homogeneous term, Eqs. 14 to 17.

@@ -36,9 +36,17 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
                           hn::MulAdd(t, set(view.direction.z()), set(from_light.z()))};
     const PaperTerm p = paper_term<kind>(center, nearest, load(c.a, first), load(c.half_depth, first), own,
                                          load(c.to_nearest, first), load(c.whole, first), softness);
+    V weight = p.weight;
+    if (light.g != 0) {  // k(alpha) of Eq. 12
+      const V along =
+          hn::MulAdd(nearest.x, set(view.direction.x()),
+                     hn::MulAdd(nearest.y, set(view.direction.y()), hn::Mul(nearest.z, set(view.direction.z()))));
+      weight =
+          hn::Mul(weight, phase_of(light.g, hn::Div(along, hn::Max(hn::Sqrt(dot(nearest, nearest)), set(1e-300)))));
+    }
     const auto valid = hn::FirstN(d, c.count - first);
     for (int k = 0; k < channels; ++k) {
-      V term = hn::Mul(hn::Mul(set(hue[k]), p.weight), exp_of(hn::Mul(set(hue[k]), p.exponent)));
+      V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), p.exponent)));
       if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], c.place));
       sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
     }

@@ -8,6 +8,7 @@ namespace airlight::fogshop {
 struct PaperLight {
   Point3 position;
   double softness = 0;  // r_s^2 [m^2]
+  double g = 0;         // of the phase function
   // E_i = T_i(s,b_i) + T_i(v,b_i) - T(s,b_i) - T(v,b_i): the exponent of f^1 with the compensation of f^0; by place in
   // the whole arrays [-], for a hue of 1, the constant term of the medium included.
   std::vector<double> exponent;

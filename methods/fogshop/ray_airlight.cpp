@@ -25,6 +25,7 @@ ViewModel make_view_model(const Model& model, const Point3& view, const scene::E
     PaperLight paper;
     paper.position = light.position;
     paper.softness = model.options.source_radius * model.options.source_radius;
+    paper.g = model.fog.g;
     paper.exponent.resize(model.gaussians.count);
     for (int i = 0; i < model.gaussians.count; ++i) paper.exponent[i] = -(light.center_depth[i] + to_center[i]);
     result.lights.push_back(std::move(paper));
@@ -150,7 +151,7 @@ Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
   const double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
   const SliceEdges edges{t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr};
   Rgb sum = Rgb::Zero(), half = Rgb::Zero();
-  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.hue, coloured(), slice_scratch_, sum,
+  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.g, model_.fog.hue, coloured(), slice_scratch_, sum,
              o.extrapolate ? &half : nullptr);
   // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
   if (o.extrapolate) sum = (sum + (sum - half) / 3).max(0.0);

@@ -22,15 +22,37 @@ HWY_INLINE V angle_of(V y, V x) {
   return hn::IfThenElse(hn::Lt(x, zero), hn::Add(angle, set(pi)), angle);
 }
 
-// What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, depths and transmittances of
+struct Direction {
+  V x, h;
+};
+HWY_INLINE Direction normalized(V x, V h) {
+  const V inverse = hn::Div(set(1), hn::Max(hn::Sqrt(hn::MulAdd(x, x, hn::Mul(h, h))), set(1e-300)));
+  return {hn::Mul(x, inverse), hn::Mul(h, inverse)};
+}
+HWY_INLINE Direction halfway(const Direction& a, const Direction& b) {
+  return normalized(hn::Add(a.x, b.x), hn::Add(a.h, b.h));
+}
+
+// Mean of the phase function, times 4 pi, over the angle between two places beside a light that passes at h: Boole's rule.
+HWY_INLINE V mean_phase(double g, V xa, V xb, double h) {
+  const Direction a = normalized(xa, set(h)), b = normalized(xb, set(h)), middle = halfway(a, b);
+  const V ends = hn::Add(phase_of(g, a.x), phase_of(g, b.x));
+  const V quarters = hn::Add(phase_of(g, halfway(a, middle).x), phase_of(g, halfway(middle, b).x));
+  return hn::MulAdd(set(7. / 90), ends,
+                    hn::MulAdd(set(32. / 90), quarters, hn::Mul(set(12. / 90), phase_of(g, middle.x))));
+}
+
+// What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, times the phase function, depths and transmittances of
 // the whole way from the light at the edges.
-void Prepare(const SliceEdges& e, int slices, double along, double h, const double* hue, int channels,
-             SliceScratch& out) {
+void Prepare(const SliceEdges& e, int slices, double along, double h, double beside, double g, const double* hue,
+             int channels, SliceScratch& out) {
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {
     const V t0 = hn::LoadU(d, e.t + k), t1 = hn::LoadU(d, e.t + k + 1);
     const V xa = hn::Sub(t0, set(along)), xb = hn::Sub(t1, set(along));
     // From the angle between the ends, which does not cancel.
-    hn::StoreU(angle_of(hn::Mul(set(h), hn::Sub(t1, t0)), hn::MulAdd(xa, xb, set(h * h))), d, out.angle.data() + k);
+    V angle = angle_of(hn::Mul(set(h), hn::Sub(t1, t0)), hn::MulAdd(xa, xb, set(h * h)));
+    if (g != 0) angle = hn::Mul(angle, mean_phase(g, xa, xb, beside));
+    hn::StoreU(angle, d, out.angle.data() + k);
   }
   for (int k = 0; k <= slices; k += int(hn::Lanes(d))) {
     const V whole = hn::Add(hn::LoadU(d, e.view_depth + k), hn::LoadU(d, e.light_depth + k));
@@ -91,9 +113,9 @@ void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const
   for (int c = 0; c < channels; ++c) sums[c] += hn::GetLane(hn::SumOfLanes(d, sum[c])) / (4 * pi);
 }
 
-void SumSlices(const SliceEdges& e, int slices, double along, double h, const double* hue, int channels,
-               SliceScratch& scratch, double* all, double* pairs) {
-  Prepare(e, slices, along, h, hue, channels, scratch);
+void SumSlices(const SliceEdges& e, int slices, double along, double h, double beside, double g, const double* hue,
+               int channels, SliceScratch& scratch, double* all, double* pairs) {
+  Prepare(e, slices, along, h, beside, g, hue, channels, scratch);
   Sum<1>(e, scratch, slices, h, hue, channels, all);
   if (pairs) Sum<2>(e, scratch, slices / 2, h, hue, channels, pairs);
 }
@@ -106,8 +128,8 @@ namespace airlight::fogshop {
 
 HWY_EXPORT(SumSlices);
 
-void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, double source_radius, const Rgb& hue,
-                bool coloured, SliceScratch& scratch, Rgb& all, Rgb* pairs) {
+void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, double source_radius, double g,
+                const Rgb& hue, bool coloured, SliceScratch& scratch, Rgb& all, Rgb* pairs) {
   constexpr double least_h = 1e-9;  // [m]
   const double h = std::max(std::hypot(light.h, source_radius), least_h);
   const std::size_t room = slice_room(slices);
@@ -115,7 +137,8 @@ void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, 
                   &scratch.transmittance[2]})
     v->resize(room);
   HWY_DYNAMIC_DISPATCH(SumSlices)
-  (edges, slices, light.along, h, hue.data(), coloured ? 3 : 1, scratch, all.data(), pairs ? pairs->data() : nullptr);
+  (edges, slices, light.along, h, std::max(light.h, least_h), g, hue.data(), coloured ? 3 : 1, scratch, all.data(),
+   pairs ? pairs->data() : nullptr);
 }
 
 }  // namespace airlight::fogshop

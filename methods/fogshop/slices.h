@@ -34,8 +34,9 @@ struct SliceScratch {
 
 // Adds to `all`, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1; to `pairs`, unless it
 // is null, that of half as many slices between every other edge: the same placement with K/2 slices, K even. Three
-// channels if `coloured`, else the first only. source_radius softens 1/d^2 [m].
-void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, const Rgb& hue, bool coloured,
-                SliceScratch&, Rgb& all, Rgb* pairs);
+// channels if `coloured`, else the first only. source_radius softens 1/d^2 [m]. g: of the phase function, whose mean over
+// the angle of a slice is taken by Boole's rule.
+void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, double g, const Rgb& hue,
+                bool coloured, SliceScratch&, Rgb& all, Rgb* pairs);
 
 }  // namespace airlight::fogshop

@@ -51,6 +51,22 @@ TEST_CASE("fogshop: GPU agrees with CPU", "[gpu]") {
   CHECK(worst < 2.4e-5);
 }
 
+TEST_CASE("fogshop: GPU agrees with CPU on Henyey-Greenstein's phase function", "[gpu]") {
+  if (!gpu::test::device()) return;
+  const fogshop::Fogshop cpu;
+  const gpu::FogshopGpu gpu;
+  for (const char* name : {"f100_thin", "d100_thick"})
+    for (const double g : {-0.5, 0.7})
+      for (const char* variant : {"paper", "S"}) {
+        auto scene = std::make_shared<scene::Scene>(*scene_named(name));
+        scene->media[0].phase = scene::HenyeyGreenstein{g};
+        finish(*scene);
+        const Pairs given{{"variant", variant}, {"erf", "erf10"}};
+        CAPTURE(name, g, variant);
+        CHECK(p99(picture(cpu, scene, given), picture(gpu, scene, given), "airlight") < 2.4e-5);
+      }
+}
+
 // Where a light map would miss small Gaussians, both take sums.
 TEST_CASE("fogshop: a puff in a bank, GPU agrees with CPU", "[gpu]") {
   if (!gpu::test::device()) return;

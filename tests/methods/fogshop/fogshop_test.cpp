@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "methods/fogshop/homogeneous_airlight.h"
+#include "methods/fogshop/paper_airlight.h"
 #include "reference/deterministic/renderer.h"
 #include "scene/error.h"
 #include "scene/scene.h"
@@ -80,7 +81,31 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
     CHECK_THROWS_AS(method.prepare(std::make_shared<const Scene>(changed), settings(given), {}), Error);
   };
   refused([](Scene& s) { s.media[0].region = scene::Sphere{Point3::Zero(), 3}; }, "bounded");
-  refused([](Scene& s) { s.media[0].phase = scene::HenyeyGreenstein{0.5}; }, "isotropic");
+  refused([](Scene& s) { s.media[0].phase = scene::Rayleigh{}; }, "rayleigh, expected isotropic or hg");
+  const auto forward = [](Scene& s) { s.media[0].phase = scene::HenyeyGreenstein{0.5}; };
+  refused(
+      [&](Scene& s) {
+        forward(s);
+        s.media.pop_back();
+      },
+      "its closed form (Eq. 17) is of the isotropic one");
+  refused(
+      [&](Scene& s) {
+        forward(s);
+        std::get<scene::GaussianSum>(s.media[0].field).constant = 0;
+      },
+      "another phase function than the first");
+  const auto alone = [&](Scene& s) {
+    forward(s);
+    s.media.pop_back();
+    std::get<scene::GaussianSum>(s.media[0].field).constant = 0;
+  };
+  refused(
+      [&](Scene& s) {
+        alone(s);
+        s.lights.push_back(scene::make_constant_environment(Rgb::Ones()));
+      },
+      "NPSF is that of isotropic scattering");
   refused(
       [](Scene& s) {
         s.media[1].albedo = Rgb::Constant(0.5);
@@ -108,6 +133,49 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
   CHECK(reasons(scene).empty());
   scene.media = {homogeneous(0.2)};
   CHECK(reasons(scene, {{"source_radius", "0.1"}}).empty());
+}
+
+// Section 3: "can be applied to anisotropic scattering as well". Against quadrature, as close as isotropic scattering.
+TEST_CASE("fogshop: Henyey-Greenstein's phase function", "[fogshop]") {
+  const auto at = [](const char* name, double g) {
+    auto scene = std::make_shared<Scene>(*airlight::test::scene_named(std::string("fogshop/") + name, 8, 6));
+    scene->media[0].phase = scene::HenyeyGreenstein{g};
+    finish(*scene);
+    return scene;
+  };
+  const auto reference = deterministic::make_renderer();
+  const scene::Renderer& truth = *reference;
+  const Pairs rule{{"relative_tolerance", "1e-5"}};
+  for (const char* name : {"f100_thin", "d100_thin"})
+    for (const double g : {-0.5, 0.7}) {
+      const auto scene = at(name, g);
+      const Film exact = airlight::test::picture(truth, scene, rule);
+      CAPTURE(name, g);
+      const double slices = relative_l2(airlight::test::picture(method, scene), exact, "airlight");
+      const double isotropic = relative_l2(airlight::test::picture(method, at(name, 0)),
+                                           airlight::test::picture(truth, at(name, 0), rule), "airlight");
+      CHECK(slices < 5 * isotropic + 1e-4);
+      // Of the isotropic phase function the picture would be another.
+      CHECK(relative_l2(airlight::test::picture(method, at(name, 0)), exact, "airlight") > 0.1);
+    }
+  // The paper's formula where the light is outside, to its own accuracy; on vectors as it is written out.
+  const auto scene = at("f100_thin", 0.3);
+  const Film film = airlight::test::picture(method, scene, {{"variant", "paper"}, {"eps_T", "1e-12"}});
+  CHECK(relative_l2(film, airlight::test::picture(truth, scene, rule), "airlight") < 0.08);
+  const auto& light = std::get<scene::PointLight>(scene->lights[0]);
+  scene::GaussianSum fog = std::get<scene::GaussianSum>(scene->media[0].field);
+  for (scene::Gaussian& g : fog.gaussians) g.amplitude *= scene->media[0].sigma_t[0];
+  fogshop::PaperOptions options;
+  options.g = 0.3;
+  for (int y = 0; y < film.height; y += 2)
+    for (int x = 0; x < film.width; x += 2) {
+      const Ray ray = camera_ray(scene->camera, x + 0.5, y + 0.5, film.width, film.height);
+      const double end = scene::ray_end(*scene, ray).t;
+      CHECK(film.get("airlight", x, y)[0] ==
+            Approx(fogshop::paper_airlight(fog, light.position, light.intensity[0], ray, end, options) *
+                   scene->media[0].albedo[0])
+                .epsilon(1e-5));
+    }
 }
 
 TEST_CASE("fogshop leaves out what a scene does not need", "[fogshop]") {
