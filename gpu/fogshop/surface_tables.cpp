@@ -89,6 +89,9 @@ void SurfaceTables::add_depth_tree(const fogshop::DepthTree& tree) {
 void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, int order) {
   for (const std::vector<float>& of_surface : visibility.coefficients())
     transfer.insert(transfer.end(), of_surface.begin(), of_surface.end());
+  uniforms["reflected_at"] = visibility.reflections().empty() ? -1 : int(transfer.size());
+  for (const std::vector<float>& of_surface : visibility.reflections())
+    transfer.insert(transfer.end(), of_surface.begin(), of_surface.end());
   // By the coefficient of the product: pairs i <= j of those of the factors.
   struct Term {
     int i, j;

@@ -15,8 +15,10 @@ struct SurfaceTables {
   std::vector<MaterialData> materials;  // by surface, their places in harmonics too
   std::vector<float> values;
   std::map<std::string, int> uniforms;  // places in `values` and sizes, by the shader's names
-  std::vector<float> transfer;          // visibility of every vertex of all meshes, order^2 each; empty: none
-  double iterations = 0;                // of the shader's loops over them: apart from lights, for each light
+  // Visibility of every vertex of all meshes, order^2 each, then what other surfaces reflect onto it in each channel,
+  // where that is known; empty: none.
+  std::vector<float> transfer;
+  double iterations = 0;  // of the shader's loops over them: apart from lights, for each light
   double light_iterations = 0;
 
  private:

@@ -1,5 +1,6 @@
 // Reflectance times visibility, both in harmonics in the world's axes: products mix all bands, so all of them are held.
 layout(std430, binding = AT_TRANSFER) readonly buffer Transfer { float transfer[]; };  // SH_SIZE for every vertex
+uniform int reflected_at;  // where what other surfaces reflect begins, SH_SIZE for every channel of every vertex; -1: it is left out
 uniform int product_at;  // for every coefficient the first of its (i, j, integral of three), SH_SIZE + 1 of them, then these
 
 vec3 functions[2 * SH_SIZE];  // two of them
@@ -27,8 +28,8 @@ void turn_reflectance(inout Reflected r) {
   r.low = 0;
 }
 
-// Times V_p of a mesh, into the second function; its inner side has none.
-void shadow_reflectance(inout Reflected r, ivec4 corners, dvec3 point, dvec3 normal) {
+// Times V_p of a mesh, and with what others reflect onto it, into the second function; its inner side has neither.
+void shadow_reflectance(inout Reflected r, vec3 diffuse, ivec4 corners, dvec3 point, dvec3 normal) {
   dvec3 p = mesh_vertex(corners.x) - point, q = mesh_vertex(corners.y) - point, s = mesh_vertex(corners.z) - point;
   dvec3 face = cross(q - p, s - p);
   if (!(dot(face, normal) > 0)) return;
@@ -46,6 +47,10 @@ void shadow_reflectance(inout Reflected r, ivec4 corners, dvec3 point, dvec3 nor
       vec3 both = seen_share[i] * functions[j];
       if (i != j) both += seen_share[j] * functions[i];
       sum += tables[terms_at + 3 * k + 2] * both;
+    }
+    for (int c = 0; c < 3 && reflected_at >= 0; ++c) {
+      ivec3 at = reflected_at + (3 * corners.xyz + c) * SH_SIZE + n;
+      sum[c] += diffuse[c] / pi * dot(weight, vec3(transfer[at.x], transfer[at.y], transfer[at.z]));
     }
     functions[SH_SIZE + n] = sum;
   }

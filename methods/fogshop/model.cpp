@@ -37,6 +37,8 @@ std::vector<scene::SettingSpec> setting_specs() {
       scene::integer_setting("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
       scene::real_setting("prt_reach", "1e300", 0, 1e300,
                           "distance [m] up to which surfaces shadow in the precomputed transfer"),
+      scene::integer_setting("prt_bounces", "0", 0, 16,
+                             "times that surfaces reflect light onto one another in the precomputed transfer"),
       scene::integer_setting("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
       scene::choice_setting(
           "environment_psf", "ball", {"npsf", "npsfT", "ball"},
@@ -97,6 +99,7 @@ Options read_options(const scene::Settings& settings) {
   o.prt = settings.flag("prt");
   o.prt_rays = int(settings.integer("prt_rays"));
   o.prt_reach = settings.real("prt_reach");
+  o.prt_bounces = int(settings.integer("prt_bounces"));
   return o;
 }
 

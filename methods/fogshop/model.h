@@ -50,6 +50,7 @@ struct Options {
   bool prt = false;          // meshes: surfaces shadow the scattered light
   int prt_rays = 256;        // per vertex
   double prt_reach = 1e300;  // [m] of occluders
+  int prt_bounces = 0;       // of light between the surfaces
 };
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

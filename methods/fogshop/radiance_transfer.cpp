@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "methods/fogshop/harmonic_reflection.h"
+#include "scene/math/sh_product.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::fogshop {
@@ -44,7 +46,13 @@ double mesh_vertices(const scene::Scene& scene) {
   return count;
 }
 
-RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int rays, double reach,
+Rgb diffuse_albedo(const scene::Material& material) {
+  return scene::match(
+      material, [](const scene::Lambert& m) { return m.albedo; }, [](const scene::Phong& m) { return m.diffuse; },
+      [](const scene::Tabulated&) { return Rgb(Rgb::Zero()); });
+}
+
+RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int rays, double reach, int bounces,
                                    const scene::Execution& execution)
     : order_(order), coefficients_(scene.surfaces.size()) {
   const std::vector<Vec3> directions = spiral(rays);
@@ -84,25 +92,123 @@ RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int ray
     });
     rays_cast_ += std::accumulate(cast.begin(), cast.end(), 0.0);
   }
+  for (int bounce = 0; bounce < bounces; ++bounce) reflect(scene, directions, reach, execution);
 }
 
-std::vector<double> RadianceTransfer::visibility(const scene::Scene& scene, const SurfacePoint& point) const {
-  const std::vector<float>& stored = coefficients_[point.surface];
-  if (stored.empty() || point.triangle < 0) return {};
+// Radiance of every triangle of a mesh that directions of 1 in each harmonic make: what is open to its middle, and what
+// has been reflected onto its vertices so far.
+std::vector<std::vector<Rgb>> RadianceTransfer::sent_by_triangles(const scene::Scene& scene,
+                                                                  std::size_t surface) const {
+  const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[surface].shape);
+  const Rgb factor = diffuse_albedo(scene.surfaces[surface].material) / pi;
+  const std::vector<double> cosine = clamped_cosine(order_);
+  std::vector<std::vector<Rgb>> sent;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corner = mesh.triangles[t];
+    SurfacePoint middle;
+    middle.position = (mesh.vertices[corner[0]] + mesh.vertices[corner[1]] + mesh.vertices[corner[2]]) / 3;
+    middle.normal = face_vector(mesh, corner).normalized();
+    middle.surface = int(surface);
+    middle.triangle = int(t);
+    const std::vector<double> direct =
+        scene::triple_product(order_)(turned_zonal(cosine, middle.normal), visibility(scene, middle));
+    const std::vector<Rgb> again = reflected(scene, middle);
+    std::vector<Rgb>& all = sent.emplace_back();
+    for (std::size_t k = 0; k < direct.size(); ++k)
+      all.push_back(factor * (direct[k] + (again.empty() ? Rgb(Rgb::Zero()) : again[k])));
+  }
+  return sent;
+}
+
+// One bounce more, for all that has been reflected so far.
+void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<Vec3>& directions, double reach,
+                               const scene::Execution& execution) {
+  const int size = order_ * order_;
+  std::vector<std::vector<std::vector<Rgb>>> sent(scene.surfaces.size());
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    if (!coefficients_[s].empty()) sent[s] = sent_by_triangles(scene, s);
+  std::vector<std::vector<float>> reflections(scene.surfaces.size());
+  constexpr int chunk = 64;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    if (coefficients_[s].empty()) continue;
+    const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[s].shape);
+    const auto faces = faces_at_vertices(mesh);
+    const int count = int(mesh.vertices.size());
+    reflections[s].assign(3 * std::size_t(count) * std::size_t(size), 0.0f);
+    std::vector<double> cast(std::size_t(count), 0.0);
+    scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
+      std::vector<Rgb> sum(std::size_t(size), Rgb::Zero());
+      for (int v = row * chunk; v < std::min(count, (row + 1) * chunk); ++v) {
+        Vec3 outward = Vec3::Zero();
+        for (const Vec3& face : faces[std::size_t(v)]) outward += face;
+        if (!(outward.norm() > 0)) continue;
+        outward.normalize();
+        std::fill(sum.begin(), sum.end(), Rgb::Zero());
+        const Point3 start = scene.geometry->offset_origin(mesh.vertices[std::size_t(v)], outward, outward);
+        for (const Vec3& direction : directions) {
+          const double cosine = outward.dot(direction);
+          if (!(cosine > 0)) continue;
+          ++cast[std::size_t(v)];
+          const auto hit = scene.geometry->first_hit({start, direction}, reach);
+          if (!hit || hit->triangle < 0) continue;
+          const auto& met = std::get<scene::TriangleMesh>(scene.surfaces[std::size_t(hit->surface)].shape);
+          if (face_vector(met, met.triangles[std::size_t(hit->triangle)]).dot(direction) >= 0) continue;
+          const std::vector<Rgb>& from = sent[std::size_t(hit->surface)][std::size_t(hit->triangle)];
+          for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += cosine * from[k];
+        }
+        for (int c = 0; c < 3; ++c)
+          for (int k = 0; k < size; ++k)
+            reflections[s][(3 * std::size_t(v) + std::size_t(c)) * std::size_t(size) + std::size_t(k)] =
+                float(sum[std::size_t(k)][c] * (4 * pi / double(directions.size())));
+      }
+    });
+    rays_cast_ += std::accumulate(cast.begin(), cast.end(), 0.0);
+  }
+  reflections_ = std::move(reflections);
+}
+
+// The corners of the triangle that a point of the outer side of a mesh is on.
+std::optional<RadianceTransfer::Corners> RadianceTransfer::corners(const scene::Scene& scene,
+                                                                   const SurfacePoint& point) const {
+  if (coefficients_[point.surface].empty() || point.triangle < 0) return std::nullopt;
   const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[point.surface].shape);
   const auto& t = mesh.triangles[point.triangle];
   const Vec3 face = face_vector(mesh, t);
-  if (!(face.dot(point.normal) > 0)) return {};
-  double weight[3], total = 0;
+  if (!(face.dot(point.normal) > 0)) return std::nullopt;
+  Corners result;
+  double total = 0;
   for (int i = 0; i < 3; ++i) {
     const Vec3 a = mesh.vertices[t[(i + 1) % 3]] - point.position, b = mesh.vertices[t[(i + 2) % 3]] - point.position;
-    weight[i] = std::max(0.0, a.cross(b).dot(face));
-    total += weight[i];
+    result.vertex[i] = std::size_t(t[i]);
+    result.weight[i] = std::max(0.0, a.cross(b).dot(face));
+    total += result.weight[i];
   }
-  const int size = order_ * order_;
+  for (double& weight : result.weight) weight /= total;
+  return result;
+}
+
+std::vector<double> RadianceTransfer::visibility(const scene::Scene& scene, const SurfacePoint& point) const {
+  const auto at = corners(scene, point);
+  if (!at) return {};
+  const std::vector<float>& stored = coefficients_[point.surface];
+  const std::size_t size = std::size_t(order_) * std::size_t(order_);
   std::vector<double> result(size, 0.0);
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < size; ++k) result[k] += weight[i] / total * stored[std::size_t(t[i]) * size + k];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < size; ++k) result[k] += at->weight[i] * stored[at->vertex[i] * size + k];
+  return result;
+}
+
+std::vector<Rgb> RadianceTransfer::reflected(const scene::Scene& scene, const SurfacePoint& point) const {
+  if (reflections_.empty()) return {};
+  const auto at = corners(scene, point);
+  if (!at) return {};
+  const std::vector<float>& stored = reflections_[point.surface];
+  const std::size_t size = std::size_t(order_) * std::size_t(order_);
+  std::vector<Rgb> result(size, Rgb::Zero());
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < size; ++k)
+        result[k][Eigen::Index(c)] += at->weight[i] * stored[(3 * at->vertex[i] + c) * size + k];
   return result;
 }
 

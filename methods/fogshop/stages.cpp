@@ -143,7 +143,8 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
             {{!o.prt, "prt = false: occluders shadow direct light of points alone"},
              {!needs.point_harmonics && dark.holds, "no light that it would shadow"},
              {vertices == 0, "there are no meshes, and other shapes have no vertices"}},
-            fmt::format("{} rays from each of {:.0f} vertices, {} bands", o.prt_rays, vertices, o.sh_order));
+            fmt::format("{} rays from each of {:.0f} vertices, {} bands, light reflected {} times between surfaces",
+                        o.prt_rays, vertices, o.sh_order, o.prt_bounces));
   needs.environment = stage("background", {dark}, "the environment through the medium, Eq. 29, where no surface is");
   needs.sky_volume = needs.environment && gaussians && o.sky_volume && !black.holds;
   const bool by_psf = needs.environment && needs.airlight && !needs.sky_volume && !black.holds;

@@ -18,8 +18,8 @@ SurfaceLighting make_lighting(const scene::Scene& scene, const Model& model, con
     stage("harmonics of reflectances");
   }
   if (needs.transfer) {
-    lighting.transfer =
-        std::make_unique<RadianceTransfer>(scene, options.sh_order, options.prt_rays, options.prt_reach, execution);
+    lighting.transfer = std::make_unique<RadianceTransfer>(scene, options.sh_order, options.prt_rays, options.prt_reach,
+                                                           options.prt_bounces, execution);
     stage("radiance transfer");
   }
   if (needs.environment_harmonics) {
@@ -38,8 +38,12 @@ std::vector<Rgb> shadowed_reflectance(const scene::Scene& scene, const SurfaceLi
   std::vector<Rgb> reflectance = (*lighting.reflectances)(scene, point.surface, point.normal, to_view);
   if (!lighting.transfer) return reflectance;
   const std::vector<double> visibility = lighting.transfer->visibility(scene, point);
-  return visibility.empty() ? reflectance
-                            : scene::triple_product(lighting.reflectances->order())(reflectance, visibility);
+  if (visibility.empty()) return reflectance;
+  reflectance = scene::triple_product(lighting.reflectances->order())(reflectance, visibility);
+  const std::vector<Rgb> reflected = lighting.transfer->reflected(scene, point);
+  const Rgb factor = diffuse_albedo(scene.surfaces[std::size_t(point.surface)].material) / pi;
+  for (std::size_t k = 0; k < reflected.size(); ++k) reflectance[k] += factor * reflected[k];
+  return reflectance;
 }
 
 void reflect_environment(const Model& model, const SurfaceLighting& lighting, const SurfacePoint& point,

@@ -27,7 +27,8 @@ struct SurfaceLighting {
 SurfaceLighting make_lighting(const scene::Scene&, const Model&, const Needs&, const scene::Execution&,
                               const std::function<void(const std::string&)>& stage);
 
-// B_pv of Eq. 20 in the world's axes, times V_p where there is a visibility. Requires `reflectances`.
+// B_pv of Eq. 20 in the world's axes, times V_p where there is a visibility, and with what other surfaces reflect where the
+// transfer has that: P_p of section 4.3. Requires `reflectances`.
 std::vector<Rgb> shadowed_reflectance(const scene::Scene&, const SurfaceLighting&, const SurfacePoint&,
                                       const Vec3& to_view);
 

@@ -167,6 +167,21 @@ TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU"
   }
 }
 
+TEST_CASE("fogshop: light between surfaces on the GPU agrees with the CPU", "[gpu]") {
+  if (!gpu::test::device()) return;
+  Scene scene = things(Rgb::Ones());
+  scene.media.clear();
+  scene.lights = {scene::make_constant_environment(Rgb(0.5, 0.7, 1))};
+  scene.surfaces[2].shape = scene::make_box({{-2, -0.8, -2}, {2, -0.6, 2}});
+  finish(scene);
+  const Pairs prt{{"prt", "true"}, {"prt_rays", "64"}, {"sh_order", "4"}};
+  Pairs bounces = prt;
+  bounces["prt_bounces"] = "2";
+  const Pair with(scene, bounces), without(scene, prt);
+  CHECK(compare(with, "mean").most < 1.2e-4);
+  CHECK(airlight::test::relative_l2(with.a, without.a, "mean") > 0.02);
+}
+
 TEST_CASE("fogshop: the elephant on the GPU agrees with the CPU", "[gpu]") {
   if (!gpu::test::device()) return;
   const Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "methods/fogshop/fogshop.h"
+#include "reference/path_tracer/renderer.h"
 #include "scene/geometry/shapes.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
@@ -55,7 +56,7 @@ TEST_CASE("a floor under a half-space hides a lune", "[fogshop]") {
     const Vec3 m(std::cos(a), std::sin(a), 0);
     scene.surfaces.push_back({"ceiling", scene::Plane{Point3(0, 0, 0) + 20 * m, m}, scene::Lambert{}});
     finish(scene);
-    const RadianceTransfer transfer(scene, order, 16384, infinity, {1, {}});
+    const RadianceTransfer transfer(scene, order, 16384, infinity, 0, {1, {}});
     const std::vector<double> got = transfer.visibility(scene, on_floor);
     REQUIRE(got.size() == order * order);
     const double from = std::max(0.0, a - 0.5 * pi), to = std::min(pi, a + 0.5 * pi);
@@ -78,11 +79,78 @@ TEST_CASE("a floor under a half-space hides a lune", "[fogshop]") {
   }
 }
 
+// A sheet of n x n quads between three corners.
+scene::TriangleMesh sheet(const Point3& corner, const Vec3& u, const Vec3& v, int n) {
+  scene::TriangleMesh mesh;
+  for (int i = 0; i <= n; ++i)
+    for (int k = 0; k <= n; ++k) mesh.vertices.push_back(corner + u * i / n + v * k / n);
+  const auto at = [&](int i, int k) { return i * (n + 1) + k; };
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+      mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+    }
+  return mesh;
+}
+
+// Section 4.3. Under an even sky of 1 an endless wall on an endless floor sees half of it, E = pi/2, and fills half of what
+// a patch of the floor sees: that gets rho E / pi over half its hemisphere, rho pi / 4.
+TEST_CASE("a wall reflects the sky onto what lies before it", "[fogshop]") {
+  const Rgb rho(0.9, 0.6, 0.2);
+  scene::Scene scene = floor_scene();
+  scene.surfaces = {{"floor", scene::Plane{}, scene::Lambert{}},
+                    {"wall", sheet({0, 0.01, -900}, {0, 900, 0}, {0, 0, 1800}, 1), scene::Lambert{rho}},
+                    {"patch", sheet({0.4, 0.05, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}, 1), scene::Phong{Rgb::Constant(0.5)}}};
+  finish(scene);
+  SurfacePoint point{{0.5, 0.05, 0.01}, {0, 1, 0}, 2, 0};
+  const auto reflected = [&](int bounces) {
+    return RadianceTransfer(scene, 6, 4096, infinity, bounces, {1, {}}).reflected(scene, point);
+  };
+  CHECK(reflected(0).empty());
+  const std::vector<Rgb> once = reflected(1), twice = reflected(2);
+  REQUIRE(once.size() == 36);
+  for (int c = 0; c < 3; ++c) {
+    // Half a sky in 6 bands of harmonics, and the spiral's error.
+    CHECK(std::sqrt(4 * pi) * once[0][c] == Approx(rho[c] * pi / 4).epsilon(0.01));
+    // What comes back from the patch is next to nothing.
+    CHECK(twice[0][c] == Approx(once[0][c]).epsilon(1e-3));
+  }
+  point.normal = -point.normal;  // its inner side
+  CHECK(RadianceTransfer(scene, 6, 256, infinity, 1, {1, {}}).reflected(scene, point).empty());
+}
+
+TEST_CASE("light between surfaces comes closer to the path tracer with every bounce", "[fogshop]") {
+  scene::Scene scene = floor_scene();
+  scene.lights = {scene::make_constant_environment(Rgb::Ones())};
+  scene.media.clear();
+  scene.camera = scene::look_at({2.6, 1.4, 2.6}, {0.3, 0.4, 0.3}, {0, 1, 0});
+  scene.width = 12;
+  scene.height = 9;
+  const scene::Lambert bright{Rgb::Constant(0.8)};
+  scene.surfaces = {{"floor", sheet({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, 12), bright},
+                    {"left", sheet({0.001, 0.001, 0}, {0, 3, 0}, {0, 0, 3}, 12), bright},
+                    {"back", sheet({0, 0.001, 0.001}, {3, 0, 0}, {0, 3, 0}, 12), bright}};
+  finish(scene);
+  const auto shared = std::make_shared<const scene::Scene>(scene);
+  const path_tracer::PathTracer tracer;
+  const scene::Film truth = airlight::test::picture(tracer, shared, {{"samples", "256"}});
+  double before = infinity;
+  for (const auto& [bounces, most] : {std::pair("0", 0.6), {"1", 0.3}, {"2", 0.16}, {"6", 0.05}}) {
+    const scene::Film film =
+        airlight::test::picture(Fogshop(), shared, {{"prt", "true"}, {"prt_rays", "512"}, {"prt_bounces", bounces}});
+    const double error = airlight::test::relative_l2(film, truth, "mean");
+    CAPTURE(bounces, error);
+    CHECK(error < most);
+    CHECK(error < before);
+    before = error;
+  }
+}
+
 TEST_CASE("a convex mesh does not shadow itself", "[fogshop]") {
   scene::Scene scene = floor_scene();
   scene.surfaces[0].shape = scene::make_box({{-1, -1, -1}, {1, 1, 1}});
   finish(scene);
-  const RadianceTransfer transfer(scene, 5, 512, infinity, {1, {}});
+  const RadianceTransfer transfer(scene, 5, 512, infinity, 0, {1, {}});
   CHECK(transfer.rays_cast() > 8 * 256);
   for (int t = 0; t < 12; ++t) {
     const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[0].shape);
