@@ -75,8 +75,7 @@ std::vector<scene::SettingSpec> SmokeFlicker::settings() const {
       scene::integer_setting("step", "0", 0, 1000,
                              "from frame to frame of the medium's files; 0: smoke that stands still"),
       scene::real_setting("turn", "0", -10, 10, "of the environment between two frames, about the y axis [rad]"),
-      scene::flag_setting("warm", true,
-                          "a frame begins with the light of the one before, where the smoke is the same")};
+      scene::flag_setting("warm", true, "a frame begins with the light of the one before")};
   const auto of_renderer = find_renderer(renderer_name, "smoke_flicker").settings();
   specs.insert(specs.end(), of_renderer.begin(), of_renderer.end());
   return specs;

@@ -13,6 +13,7 @@
 namespace airlight::gpu::smoke {
 namespace {
 
+using compensated_ray_marching::Caster;
 using compensated_ray_marching::LeastSquaresSolver;
 using compensated_ray_marching::Options;
 
@@ -20,7 +21,7 @@ constexpr int lanes = 64, edge = 16, summing = 256;  // invocations of a work gr
 constexpr int first_centre_iterations = 8;           // told to the device before any is looked at
 
 // diffusion_vectors.glsl and diffusion_gradients.comp.
-enum Vector { right, solution, missed, slope, direction, along, vector_count };
+enum Vector { right, solution_vector, missed, slope, direction, along, vector_count };
 enum GradientStage { stage_begin, stage_miss, stage_step, stage_turn, stage_spread };
 struct SystemData {
   double square, whole, alpha, beta, diagonal, left;
@@ -29,20 +30,18 @@ struct SystemData {
 
 std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
-std::vector<scene::Sphere> spheres_of(const std::vector<scene::Surface>& surfaces) {
+std::vector<scene::Sphere> spheres_of(const std::vector<Caster>& casters) {
   std::vector<scene::Sphere> spheres;
-  for (const scene::Surface& surface : surfaces)
-    if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape)) spheres.push_back(*sphere);
+  for (const Caster& caster : casters) spheres.push_back(caster.sphere);
   return spheres;
 }
 
 // Spheres with their surface, then what each surface reflects.
-std::vector<double> objects_of(const std::vector<scene::Surface>& surfaces) {
+std::vector<double> objects_of(const std::vector<Caster>& casters, const std::vector<scene::Surface>& surfaces) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < surfaces.size(); ++i)
-    if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape))
-      for (const double v : {sphere->center[0], sphere->center[1], sphere->center[2], sphere->radius, double(i)})
-        values.push_back(v);
+  for (const auto& [sphere, surface] : casters)
+    for (const double v : {sphere.center[0], sphere.center[1], sphere.center[2], sphere.radius, double(surface)})
+      values.push_back(v);
   const Vec3 any = Vec3::UnitY();
   for (const scene::Surface& surface : surfaces)
     for (const double v : scene::brdf(surface.material, any, any, any)) values.push_back(v);
@@ -60,8 +59,10 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
       medium_(medium),
       options_(options),
       single_only_(compensated_ray_marching::single_only(sum, medium, options)),
+      gaussians_(sum.gaussians),
       count_(int(sum.gaussians.size())),
-      objects_(int(spheres_of(surfaces).size())),
+      casters_(compensated_ray_marching::casters_of(surfaces, options.paper.mesh_spheres)),
+      objects_(int(casters_.size())),
       scatters_(count_ > 0 && scatters),
       tables_(context, options.order, options.paper.transmittance, sum.cutoff, objects_ > 0),
       moments_(compensated_ray_marching::phase_moments(medium.phase, options.order)) {
@@ -69,7 +70,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   for (const scene::Gaussian& g : sum.gaussians)
     for (const double v : {g.center[0], g.center[1], g.center[2], g.width, g.amplitude}) values.push_back(v);
   centres_ = std::make_unique<Buffer>(context, "centres", values);
-  spheres_ = std::make_unique<Buffer>(context, "spheres that cast shadows", objects_of(surfaces));
+  spheres_ = std::make_unique<Buffer>(context, "spheres that cast shadows", objects_of(casters_, surfaces));
   if (options.paper.transmittance == compensated_ray_marching::Transmittance::directional)
     directions_ = compensated_ray_marching::transmittance_directions();
   const auto bands = std::size_t(options.order * options.order), n = std::size_t(count_);
@@ -99,7 +100,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   if (directions_.empty())
     find_passed();
   else
-    passed_->upload(passed_by_directions(sum, spheres_of(surfaces), execution));
+    passed_->upload(passed_by_directions(sum, spheres_of(casters_), execution));
   if (!single_only_.empty()) return;
   matrix_program_ = program_of("diffusion_matrix", lanes, 1, {{"SUMS", "5"}});
   right_program_ = program_of("diffusion_right", lanes, 1, {{"SUMS", "9"}});
@@ -189,6 +190,39 @@ void CentreSourcesOnDevice::find_groups() {
   systems_ = std::make_unique<Buffer>(context_, "diffusion systems", sizeof(SystemData) * std::size_t(systems));
 }
 
+void CentreSourcesOnDevice::begin_with(const compensated_ray_marching::Solution& last) {
+  if (last.empty() || groups_.empty()) return;
+  const auto n = std::size_t(count_);
+  std::vector<double> vectors(vectors_->bytes() / sizeof(double), 0.0);
+  for (Group& g : groups_) {
+    std::vector<Eigen::VectorXd> starts;
+    for (const int channel : g.channels) starts.push_back(at_centres(last, channel, gaussians_));
+    const auto known = [](const Eigen::VectorXd& start) { return start.size() > 0; };
+    if (!std::all_of(starts.begin(), starts.end(), known)) continue;
+    // One system stands for all channels until their light differs.
+    if (std::any_of(starts.begin(), starts.end(), [&](const auto& start) { return start != starts[0]; }))
+      g.systems = int(g.channels.size());
+    for (std::size_t s = 0; s < starts.size(); ++s)
+      std::copy(starts[s].begin(), starts[s].end(),
+                vectors.begin() + long(((std::size_t(g.first) + s) * vector_count + solution_vector) * n));
+  }
+  vectors_->upload(vectors);
+}
+
+compensated_ray_marching::Solution CentreSourcesOnDevice::solution() const {
+  compensated_ray_marching::Solution now;
+  if (groups_.empty()) return now;
+  const std::vector<double> vectors = vectors_->download<double>();
+  now.centres = gaussians_;
+  for (const Group& g : groups_)
+    for (std::size_t i = 0; i < g.channels.size(); ++i) {
+      const std::size_t system = std::size_t(g.first) + (g.systems == 1 ? 0 : i);
+      now.of_channel[std::size_t(g.channels[i])] = Eigen::Map<const Eigen::ArrayXd>(
+          vectors.data() + (system * vector_count + solution_vector) * std::size_t(count_), count_);
+    }
+  return now;
+}
+
 void CentreSourcesOnDevice::scatter_once() {
   Program& p = *single_program_;
   tables_.bind_terms();
@@ -251,7 +285,7 @@ void CentreSourcesOnDevice::scatter_again(Group& g, const scene::Execution& exec
   of_right.set_double("of_gradient", sigma_t / ((printed ? 1 : 3) * sigma_tr));
   of_right.dispatch(lanes * count_, 1, g.systems);
 
-  product(g, false, solution, along);
+  product(g, false, solution_vector, along);
   gradients(g, stage_miss);
   product(g, true, missed, slope);
   product(g, true, right, along);
@@ -360,6 +394,7 @@ void CentreSourcesOnDevice::light_surfaces(const scene::View& view, const Surfac
   set_view(p, view);
   p.set("gaussian_count", count_);
   p.set("sphere_count", objects_);
+  p.set("triangle_count", surfaces.triangles());
   for (std::size_t c = 0; c < 3; ++c) p.set_double(at_index("extinction", c), medium_.sigma_t[Eigen::Index(c)]);
   const std::vector<double> cosine = compensated_ray_marching::cosine_zonal(options_.order);
   for (std::size_t l = 0; l < cosine.size(); ++l)

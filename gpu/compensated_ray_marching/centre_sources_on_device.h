@@ -9,14 +9,16 @@
 #include "gpu/raster/first_hits.h"
 #include "gpu/timer.h"
 #include "methods/compensated_ray_marching/options.h"
+#include "methods/compensated_ray_marching/sphere_sets.h"
+#include "methods/compensated_ray_marching/warm_start.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu::smoke {
 
 class CentreSourcesOnDevice {
  public:
-  // `sum` and `medium` are of the same smoke, amplitudes above 0; the medium outlives this. Of the surfaces spheres cast shadows, planes
-  // none. The density is that of the march, for surfaces (null: no smoke), `middle` its middle; it outlives this. Stages of the timer: what
+  // `sum` and `medium` are of the same smoke, amplitudes above 0; the medium outlives this. Of the surfaces spheres cast shadows, and meshes
+  // as sets of spheres; planes none. The density is that of the march, for surfaces (null: no smoke), `middle` its middle; it outlives this. Stages of the timer: what
   // passes, the matrices. Throws Unavailable where the device has no room.
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
                         const std::vector<scene::Surface>&, bool scatters, const SmokeDensity*, const Point3& middle,
@@ -26,11 +28,15 @@ class CentreSourcesOnDevice {
   // are told to the device before they are looked at.
   void light(const std::vector<Rgb>& harmonics, StageTimer&, const scene::Execution&);
 
+  // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads.
+  void begin_with(const compensated_ray_marching::Solution&);
+  compensated_ray_marching::Solution solution() const;
+
   // Of each centre towards the camera, of either sign, in sources() [W/m^2/sr].
   void towards(const scene::View&);
   const Buffer& sources() const { return *sources_; }
 
-  // What surfaces, spheres and planes of Lambert's, reflect, into Lit of every pixel.
+  // What surfaces of Lambert's reflect, into Lit of every pixel.
   void light_surfaces(const scene::View&, const SurfacesOnDevice&, const Buffer& primitives, const Buffer& lit);
 
   int centres() const { return count_; }
@@ -67,7 +73,10 @@ class CentreSourcesOnDevice {
   const scene::Medium& medium_;
   compensated_ray_marching::Options options_;
   std::string single_only_;
-  int count_ = 0, objects_ = 0;
+  std::vector<scene::Gaussian> gaussians_;
+  int count_ = 0;
+  std::vector<compensated_ray_marching::Caster> casters_;
+  int objects_ = 0;
   bool scatters_ = false;
   CentreTables tables_;
   std::vector<compensated_ray_marching::Ordinate> directions_;  // of `directional`

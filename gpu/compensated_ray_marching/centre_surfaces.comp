@@ -1,10 +1,10 @@
 // What surfaces reflect of the environment past smoke and spheres, a pixel a work group: SourceRadiance::irradiance, of Lambert's.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "raster/view.glsl"
-#include "raster/solids.glsl"
+#include "raster/primitive.glsl"
 #include "wavelet_fog/lit.glsl"
 #include "compensated_ray_marching/passed.glsl"
-layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel, solids alone; -1: none
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
 layout(std430, binding = AT_LIGHT_BANDS) readonly buffer LightBands { double light[]; };     // [channel][band], lookup directions
 uniform double extinction[3];      // [1/m], of each channel
 uniform double cosine[SH_ORDER];   // of the angle to a normal, where it is above 0: zonal, times sqrt(4 pi / (2l+1))
@@ -17,8 +17,8 @@ void main() {
   }
   dvec3 origin, direction, normal;
   view_ray(dvec2(gl_WorkGroupID.xy) + 0.5LF, origin, direction);
-  double t = meet_solid(solids[primitive], origin, direction, normal);
-  int surface = solids[primitive].surface;
+  int surface;
+  double t = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
   if (dot(normal, direction) > 0) normal = -normal;
   clear_rows();
   for (int l = 0; l < SH_ORDER; ++l) band[l] = bits_of(cosine[l]);

@@ -32,12 +32,15 @@ using scene::View;
 
 class PreparedSmokeGpu final : public scene::Prepared {
  public:
-  PreparedSmokeGpu(std::shared_ptr<const Scene>, const Options&, std::string settings, const Execution&);
+  // Iterations begin with the last solution, if there is one.
+  PreparedSmokeGpu(std::shared_ptr<const Scene>, const Options&, std::string settings,
+                   compensated_ray_marching::Solution last, const Execution&);
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
+  std::unique_ptr<PreparedSmokeGpu> in_other_smoke(std::shared_ptr<const Scene>, const Execution&) const;
 
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
@@ -57,8 +60,9 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::shared_ptr<const Scene> first_, scene_;  // the first has the smoke
   Options options_;
   std::string settings_;
-  std::optional<SmokeField> smoke_;  // nothing where no medium extinguishes
-  bool scatters_ = false;            // the smoke, something of the light
+  compensated_ray_marching::Solution last_;  // of a frame before, where this one has none
+  std::optional<SmokeField> smoke_;          // nothing where no medium extinguishes
+  bool scatters_ = false;                    // the smoke, something of the light
   std::unique_ptr<MapProjection> projection_;
   std::optional<IncomingLight> incoming_;  // of grid
   std::optional<EnvironmentBands> bands_;  // of paper
@@ -78,6 +82,13 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
+std::vector<std::string> why_refused(const Scene& scene, const Options& options) {
+  std::vector<std::string> reasons = compensated_ray_marching::reasons_against(scene, options);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
+  for (const std::string& reason : smoke::reasons_against(scene, options)) reasons.push_back(reason);
+  return reasons;
+}
+
 // The same name again adds up.
 void append(std::vector<scene::StageTime>& times, const std::vector<scene::StageTime>& more) {
   for (const scene::StageTime& time : more) {
@@ -90,11 +101,12 @@ void append(std::vector<scene::StageTime>& times, const std::vector<scene::Stage
 }
 
 PreparedSmokeGpu::PreparedSmokeGpu(std::shared_ptr<const Scene> scene, const Options& options, std::string settings,
-                                   const Execution& execution)
+                                   compensated_ray_marching::Solution last, const Execution& execution)
     : first_(scene),
       scene_(std::move(scene)),
       options_(options),
       settings_(std::move(settings)),
+      last_(std::move(last)),
       context_(Context::get()),
       frame_(context_) {
   using compensated_ray_marching::ResidualStore;
@@ -153,6 +165,7 @@ void PreparedSmokeGpu::begin_grid(StageTimer& timer, const Execution& execution)
   if (!scatters_) return;
   columns_ = std::make_unique<SmokeColumns>(context_, *first_, *grid_, *density_, middle_);
   source_ = std::make_unique<SmokeSource>(context_, smoke_->medium(), options_, *grid_, *columns_);
+  source_->begin_with(last_);
   source_->light(*incoming_, timer, execution);
 }
 
@@ -166,6 +179,7 @@ void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& executi
   centres_ = std::make_unique<CentreSourcesOnDevice>(
       context_, smoke_ ? smoke_->centres() : no_smoke, smoke_ ? smoke_->medium() : clear, scene_->surfaces, scatters_,
       volume_ ? centre_density_.get() : density_.get(), middle_, options_, timer, execution);
+  centres_->begin_with(last_);
 }
 
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
@@ -180,6 +194,19 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
   scene_ = std::move(scene);
   surroundings_->become(*scene_);
   return light(execution);
+}
+
+// Without a solution nothing is kept: then the next frame is prepared anew. A frame without smoke passes on what it was given.
+std::unique_ptr<PreparedSmokeGpu> PreparedSmokeGpu::in_other_smoke(std::shared_ptr<const Scene> scene,
+                                                                   const Execution& execution) const {
+  if (!why_refused(*scene, options_).empty()) return nullptr;
+  const Use use(context_);
+  compensated_ray_marching::Solution now = source_    ? source_->solution()
+                                           : centres_ ? centres_->solution()
+                                                      : compensated_ray_marching::Solution{};
+  if (now.empty()) now = last_;
+  if (now.empty()) return nullptr;
+  return std::make_unique<PreparedSmokeGpu>(std::move(scene), options_, settings_, std::move(now), execution);
 }
 
 std::vector<scene::StageTime> PreparedSmokeGpu::light(const Execution& execution) {
@@ -401,18 +428,15 @@ std::vector<scene::SettingSpec> CompensatedRayMarchingGpu::settings() const {
 
 std::vector<std::string> CompensatedRayMarchingGpu::supports(const Scene& scene,
                                                              const scene::Settings& settings) const {
-  std::vector<std::string> reasons = compensated_ray_marching::CompensatedRayMarching().supports(scene, settings);
-  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  for (const std::string& reason : smoke::reasons_against(scene, compensated_ray_marching::read_options(settings)))
-    reasons.push_back(reason);
-  return reasons;
+  return why_refused(scene, compensated_ray_marching::read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> CompensatedRayMarchingGpu::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                               const scene::Settings& settings,
                                                                               const Execution& execution) const {
-  return std::make_unique<PreparedSmokeGpu>(std::move(scene), compensated_ray_marching::read_options(settings),
-                                            settings.canonical(), execution);
+  return std::make_unique<compensated_ray_marching::PreparedSequence<PreparedSmokeGpu>>(
+      std::make_unique<PreparedSmokeGpu>(std::move(scene), compensated_ray_marching::read_options(settings),
+                                         settings.canonical(), compensated_ray_marching::Solution{}, execution));
 }
 
 }  // namespace airlight::gpu

@@ -318,12 +318,43 @@ void SmokeSource::light(const IncomingLight& light, StageTimer& timer, const sce
   iterations_ = 0;
   error_ = 0;
   if (!multiple_) return;
-  const bool cold = !single_ || grey_ != light.grey();
-  if (cold) arrange(grey_ = light.grey());
+  bool cold = !single_ || grey_ != light.grey();
+  if (cold) {
+    arrange(grey_ = light.grey());
+    cold = !begin();
+    last_ = {};
+  }
   timer.begin("single scattering");
   for (const Group& g : groups_) scatter_once(g);
   timer.begin("multiple scattering");
   for (Group& g : groups_) scatter_again(g, cold, execution);
+}
+
+// Uploads what the last smoke's solution has at the nodes; false: not that of every light.
+bool SmokeSource::begin() {
+  const Eigen::Index bands = options_.order * options_.order;
+  std::vector<float> sources(std::size_t(lights_ * bands * cells_));
+  for (const Group& g : groups_)
+    for (int l = 0; l < g.lights; ++l) {
+      const Eigen::ArrayXXd start = at_nodes(last_, g.channels[std::size_t(l)], grid_, bands);
+      if (start.size() == 0) return false;
+      std::transform(start.reshaped().begin(), start.reshaped().end(),
+                     sources.begin() + long((g.first + l) * bands * cells_), [](double v) { return float(v); });
+    }
+  source_->upload(sources);
+  return true;
+}
+
+compensated_ray_marching::Solution SmokeSource::solution() const {
+  compensated_ray_marching::Solution now;
+  if (!multiple_ || !source_) return now;
+  const std::vector<float> sources = source_->download<float>();
+  const Eigen::Index bands = options_.order * options_.order;
+  now.nodes = grid_;
+  for (std::size_t c = 0; c < 3; ++c)
+    now.of_channel[c] =
+        Eigen::Map<const Eigen::ArrayXXf>(sources.data() + light_of_[c] * bands * cells_, cells_, bands).cast<double>();
+  return now;
 }
 
 void SmokeSource::towards(const scene::View& view, const Point3& middle) {

@@ -21,6 +21,10 @@ class SmokeSource {
   // they are looked at.
   void light(const compensated_ray_marching::IncomingLight&, StageTimer&, const scene::Execution&);
 
+  // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads.
+  void begin_with(compensated_ray_marching::Solution last) { last_ = std::move(last); }
+  compensated_ray_marching::Solution solution() const;
+
   // Logarithms of the source radiance by cell, in logarithms().
   void towards(const scene::View&, const Point3& middle);
   const Buffer& logarithms() const { return *logarithms_; }
@@ -36,6 +40,7 @@ class SmokeSource {
   };
   void arrange(bool grey);
   void upload_directions(const compensated_ray_marching::IncomingLight&);
+  bool begin();
   void scatter_once(const Group&);
   void scatter_again(Group&, bool cold, const scene::Execution&);
   void iterate(const Group&, int iteration);
@@ -50,6 +55,7 @@ class SmokeSource {
   compensated_ray_marching::Options options_;
   bool multiple_ = false, grey_ = false;
   compensated_ray_marching::NodeGrid grid_;
+  compensated_ray_marching::Solution last_;
   SmokeColumns& columns_;
   int cells_ = 0, directions_ = 0, fixed_ = 0, ordinates_ = 0, lights_ = 0;
   Vec3 cells_along_;

@@ -2,12 +2,12 @@
 // `directional`, of Lambert's.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "raster/view.glsl"
-#include "raster/solids.glsl"
+#include "raster/primitive.glsl"
 #include "wavelet_fog/lit.glsl"
 #define TO_LIGHT_OF_LANE
 #include "compensated_ray_marching/smoke_density.glsl"
 #include "compensated_ray_marching/smoke_column.glsl"
-layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };     // by pixel, solids alone; -1: none
+layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };     // by pixel; -1: none
 layout(std430, binding = AT_LIGHT_BANDS) readonly buffer LightParts { double light[]; };        // [channel][direction], times its weight
 layout(std430, binding = AT_SPHERES) readonly buffer Spheres { double spheres[]; };             // center, radius [m], surface; reflectances
 layout(std430, binding = AT_TOWARDS_LIGHT) readonly buffer TowardsLight { vec4 towards_light[]; };
@@ -39,8 +39,8 @@ void main() {
   }
   dvec3 origin, direction, normal;
   view_ray(dvec2(gl_WorkGroupID.xy) + 0.5LF, origin, direction);
-  double t = meet_solid(solids[primitive], origin, direction, normal);
-  int surface = solids[primitive].surface;
+  int surface;
+  double t = meet_primitive(primitive, origin, direction, view_forward, normal, surface);
   if (dot(normal, direction) > 0) normal = -normal;
   dvec3 point = origin + t * direction;
   vec3 sum = vec3(0);

@@ -46,6 +46,7 @@ void SurfacesByDirections::light(const scene::View& view, const SurfacesOnDevice
   surfaces.bind();
   set_view(p, view);
   p.set("sphere_count", count);
+  p.set("triangle_count", surfaces.triangles());
   p.set("directions", directions_);
   p.set("spacing", std::sqrt(4 * pi / directions_));
   p.set_double("middle", middle_);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "methods/compensated_ray_marching/diffusion_system.h"
+#include "methods/compensated_ray_marching/sphere_sets.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/math/spherical_harmonics.h"
@@ -28,11 +29,10 @@ CentreSources::CentreSources(const scene::GaussianSum& sum, const scene::Medium&
       options_(options),
       bands_(options.order),
       single_only_(compensated_ray_marching::single_only(sum, medium, options)) {
-  for (std::size_t i = 0; i < surfaces.size(); ++i)
-    if (const auto* sphere = std::get_if<scene::Sphere>(&surfaces[i].shape)) {
-      objects_.push_back(*sphere);
-      surface_of_.push_back(int(i));
-    }
+  for (const Caster& caster : casters_of(surfaces, options.paper.mesh_spheres)) {
+    objects_.push_back(caster.sphere);
+    surface_of_.push_back(caster.surface);
+  }
 }
 
 Rgb CentreSources::irradiance(const Point3& x, const Vec3& normal, int surface) const {
@@ -60,6 +60,21 @@ void CentreSources::light(const std::vector<scene::Light>& lights, bool scatters
   if (!single_only_.empty()) return;
   scatter_again();
   times_.push_back({"multiple scattering", watch.lap()});
+}
+
+void CentreSources::begin_with(const Solution& last) {
+  if (last.empty()) return;
+  before_.assign(3, Eigen::VectorXd::Zero(Eigen::Index(sum_.gaussians.size())));
+  for (int c = 0; c < 3; ++c)
+    if (Eigen::VectorXd start = at_centres(last, c, sum_.gaussians); start.size() > 0)
+      before_[std::size_t(c)] = std::move(start);
+}
+
+Solution CentreSources::solution() const {
+  Solution now;
+  now.centres = sum_.gaussians;
+  for (std::size_t c = 0; c < before_.size(); ++c) now.of_channel[c] = before_[c];
+  return now;
 }
 
 void CentreSources::scatter_again() {

@@ -5,6 +5,7 @@
 
 #include "methods/compensated_ray_marching/environment_bands.h"
 #include "methods/compensated_ray_marching/options.h"
+#include "methods/compensated_ray_marching/warm_start.h"
 #include "scene/renderer.h"
 
 namespace airlight::compensated_ray_marching {
@@ -16,13 +17,16 @@ std::string single_only(const scene::GaussianSum&, const scene::Medium&, const O
 class CentreSources {
  public:
   // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over. Of the surfaces spheres cast
-  // shadows, planes none.
+  // shadows, and meshes as sets of spheres; planes none.
   CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const std::vector<scene::Surface>&,
                 const Options&);
 
   // A light, or another. Conjugate gradients begin with the radiance before. `scatters`: the smoke does; else all sources are 0, and
   // light on surfaces is what is found.
   void light(const std::vector<scene::Light>&, bool scatters, const scene::Execution&);
+  // Where the first light begins: with the solution of the last frame's smoke, which `solution` gives.
+  void begin_with(const Solution&);
+  Solution solution() const;
 
   // At each centre, towards the camera, at least 0 where it is asked for between centres [W/m^2/sr].
   std::vector<Rgb> towards(const scene::Camera&) const;

@@ -311,6 +311,34 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
   times_.push_back({"multiple scattering", multiple_seconds});
 }
 
+void LitGrid::begin_with(const Solution& last, bool grey) {
+  const Eigen::Index bands = options_.order * options_.order;
+  for (Channels& group : channels_) {
+    // Diffusion lets light through thin smoke so fast that the last solution is no closer in its residual than nothing.
+    if (group.diffusion) continue;
+    const auto lights = Eigen::Index(grey ? 1 : group.which.size());
+    Moments start(grid_.cells.nodes(), lights * bands);
+    bool known = true;
+    for (Eigen::Index l = 0; l < lights && known; ++l) {
+      const Eigen::ArrayXXd one = at_nodes(last, group.which[std::size_t(l)], grid_, bands);
+      known = one.size() > 0;
+      if (known) start.middleCols(l * bands, bands) = one;
+    }
+    if (known) group.before = std::move(start);
+  }
+}
+
+Solution LitGrid::solution() const {
+  Solution now;
+  now.nodes = grid_;
+  const Eigen::Index bands = options_.order * options_.order;
+  for (const Channels& group : channels_)
+    for (std::size_t l = 0; group.before && l < group.which.size(); ++l)
+      now.of_channel[std::size_t(group.which[l])] =
+          group.before->middleCols(group.before->cols() == bands ? 0 : Eigen::Index(l) * bands, bands);
+  return now;
+}
+
 std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Execution& execution) const {
   std::vector<Rgb> values(std::size_t(grid_.cells.nodes()), Rgb::Zero());
   const auto fixed = Eigen::Index(fixed_);

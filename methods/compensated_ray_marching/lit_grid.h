@@ -9,6 +9,7 @@
 #include "methods/compensated_ray_marching/node_grid.h"
 #include "methods/compensated_ray_marching/options.h"
 #include "methods/compensated_ray_marching/p1_grid.h"
+#include "methods/compensated_ray_marching/warm_start.h"
 #include "scene/renderer.h"
 
 namespace airlight::compensated_ray_marching {
@@ -23,6 +24,10 @@ class LitGrid {
   bool aim(const IncomingLight&, const scene::Execution&);
   // The same; single and multiple scattering at the nodes. Iterations begin with the light before.
   void light(const IncomingLight&, const scene::Execution&);
+  // Where the first light begins: with the solution of the last frame's smoke, which `solution` gives; diffusion begins with nothing. Light
+  // without colour has one for all channels that have extinction and albedo in common.
+  void begin_with(const Solution&, bool grey);
+  Solution solution() const;
 
   // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node: of single scattering with as many bands of the phase
   // function as light has, of the rest with `order`. What is below 1e-6 of the greatest counts as that. Light dies away exponentially in

@@ -84,6 +84,8 @@ std::vector<scene::SettingSpec> option_settings() {
       choice_setting("solver", "cg", {"cg", "cg_scaled", "lsqr", "lsqr_scaled"},
                      "of paper's diffusion system: conjugate gradients on the normal equations, or LSQR; scaled: of "
                      "rows of length 1"),
+      integer_setting("mesh_spheres", "32", 0, 1000,
+                      "of paper: spheres that stand for a mesh which casts shadows; 0: meshes cast none"),
   };
 }
 
@@ -115,6 +117,7 @@ Options read_options(const scene::Settings& settings) {
   o.paper.transmittance = settings.choice<Transmittance>("transmittance");
   o.paper.store = settings.choice<ResidualStore>("residual_store");
   o.paper.solver = settings.choice<LeastSquaresSolver>("solver");
+  o.paper.mesh_spheres = int(settings.integer("mesh_spheres"));
   const bool of_grid = multiple == "ordinates" || multiple == "p1",
              of_paper = multiple == "as_printed" || multiple == "corrected";
   if (paper ? of_grid : of_paper)
@@ -144,8 +147,6 @@ std::vector<std::string> reasons_against(const scene::Scene& scene, const Option
   for (std::size_t i = 0; paper && i < scene.surfaces.size(); ++i) {
     const scene::Surface& surface = scene.surfaces[i];
     const std::string name = surface.name.empty() ? fmt::format("{}", i) : "'" + surface.name + "'";
-    if (std::holds_alternative<scene::TriangleMesh>(surface.shape))
-      reasons.push_back("surface " + name + " is a mesh, expected sphere or plane; variant = paper");
     if (!std::holds_alternative<scene::Lambert>(surface.material))
       reasons.push_back("surface " + name + " does not reflect as Lambert's; variant = paper");
   }

@@ -31,6 +31,7 @@ struct Options {
     Transmittance transmittance = Transmittance::paper_squared;
     LeastSquaresSolver solver = LeastSquaresSolver::cg;
     ResidualStore store = ResidualStore::automatic;
+    int mesh_spheres = 32;  // that stand for a mesh which casts shadows
   } paper;
 };
 

@@ -9,6 +9,7 @@
 #include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/lit_grid.h"
 #include "methods/compensated_ray_marching/smoke_volume.h"
+#include "methods/compensated_ray_marching/warm_start.h"
 #include "scene/background.h"
 #include "scene/camera_rays.h"
 #include "scene/math/special_functions.h"
@@ -41,11 +42,13 @@ Rgb exponentials(const Rgb& x) {
 
 class PreparedPicture final : public scene::Prepared {
  public:
-  PreparedPicture(std::shared_ptr<const Scene>, const Options&, std::string settings, const Execution&);
+  // Iterations begin with the last solution, if there is one.
+  PreparedPicture(std::shared_ptr<const Scene>, const Options&, std::string settings, Solution last, const Execution&);
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
+  std::unique_ptr<PreparedPicture> in_other_smoke(std::shared_ptr<const Scene>, const Execution&) const;
 
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
@@ -70,12 +73,13 @@ class PreparedPicture final : public scene::Prepared {
   std::optional<LitGrid> grid_;
   std::optional<CentreSources> centres_;
   std::optional<SmokeVolume> volume_;  // of paper through fitted smoke
+  Solution last_;                      // of a frame before, where this one has none
   std::vector<scene::StageTime> times_;
 };
 
 PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Options& options, std::string settings,
-                                 const Execution& execution)
-    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)) {
+                                 Solution last, const Execution& execution)
+    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), last_(std::move(last)) {
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium) && !smoke_box(medium).empty()) smoke_.emplace(medium, options_);
   scatters_ = smoke_ && scene::why_nothing_scatters(*scene_).empty();
@@ -94,6 +98,7 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
   slice_ = smoke_box(smoke_->medium()).size().maxCoeff() / options_.slices;
   if (paper()) {
     centres_.emplace(smoke_->centres(), smoke_->medium(), scene_->surfaces, options_);
+    centres_->begin_with(last_);
     if (smoke_->voxels()) {
       watch.lap();
       volume_.emplace(*smoke_, execution);
@@ -101,10 +106,12 @@ PreparedPicture::PreparedPicture(std::shared_ptr<const Scene> scene, const Optio
     }
   } else if (scatters_) {
     grid_.emplace(*scene_, smoke_->medium(), options_, *incoming_, execution);
+    grid_->begin_with(last_, incoming_->grey());
     times_.insert(times_.end(), grid_->times().begin(), grid_->times().end());
   }
   const std::vector<scene::StageTime> lit = light(execution);
   times_.insert(times_.end(), lit.begin(), lit.end());
+  if (multiple()) last_ = {};
 }
 
 std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution) {
@@ -137,6 +144,15 @@ std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_p
   return times;
 }
 
+// Without a solution nothing is kept: then the next frame is prepared anew. A frame without smoke passes on what it was given.
+std::unique_ptr<PreparedPicture> PreparedPicture::in_other_smoke(std::shared_ptr<const Scene> scene,
+                                                                 const Execution& execution) const {
+  Solution now = grid_ ? grid_->solution() : centres_ ? centres_->solution() : Solution{};
+  if (now.empty()) now = last_;
+  if (now.empty() || !reasons_against(*scene, options_).empty()) return nullptr;
+  return std::make_unique<PreparedPicture>(std::move(scene), options_, settings_, std::move(now), execution);
+}
+
 std::vector<scene::Stage> PreparedPicture::stages() const {
   const std::string none = "no medium extinguishes";
   const std::string dark = smoke_ ? scene::why_nothing_scatters(*scene_) : none;
@@ -156,26 +172,28 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
     if (again.empty())
       again = fmt::format("{} iterations, residual {:.1g}", centres_->iterations(), centres_->residual());
   }
-  return {{"single scattering", scatters_, scatters_ ? how : dark},
-          {"multiple scattering", multiple(), scatters_ ? again : dark},
-          {"residual", smoke_ && smoke_->with_residual(),
-           !smoke_                   ? none
-           : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
-           : paper()                 ? "the Gaussians are all"
-                                     : "the field itself is marched through"},
-          {"volume pass", volume_.has_value(),
-           volume_ ? fmt::format("density and source at {} x {} x {} voxels", smoke_->voxels()->size[0],
-                                 smoke_->voxels()->size[1], smoke_->voxels()->size[2])
-                   : "no Gaussians with voxels of variant = paper"},
-          {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
-          {"surfaces", behind_kept(),
-           !behind_kept() ? "nothing stands behind"
-           : paper() && scene_->geometry
-               ? fmt::format("what stands behind, through the smoke; {} spheres cast shadows, planes none",
-                             centres_->objects())
-               : "what stands behind, through the smoke"},
-          {"ambient", ambient_kept(),
-           ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
+  return {
+      {"single scattering", scatters_, scatters_ ? how : dark},
+      {"multiple scattering", multiple(), scatters_ ? again : dark},
+      {"residual", smoke_ && smoke_->with_residual(),
+       !smoke_                   ? none
+       : smoke_->with_residual() ? fmt::format("added to the Gaussians, from {}", smoke_->residual()->name())
+       : paper()                 ? "the Gaussians are all"
+                                 : "the field itself is marched through"},
+      {"volume pass", volume_.has_value(),
+       volume_ ? fmt::format("density and source at {} x {} x {} voxels", smoke_->voxels()->size[0],
+                             smoke_->voxels()->size[1], smoke_->voxels()->size[2])
+               : "no Gaussians with voxels of variant = paper"},
+      {"march", smoke_.has_value(), !smoke_ ? none : fmt::format("slices of {:.3g} m", slice_)},
+      {"surfaces", behind_kept(),
+       !behind_kept() ? "nothing stands behind"
+       : paper() && scene_->geometry
+           ? fmt::format("what stands behind, through the smoke; {} spheres cast shadows, those of meshes among them"
+                         "; planes none",
+                         centres_->objects())
+           : "what stands behind, through the smoke"},
+      {"ambient", ambient_kept(),
+       ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
 }
 
 // What the ray ends on sends back, without the smoke in between. Light that the smoke scatters onto surfaces is left out.
@@ -322,7 +340,8 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
 
 std::unique_ptr<scene::Prepared> prepare_picture(std::shared_ptr<const Scene> scene, const Options& options,
                                                  std::string settings, const Execution& execution) {
-  return std::make_unique<PreparedPicture>(std::move(scene), options, std::move(settings), execution);
+  return std::make_unique<PreparedSequence<PreparedPicture>>(
+      std::make_unique<PreparedPicture>(std::move(scene), options, std::move(settings), Solution{}, execution));
 }
 
 }  // namespace airlight::compensated_ray_marching

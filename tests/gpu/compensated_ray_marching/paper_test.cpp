@@ -11,6 +11,7 @@
 #include "scene/media/fitted.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/methods/compensated_ray_marching/risen.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
@@ -272,6 +273,12 @@ TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the
   for (const Given& more : {Given{}, Given{{"transmittance", "ol"}, {"order", "3"}}, Given{{"order", "6"}},
                             Given{{"transmittance", "directional"}}})
     compare(scene, paper(more));
+  // Meshes show shadows, and cast them as spheres.
+  auto meshes = std::make_shared<scene::Scene>(*scene);
+  meshes->surfaces[0].shape = scene::make_box({{-2, -1, -2}, {2, -0.8, 2}});
+  meshes->surfaces[1].shape = scene::make_box({{0.3, 0.4, 0.3}, {0.9, 0.7, 0.6}});
+  finish(*meshes);
+  for (const char* transmittance : {"hyb", "directional"}) compare(meshes, paper({{"transmittance", transmittance}}));
   scene->media[0].sigma_t = Rgb(3, 4, 5);
   scene::Backdrop backdrop{26, 18, {}, {}, true};
   for (int i = 0; i < 26 * 18; ++i) {
@@ -330,7 +337,16 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
     CHECK(std::abs(a.counters.at("multiple_error") - b.counters.at("multiple_error")) <
           1e-6 * a.counters.at("multiple_error"));
   }
-  CHECK_FALSE(on_device->next(scene_of(cloud(60), 5, 0.9, uneven()), {1, {}}));
+  // Other smoke, light with colour and without.
+  for (const auto& light : {uneven(), scene::make_constant_environment(Rgb::Ones())})
+    for (const double step : {0.01, 0.02}) {
+      const auto scene = scene_of(risen(cloud(60), step), 5, 0.9, light);
+      REQUIRE(on_cpu->next(scene, {1, {}}));
+      REQUIRE(on_device->next(scene, {1, {}}));
+      const scene::Film a = on_cpu->render(view_of(*scene), {1, {}}).film;
+      compare(a, on_device->render(view_of(*scene), {1, {}}).film);
+      CHECK(relative_l2(a, picture(cpu, scene, given), "airlight") > 1e-3);  // of nothing they would begin elsewhere
+    }
 }
 
 TEST_CASE("paper on the device: a map that turns is projected once, by the device",

@@ -9,6 +9,7 @@
 #include "scene/media/fitted.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
+#include "tests/methods/compensated_ray_marching/risen.h"
 #include "tests/methods/compensated_ray_marching/rough_sky.h"
 #include "tests/pictures.h"
 
@@ -71,7 +72,8 @@ void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = sm
 
 }  // namespace
 
-TEST_CASE("compensated march on the device: thin to thick, albedo to 1", "[gpu][compensated_ray_marching][slow][thorough]") {
+TEST_CASE("compensated march on the device: thin to thick, albedo to 1",
+          "[gpu][compensated_ray_marching][slow][thorough]") {
   if (!gpu::test::device()) return;
   for (const double sigma_t : {1e-3, 0.3, 4.0, 20.0})
     for (const double albedo : {0.5, 1.0}) {
@@ -236,7 +238,25 @@ TEST_CASE("compensated march on the device: the next frame's light as if prepare
   finish(*sun);
   REQUIRE(prepared->next(sun, {1, {}}));
   compare(picture(cpu, sun, small), prepared->render(view_of(*sun), {1, {}}).film);
-  CHECK_FALSE(prepared->next(scene_of(puffs(), 5, 0.9, uneven()), {1, {}}));
+}
+
+TEST_CASE("compensated march on the device: other smoke as if prepared anew, in fewer iterations",
+          "[gpu][compensated_ray_marching]") {
+  if (!gpu::test::device()) return;
+  const auto at = [](double step, double sigma_t) { return scene_of(risen(puffs(), step), sigma_t, 0.9, uneven()); };
+  const auto prepared = device.prepare(at(0, 4), {device.settings(), small}, {1, {}});
+  for (const auto& scene : {at(0.02, 0), at(0.02, 4.1)}) {
+    REQUIRE(prepared->next(scene, {1, {}}));
+    const scene::Rendering warm = prepared->render(view_of(*scene), {1, {}});
+    const scene::Rendering cold =
+        device.prepare(scene, {device.settings(), small}, {1, {}})->render(view_of(*scene), {1, {}});
+    compare(cold.film, warm.film);
+    if (scene->media[0].sigma_t[0] == 0) continue;
+    CHECK(warm.counters.at("iterations") > 0);
+    CHECK(warm.counters.at("iterations") < cold.counters.at("iterations"));
+  }
+  const auto once = device.prepare(at(0, 4), {device.settings(), {{"multiple", "none"}}}, {1, {}});
+  CHECK_FALSE(once->next(at(0.02, 4), {1, {}}));
 }
 
 TEST_CASE("compensated march on the device: a map that turns, and another, in the next frame",

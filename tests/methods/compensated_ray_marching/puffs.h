@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/methods/compensated_ray_marching/risen.h"
 #include "tests/pictures.h"
 
 namespace airlight::test {
