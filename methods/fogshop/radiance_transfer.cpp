@@ -92,7 +92,9 @@ RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int ray
     });
     rays_cast_ += std::accumulate(cast.begin(), cast.end(), 0.0);
   }
-  for (int bounce = 0; bounce < bounces; ++bounce) reflect(scene, directions, reach, execution);
+  if (bounces == 0) return;
+  const std::vector<std::vector<Seen>> seen = look_around(scene, directions, reach, execution);
+  for (int bounce = 0; bounce < bounces; ++bounce) reflect(scene, seen, 4 * pi / rays, execution);
 }
 
 // Radiance of every triangle of a mesh that directions of 1 in each harmonic make: what is open to its middle, and what
@@ -120,30 +122,27 @@ std::vector<std::vector<Rgb>> RadianceTransfer::sent_by_triangles(const scene::S
   return sent;
 }
 
-// One bounce more, for all that has been reflected so far.
-void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<Vec3>& directions, double reach,
-                               const scene::Execution& execution) {
-  const int size = order_ * order_;
-  std::vector<std::vector<std::vector<Rgb>>> sent(scene.surfaces.size());
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
-    if (!coefficients_[s].empty()) sent[s] = sent_by_triangles(scene, s);
-  std::vector<std::vector<float>> reflections(scene.surfaces.size());
+// Of every vertex of all meshes, one after another, the triangles that it sees from their outer side.
+std::vector<std::vector<RadianceTransfer::Seen>> RadianceTransfer::look_around(const scene::Scene& scene,
+                                                                               const std::vector<Vec3>& directions,
+                                                                               double reach,
+                                                                               const scene::Execution& execution) {
+  std::vector<std::vector<Seen>> seen;
   constexpr int chunk = 64;
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     if (coefficients_[s].empty()) continue;
     const auto& mesh = std::get<scene::TriangleMesh>(scene.surfaces[s].shape);
     const auto faces = faces_at_vertices(mesh);
     const int count = int(mesh.vertices.size());
-    reflections[s].assign(3 * std::size_t(count) * std::size_t(size), 0.0f);
+    const std::size_t first = seen.size();
+    seen.resize(first + std::size_t(count));
     std::vector<double> cast(std::size_t(count), 0.0);
     scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
-      std::vector<Rgb> sum(std::size_t(size), Rgb::Zero());
       for (int v = row * chunk; v < std::min(count, (row + 1) * chunk); ++v) {
         Vec3 outward = Vec3::Zero();
         for (const Vec3& face : faces[std::size_t(v)]) outward += face;
         if (!(outward.norm() > 0)) continue;
         outward.normalize();
-        std::fill(sum.begin(), sum.end(), Rgb::Zero());
         const Point3 start = scene.geometry->offset_origin(mesh.vertices[std::size_t(v)], outward, outward);
         for (const Vec3& direction : directions) {
           const double cosine = outward.dot(direction);
@@ -152,17 +151,43 @@ void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<Vec3
           const auto hit = scene.geometry->first_hit({start, direction}, reach);
           if (!hit || hit->triangle < 0) continue;
           const auto& met = std::get<scene::TriangleMesh>(scene.surfaces[std::size_t(hit->surface)].shape);
-          if (face_vector(met, met.triangles[std::size_t(hit->triangle)]).dot(direction) >= 0) continue;
-          const std::vector<Rgb>& from = sent[std::size_t(hit->surface)][std::size_t(hit->triangle)];
-          for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += cosine * from[k];
+          if (face_vector(met, met.triangles[std::size_t(hit->triangle)]).dot(direction) < 0)
+            seen[first + std::size_t(v)].push_back({hit->surface, hit->triangle, float(cosine)});
         }
-        for (int c = 0; c < 3; ++c)
-          for (int k = 0; k < size; ++k)
-            reflections[s][(3 * std::size_t(v) + std::size_t(c)) * std::size_t(size) + std::size_t(k)] =
-                float(sum[std::size_t(k)][c] * (4 * pi / double(directions.size())));
       }
     });
     rays_cast_ += std::accumulate(cast.begin(), cast.end(), 0.0);
+  }
+  return seen;
+}
+
+// One bounce more, for all that has been reflected so far. `solid_angle`: of a direction [sr].
+void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<std::vector<Seen>>& seen,
+                               double solid_angle, const scene::Execution& execution) {
+  const auto size = std::size_t(order_ * order_);
+  std::vector<std::vector<std::vector<Rgb>>> sent(scene.surfaces.size());
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+    if (!coefficients_[s].empty()) sent[s] = sent_by_triangles(scene, s);
+  std::vector<std::vector<float>> reflections(scene.surfaces.size());
+  constexpr int chunk = 64;
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const int count = int(coefficients_[s].size() / size);
+    reflections[s].assign(3 * std::size_t(count) * size, 0.0f);
+    scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
+      std::vector<Rgb> sum(size);
+      for (auto v = std::size_t(row * chunk); v < std::size_t(std::min(count, (row + 1) * chunk)); ++v) {
+        std::fill(sum.begin(), sum.end(), Rgb::Zero());
+        for (const Seen& each : seen[first + v]) {
+          const std::vector<Rgb>& from = sent[std::size_t(each.surface)][std::size_t(each.triangle)];
+          for (std::size_t k = 0; k < size; ++k) sum[k] += double(each.cosine) * from[k];
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+          for (std::size_t k = 0; k < size; ++k)
+            reflections[s][(3 * v + c) * size + k] = float(sum[k][Eigen::Index(c)] * solid_angle);
+      }
+    });
+    first += std::size_t(count);
   }
   reflections_ = std::move(reflections);
 }

@@ -50,7 +50,13 @@ class RadianceTransfer {
     std::array<double, 3> weight;
   };
   std::optional<Corners> corners(const scene::Scene&, const SurfacePoint&) const;
-  void reflect(const scene::Scene&, const std::vector<Vec3>& directions, double reach, const scene::Execution&);
+  struct Seen {  // from a vertex, in a direction at an angle from its normal
+    int surface, triangle;
+    float cosine;
+  };
+  std::vector<std::vector<Seen>> look_around(const scene::Scene&, const std::vector<Vec3>& directions, double reach,
+                                             const scene::Execution&);
+  void reflect(const scene::Scene&, const std::vector<std::vector<Seen>>&, double solid_angle, const scene::Execution&);
   std::vector<std::vector<Rgb>> sent_by_triangles(const scene::Scene&, std::size_t surface) const;
 
   int order_;
