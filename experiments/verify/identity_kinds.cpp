@@ -235,12 +235,12 @@ Check read_limits(const Value& v) {
 }  // namespace
 
 Check read_identity(const Value& v) {
-  const std::string& id = v["id"].text();
-  if (id == "furnace") return read_furnace(v);
-  if (id == "furnace-collisions") return read_collisions(v);
-  if (id == "limits") return read_limits(v);
-  if (id == "reciprocity") return read_reciprocity(v);
-  v["id"].complain("furnace, furnace-collisions, limits or reciprocity");
+  const Value expected = v["expected"];
+  if (expected.has("L")) return read_furnace(v);
+  if (expected.has("mean_collisions")) return read_collisions(v);
+  if (expected.has("sphere_thin_L1_over_chord_tau")) return read_limits(v);
+  if (expected.has("difference")) return read_reciprocity(v);
+  expected.complain("L, mean_collisions, sphere_thin_L1_over_chord_tau or difference");
 }
 
 }  // namespace airlight::experiments::verification

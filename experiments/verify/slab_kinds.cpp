@@ -5,6 +5,7 @@
 // cosine-weighted directions it is the share of diffuse light.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -119,11 +120,8 @@ std::vector<std::pair<double, double>> by_cosine(const Value& v) {
   for (const std::string& name : v.fields()) {
     double mu = 0;
     const Value field = v[name];
-    try {
-      mu = std::stod(name);
-    } catch (const std::exception&) {
-      field.complain("a cosine as its name");
-    }
+    const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), mu);
+    if (code != std::errc() || end != name.data() + name.size()) field.complain("a cosine as its name");
     if (!(mu > 0 && mu <= 1)) field.complain("a cosine in (0, 1] as its name");
     list.push_back({mu, field.number()});
   }

@@ -235,7 +235,7 @@ Check read_fogmap_depth(const Value& v) {
         const double back = sigma * scene::density_integral(fog, {s.ray.at(s.length), -s.ray.direction}, {0, s.length});
         const double floor = depth == 0 ? tolerance : 1e-300;
         return Outcome{{relative("optical depth", depth, got, tolerance, floor),
-                        relative("transmittance", clear, std::exp(-got), tolerance * (1 + depth)),
+                        relative("transmittance", clear, std::exp(-got), tolerance * (1 + std::abs(depth))),
                         relative("opacity", opaque, -std::expm1(-got), tolerance, floor),
                         relative("backwards", depth, back, tolerance, floor)}};
       }};

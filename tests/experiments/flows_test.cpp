@@ -174,6 +174,10 @@ TEST_CASE("figures of flows by hand", "[flow]") {
   CHECK(flow_figure("divergence_max", m) == Approx(1));
   CHECK(flow_figure("energy_growth", m) == Approx(0.5));
   CHECK(flow_figure("center_falls", m) == Approx(0.2));
+  // Energy that grows in many small steps has grown by all of them.
+  FlowMoment creeping;
+  creeping.totals = {totals(2, 1, 0.5), totals(1, 1, 0.5), totals(1.5, 1, 0.5), totals(1.75, 1, 0.5)};
+  CHECK(flow_figure("energy_growth", creeping) == Approx(0.75));
   FlowSample reference;
   reference.velocity = {3, 4, 0, 0, 0, 0};
   reference.density = {0, 0, 0, 0};

@@ -7,9 +7,10 @@ mutants.py BUILD --list               what there is: name, file and line, test; 
 mutants.py BUILD --survey FILE --tests A_test.cpp,B_test.cpp [--only FROM-TO] [--skip TEST]
                                       plants what chance finds in FILE (signs, constants, comparisons, terms), lists survivors
 
-BUILD is an up-to-date build folder of a preset that compiles file by file: build/develop, not build/release. Nothing in the source or in BUILD is changed: the planted source is compiled
-beside it and linked before the libraries. Exit code 0: all were found; 1: some survived, or a test fails without a bug;
-2: one cannot be planted (its line has changed) or does not compile.
+BUILD is an up-to-date build folder. Nothing in the source or in BUILD is changed: the planted source is compiled beside it and linked
+before the libraries. Where BUILD compiles sources in batches (preset release), functions of the batch may have the sound source's code
+within their own: what survives is planted in the whole batch, too. Exit code 0: all were found; 1: some survived, or a test fails
+without a bug; 2: one cannot be planted (its line has changed) or does not compile.
 """
 import argparse
 import json
@@ -39,22 +40,38 @@ class Builder:
         found = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "tests/airlight_tests"], capture_output=True,
                                text=True, check=True).stdout
         link = [line for line in found.splitlines() if " -o tests/airlight_tests " in line][-1]
-        self.libraries = link.split(" -o tests/airlight_tests ")[1].split(" && ")[0].split()
+        before, after = link.split(" -o tests/airlight_tests ")
+        self.libraries = after.split(" && ")[0].split()
+        # Objects of the program that lie in no library; a planted one stands for its own.
+        self.objects = [w for w in before.split() if w.endswith(".o") and not w.startswith("tests/")]
+        self.stands_for = {}
         self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/main.cpp")] or [ROOT])
         self.root = os.path.dirname(os.path.dirname(self.root)) if self.root.endswith("main.cpp") else self.root
+        self.batches = {}  # of the sources that are compiled together, where the preset does so
+        for batch in self.commands:
+            if os.path.dirname(batch) == os.path.join(self.build, "batches"):
+                for source in re.findall(r'^#include "(.+)"', read(batch), re.MULTILINE):
+                    self.batches[source] = batch
 
-    def compile(self, file, overlay):
-        """The object of a source file, with the files of `overlay` before those of the tree."""
-        c = self.commands.get(os.path.join(self.root, file))
+    def command(self, file):
+        return self.commands.get(os.path.join(self.root, file)) or self.commands.get(self.batches.get(file))
+
+    def compile(self, file, overlay, batch=True):
+        """The object of a source file, or of the batch it is in, with the files of `overlay` before those of the tree."""
+        c = self.command(file)
         if not c:
-            raise Cannot(f"is not compiled by itself in {self.build}; use a build of preset develop")
+            raise Cannot(f"{file} is not compiled in {self.build}")
         words = shlex.split(c.get("command") or "")
         words = [w for i, w in enumerate(words) if w not in ("-MD",) and not
                  (w in ("-MT", "-MF") or (i and words[i - 1] in ("-MT", "-MF")))]
         own = os.path.join(overlay, file)
-        object_file = os.path.join(overlay, file.replace("/", "_") + ".o")
+        alone = not batch or file not in self.batches  # a batch includes it by its name below the root
+        source = (own if os.path.exists(own) else os.path.join(self.root, file)) if alone else c["file"]
+        object_file = os.path.join(overlay, source.strip("/").replace("/", "_") + ".o")
+        if batch or file not in self.batches:
+            self.stands_for[object_file] = words[words.index("-o") + 1]
         words[words.index("-o") + 1] = object_file
-        words[words.index("-c") + 1] = own if os.path.exists(own) else c["file"]
+        words[words.index("-c") + 1] = source
         first = next(i for i, w in enumerate(words) if w.startswith("-I"))
         words.insert(first, "-I" + overlay)
         run = subprocess.run(words, cwd=c["directory"], capture_output=True, text=True)
@@ -63,8 +80,17 @@ class Builder:
         return object_file
 
     def link(self, objects, tests, program):
-        objects = objects + [os.path.join(self.build, "tests/CMakeFiles/airlight_tests.dir", t + ".o") for t in tests]
-        run = subprocess.run(["c++"] + objects + ["-o", program] + self.libraries, cwd=self.build, capture_output=True,
+        for test in dict.fromkeys("tests/" + t for t in tests):
+            c = self.command(test)
+            if not c:
+                raise Cannot(f"{test} is not compiled in {self.build}")
+            words = shlex.split(c["command"])
+            objects = objects + [os.path.join(self.build, words[words.index("-o") + 1])]
+        objects = list(dict.fromkeys(objects))  # several sources may be in one batch
+        replaced = {self.stands_for.get(o) for o in objects}
+        objects += [o for o in self.objects if o not in replaced]
+        # The first definition of a function is taken: the planted one.
+        run = subprocess.run(["c++", "-Wl,-z,muldefs"] + objects + ["-o", program] + self.libraries, cwd=self.build, capture_output=True,
                              text=True)
         if run.returncode:
             raise Cannot("does not link:\n" + run.stderr[-2000:])
@@ -115,8 +141,12 @@ def passes_planted(builder, m, number):
     if is_script(m):
         return script_passes(m, os.path.join(overlay, "scripts"))
     program = os.path.join(builder.scratch.name, "tests")
-    builder.link([builder.compile(f, overlay) for f in (m.compiled or [m.file])], [m.tests], program)
-    return builder.passes(program, [named(m.test)])
+    files = m.compiled or [m.file]
+    for batch in (False, True) if any(f in builder.batches for f in files) else (True,):
+        builder.link([builder.compile(f, overlay, batch) for f in files], [m.tests], program)
+        if not builder.passes(program, [named(m.test)]):
+            return False
+    return True
 
 
 def script_passes(m, scripts):

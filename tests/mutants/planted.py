@@ -60,6 +60,26 @@ TOML = "scene/load/parse_toml.cpp", "experiments/author_test.cpp"
 INSTANCES = "scene/media/vdb_parts.cpp", "scene/media/vdb_io_test.cpp"
 COLOURS = "scene/film_exr_read.cpp", "scene/film_test.cpp"
 PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
+FORCES = "reference/stable_fluids/forces.cpp", "reference/stable_fluids/laws_test.cpp"
+OBSTACLES = "reference/stable_fluids/obstacles.cpp", "reference/stable_fluids/laws_test.cpp"
+GRID_FLOW = "reference/stable_fluids/grid_flow.cpp", "reference/stable_fluids/laws_test.cpp"
+FLOW_TOTALS = "reference/stable_fluids/totals.cpp", "reference/stable_fluids/laws_test.cpp"
+FLOW_DIFFUSION = "reference/stable_fluids/diffusion.cpp", "reference/stable_fluids/laws_test.cpp"
+FLOW_METRICS = "experiments/flow_metrics.cpp", "experiments/flows_test.cpp"
+LEGENDRE_FILTER = "methods/legendre_fluids/confined_fluid.cpp", "methods/legendre_fluids/confined_space_test.cpp"
+FIT = "scene/convert/gaussian_fit.cpp", "scene/convert/fitted_sequence_test.cpp"
+PLACEMENT = "scene/convert/fit_placement.cpp", "scene/convert/gaussian_fit_test.cpp"
+RESIDUAL = "scene/convert/residual.cpp", "scene/convert/residual_test.cpp"
+PROJECTION = "scene/convert/legendre_projection.cpp", "scene/convert/legendre_projection_test.cpp"
+PRODUCTS = "scene/math/sh_product.cpp", "methods/compensated_ray_marching/harmonics_test.cpp"
+ORDINATES = "methods/compensated_ray_marching/discrete_ordinates.cpp", "methods/compensated_ray_marching/discrete_ordinates_test.cpp"
+WAVELETS = "methods/wavelet_fog/filters.cpp", "methods/wavelet_fog/decomposition_test.cpp"
+LEVELS = "methods/wavelet_fog/levels.cpp", "methods/wavelet_fog/decomposition_test.cpp"
+BLOCKS = "methods/wavelet_fog/blocks.cpp", "methods/wavelet_fog/decomposition_test.cpp"
+COMPRESSION = "methods/wavelet_fog/compression.cpp", "methods/wavelet_fog/compression_test.cpp"
+BETWEEN = "methods/wavelet_fog/interpolation.h", "methods/wavelet_fog/sun_test.cpp"
+SUN = "methods/wavelet_fog/sun_scattering.cpp", "methods/wavelet_fog/sun_test.cpp"
+PATHS = "methods/wavelet_fog/path_table.cpp", "methods/wavelet_fog/band_grid_test.cpp"
 
 
 def bug(name, place, old, new, test, compiled=()):
@@ -256,7 +276,85 @@ MUTANTS = [
         "a file without vectors is no success"),
     bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
         "a number out of tolerance is found"),
+    # Stable Fluids
+    bug("buoyancy of warmth 10 % too strong", FORCES, "0.5 * dt * gravity[a] * expansion", "0.55 * dt * gravity[a] * expansion",
+        "stable fluids: a warm column accelerates as its expansion says, a heavy one as its weight does"),
+    bug("buoyancy of weight 10 % too strong", FORCES, "0.5 * dt * gravity[a] * weight", "0.55 * dt * gravity[a] * weight",
+        "stable fluids: a warm column accelerates as its expansion says, a heavy one as its weight does"),
+    bug("sources 5 % too strong", FORCES, "Real(part.length() * (smoke", "Real(1.05 * part.length() * (smoke",
+        "stable fluids: a source brings its rate times its volume times its time"),
+    bug("sources act over whole steps", FORCES, "Real(part.length() * (smoke", "Real(dt * (smoke",
+        "stable fluids: a source brings its rate times its volume times its time"),
+    bug("vorticity confinement 30 % too strong", FORCES, "Real(epsilon * l.h)", "Real(1.3 * epsilon * l.h)",
+        "stable fluids: confinement accelerates a shear by epsilon h times its vorticity"),
+    bug("vorticity by half of the differences", FORCES, "Real(0.25 / l.h)", "Real(0.125 / l.h)",
+        "stable fluids: confinement accelerates a shear by epsilon h times its vorticity"),
+    bug("a swinging force as at the step's start", FORCES, "(std::sin(w * part.hi) - std::sin(w * part.lo)) / w", "std::cos(w * part.lo) * part.length()",
+        "stable fluids: a force that swings brings the integral of its cosine"),
+    bug("the layer of cells around obstacles counts as clear", OBSTACLES, "std::max(0, layer - 1)", "std::max(0, layer)",
+        "stable fluids: what is solid of a ball, and how far it is to it"),
+    bug("obstacles a layer of cells too large", OBSTACLES, "hits[passed].position[0] <= x)", "hits[passed].position[0] <= x + (passed % 2 ? -l.h : l.h))",
+        "stable fluids: what is solid of a ball, and how far it is to it"),
+    bug("decay by a step of Euler", GRID_FLOW, "std::exp(-problem_->decay * dt)", "1 - problem_->decay * dt",
+        "stable fluids: smoke decays as the exponential of its rate"),
+    bug("faces on a side have a whole cell of energy", FLOW_TOTALS, "? 0.25 : 0.5", "? 0.5 : 0.5",
+        "stable fluids: the energy of a wind is half its square times the box, its mass the density's"),
+    bug("a lid drags half", FLOW_DIFFUSION, "(on_faces ? 1 : 2) * share", "1 * share",
+        "stable fluids: viscosity between a wall and a lid ends in Couette's straight line"),
+    bug("energy grows against the previous frame", FLOW_METRICS, "before = std::min(before, t.energy)", "before = t.energy",
+        "figures of flows by hand"),
+    # Wavelet fog
+    bug("coarse grids lose mass", WAVELETS, "scaled(-1, 0.125, {-1, 2, 6, 2, -1})", "scaled(-1, 0.125, {-1, 2, 5, 2, -1})",
+        "wavelets: coarse grids keep the mass, restricted and clamped ones their sign"),
+    bug("details reach a level too far", LEVELS, "length * std::pow(mu, m)", "length * std::pow(mu, m - 1)",
+        "wavelet fog: the m-th level of details reaches mu^m of the way"),
+    bug("blocks twice as coarse as their bound", BLOCKS, "i, j)] <= most)) --level", "i, j)] <= 2 * most)) --level",
+        "wavelet fog: a bound below the error of a block asks for its cells"),
+    bug("large wavelets weigh as small ones", COMPRESSION, "std::ldexp(1.0, l + 1)", "std::ldexp(1.0, 1)",
+        "wavelet fog: of coefficients of all sizes those are kept that the map's norm needs most"),
+    bug("slopes of a table's far ends the other way", BETWEEN, "- w * slope_b", "+ w * slope_b",
+        "sun: a map's columns converge to the exact ones at every height", ["methods/wavelet_fog/sun_map.cpp"]),
+    bug("between rows a straight line", BETWEEN, "0.5 * t * (p[2] - p[0] + t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])))",
+        "t * (p[2] - p[1])", "sun: a map's columns converge to the exact ones at every height", ["methods/wavelet_fog/sun_map.cpp"]),
+    bug("the sun scattered backwards", SUN, "sun.light.to_light.dot(ray.direction)", "-sun.light.to_light.dot(ray.direction)",
+        "sun: pictures equal the quadrature's and the path tracer's"),
+    bug("all that is lost from a ray is scattered", SUN, "m->albedo * m->sigma_t * p", "m->sigma_t * p",
+        "sun: in even fog under a flat top the light is a closed form"),
+    bug("moments of half a part of the way", PATHS, "+= share * piece", "+= half * piece",
+        "wavelet fog: tables know factors of the height that are straight along a cell"),
+    # Discrete ordinates, harmonics, fits, residuals, projection
+    bug("a whole cell before the first node", ORDINATES, "        if (first) {\n          depth = 0.5 * way.step * extinct;", "        if (first) {\n          depth = way.step * extinct;",
+        "discrete ordinates: slabs"),
+    bug("all bands scatter as the mean does", ORDINATES, "phase_[std::size_t(std::sqrt(double(c % bands)))]", "phase_[0]", "discrete ordinates: slabs"),
+    bug("thin cells with a wrong series", ORDINATES, "t * (0.5 - t * (1. / 3 - t * (1. / 8", "t * (0.5 - t * (1. / 2 - t * (1. / 8",
+        "discrete ordinates: thin smoke in light that grows along a line"),
+    bug("the error as if nothing scattered again", ORDINATES, " / std::max(least, 1e-6)", "", "discrete ordinates: the error that is reported bounds that of slow convergence"),
+    bug("sources beyond a face are those before it", ORDINATES, "(1.5 * here - 0.5 * down)", "here",
+        "discrete ordinates: thin smoke in light that grows along a line"),
+    bug("products of two equal indices are even", PRODUCTS, "product[i] += value * (h[i] * f[k] + h[k] * f[i]);\n      product[k]",
+        "product[i] += value * (2 * h[i] * f[k]);\n      product[k]", "harmonics of the publication: its zonal functions, products, depths"),
+    bug("products without the highest bands", PRODUCTS, "c.l > a.l + b.l", "c.l >= a.l + b.l", "harmonics of the publication: its zonal functions, products, depths"),
+    bug("products by too few nodes", PRODUCTS, "(3 * order) / 2 + 1", "order", "harmonics of the publication: its zonal functions, products, depths"),
+    bug("a warm start in densities of the smoke", FIT, "g.amplitude / greatest_}", "g.amplitude}",
+        "the next frame begins with the Gaussians of the frame before, whatever its greatest density"),
+    bug("deletion by the square of the width", FIT, "std::pow(gaussians_[i].width, 3)", "std::pow(gaussians_[i].width, 2)",
+        "the Gaussian that is deleted is the one whose samples have the least sum of squares"),
+    bug("half of what a place gains", PLACEMENT, "-2 * g.amplitude * with_error - g", "-g.amplitude * with_error - g",
+        "what a Gaussian gains at its place is what the objective loses"),
+    bug("levels rounded down", RESIDUAL, "std::round(residual[i] / levels.step)", "std::floor(residual[i] / levels.step)",
+        "Gaussians and residual give the grid back to half a level"),
+    bug("levels at the threshold are kept", RESIDUAL, "std::abs(level) > options.threshold", "std::abs(level) >= options.threshold",
+        "a threshold leaves out the levels up to it"),
+    bug("Lanczos' factors of one coefficient more", PROJECTION, "std::sin(pi * k / n) / (pi * k / n)", "std::sin(pi * k / (n + 1)) / (pi * k / (n + 1))",
+        "a square column: what a jump costs, with and without Lanczos' factors"),
+    bug("the limiter leaves what is below 0", PROJECTION, "(1 - margin) * mean / (mean - least)", "(1 + 20 * margin) * mean / (mean - least)",
+        "the limiter leaves a positive polynomial of the same mass"),
+    bug("what is below 0 counts in the clamped error", PROJECTION, "(std::max(0.0, o) - e) * (std::max(0.0, o) - e)", "(o - e) * (o - e)",
+        "what is below 0 of a projection, and the error without it, by hand"),
+    bug("the share below 0 of a box of one", PROJECTION, "below / 8", "below / 4", "what is below 0 of a projection, and the error without it, by hand"),
     # Legendre fluids
+    bug("a filter that forgets that indices begin at 0", LEGENDRE_FILTER, "double(m) / (n - 1)", "double(m) / n",
+        "legendre fluids: a filter takes its rate from the highest index, and powers of the share from the others"),
     bug("the projection adds the gradient", CONFINED, "rate > 0 ? -1 / rate", "rate > 0 ? 1 / rate",
         "legendre fluids: the projection holds in boxes that are no cubes, up to 32 coefficients"),
     bug("the pressure of a cube", CONFINED, "rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a])", "rate += wall_rates_[i[a] - 1]",

@@ -1,8 +1,8 @@
 // A sweep of every quantity of a scene over all powers of ten that a double holds.
 //
 // Each case has a law: the picture at s is factor(s)/factor(base) times that at `base`, to `law`; every renderer is
-// held to it by its own picture at `base`, and there by the truth: the deterministic quadrature, or many paths of one
-// scattering under an environment. Where no law holds the truth is made at every s. Outcome of one value for one
+// held to it by its own picture at `base`, and there by the truth: the deterministic quadrature, or many paths, of one
+// scattering under an environment, of all where the renderer has all. Where no law holds the truth is made at every s. Outcome of one value for one
 // renderer: right; right, but for an approximation that its picture warns of; refused at loading; refused by name
 // (supports, or an error while it renders); wrong.
 #pragma once

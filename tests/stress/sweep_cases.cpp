@@ -86,6 +86,32 @@ std::string grid(const Factors& f) {
                     point(-0.6 * f.length, -0.6 * f.length, -0.6 * f.length) + "\nvalues = [" + values + "]");
 }
 
+std::string sunny(const Factors& f) { return camera(f.length) + sun + "irradiance = " + number(3 * f.light) + "\n"; }
+
+// Fog over the ground, thinner with the height.
+std::string fogmap(const Factors& f) {
+  std::string values;
+  for (int i = 0; i < 16; ++i) values += number((5 * i % 7 + 1) / 7.0 * f.density) + ", ";
+  const double l = f.length;
+  return sunny(f) + medium("fogmap", f,
+                           "degree = 1\ncell = " + number(0.5 * l) + "\ncorner = [" + number(-l) + ", " + number(-l) +
+                               "]\nsize = [4, 4]\nvalues = [" + values +
+                               "]\nprofile = { type = 'layers', heights = " + point(-l, 0.2 * l, l) +
+                               ", factors = [1, 0.6, 0] }\nregion = { type = 'slab', normal = [0, 1, 0], lo = " +
+                               number(-l) + ", hi = " + number(l) + " }");
+}
+
+// A polynomial of degree 2, 1, 1, above 0 in its box.
+std::string polynomial(const Factors& f) {
+  const double l = f.length, d = f.density;
+  std::string values;
+  for (const double c : {2.0, 0.3, 0.2, 0.1, -0.4, 0.1, 0.05, 0.0, -0.3, 0.05, 0.0, 0.1})
+    values += number(c * d) + ", ";
+  return sunny(f) + medium("legendre", f,
+                           "lo = " + point(-l, -0.8 * l, -l) + "\nhi = " + point(l, 0.8 * l, l) +
+                               "\nsize = [3, 2, 2]\ncoefficients = [" + values + "]");
+}
+
 // One pixel, whose ray passes through the origin along -z.
 const std::string pinhole =
     "camera = { position = [0, 0, 4], look_at = [0, 0, 0] }\nfilm = { width = 1, height = 1 }\n";
@@ -188,6 +214,8 @@ std::vector<SweepCase> sweep_cases() {
   add_laws(cases, "grid", grid, false);
   add_laws(cases, "sky", sky, false);
   add_laws(cases, "harmonics", harmonics, false);
+  add_laws(cases, "fogmap", fogmap, false);
+  add_laws(cases, "polynomial", polynomial, false);
   // A half space: nothing but the angles matters, to 1/(extinction * radius).
   const auto thick = [](double s) { return ball({1, s, 1, 1}); };
   cases.push_back({"extinction, thick", "ball", thick, one, 1e5, 1e5, 1e301, "airlight", 1e-4});

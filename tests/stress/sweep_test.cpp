@@ -34,7 +34,7 @@ std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std
       if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " variant=paper multiple=none");
       continue;
     }
-    specs.push_back(name);
+    specs.push_back(name == "wavelet_fog" ? name + " sun=true" : name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
     if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
     if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian") specs.push_back(name + " variant=paper");
@@ -60,7 +60,9 @@ void run(int step, const std::vector<std::string>& renderers, const char* file) 
 }  // namespace
 
 TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep][slow]") {
-  run(11, {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes", "compensated_ray_marching"},
+  run(11,
+      {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes", "compensated_ray_marching",
+       "wavelet_fog", "legendre_fluids"},
       nullptr);
 }
 

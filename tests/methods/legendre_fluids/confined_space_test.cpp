@@ -108,4 +108,21 @@ TEST_CASE("legendre fluids: filters keep the divergence and the mass", "[legendr
   CHECK(fluid.counters().at("energy filtered") == Approx(energy - fluid.energy()));
 }
 
+TEST_CASE("legendre fluids: a filter takes its rate from the highest index, and powers of the share from the others",
+          "[legendre_fluids]") {
+  const double rate = 3, dt = 0.1, order = 4;
+  ConfinedOptions options;
+  options.filter_carried = rate;
+  options.filter_order = order;
+  ConfinedFluid fluid(2, 8, Vec3(1, 0.5, 1), {}, options);
+  fluid.density = Array::Ones(fluid.space().scalars());
+  fluid.finish(dt);
+  const auto left = [&](int i, int j) { return fluid.density[8 * i + j]; };
+  CHECK(left(0, 0) == 1);
+  CHECK(left(7, 0) == Approx(std::exp(-rate * dt)).epsilon(1e-12));
+  CHECK(left(0, 7) == Approx(std::exp(-rate * dt)).epsilon(1e-12));
+  const double shares = std::pow(2.0 / 7, order) + std::pow(5.0 / 7, order);
+  CHECK(left(2, 5) == Approx(std::exp(-rate * dt * shares)).epsilon(1e-12));
+}
+
 }  // namespace confined_space_test

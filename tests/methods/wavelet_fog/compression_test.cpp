@@ -68,4 +68,20 @@ TEST_CASE("wavelet fog: of equal weights the same coefficients are kept every ti
   }
 }
 
+// Haar's wavelets are orthogonal: what is left out is its own norm, and a wavelet's norm is its height times the side of its square.
+TEST_CASE("wavelet fog: of coefficients of all sizes those are kept that the map's norm needs most", "[wavelet_fog]") {
+  Coefficients c{{{0, 0}, {8, 8}}, std::vector<double>(64, 5.0)};
+  for (int j = 0; j < 8; ++j)
+    for (int i = 0; i < 8; ++i) {
+      double& value = c.values[std::size_t(8 * j + i)];
+      value += i < 4 ? 0.4 : -0.4;                   // one wavelet of norm 0.4 * 8
+      if (i < 2 && j < 2) value += i == j ? 1 : -1;  // one of norm 1 * 2
+    }
+  const double norm = std::sqrt(64 * 25 + 64 * 0.16 + 4);
+  CHECK(l2_norm(c, 0) == Approx(norm).epsilon(1e-14));
+  CHECK(compress(c, family("haar"), 3, 1.0 / 64).error == Approx(std::sqrt(64 * 0.16 + 4) / norm).epsilon(1e-12));
+  CHECK(compress(c, family("haar"), 3, 2.0 / 64).error == Approx(2 / norm).epsilon(1e-12));
+  CHECK(compress(c, family("haar"), 3, 3.0 / 64).error < 1e-14);
+}
+
 }  // namespace compression_test

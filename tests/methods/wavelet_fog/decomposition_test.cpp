@@ -62,6 +62,7 @@ TEST_CASE("wavelets: coarse grids keep the mass, restricted and clamped ones the
     const auto analysed = approximations(c, family(families[degree]).p_tilde, 3);
     const double kept = std::accumulate(analysed[3].values.begin(), analysed[3].values.end(), 0.0);
     const Coefficients positive = clamped(analysed[3]);
+    CHECK(kept * 64 == Approx(mass).epsilon(1e-13));
     CHECK(*std::min_element(positive.values.begin(), positive.values.end()) >= 0);
     CHECK(std::accumulate(positive.values.begin(), positive.values.end(), 0.0) == Approx(kept).epsilon(1e-13));
   }
@@ -98,6 +99,41 @@ TEST_CASE("wavelet fog: levels summed equal one grid at a time, and the map wher
             REQUIRE(one == Approx(scene::integral(map, profile, line, {0, length})).epsilon(1e-12).margin(1e-13));
         }
       }
+}
+
+// Columns of 1 and 0: a block of two is 1/2, off by 1/2 all along a ray that stays in one of them. Its error is its bound.
+TEST_CASE("wavelet fog: a bound below the error of a block asks for its cells", "[wavelet_fog]") {
+  Coefficients c{{{0, 0}, {8, 8}}, std::vector<double>(64)};
+  for (std::size_t at = 0; at < c.values.size(); ++at) c.values[at] = at % 2 ? 0 : 1;
+  const Levels levels = make_levels(scene::SplineMap(0, c.range, c.values), "haar", Coarse::wavelet, 1, false);
+  const Blocks blocks(levels, 1, true);
+  const scene::MapLine line{4.1, 2.5, 0, 1, 0, 0};
+  const auto depth = [&](double most) {
+    Visits visits;
+    return bounded_depth(levels, blocks, scene::SameAtAllHeights{}, line, {0, 0.8}, most, infinity, visits);
+  };
+  CHECK(depth(0.51) == Approx(0.4).epsilon(1e-12));
+  for (const double most : {0.49, 0.3, 0.01}) CHECK(depth(most) == Approx(0.8).epsilon(1e-12));
+}
+
+// A ramp is the same on every grid over whole steps. What a level leaves out is the way beyond its reach, length mu^m.
+TEST_CASE("wavelet fog: the m-th level of details reaches mu^m of the way", "[wavelet_fog]") {
+  Coefficients c{{{0, 0}, {64, 64}}, std::vector<double>(64 * 64, 0.0)};
+  for (std::size_t at = 0; at < c.values.size(); ++at) c.values[at] = 0.01 * double(at % 64);  // a ramp along u
+  const Levels levels = make_levels(scene::SplineMap(0, c.range, c.values), "haar", Coarse::restricted, 2, true);
+  const scene::HeightProfile profile = scene::SameAtAllHeights{};
+  // Along u from cell 4: a grid l levels up has steps of 2^l cells.
+  const auto depth = [](double from, double to, int step) {
+    double sum = 0;
+    for (double t = from; t < to; t += 1) sum += 0.01 * (std::floor((4 + t) / step) * step + 0.5 * (step - 1));
+    return sum;
+  };
+  Visits visits;
+  const scene::MapLine line{4, 32.5, 0, 1, 0, 0};
+  const double found = telescoped_depth(levels, profile, line, {0, infinity}, 36, 0.5, visits);
+  // The finest to 36 mu^2 = 9 cells, the next to 18, the coarsest to the end; these ends lie within steps, where the grids differ.
+  CHECK(found == Approx(depth(0, 9, 1) + depth(9, 18, 2) + depth(18, 36, 4)).epsilon(1e-12));
+  CHECK(found != Approx(depth(0, 36, 1)).epsilon(1e-4));
 }
 
 TEST_CASE("wavelet fog: skipping is exact, bounds keep their tolerance", "[wavelet_fog]") {

@@ -179,6 +179,24 @@ TEST_CASE("each minimiser goes on from the bounds", "[gaussian_fit][convert]") {
   }
 }
 
+TEST_CASE("what a Gaussian gains at its place is what the objective loses", "[gaussian_fit][convert]") {
+  const VoxelGrid grid = smoke(20);
+  const FitBounds bounds{{Point3::Constant(-0.5), Point3::Constant(19.5)}, {0.7, 1.8}, {0.01, 1}};
+  const float greatest = *std::max_element(grid.values.begin(), grid.values.end());
+  FitObjective<float> objective(grid.size, grid.values.data(), 1 / greatest, 3, 2);
+  std::vector<Gaussian> gaussians = place_gaussians(grid.size, grid.values.data(), 1 / greatest, 20, bounds);
+  const double before = objective.value(gaussians);
+  const Placed placed = place_at(objective, bounds, missing_places(objective, bounds, 1).at(0));
+  REQUIRE(placed.gain > 0);
+  gaussians.push_back(placed.gaussian);
+  CHECK(before - objective.value(gaussians) == Approx(placed.gain).epsilon(1e-4));
+  // Of these widths none gains more by another amplitude.
+  for (const double factor : {0.9, 1.1}) {
+    gaussians.back().amplitude = factor * placed.gaussian.amplitude;
+    CHECK(before - objective.value(gaussians) < placed.gain);
+  }
+}
+
 TEST_CASE("more Gaussians fit better, and what is deposited is so", "[gaussian_fit][convert]") {
   const VoxelGrid grid = smoke(32);
   double last = 1;

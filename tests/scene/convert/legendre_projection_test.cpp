@@ -163,6 +163,19 @@ TEST_CASE("the limiter leaves a positive polynomial of the same mass", "[legendr
   }
 }
 
+// 1 in the half x > 0: r = 1/2 + 3/4 x, below 0 for x < -2/3, off by 1/8 in squares, of which 1/144 lies below 0.
+TEST_CASE("what is below 0 of a projection, and the error without it, by hand", "[legendre][convert]") {
+  ProjectionOptions options = flat(2, false, false);
+  options.shape = {2, 1, 1};
+  const LegendreProjection half = project_to_legendre(of(Homogeneous{1}, Box{{0, -1, -1}, {1, 1, 1}}), options);
+  CHECK(half.field->value({0.4, 0.1, -0.3}) == Approx(0.5 + 0.75 * 0.4).epsilon(1e-12));
+  CHECK(half.negative_share == Approx(1.0 / 6).epsilon(1e-12));
+  CHECK(half.error == Approx(std::sqrt(1.0 / 8)).epsilon(1e-12));
+  CHECK(half.clamped_error == Approx(std::sqrt(1.0 / 8 - 1.0 / 144)).epsilon(1e-12));
+  CHECK(half.mass_ratio == Approx(1).epsilon(1e-12));
+  CHECK(half.theta == 1);
+}
+
 TEST_CASE("a projection written as a file is read back bit for bit", "[legendre][convert]") {
   const TemporaryFolder folder;
   const LegendreProjection result = project_to_legendre(column(), flat(6, true, true));

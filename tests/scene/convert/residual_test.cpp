@@ -110,6 +110,15 @@ TEST_CASE("an exact residual gives the original back bit for bit", "[residual]")
 }
 
 // Rows 18 to 20 of the stress list.
+TEST_CASE("a threshold leaves out the levels up to it", "[residual]") {
+  QuantisationOptions options;
+  options.step = 0.5;
+  options.threshold = 3;
+  const ResidualLevels levels = quantised({8, 1, 1}, {80, 1.5, -1.5, 2, -2, 1.74, 1.76, 0.2}, options);
+  CHECK(levels.step == 0.5);
+  CHECK(levels.values == std::vector<std::int8_t>{127, 0, 0, 4, -4, 0, 4, 0});
+}
+
 TEST_CASE("constant density, no residual, a dense one, one voxel and two", "[residual]") {
   const VoxelGrid full = constant({12, 12, 12}, 1.5f);
   for (const GaussianSum& sum : {one_for(full, 4), GaussianSum{}}) {
