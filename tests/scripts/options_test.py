@@ -289,7 +289,9 @@ class Build(Machine):
         code, out, err = self.run_script("test", "--jobs", "3")
         self.assertEqual((code, err), (0, ""), out)
         self.assertTrue(self.calls("cmake")[-1].endswith("--parallel 3"))
-        self.assertTrue(self.calls("ctest")[-1].endswith("-j 3"))
+        self.assertTrue(self.calls("ctest")[-1].endswith("-j 3 --label-exclude thorough"))
+        self.assertEqual(self.run_script("test", "--all")[0], 0)
+        self.assertNotIn("thorough", self.calls("ctest")[-1])
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ void run(int step, const std::vector<std::string>& renderers, const char* file) 
 
 }  // namespace
 
-TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep][slow]") {
+TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep][slow][thorough]") {
   run(11,
       {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes", "compensated_ray_marching",
        "wavelet_fog", "legendre_fluids"},
