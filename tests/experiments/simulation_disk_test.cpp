@@ -58,7 +58,8 @@ TEST_CASE("a simulation whose files grow too long stops with a line, and goes on
   CHECK(files_of(folder.path() / "broken") == files_of(folder.path() / "whole"));
 }
 
-TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on with the same bits", "[simulation][skips]") {
+TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on with the same bits",
+          "[simulation][skips]") {
   const TemporaryFolder folder;
   if (!can_mount(folder)) {
     WARN("test skipped: no file system can be mounted here");

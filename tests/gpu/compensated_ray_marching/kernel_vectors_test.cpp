@@ -191,7 +191,8 @@ void main() {
 }
 
 // The march itself, of a source radiance that is given: one ray through a voxel that is all the smoke.
-TEST_CASE("slices of even smoke on the device add up to the oracle's sums", "[gpu][compensated_ray_marching][thorough]") {
+TEST_CASE("slices of even smoke on the device add up to the oracle's sums",
+          "[gpu][compensated_ray_marching][thorough]") {
   gpu::Context* context = gpu::test::device();
   if (!context) return;
   const gpu::Use use(*context);

@@ -213,7 +213,8 @@ TEST_CASE("paper on the device: the eye within, from above, far away", "[gpu][co
   compare(scene);
 }
 
-TEST_CASE("paper on the device: what Gaussians leave of voxels, turned", "[gpu][compensated_ray_marching][paper][thorough]") {
+TEST_CASE("paper on the device: what Gaussians leave of voxels, turned",
+          "[gpu][compensated_ray_marching][paper][thorough]") {
   if (!gpu::test::device()) return;
   auto grid = std::make_shared<scene::VoxelGrid>();
   grid->size = {9, 7, 8};

@@ -97,7 +97,8 @@ TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendr
   }
 }
 
-TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems", "[gpu][legendre_fluids][thorough]") {
+TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems",
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto flow = rising_blob(0.5);
   for (const char* closure : {"upwind", "least_squares"}) {

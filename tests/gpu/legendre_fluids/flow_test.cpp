@@ -88,7 +88,8 @@ std::vector<std::string> objections(const FlowProblem& problem, const Given& set
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps", "[gpu][legendre_fluids][thorough]") {
+TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps",
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   struct Case {
     int dimensions;

@@ -74,7 +74,8 @@ TEST_CASE("legendre light on the device: the paper's systems from thin to black"
     }
 }
 
-TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients", "[gpu][legendre_fluids][thorough]") {
+TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients",
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   compare("8", oblique({4, 4, 4}, 5), paper("upwind", 8));
   compare("8", oblique({6, 6, 6}, 5), paper("least_squares", 8));
@@ -125,7 +126,8 @@ TEST_CASE("legendre light on the device: the paper's systems with an albedo that
 }
 
 // Depths in front of the box, in it, behind it, and none; flakes, drawn by the camera.
-TEST_CASE("legendre light on the device: the paper's systems before pictures with depth", "[gpu][legendre_fluids][thorough]") {
+TEST_CASE("legendre light on the device: the paper's systems before pictures with depth",
+          "[gpu][legendre_fluids][thorough]") {
   if (!gpu::test::device()) return;
   const auto with_ends = [](ScenePointer scene, double step) {
     auto picture = std::make_shared<scene::Backdrop>();

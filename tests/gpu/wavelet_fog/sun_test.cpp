@@ -194,7 +194,8 @@ scene::Film rows_of(const scene::Film& film, int first, int last) {
 
 }  // namespace
 
-TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU", "[gpu][wavelet_fog][slow][thorough]") {
+TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU",
+          "[gpu][wavelet_fog][slow][thorough]") {
   if (!gpu::test::device()) return;
   // Rays along 2048 cells: more loops than a dispatch has on llvmpipe.
   const auto large = sunny(1, profiles[1], {{-25, 1.2, 0.1}, {20, 0.9, 0}}, {0.5, 0.4, 0.3});
