@@ -1,20 +1,30 @@
 # Draws memory_by_cells.blob.svg and memory_by_cells.blob.png from memory_by_cells.blob.csv: run gnuplot on this file in its folder.
 data = "memory_by_cells.blob.csv"
 set datafile separator comma
-set title "Memory: blob" noenhanced
-set xlabel "cells along a side" noenhanced
-set ylabel "growth of the program [MiB]" noenhanced
+set title 'Memory: blob' noenhanced
+set xlabel 'cells along a side' noenhanced
+set ylabel 'growth of the program [MiB]' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:36.8]
-set yrange [0:2.13379]
+set xrange [0:73.6]
+set logscale y
+set format y "%g"
+set yrange [1.69833:19.1326]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "memory_by_cells.blob.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'semi-Lagrangian', \
+     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'MacCormack', \
+     data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'BFECC', \
+     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "memory_by_cells.blob.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'semi-Lagrangian', \
+     data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'MacCormack', \
+     data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'BFECC', \
+     data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle

@@ -1,9 +1,9 @@
 # Draws energy.swirl.svg and energy.swirl.png from energy.swirl.csv: run gnuplot on this file in its folder.
 data = "energy.swirl.csv"
 set datafile separator comma
-set title "Energy left of a swirl: swirl" noenhanced
-set xlabel "time [s], 100 steps each" noenhanced
-set ylabel "kinetic energy" noenhanced
+set title 'Energy left of a swirl: swirl' noenhanced
+set xlabel 'time [s], 100 steps each' noenhanced
+set ylabel 'kinetic energy' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -14,19 +14,19 @@ set format y "%g"
 set yrange [0.000479063:0.262877]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "energy.swirl.svg"
-plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "semi-Lagrangian, cubic", \
-     data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "MacCormack", \
-     data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "MacCormack, clamped", \
-     data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "MacCormack, reverted", \
-     data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title "BFECC", \
-     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped"
+plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'semi-Lagrangian', \
+     data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'semi-Lagrangian, cubic', \
+     data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'MacCormack', \
+     data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title 'MacCormack, clamped', \
+     data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title 'MacCormack, reverted', \
+     data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title 'BFECC', \
+     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title 'BFECC, clamped'
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "energy.swirl.png"
-plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "semi-Lagrangian", \
-     data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "semi-Lagrangian, cubic", \
-     data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "MacCormack", \
-     data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title "MacCormack, clamped", \
-     data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title "MacCormack, reverted", \
-     data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title "BFECC", \
-     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title "BFECC, clamped"
+plot data index 0 using 2:5 with lines lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'semi-Lagrangian', \
+     data index 2 using 2:5 with lines lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'semi-Lagrangian, cubic', \
+     data index 4 using 2:5 with lines lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'MacCormack', \
+     data index 6 using 2:5 with lines lc rgb "#CC79A7" pt 13 ps 0.7 lw 1.6 title 'MacCormack, clamped', \
+     data index 8 using 2:5 with lines lc rgb "#E69F00" pt 11 ps 0.7 lw 1.6 title 'MacCormack, reverted', \
+     data index 10 using 2:5 with lines lc rgb "#56B4E9" pt 6 ps 0.7 lw 1.6 title 'BFECC', \
+     data index 12 using 2:5 with lines lc rgb "#000000" pt 4 ps 0.7 lw 1.6 title 'BFECC, clamped'
