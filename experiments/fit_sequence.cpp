@@ -154,7 +154,7 @@ FittedFrame frame_from(const json& j) {
   return f;
 }
 
-// Of all of a record but the checksum itself.
+// The checksum of a record: it covers everything but itself.
 std::string checksum_of(json record) {
   record.erase("checksum");
   return content_key(record.dump());

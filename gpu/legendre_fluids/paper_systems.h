@@ -18,7 +18,8 @@ constexpr double most_weight = 1000;  // of least squares: single precision's 7e
 
 class PaperSystems {
  public:
-  // Of a medium that extinguishes, under lights that shine, one or more. Keeps references. Throws Unavailable as Buffer does.
+  // Needs a medium that extinguishes and at least one light, all of them shining. The object keeps references to its arguments.
+  // Throws Unavailable where the device has no room for its buffers.
   PaperSystems(Context&, const legendre_fluids::PaperMedium&, const std::vector<scene::DirectionalLight>&,
                const legendre_fluids::PaperOptions&, const std::array<bool, 3>& moving);
 

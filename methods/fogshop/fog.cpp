@@ -22,7 +22,7 @@ using scene::GridPointer;
 using scene::Homogeneous;
 using scene::LegendrePointer;
 using scene::Medium;
-// Of the phase functions that are known.
+// The mean cosine of isotropic and Henyey-Greenstein scattering; nothing for other phase functions, which Fogshop refuses.
 std::optional<double> mean_cosine_of(const scene::PhaseFunction& phase) {
   if (std::holds_alternative<scene::Isotropic>(phase)) return 0;
   const auto* hg = std::get_if<scene::HenyeyGreenstein>(&phase);

@@ -122,7 +122,7 @@ std::vector<std::vector<Rgb>> RadianceTransfer::sent_by_triangles(const scene::S
   return sent;
 }
 
-// Of every vertex of all meshes, one after another, the triangles that it sees from their outer side.
+// Lists for every vertex of all meshes, in order, the triangles that it sees from their outer side.
 std::vector<std::vector<RadianceTransfer::Seen>> RadianceTransfer::look_around(const scene::Scene& scene,
                                                                                const std::vector<Vec3>& directions,
                                                                                double reach,

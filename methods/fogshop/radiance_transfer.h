@@ -40,7 +40,7 @@ class RadianceTransfer {
 
   // By surface, order^2 for every vertex; none for other shapes than meshes.
   const std::vector<std::vector<float>>& coefficients() const { return coefficients_; }
-  // Of what is reflected, order^2 for every channel of every vertex; none without bounces.
+  // Coefficients of the light that surfaces reflect, by surface: order^2 for every channel of every vertex; none without bounces.
   const std::vector<std::vector<float>>& reflections() const { return reflections_; }
   double rays_cast() const { return rays_cast_; }
 

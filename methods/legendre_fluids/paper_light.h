@@ -37,8 +37,8 @@ class PaperLight {
 
   // Coefficients of E_d for light that travels along a unit direction of the world, 1 where it comes in (eq. 22).
   Eigen::VectorXd direct(const Vec3& direction, double sigma, int* iterations = nullptr) const;
-  // Of E_s along a direction, for `scattering` (beta Omega) times the density as it scatters (eq. 23), or, unless it is null, times what
-  // scatters of it. Linear in E_d: of several lights it takes the sum of theirs, weighted.
+  // Coefficients of E_s along a direction (eq. 23). `scattering` (beta Omega) multiplies `what_scatters`, or the whole density
+  // where that is null. E_s is linear in E_d: for several lights `direct` is their weighted sum.
   Eigen::VectorXd scattered(const Eigen::VectorXd& direct, const Vec3& direction, double sigma, double scattering,
                             const DensityProduct* what_scatters = nullptr, int* iterations = nullptr) const;
   // Of n x n functions on the face `side` (-1 or 1) of an axis: the shape with 1 along it, whose function is L_0 (eq. 24).

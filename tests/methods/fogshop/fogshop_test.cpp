@@ -155,7 +155,7 @@ TEST_CASE("fogshop: Henyey-Greenstein's phase function", "[fogshop]") {
       const double isotropic = relative_l2(airlight::test::picture(method, at(name, 0)),
                                            airlight::test::picture(truth, at(name, 0), rule), "airlight");
       CHECK(slices < 5 * isotropic + 1e-4);
-      // Of the isotropic phase function the picture would be another.
+      // The isotropic phase function gives another picture: g is not ignored.
       CHECK(relative_l2(airlight::test::picture(method, at(name, 0)), exact, "airlight") > 0.1);
     }
   // The paper's formula where the light is outside, to its own accuracy; on vectors as it is written out.

@@ -86,7 +86,7 @@ TEST_CASE("legendre light: the paper's systems know an albedo that is a field", 
     finish(*mean);
     if (n > 4) CHECK(relative_l2(picture(method, mean, paper("upwind", n)), exact) > 1.5 * error);
   }
-  // Of one albedo two densities are their sum.
+  // Two densities of the same albedo scatter like one that is their sum.
   const auto first = random_density({4, 4, 4}, 3), second = random_density({4, 4, 4}, 4);
   auto two = lit_scene(smoke(first, 0.5), oblique_light, oblique_view, 12, 10);
   const auto one = lit_scene(smoke(std::make_shared<const scene::LegendreBox>(

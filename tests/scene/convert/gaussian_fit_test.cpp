@@ -190,7 +190,7 @@ TEST_CASE("what a Gaussian gains at its place is what the objective loses", "[ga
   REQUIRE(placed.gain > 0);
   gaussians.push_back(placed.gaussian);
   CHECK(before - objective.value(gaussians) == Approx(placed.gain).epsilon(1e-4));
-  // Of these widths none gains more by another amplitude.
+  // Another amplitude of the same Gaussian gains less: the placed one is the best.
   for (const double factor : {0.9, 1.1}) {
     gaussians.back().amplitude = factor * placed.gaussian.amplitude;
     CHECK(before - objective.value(gaussians) < placed.gain);
