@@ -63,6 +63,7 @@ class Reader {
         check_metric_name(metric, position("metrics"));
       else if (flow())
         parse_flow_metric(metric, position("metrics"));
+    if (images()) add_rms_errors();
     Pairs overrides, reference_settings;
     profile(top, overrides, reference_settings);
     if (!numbers()) reference(top, reference_settings);
@@ -164,6 +165,20 @@ class Reader {
     } catch (const Error& error) {
       reader.fail(component ? "settings" : component_key(),
                   std::string(error.what()).substr(reader.where().size() + 2));
+    }
+  }
+
+  // The publications print root mean squares: each table has them beside its relative errors.
+  void add_rms_errors() {
+    std::vector<std::string>& metrics = experiment_.metrics;
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      const std::string relative = "rel_l2";
+      std::string rms = metrics[i];
+      const std::size_t at = rms.find(relative);
+      if (at == std::string::npos || rms.find("squared") != std::string::npos) continue;
+      rms.replace(at, relative.size(), "rmse");
+      if (std::find(metrics.begin(), metrics.end(), rms) == metrics.end())
+        metrics.insert(metrics.begin() + std::ptrdiff_t(i) + 1, rms);
     }
   }
 

@@ -30,8 +30,8 @@ Cell stirred(const scene::Settings& s, double dt, double viscosity) {
   problem->viscosity = viscosity;
   problem->velocity = scene::Swirl{1};
   const legendre_fluids::LegendreFluids solver;
-  std::map<std::string, std::string> settings{{"variant", s.text("variant")}, {"n", std::to_string(s.integer("n"))}};
-  for (const char* key : {"truncation", "time_step"}) settings[key] = s.text(key);
+  const std::map<std::string, std::string> settings{
+      {"variant", s.text("variant")}, {"n", std::to_string(s.integer("n"))}, {"truncation", s.text("truncation")}};
   Cell cell;
   const auto flow = solver.start(problem, scene::Settings(solver.settings(), settings), {});
   const double before = flow->totals().energy;
@@ -56,7 +56,6 @@ std::string LegendreStability::about() const {
 std::vector<scene::SettingSpec> LegendreStability::settings() const {
   return {scene::choice_setting("variant", "galerkin", {"galerkin", "paper", "paper_repaired"}, "of the solver"),
           scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants"),
-          scene::choice_setting("time_step", "runge_kutta", {"runge_kutta", "exponential", "cayley"}, "of galerkin"),
           scene::integer_setting("n", "8", 2, 32, "coefficients along each axis"),
           scene::integer_setting("steps", "200", 1, 1'000'000, "at most"),
           scene::integer_setting("per_decade", "1", 1, 32,

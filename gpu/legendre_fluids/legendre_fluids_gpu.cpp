@@ -116,8 +116,6 @@ std::vector<std::string> LegendreFluidsGpu::supports(const FlowProblem& problem,
   std::vector<std::string> reasons = legendre_fluids::LegendreFluids().supports(problem, settings);
   if (settings.text("variant") != "galerkin")
     reasons.push_back("variant = " + settings.text("variant") + " is for the CPU: shaders know galerkin");
-  if (settings.text("time_step") != "runge_kutta")
-    reasons.push_back("time_step = " + settings.text("time_step") + " is for the CPU: shaders know runge_kutta");
   if (settings.text("mixing") != "densities")
     reasons.push_back("mixing = albedo is for the CPU: shaders move each density");
   if (const auto n = settings.integer("n"); n < 2 || n > legendre::most_coefficients)

@@ -57,7 +57,6 @@ ConfinedFluid::ConfinedFluid(int dimensions, int n, const Vec3& half, const Mate
 
 void ConfinedFluid::begin(const VelocityFunction& u) {
   if (confined()) velocity = space_.project(space_.from_function(u));
-  last_rate_ = Array();
 }
 
 Vec3 ConfinedFluid::gust(double at) const {
@@ -173,7 +172,7 @@ Array ConfinedFluid::state_rate(const Array& y) {
 }
 
 // Speeds may rise on the way: what is left is divided anew after each part.
-void ConfinedFluid::advect_by_runge_kutta(double dt) {
+void ConfinedFluid::advect(double dt) {
   const double gusts = wind_ ? wind_->gust.norm() : 0;
   for (double left = dt; left > 0;) {
     const int steps = runge_kutta_steps(left, space_.n(), greatest_speed() + gusts, wind_.has_value());
@@ -190,46 +189,6 @@ void ConfinedFluid::runge_kutta_part(double dt) {
   velocity = y.head(begin);
   for (Array* r : carried()) *r = y.segment(begin, r->size()), begin += r->size();
   time = y[begin];
-}
-
-Array ConfinedFluid::krylov(const Array& y, double dt, const SkewOperator& a) {
-  if (y.size() == 0) return y;
-  const auto function = options_.time_step == TimeStep::exponential ? SkewFunction::exponential : SkewFunction::cayley;
-  const KrylovStep step = krylov_step(a, y, dt, function, options_.krylov, options_.tolerance);
-  vectors_ += step.dimensions;
-  greatest_estimate_ = std::max(greatest_estimate_, step.estimate);
-  return step.y;
-}
-
-// The velocity that carries is that of the middle of the step, by what advection did in the last one: second order beside diffusion, where
-// 1.5 u - 0.5 of the last u would count half a step of diffusion twice.
-void ConfinedFluid::advect_by_krylov(double dt) {
-  const Array now = velocity;
-  const auto skew = [&](const Components& w) {
-    return SkewOperator{[this, w](const Array& v) { return space_.project(space_.advected(w, v)); },
-                        [this](const Array& v) { return space_.weighted(v); }};
-  };
-  Array middle = now;
-  if (material_.moves) {
-    if (last_rate_.size() == now.size())
-      middle += 0.5 * dt * last_rate_;
-    else
-      middle = krylov(now, 0.5 * dt, skew(space_.at_points(now)));
-  }
-  const Components w = space_.at_points(middle);
-  if (material_.moves) velocity = krylov(now, dt, skew(w));
-  const SkewOperator move{[&](const Array& r) { return space_.scalar_advected(w, r); },
-                          [](const Array& r) { return r; }};
-  for (Array* r : carried()) {
-    if (!r->size()) continue;
-    // The mean moves by itself: without it, that of the rest stays 0 whatever the tolerance.
-    const double mean = (*r)[0];
-    (*r)[0] = 0;
-    *r = krylov(*r, dt, move);
-    (*r)[0] = mean;
-  }
-  last_rate_ = (velocity - now) / dt;
-  ++substeps_;
 }
 
 // Equal factors for coefficients of equal index keep div u = 0: there they add.
@@ -266,10 +225,7 @@ void ConfinedFluid::filter(double dt) {
 
 void ConfinedFluid::advance(double dt) {
   diffuse(0.5 * dt);
-  if (options_.time_step == TimeStep::runge_kutta)
-    advect_by_runge_kutta(dt);
-  else
-    advect_by_krylov(dt);
+  advect(dt);
   diffuse(0.5 * dt);
 }
 
@@ -278,13 +234,8 @@ void ConfinedFluid::push(const Components& change) {
 }
 
 std::map<std::string, double> ConfinedFluid::counters() const {
-  std::map<std::string, double> counters{{"coefficients of velocity", double(space_.size())}};
-  if (options_.time_step == TimeStep::runge_kutta) {
-    counters["Runge-Kutta steps"] = substeps_;
-  } else {
-    counters["Krylov vectors"] = vectors_;
-    counters["greatest Krylov estimate"] = greatest_estimate_;
-  }
+  std::map<std::string, double> counters{{"coefficients of velocity", double(space_.size())},
+                                         {"Runge-Kutta steps", substeps_}};
   if (options_.filter_velocity > 0) counters["energy filtered"] = filtered_;
   return counters;
 }

@@ -8,12 +8,7 @@
 
 namespace airlight::legendre_fluids {
 
-enum class TimeStep { runge_kutta, exponential, cayley };
-
 struct ConfinedOptions {
-  TimeStep time_step = TimeStep::runge_kutta;
-  int krylov = 30;           // vectors of a Krylov space at most
-  double tolerance = 1e-10;  // of its error, relative
   // Coefficient k of an axis times exp(-rate (k / (n-1))^order dt) [1/s].
   double filter_velocity = 0, filter_carried = 0, filter_order = 8;
 };
@@ -48,8 +43,6 @@ class ConfinedFluid : public Fluid {
   Array sampled_slope(int component, int axis, const Components& positions) const override;
   double at(int component, const Vec3& x) const override;
   Array at(int component, const std::vector<Vec3>& x) const override;
-  Array history() const override { return last_rate_; }
-  void set_history(const Array& rate) override { last_rate_ = rate; }
   std::map<std::string, double> counters() const override;
 
  private:
@@ -60,10 +53,8 @@ class ConfinedFluid : public Fluid {
   void diffuse(double dt);
   Array joined_state();
   Array state_rate(const Array& y);  // of advection
-  void advect_by_runge_kutta(double dt);
+  void advect(double dt);
   void runge_kutta_part(double dt);
-  void advect_by_krylov(double dt);
-  Array krylov(const Array& y, double dt, const SkewOperator&);
   void filter(double dt);
   bool confined() const { return !wind_ || wind_->added; }
 
@@ -71,8 +62,7 @@ class ConfinedFluid : public Fluid {
   std::optional<Wind> wind_;
   Components wind_at_points_;
   std::array<std::array<Array, 2>, 3> wind_on_sides_;  // along the axis of the side
-  Array last_rate_;  // of advection in the last step of a Krylov method; empty before the first
-  double substeps_ = 0, vectors_ = 0, greatest_estimate_ = 0, filtered_ = 0;
+  double substeps_ = 0, filtered_ = 0;
 };
 
 }  // namespace airlight::legendre_fluids

@@ -55,9 +55,6 @@ class Fluid {
   // The longest half sizes per second at the Gauss points.
   double greatest_speed() const;
 
-  // What beside velocity and scalars the next step depends on, for state().
-  virtual Array history() const { return {}; }
-  virtual void set_history(const Array&) {}
   virtual std::map<std::string, double> counters() const = 0;
 
  protected:

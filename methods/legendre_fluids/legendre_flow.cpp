@@ -220,14 +220,14 @@ std::string LegendreFlow::state() const {
   scene::StateWriter writer(shape());
   Array numbers(5);
   numbers << time_, since_, last_step_, double(equal_steps_), double(steps_);
-  for (const Array& a : {numbers, fluid.velocity, fluid.history()}) writer.array(a);
+  for (const Array& a : {numbers, fluid.velocity}) writer.array(a);
   for (const Array* r : fluid.carried()) writer.array(*r);
   return writer.done();
 }
 
 void LegendreFlow::restore(const std::string& state) {
   scene::StateReader reader(state, shape());
-  const Array numbers = reader.array(), velocity = reader.array(), history = reader.array();
+  const Array numbers = reader.array(), velocity = reader.array();
   std::vector<Array> carried(fluid_->carried().size());
   for (Array& r : carried) r = reader.array();
   reader.done();
@@ -238,7 +238,6 @@ void LegendreFlow::restore(const std::string& state) {
   equal_steps_ = (long long)(numbers[3]), steps_ = (long long)(numbers[4]);
   fluid_->velocity = velocity;
   for (std::size_t i = 0; i < carried.size(); ++i) *fluid_->carried()[i] = carried[i];
-  fluid_->set_history(history);
   settle();
 }
 

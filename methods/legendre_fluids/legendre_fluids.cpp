@@ -128,8 +128,6 @@ void object_to_paper(const FlowProblem& problem, const Settings& settings, std::
   if (has_open_sides(problem)) reasons.push_back(variant + " with open sides: its operators know no inflow");
   if (const auto* wind = std::get_if<scene::Wind>(&problem.velocity); wind && !wind->gust.isZero(0))
     reasons.push_back(variant + " with a gust");
-  if (settings.text("time_step") != "runge_kutta")
-    reasons.push_back(variant + " with time_step = " + settings.text("time_step") + ": a setting of galerkin");
   for (const char* filter : {"filter_velocity", "filter_carried"})
     if (settings.real(filter) > 0) reasons.push_back(variant + " with " + filter + ": a setting of galerkin");
   const double coefficients = std::pow(double(settings.integer("n")), problem.dimensions);
@@ -143,9 +141,6 @@ void object_to_paper(const FlowProblem& problem, const Settings& settings, std::
 
 ConfinedOptions confined_options(const Settings& settings) {
   ConfinedOptions options;
-  options.time_step = settings.choice<TimeStep>("time_step");
-  options.krylov = int(settings.integer("krylov"));
-  options.tolerance = settings.real("tolerance");
   options.filter_velocity = settings.real("filter_velocity");
   options.filter_carried = settings.real("filter_carried");
   options.filter_order = settings.real("filter_order");
@@ -162,14 +157,12 @@ std::vector<scene::SettingSpec> LegendreFluids::settings() const {
                             "galerkin: no flow through walls, energy kept; paper: equations 13 to 21, without walls; "
                             "paper_repaired: the same, confined after each advection"),
       scene::integer_setting("n", "8", 1, 64, "coefficients along each axis"),
-      scene::real_setting("dt", "0", 0, 1e9, "longest step [s]; 0: a frame. Steps divide a frame evenly"),
-      scene::choice_setting("time_step", "runge_kutta", {"runge_kutta", "exponential", "cayley"},
-                            "of galerkin's advection; Runge-Kutta divides steps that are too long for it"),
+      scene::real_setting(
+          "dt", "0", 0, 1e9,
+          "longest step [s]; 0: a frame. Steps divide a frame evenly; galerkin divides its advection further"),
       scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants"),
       scene::choice_setting("mixing", "densities", {"densities", "albedo"},
                             "of two densities move both, or their sum and the first one's share (the paper's albedo)"),
-      scene::integer_setting("krylov", "30", 1, 200, "vectors of a Krylov space at most (exponential, cayley)"),
-      scene::real_setting("tolerance", "1e-10", 0, 1, "of a Krylov space's error, relative"),
       scene::real_setting("filter_velocity", "0", 0, 1e9,
                           "rate of exp(-rate (k/(n-1))^order t) for coefficient k of an axis [1/s]"),
       scene::real_setting("filter_carried", "0", 0, 1e9, "the same of density and temperature [1/s]"),
@@ -190,9 +183,6 @@ std::vector<std::string> LegendreFluids::supports(const FlowProblem& problem, co
     }
   if (settings.choice<Mixing>("mixing") == Mixing::albedo) object_to_albedo(problem, reasons);
   if (settings.choice<Variant>("variant") != Variant::galerkin) object_to_paper(problem, settings, reasons);
-  const bool krylov = settings.text("time_step") != "runge_kutta";
-  if (krylov && air_comes_in(problem))
-    reasons.push_back(settings.text("time_step") + " steps where air comes in: expected time_step = runge_kutta");
   if (is_given(problem) && settings.integer("n") < 2) reasons.push_back("n = 1 where air comes in, expected 2 or more");
   if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
     reasons.push_back(fmt::format("dt = {:g} makes {:.3g} steps of a frame, expected at most {:g}", settings.real("dt"),

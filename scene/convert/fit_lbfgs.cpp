@@ -22,7 +22,7 @@ double sigmoid(double q) { return 1 / (1 + std::exp(-q)); }
 class Function : public ceres::FirstOrderFunction {
  public:
   Function(FitObjective<float>& objective, const FitBounds& bounds, const std::vector<Gaussian>& start,
-           const MinimizerOptions& options, bool blocks)
+           const MinimizerOptions& options)
       : objective_(objective), bounds_(bounds), options_(options), now_(start), from_(start.size()), best_(start) {
     scale_ = objective.sum_of_squares() > 0 ? 1 / objective.sum_of_squares() : 1;
     units_.reserve(start.size());
@@ -34,18 +34,9 @@ class Function : public ceres::FirstOrderFunction {
         from_[i][v] = std::log(s / (1 - s));
         slope[v] = range * std::max(s * (1 - s), 0.01);
       }
-      if (blocks) {
-        const Matrix5 m =
-            2 * scale_ * slope.asDiagonal() * overlap_derivatives(start[i], start[i]) * slope.asDiagonal();
-        const Matrix5 l = m.llt().matrixL();
-        units_.push_back(l.transpose().inverse());
-      } else {
-        Vector5 unit;
-        const double length = 0.05 * bounds.widths.hi / 0.09;
-        unit << length, length, length, length, 0.5;
-        for (int v = 0; v < 5; ++v) unit[v] *= 4 / std::max(bounds.hi(v) - bounds.lo(v), 1e-12);
-        units_.push_back(unit.asDiagonal());
-      }
+      const Matrix5 m = 2 * scale_ * slope.asDiagonal() * overlap_derivatives(start[i], start[i]) * slope.asDiagonal();
+      const Matrix5 l = m.llt().matrixL();
+      units_.push_back(l.transpose().inverse());
     }
     gradient_.resize(5 * start.size());
     best_value_ = objective.value(start) * scale_;
@@ -115,13 +106,13 @@ class Checked : public ceres::IterationCallback {
 }  // namespace
 
 Minimization minimize_lbfgs(FitObjective<float>& objective, const FitBounds& bounds, std::vector<Gaussian>& gaussians,
-                            const MinimizerOptions& options, bool blocks) {
+                            const MinimizerOptions& options) {
   Minimization result;
   if (gaussians.empty() || options.iterations == 0) {
     result.value = objective.value(gaussians);
     return result;
   }
-  auto* const function = new Function(objective, bounds, gaussians, options, blocks);  // the problem's
+  auto* const function = new Function(objective, bounds, gaussians, options);  // the problem's
   ceres::GradientProblem problem(function);
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = ceres::LBFGS;

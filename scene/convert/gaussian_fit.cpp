@@ -10,7 +10,6 @@
 #include "scene/convert/fit_gauss_newton.h"
 #include "scene/convert/fit_lbfgs.h"
 #include "scene/convert/fit_placement.h"
-#include "scene/convert/fit_trust_region.h"
 #include "scene/error.h"
 #include "scene/nearest.h"
 #include "scene/stopwatch.h"
@@ -175,20 +174,9 @@ class Frame {
   }
   double run(FitMethod method, int iterations, double tolerance) {
     const MinimizerOptions options{iterations, 0.1 * tolerance, options_.check};
-    const auto minimise = [&] {
-      switch (method) {
-        case FitMethod::lbfgs:
-          return minimize_lbfgs(objective_, bounds_, gaussians_, options, false);
-        case FitMethod::lbfgs_blocks:
-          return minimize_lbfgs(objective_, bounds_, gaussians_, options, true);
-        case FitMethod::trust_region:
-          return minimize_trust_region(objective_, bounds_, gaussians_, options);
-        case FitMethod::gauss_newton:
-          break;
-      }
-      return minimize_gauss_newton(objective_, bounds_, gaussians_, options);
-    };
-    const Minimization done = minimise();
+    const Minimization done = method == FitMethod::lbfgs
+                                  ? minimize_lbfgs(objective_, bounds_, gaussians_, options)
+                                  : minimize_gauss_newton(objective_, bounds_, gaussians_, options);
     iterations_ += done.iterations;
     return done.value;
   }
@@ -207,7 +195,7 @@ class Frame {
 
 std::vector<std::string> teleport_names() { return {"none", "greatest", "alternating"}; }
 
-std::vector<std::string> fit_method_names() { return {"gauss_newton", "lbfgs", "lbfgs_blocks", "trust_region"}; }
+std::vector<std::string> fit_method_names() { return {"gauss_newton", "lbfgs"}; }
 
 FitMethod fit_method_from(const std::string& name) {
   const std::vector<std::string> names = fit_method_names();

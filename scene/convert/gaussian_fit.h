@@ -20,9 +20,8 @@ inline constexpr int most_fit_gaussians = 65536;  // a fit's memory is about 8 K
 // four times too much at 0.35: 1 + 6 exp(-(pi width)^2) + ... of the lattice's Fourier series.
 inline constexpr double least_fit_width = 0.7;
 
-// gauss_newton: closed-form normal matrix, ours; lbfgs, lbfgs_blocks: Ceres' line search (fit_lbfgs.h); trust_region: Ceres' Levenberg-
-// Marquardt on voxels (fit_trust_region.h), for small grids alone. The last three are there to be compared with.
-enum class FitMethod { gauss_newton, lbfgs, lbfgs_blocks, trust_region };
+// gauss_newton: closed-form normal matrix, ours; lbfgs: Ceres' line search (fit_lbfgs.h), there to be compared with.
+enum class FitMethod { gauss_newton, lbfgs };
 std::vector<std::string> fit_method_names();         // in the order of the enumeration
 FitMethod fit_method_from(const std::string& name);  // throws Error
 

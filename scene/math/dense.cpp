@@ -7,16 +7,11 @@
 
 namespace airlight::scene {
 
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 SymmetricModes symmetric_modes(const MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
-HermitianModes hermitian_modes(const MatrixXcd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXcd> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 

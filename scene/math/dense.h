@@ -13,12 +13,7 @@ struct SymmetricModes {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-struct HermitianModes {
-  Eigen::VectorXd values;
-  Eigen::MatrixXcd vectors;
-};
-SymmetricModes symmetric_modes(const Eigen::MatrixXd&);   // reads the lower triangle
-HermitianModes hermitian_modes(const Eigen::MatrixXcd&);  // reads the lower triangle
+SymmetricModes symmetric_modes(const Eigen::MatrixXd&);  // reads the lower triangle
 
 // A square matrix in factors L U with partial pivoting. Of a singular matrix `solve` gives values that are not finite.
 class SquareFactors {

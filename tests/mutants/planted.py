@@ -367,8 +367,6 @@ MUTANTS = [
         "legendre fluids: Taylor-Green vortices agree with the closed form in boxes of any size"),
     bug("the last slope half a step ahead", TIME_STEPS, "k4 = rate(y + dt * k3)", "k4 = rate(y + 0.5 * dt * k3)",
         "legendre fluids: Runge-Kutta keeps the energy within the step rule"),
-    bug("Cayley's form upside down", TIME_STEPS, "(1.0 + 0.5 * i * angle) / (1.0 - 0.5 * i * angle)",
-        "(1.0 - 0.5 * i * angle) / (1.0 + 0.5 * i * angle)", "legendre fluids: Krylov spaces give the functions they name"),
     bug("what is below 0 is integrated", LEGENDRE_LINE, "rises ? Interval{root, t.hi} : Interval{t.lo, root}",
         "rises ? Interval{t.lo, root} : Interval{root, t.hi}", "a Legendre box clamped between two roots, in closed form"),
     bug("pieces begin from nothing", LEGENDRE_LINE, "positive_.empty() ? 0 : integral(positive_.back().hi)", "0.0",

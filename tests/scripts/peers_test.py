@@ -61,7 +61,7 @@ class Lbfgsb(unittest.TestCase):
         def runs(value, *seconds):
             return [{"value": value, "seconds": s, "evaluations": 9, "iterations": 5} for s in seconds]
 
-        options = type("Options", (), {"size": 8, "octaves": 1, "gaussians": 2, "rounds": 3, "threads": 2, "trust_region": 0})
+        options = type("Options", (), {"size": 8, "octaves": 1, "gaussians": 2, "rounds": 3, "threads": 2})
         results = {(module.METHODS[0], 5): runs(0.04, 0.1, 0.1, 0.1), (module.METHODS[0], 10): runs(0.02, 1, 2, 4),
                    ("SciPy", 20): runs(0.03, 8, 6, 4), ("SciPy", 80): runs(0.01, 9, 9, 9)}
         text = module.report(results, options, "1", "airlight")

@@ -5,7 +5,7 @@
 //
 // It writes doubles: n, the 5 n variables of the start, 5 least and 5 greatest values of a Gaussian's, sum D^2. Then it answers, until its input
 // ends, to doubles: 0 and 5 n variables by the objective and its 5 n derivatives; M, a number of iterations and 5 n variables by the
-// objective at the end, seconds, evaluations and iterations of our minimiser M (1 to 4, as fit_method_names()).
+// objective at the end, seconds, evaluations and iterations of our minimiser M (1 or 2, as fit_method_names()).
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,7 +13,6 @@
 #include "scene/convert/fit_gauss_newton.h"
 #include "scene/convert/fit_lbfgs.h"
 #include "scene/convert/fit_placement.h"
-#include "scene/convert/fit_trust_region.h"
 #include "scene/convert/gaussian_fit.h"
 #include "scene/error.h"
 #include "scene/stopwatch.h"
@@ -36,11 +35,7 @@ Minimization minimise(FitMethod method, FitObjective<float>& objective, const Fi
     case FitMethod::gauss_newton:
       return minimize_gauss_newton(objective, bounds, gaussians, options);
     case FitMethod::lbfgs:
-      return minimize_lbfgs(objective, bounds, gaussians, options, false);
-    case FitMethod::lbfgs_blocks:
-      return minimize_lbfgs(objective, bounds, gaussians, options, true);
-    case FitMethod::trust_region:
-      return minimize_trust_region(objective, bounds, gaussians, options);
+      return minimize_lbfgs(objective, bounds, gaussians, options);
   }
   throw airlight::Error("airlight_fit_peer: no such minimiser");
 }

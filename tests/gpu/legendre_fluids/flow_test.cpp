@@ -212,7 +212,6 @@ TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed
 TEST_CASE("legendre fluids on the device: what shaders do not know is refused by name", "[gpu][legendre_fluids]") {
   CHECK(objections(box(3), {}).empty());
   CHECK_THAT(objections(box(3), {{"variant", "paper"}}).at(0), Contains("variant = paper"));
-  CHECK_THAT(objections(box(3), {{"time_step", "cayley"}}).at(0), Contains("time_step = cayley"));
   CHECK_THAT(objections(box(3), {{"mixing", "albedo"}}).back(), Contains("mixing = albedo"));
   CHECK_THAT(objections(box(3), {{"n", "17"}}).at(0), Contains("n = 17"));
   CHECK_THAT(objections(box(3), {{"n", "1"}}).at(0), Contains("n = 1"));

@@ -97,39 +97,17 @@ TEST_CASE("legendre fluids: Taylor-Green vortices agree with the closed form in 
 }
 
 TEST_CASE("legendre fluids: energy and mass of a swirl that carries a blob stay", "[legendre_fluids]") {
-  for (const char* method : {"runge_kutta", "exponential", "cayley"}) {
-    FlowProblem problem = box(2);
-    problem.velocity = scene::Swirl{1};
-    problem.blobs.push_back({Point3(0.6, 0.3, 0), 0.2, 1, 0});
-    const auto flow = start(problem, {{"n", "12"}, {"time_step", method}});
-    const auto before = flow->totals();
-    run(*flow, 200, 0.01);
-    const auto after = flow->totals();
-    CAPTURE(method);
-    CHECK(after.energy == Approx(before.energy).epsilon(1e-8));
-    CHECK(after.mass == Approx(before.mass).epsilon(1e-13));
-    CHECK((after.center_of_mass - before.center_of_mass).norm() > 0.05);
-    CHECK(after.divergence < 1e-12);
-  }
-}
-
-TEST_CASE("legendre fluids: time steps agree to second order", "[legendre_fluids]") {
   FlowProblem problem = box(2);
   problem.velocity = scene::Swirl{1};
-  problem.viscosity = 1e-3;
-  const auto fine = start(problem, {{"n", "10"}});
-  run(*fine, 800, 0.0005);
-  for (const char* method : {"exponential", "cayley"}) {
-    double error[2];
-    for (int i = 0; i < 2; ++i) {
-      const auto flow = start(problem, {{"n", "10"}, {"time_step", method}});
-      run(*flow, i ? 40 : 20, i ? 0.01 : 0.02);
-      error[i] = difference(*flow, *fine, problem);
-    }
-    CAPTURE(method, error[0], error[1]);
-    CHECK(error[1] < 0.01);
-    CHECK(std::log2(error[0] / error[1]) > 1.6);
-  }
+  problem.blobs.push_back({Point3(0.6, 0.3, 0), 0.2, 1, 0});
+  const auto flow = start(problem, {{"n", "12"}});
+  const auto before = flow->totals();
+  run(*flow, 200, 0.01);
+  const auto after = flow->totals();
+  CHECK(after.energy == Approx(before.energy).epsilon(1e-8));
+  CHECK(after.mass == Approx(before.mass).epsilon(1e-13));
+  CHECK((after.center_of_mass - before.center_of_mass).norm() > 0.05);
+  CHECK(after.divergence < 1e-12);
 }
 
 TEST_CASE("legendre fluids: a warm blob rises as in Stable Fluids", "[legendre_fluids]") {
@@ -158,19 +136,17 @@ TEST_CASE("legendre fluids: in three dimensions a blob rises upright", "[legendr
 }
 
 TEST_CASE("legendre fluids: restart gives the same bits", "[legendre_fluids]") {
-  for (const char* method : {"runge_kutta", "exponential"}) {
-    const Given settings{{"n", "8"}, {"time_step", method}, {"filter_carried", "1"}};
-    const auto whole = start(warm_blob(2), settings), again = start(warm_blob(2), settings);
-    run(*whole, 5, 0.02);
-    again->restore(whole->state());
-    run(*whole, 5, 0.02);
-    run(*again, 5, 0.02);
-    CHECK(whole->state() == again->state());
-    std::string damaged = whole->state();
-    damaged[damaged.size() / 2] ^= 1;
-    CHECK_THROWS_WITH(again->restore(damaged), Contains("damaged"));
-    CHECK_THROWS_WITH(start(warm_blob(2), {{"n", "9"}})->restore(whole->state()), Contains("expected"));
-  }
+  const Given settings{{"n", "8"}, {"filter_carried", "1"}};
+  const auto whole = start(warm_blob(2), settings), again = start(warm_blob(2), settings);
+  run(*whole, 5, 0.02);
+  again->restore(whole->state());
+  run(*whole, 5, 0.02);
+  run(*again, 5, 0.02);
+  CHECK(whole->state() == again->state());
+  std::string damaged = whole->state();
+  damaged[damaged.size() / 2] ^= 1;
+  CHECK_THROWS_WITH(again->restore(damaged), Contains("damaged"));
+  CHECK_THROWS_WITH(start(warm_blob(2), {{"n", "9"}})->restore(whole->state()), Contains("expected"));
 }
 
 TEST_CASE("legendre fluids: what a rotation turns comes back", "[legendre_fluids]") {
@@ -244,10 +220,6 @@ TEST_CASE("legendre fluids: what is not polynomial in a box is refused by name",
   problem.sources.push_back({});
   problem.sources[0].density = 1;
   CHECK_THAT(objections(problem).at(0), Contains("sources"));
-  problem = box(2);
-  problem.velocity = scene::RigidRotation{};
-  problem.velocity_stays = true;
-  CHECK_THAT(objections(problem, {{"time_step", "cayley"}}).at(0), Contains("cayley"));
 }
 
 TEST_CASE("legendre fluids: one coefficient is a fluid at rest, long steps are divided", "[legendre_fluids]") {

@@ -167,7 +167,6 @@ TEST_CASE("legendre fluids, paper: the solver says after how many steps, and ref
   problem.sides[0][0].kind = scene::Side::Kind::free_slip;
   CHECK_THAT(solver.supports(problem, settings({{"n", "40"}})).at(0), Catch::Contains("1600"));
   CHECK(solver.supports(problem, settings({{"n", "40"}, {"variant", "paper_repaired"}})).empty());
-  CHECK_THAT(solver.supports(problem, settings({{"time_step", "cayley"}})).at(0), Catch::Contains("cayley"));
 }
 
 }  // namespace paper_fluid_test

@@ -1,4 +1,4 @@
-// Energy over many steps, isometries, and Taylor-Green.
+// Energy over many steps, and Taylor-Green.
 #include "methods/legendre_fluids/time_steps.h"
 
 #include <catch2/catch.hpp>
@@ -18,12 +18,6 @@ Array acceleration(const ConfinedSpace& space, const Array& u) {
   return space.project(space.advected(space.at_points(u), u));
 }
 
-SkewOperator frozen(const ConfinedSpace& space, const Array& u) {
-  const Components w = space.at_points(u);
-  return {[&space, w](const Array& v) { return space.project(space.advected(w, v)); },
-          [&space](const Array& v) { return space.weighted(v); }};
-}
-
 }  // namespace
 
 TEST_CASE("legendre fluids: Runge-Kutta keeps the energy within the step rule", "[legendre_fluids]") {
@@ -37,36 +31,6 @@ TEST_CASE("legendre fluids: Runge-Kutta keeps the energy within the step rule", 
     CHECK(std::abs(drift) < 1e-8);
     CHECK(space.divergence(u).cwiseAbs().maxCoeff() < 1e-12);
   }
-}
-
-TEST_CASE("legendre fluids: Krylov steps are isometries for any step", "[legendre_fluids]") {
-  for (const int d : {2, 3})
-    for (const SkewFunction function : {SkewFunction::exponential, SkewFunction::cayley})
-      for (const double dt : {0.01, 1.0, 10.0}) {
-        const ConfinedSpace space(d, d == 2 ? 8 : 6);
-        Array u = swirl(space);
-        const double before = space.inner(u, u);
-        for (int step = 0; step < 100; ++step) u = krylov_step(frozen(space, u), u, dt, function, 30, 1e-10).y;
-        CHECK(std::abs(space.inner(u, u) / before - 1) < 1e-10);
-      }
-}
-
-TEST_CASE("legendre fluids: Krylov spaces give the functions they name", "[legendre_fluids]") {
-  const ConfinedSpace space(2, 6);
-  const Array w = swirl(space, 3), u = swirl(space);
-  const SkewOperator a = frozen(space, w);
-  // Many small steps of Runge-Kutta are the exponential.
-  Array exact = u;
-  for (int step = 0; step < 1000; ++step) exact = runge_kutta_4(exact, 1e-3, a.apply);
-  const KrylovStep step = krylov_step(a, u, 1, SkewFunction::exponential, 40, 1e-13);
-  CHECK(error(step.y, exact) < 1e-11);
-  const Array cayley = krylov_step(a, u, 1, SkewFunction::cayley, 60, 1e-14).y;
-  CHECK(error(cayley - 0.5 * a.apply(cayley), u + 0.5 * a.apply(u)) < 1e-11);
-  // The estimate bounds what a small space leaves.
-  const KrylovStep small = krylov_step(a, u, 0.1, SkewFunction::exponential, 5, 0);
-  const Array left = small.y - krylov_step(a, u, 0.1, SkewFunction::exponential, 40, 1e-14).y;
-  CHECK(std::sqrt(space.inner(left, left) / space.inner(u, u)) < 2 * small.estimate);
-  CHECK(small.estimate < 1e-3);
 }
 
 TEST_CASE("legendre fluids: Taylor-Green in a free-slip box", "[legendre_fluids]") {
