@@ -10,6 +10,7 @@
 #include "methods/compensated_ray_marching/gaussian_columns.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/math/dense.h"
 #include "scene/math/spherical_harmonics.h"
 #include "scene/stopwatch.h"
 #include "scene/threads.h"
@@ -277,7 +278,8 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
           (albedo * power_.col(group.which[l])).matrix().asDiagonal() * scatters;
     Moments source = Moments::Zero(grid_.cells.nodes(), of_direction.cols());
     in_runs(execution, [&](std::size_t first, std::size_t count) {
-      const Eigen::MatrixXd single = left(first, count, medium_.sigma_t[group.which[0]]).matrix() * of_direction;
+      const Eigen::MatrixXd single =
+          scene::product(left(first, count, medium_.sigma_t[group.which[0]]).matrix(), of_direction);
       for (std::size_t i = 0; i < count; ++i) source.row(nodes_[first + i]) = single.row(Eigen::Index(i));
     });
     single_seconds += watch.lap();
@@ -348,7 +350,7 @@ std::vector<Rgb> LitGrid::towards(const scene::Camera& camera, const scene::Exec
     Eigen::MatrixXd out(Eigen::Index(count), 3);
     for (std::size_t i = 0; i < count; ++i)
       out.row(Eigen::Index(i)) = to_camera(camera, grid_.node(nodes_[first + i])).transpose();
-    const Eigen::ArrayXXd cosine = (out * came).array().max(-1.0).min(1.0);
+    const Eigen::ArrayXXd cosine = scene::product(out, came).array().max(-1.0).min(1.0);
     Eigen::ArrayXXd phase(cosine.rows(), cosine.cols());
     phase.leftCols(fixed) = phase_in_bands(phase_, cosine.leftCols(fixed));
     for (Eigen::Index k = fixed; k < cosine.cols(); ++k)

@@ -44,7 +44,7 @@ double fit(const HarmonicExponential& exponential, const Eigen::VectorXd& visibl
       down[i] -= difference;
       slopes.col(i) = (missed(up) - missed(down)) / (2 * difference);
     }
-    const Eigen::MatrixXd normal = slopes.transpose() * slopes;
+    const Eigen::MatrixXd normal = scene::product(slopes.transpose(), slopes);
     const Eigen::VectorXd right = -slopes.transpose() * now;
     bool better = false;
     double gain = 0;

@@ -10,6 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using scene::along_axis;
+using scene::product;
 using scene::tensor_size;
 
 double factor(double rate_amount, ConfinedSpace::Diffusion kind) {
@@ -31,7 +32,7 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
     : d_(dimensions), n_(n), half_(half), points_(mirrored(scene::legendre_points(n + 1, (3 * n + 1) / 2))) {
   for (int a = 0; a < d_; ++a) offset_[a + 1] = offset_[a] + tensor_size(shape(a));
   phi_ = scene::legendre_integral(n).rightCols(n - 1);
-  mass_ = phi_.transpose() * phi_;
+  mass_ = product(phi_.transpose(), phi_);
   wall_rates_.resize(n - 1);
   free_modes_ = pressure_modes_ = MatrixXd::Identity(n, n);
   free_rates_ = Array::Zero(n);
@@ -39,12 +40,12 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
     const scene::SymmetricModes wall = scene::symmetric_modes(mass_);
     wall_modes_ = wall.vectors;
     wall_rates_ = wall.values.cwiseInverse();
-    inverse_ = wall_modes_ * wall_rates_.asDiagonal() * wall_modes_.transpose();
+    inverse_ = product(wall_modes_ * wall_rates_.asDiagonal(), wall_modes_.transpose());
     pressure_modes_.bottomRightCorner(n - 1, n - 1) = wall_modes_;
     // The constant is a mode to the last bit, so that diffusion keeps the mass.
     const MatrixXd slope = scene::legendre_derivative(n);
     const scene::SymmetricModes free =
-        scene::symmetric_modes((slope.transpose() * slope).bottomRightCorner(n - 1, n - 1));
+        scene::symmetric_modes(product(slope.transpose(), slope).bottomRightCorner(n - 1, n - 1));
     free_modes_.bottomRightCorner(n - 1, n - 1) = free.vectors;
     free_rates_.tail(n - 1) = free.values;
   }
@@ -60,11 +61,11 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
       if (i[a] > 0) rate += wall_rates_[i[a] - 1] / (half_[a] * half_[a]);
     pressure_[at] = rate > 0 ? -1 / rate : 0;
   });
-  at_points_ = {points_.values.leftCols(n), points_.values * phi_};
+  at_points_ = {points_.values.leftCols(n), product(points_.values, phi_)};
   from_points_[0] = points_.analysis.topRows(n);
   if (n == 1) return;
-  from_points_[1] = inverse_ * phi_.transpose() * points_.analysis;
-  from_scalar_ = inverse_ * phi_.topRows(n).transpose();
+  from_points_[1] = product(product(inverse_, phi_.transpose()), points_.analysis);
+  from_scalar_ = product(inverse_, phi_.topRows(n).transpose());
   const int m = int(points_.node.size());
   slope_at_points_ = {points_.slopes.leftCols(n), points_.values.middleCols(1, n - 1)};
   kernel_ = AdvectionKernel(d_, {n, m, at_points_[0], slope_at_points_[0], from_points_[0]},

@@ -22,7 +22,8 @@ DensityProduct::DensityProduct(const Eigen::VectorXd& density, const TensorShape
     values[a] = scene::legendre_values(n[a], points.node);
     of_density[a] = scene::legendre_values(density_shape[a], points.node);
     analysis[a] = points.analysis;
-    if (wanted > n[a]) analysis[a] = scene::chebyshev_truncation(n[a]).leftCols(wanted) * points.analysis;
+    if (wanted > n[a])
+      analysis[a] = scene::product(scene::chebyshev_truncation(n[a]).leftCols(wanted), points.analysis);
     points_[a] = m;
   }
   density_ = scene::along_axes(of_density[0], of_density[1], of_density[2], density, density_shape);
@@ -60,7 +61,7 @@ LightSystem::LightSystem(const DensityProduct& product, const Vec3& rate, double
     return;
   }
   equation_ = equation / rate.norm();
-  Eigen::MatrixXd normal = equation_.transpose() * equation_;
+  Eigen::MatrixXd normal = scene::product(equation_.transpose(), equation_);
   for (int a = 0; a < 3; ++a) {
     const Eigen::VectorXd& end = axes_.end[std::size_t(a)];
     if (end.size() == 0) continue;

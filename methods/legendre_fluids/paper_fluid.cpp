@@ -22,7 +22,7 @@ PaperFluid::PaperFluid(int dimensions, int n, const Vec3& half, const Material& 
   confined_.emplace(dimensions, std::max(1, n - 1), half);
   if (confined_->size() == 0) return;
   const MatrixXd& phi = confined_->phi();  // n x (n-2)
-  to_wall_ = scene::solve_definite(phi.transpose() * phi, phi.transpose());
+  to_wall_ = scene::solve_definite(scene::product(phi.transpose(), phi), phi.transpose());
   to_free_ = MatrixXd::Identity(n - 1, n);
 }
 

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "scene/flow.h"
+#include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {
 
 using Eigen::MatrixXd;
 using scene::along_axis;
+using scene::product;
 
 namespace {
 
@@ -24,8 +26,8 @@ PaperAdvection::PaperAdvection(int dimensions, int n, Truncation truncation) : d
   const MatrixXd cut =
       truncation == Truncation::chebyshev ? scene::chebyshev_truncation(n) : MatrixXd(MatrixXd::Identity(n, full));
   values_ = points.values.leftCols(n);
-  cut_ = cut * points.analysis;
-  derived_and_cut_ = cut * scene::legendre_derivative(full) * points.analysis;
+  cut_ = product(cut, points.analysis);
+  derived_and_cut_ = product(product(cut, scene::legendre_derivative(full)), points.analysis);
 }
 
 Array PaperAdvection::along(const std::array<const MatrixXd*, 3>& matrix, const Array& c, TensorShape s) const {

@@ -1,10 +1,12 @@
 // Functions to coefficients, and coefficients to values on lattices.
 #include "methods/legendre_fluids/confined_space.h"
+#include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {
 namespace {
 
 using Eigen::MatrixXd;
+using scene::product;
 
 // Functions are no polynomials: points beyond what products need, so that theirs is not the error.
 int points_of_functions(int n) { return 2 * n + 16; }
@@ -24,7 +26,7 @@ void each_point(const Array& node, int dimensions, const Body& body) {
 Array ConfinedSpace::from_function(const std::function<Vec3(const Vec3&)>& u) const {
   if (n_ == 1) return Array();
   const scene::LegendrePoints& fine = scene::legendre_points(n_ + 1, points_of_functions(n_));
-  const MatrixXd free = fine.analysis.topRows(n_), wall = inverse_ * phi_.transpose() * fine.analysis;
+  const MatrixXd free = fine.analysis.topRows(n_), wall = product(product(inverse_, phi_.transpose()), fine.analysis);
   const int m = int(fine.node.size());
   const TensorShape fine_shape{m, m, d_ == 3 ? m : 1};
   Components parts;
@@ -55,7 +57,7 @@ Array ConfinedSpace::sampled(const Array& c, int component, int slope_axis, cons
   for (int a = 0; a < d_; ++a) {
     if (a == component)
       matrix[a] = a == slope_axis ? MatrixXd(scene::legendre_values(n_, positions[a]).rightCols(n_ - 1))
-                                  : MatrixXd(scene::legendre_values(n_ + 1, positions[a]) * phi_);
+                                  : product(scene::legendre_values(n_ + 1, positions[a]), phi_);
     else
       matrix[a] = a == slope_axis ? scene::legendre_slopes(n_, positions[a]) : scene::legendre_values(n_, positions[a]);
   }

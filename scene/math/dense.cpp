@@ -10,6 +10,8 @@ namespace airlight::scene {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+MatrixXd product(const Eigen::Ref<const MatrixXd>& a, const Eigen::Ref<const MatrixXd>& b) { return a * b; }
+
 SymmetricModes symmetric_modes(const MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors()};

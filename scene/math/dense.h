@@ -1,12 +1,15 @@
 #pragma once
 
-// Decompositions of dense matrices. Eigen's templates take the compiler three to ten seconds in every file that names one; here each is
-// compiled once. Sizes that do not fit are a mistake of the caller, and assert.
+// Products and decompositions of dense matrices. Eigen's templates take the compiler two to ten seconds in every file that names one; here
+// each is compiled once. Sizes that do not fit are a mistake of the caller, and assert.
 
 #include <Eigen/Core>
 #include <memory>
 
 namespace airlight::scene {
+
+// A B. What is no stored matrix, such as a transposed one, is copied first.
+Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b);
 
 // Eigenvalues, ascending, and orthonormal eigenvectors, one a column.
 struct SymmetricModes {

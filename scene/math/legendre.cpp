@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "scene/math/dense.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
@@ -63,10 +64,11 @@ Eigen::MatrixXd chebyshev_truncation(int n) {
   Eigen::VectorXd root(full);
   for (int p = 0; p < full; ++p) root[p] = std::cos(pi * (p + 0.5) / full);
   // Chebyshev coefficients by the sum over roots, which is exact below degree 2 n - 1.
-  Eigen::MatrixXd to_chebyshev = 2.0 / full * chebyshev_values(n, root).transpose() * legendre_values(full, root);
+  Eigen::MatrixXd to_chebyshev =
+      2.0 / full * product(chebyshev_values(n, root).transpose(), legendre_values(full, root));
   to_chebyshev.row(0) *= 0.5;
   const LegendrePoints& points = legendre_points(n);
-  Eigen::MatrixXd truncation = points.analysis * chebyshev_values(n, points.node) * to_chebyshev;
+  Eigen::MatrixXd truncation = product(product(points.analysis, chebyshev_values(n, points.node)), to_chebyshev);
   truncation.leftCols(n).setIdentity();  // what it is but for rounding
   return truncation;
 }
@@ -88,7 +90,7 @@ Eigen::MatrixXd legendre_values(int n, const Eigen::VectorXd& x) {
 }
 
 Eigen::MatrixXd legendre_slopes(int n, const Eigen::VectorXd& x) {
-  return legendre_values(n, x) * legendre_derivative(n);
+  return product(legendre_values(n, x), legendre_derivative(n));
 }
 
 LegendrePoints::LegendrePoints(int n, int m) {

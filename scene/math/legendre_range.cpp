@@ -4,6 +4,8 @@
 #include <cmath>
 #include <queue>
 
+#include "scene/math/dense.h"
+
 namespace airlight::scene {
 namespace {
 
@@ -102,7 +104,7 @@ constexpr int most_halvings = 400;
 Eigen::MatrixXd legendre_restriction(int n, double lo, double hi) {
   const LegendrePoints& points = legendre_points(n);
   const Eigen::VectorXd there = (0.5 * (lo + hi) + 0.5 * (hi - lo) * points.node.array()).matrix();
-  Eigen::MatrixXd restriction = points.analysis * legendre_values(n, there);
+  Eigen::MatrixXd restriction = product(points.analysis, legendre_values(n, there));
   restriction.triangularView<Eigen::StrictlyLower>().setZero();  // what it is but for rounding
   return restriction;
 }
