@@ -4,13 +4,11 @@
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 #include "scene/flow.h"
-#include "scene/media/start_grids.h"
+#include "scene/media/vdb_module.h"
 #include "scene/media/vdb_parts.h"
 
-namespace airlight::scene {
+namespace airlight::scene::vdb {
 namespace {
-
-using namespace vdb;
 
 // What OpenVDB throws becomes an Error that says where.
 template <class Body>
@@ -43,21 +41,21 @@ VoxelGrid read_floats(const std::string& path, const std::string& name, std::siz
 
 }  // namespace
 
-VoxelGrid read_vdb(const std::string& path, const std::string& name, std::size_t max_voxels) {
+VoxelGrid read(const std::string& path, const std::string& name, std::size_t max_voxels) {
   return read_floats(path, name, max_voxels, [](float value) {
     if (std::isfinite(value) && value >= 0) return std::string();
     return fmt::format("{}, expected a finite density >= 0", value);
   });
 }
 
-VoxelGrid read_temperature_vdb(const std::string& path, const std::string& name, std::size_t max_voxels) {
+VoxelGrid read_temperature(const std::string& path, const std::string& name, std::size_t max_voxels) {
   return read_floats(path, name, max_voxels, [](float value) {
     if (std::abs(value) <= greatest_start) return std::string();
     return fmt::format("{}, expected a temperature of at most {} K", value, greatest_start);
   });
 }
 
-VelocityGrid read_velocity_vdb(const std::string& path, const std::string& name, std::size_t max_voxels) {
+VelocityGrid read_velocity(const std::string& path, const std::string& name, std::size_t max_voxels) {
   const std::string where = grid_of(path, name);
   return telling(where, [&] {
     const auto samples =
@@ -92,7 +90,7 @@ VelocityGrid read_velocity_vdb(const std::string& path, const std::string& name,
   });
 }
 
-void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string& name) {
+void write(const std::string& path, const VoxelGrid& grid, const std::string& name) {
   initialize_once();
   write_file_atomically(path, bytes_of({fog_volume(grid, name)}));
 }
@@ -140,4 +138,8 @@ void write_frame(const std::string& path, Frame frame, const std::map<std::strin
   write_file_atomically(path, bytes_of(grids, metadata));
 }
 
-}  // namespace airlight::scene
+}  // namespace airlight::scene::vdb
+
+extern "C" const airlight::scene::vdb::Module airlight_vdb = {
+    airlight::scene::vdb::read, airlight::scene::vdb::read_temperature, airlight::scene::vdb::read_velocity,
+    airlight::scene::vdb::write, airlight::scene::vdb::write_frame};

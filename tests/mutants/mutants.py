@@ -37,14 +37,11 @@ class Builder:
         self.scratch = tempfile.TemporaryDirectory(prefix="airlight_mutants_")
         with open(os.path.join(self.build, "compile_commands.json")) as f:
             self.commands = {c["file"]: c for c in json.load(f)}
-        found = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "tests/airlight_tests"], capture_output=True,
-                               text=True, check=True).stdout
-        link = [line for line in found.splitlines() if " -o tests/airlight_tests " in line][-1]
-        before, after = link.split(" -o tests/airlight_tests ")
-        self.libraries = after.split(" && ")[0].split()
         # Objects of the program that lie in no library; a planted one stands for its own.
-        self.objects = [w for w in before.split() if w.endswith(".o") and not w.startswith("tests/")]
-        self.stands_for = {}
+        self.objects, self.libraries = self.linked("tests/airlight_tests")
+        # What the program loads when it meets a file of OpenVDB.
+        self.vdb_objects, self.vdb_libraries = self.linked("airlight_vdb.so")
+        self.stands_for, self.planted_vdb = {}, set()
         self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/main.cpp")] or [ROOT])
         self.root = os.path.dirname(os.path.dirname(self.root)) if self.root.endswith("main.cpp") else self.root
         self.batches = {}  # of the sources that are compiled together, where the preset does so
@@ -52,6 +49,15 @@ class Builder:
             if os.path.dirname(batch) == os.path.join(self.build, "batches"):
                 for source in re.findall(r'^#include "(.+)"', read(batch), re.MULTILINE):
                     self.batches[source] = batch
+
+    def linked(self, target):
+        """The objects that a target is linked of, without tests; its options for the linker and its libraries."""
+        found = subprocess.run(["ninja", "-C", self.build, "-t", "commands", target], capture_output=True, text=True, check=True).stdout
+        link = [line for line in found.splitlines() if f" -o {target} " in line][-1]
+        before, after = (shlex.split(part) for part in link.split(" && ")[1].split(f" -o {target} "))
+        options = [w for w in before if w.startswith("-Wl,")]
+        return ([w for w in before + after if w.endswith(".o") and not w.startswith("tests/")],
+                options + [w for w in after if not w.endswith(".o")])
 
     def command(self, file):
         return self.commands.get(os.path.join(self.root, file)) or self.commands.get(self.batches.get(file))
@@ -68,8 +74,11 @@ class Builder:
         alone = not batch or file not in self.batches  # a batch includes it by its name below the root
         source = (own if os.path.exists(own) else os.path.join(self.root, file)) if alone else c["file"]
         object_file = os.path.join(overlay, source.strip("/").replace("/", "_") + ".o")
+        own_object = words[words.index("-o") + 1]
         if batch or file not in self.batches:
-            self.stands_for[object_file] = words[words.index("-o") + 1]
+            self.stands_for[object_file] = own_object
+        if own_object in self.vdb_objects:
+            self.planted_vdb.add(object_file)
         words[words.index("-o") + 1] = object_file
         words[words.index("-c") + 1] = source
         first = next(i for i, w in enumerate(words) if w.startswith("-I"))
@@ -88,10 +97,19 @@ class Builder:
             objects = objects + [os.path.join(self.build, words[words.index("-o") + 1])]
         objects = list(dict.fromkeys(objects))  # several sources may be in one batch
         replaced = {self.stands_for.get(o) for o in objects}
-        objects += [o for o in self.objects if o not in replaced]
+        vdb = [o for o in objects if o in self.planted_vdb]
+        folder = self.build
+        if vdb:
+            folder = os.path.join(self.scratch.name, "vdb")
+            os.makedirs(folder, exist_ok=True)
+            self.run_linker(["-shared"] + vdb + [o for o in self.vdb_objects if o not in replaced],
+                            os.path.join(folder, "airlight_vdb.so"), self.vdb_libraries)
+        self.run_linker([f"-Wl,-rpath,{folder}"] + [o for o in objects if o not in vdb] + [o for o in self.objects if o not in replaced],
+                        program, self.libraries)
+
+    def run_linker(self, words, out, libraries):
         # The first definition of a function is taken: the planted one.
-        run = subprocess.run(["c++", "-Wl,-z,muldefs"] + objects + ["-o", program] + self.libraries, cwd=self.build, capture_output=True,
-                             text=True)
+        run = subprocess.run(["c++", "-Wl,-z,muldefs"] + words + ["-o", out] + libraries, cwd=self.build, capture_output=True, text=True)
         if run.returncode:
             raise Cannot("does not link:\n" + run.stderr[-2000:])
 
