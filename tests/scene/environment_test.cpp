@@ -69,14 +69,14 @@ std::vector<EnvironmentLight> all_lights() {
 
 // Midpoint rule over the sphere with equal cells in (height, longitude).
 template <class F>
-double integrate(int n, F f) {
-  double sum = 0;
+auto integrate(int n, F f) {
+  std::decay_t<decltype(f(Vec3()))> sum = 0 * f(Vec3::UnitY());
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < 2 * n; ++i) {
       const double y = 1 - 2 * (j + 0.5) / n;
       sum += f(from_lat_long((i + 0.5) / (2 * n), y, std::sqrt(1 - y * y)));
     }
-  return sum * 4 * pi / (2.0 * n * n);
+  return decltype(sum)(sum * 4 * pi / (2.0 * n * n));
 }
 
 }  // namespace
@@ -205,9 +205,10 @@ TEST_CASE("irradiance by sampling is irradiance by quadrature", "[environment]")
       sum += value;
       squares += value * value;
     }
+    const Rgb irradiance =
+        integrate(800, [&](const Vec3& w) -> Rgb { return radiance(light, w) * std::max(0.0, n.dot(w)); });
     for (int c = 0; c < 3; ++c) {
-      const double expected =
-          integrate(800, [&](const Vec3& w) { return radiance(light, w)[c] * std::max(0.0, n.dot(w)); });
+      const double expected = irradiance[c];
       const double mean = sum[c] / samples;
       const double error = std::sqrt(std::max(0.0, squares[c] / samples - mean * mean) / samples);
       CAPTURE(mean, expected, error);

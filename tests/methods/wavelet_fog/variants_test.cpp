@@ -51,7 +51,7 @@ const std::pair<Point3, Point3> views[] = {
 TEST_CASE("wavelet fog: skip equals direct, polar is off by 1e-4, bound below its tolerance", "[wavelet_fog]") {
   for (const std::string name : {"smooth", "patchy", "hard"})
     for (const auto& [eye, at] : views) {
-      const auto scene = seen_from(scene_named("wavelet_fog/" + name, 96, 72), eye, at);
+      const auto scene = seen_from(scene_named("wavelet_fog/" + name, 48, 36), eye, at);
       const scene::Film direct = picture(method, scene, {{"variant", "direct"}});
       CAPTURE(name, eye.transpose());
       CHECK(most(picture(method, scene, {{"variant", "skip"}}), direct, "transmittance") <= 2e-7);
@@ -80,7 +80,7 @@ TEST_CASE("wavelet fog: polar from an eye far away is as close, and its table no
                       {{0, 2000, 300}, 2.5}};
   for (const std::string name : {"smooth", "patchy", "hard"})
     for (const Far& far : eyes) {
-      const auto scene = seen_from(scene_named("wavelet_fog/" + name, 96, 72), far.eye, {0, 0, 0});
+      const auto scene = seen_from(scene_named("wavelet_fog/" + name, 48, 36), far.eye, {0, 0, 0});
       scene->camera.vertical_fov = far.fov;
       CAPTURE(name, far.eye.transpose());
       const scene::Film direct = picture(method, scene, {{"variant", "direct"}});

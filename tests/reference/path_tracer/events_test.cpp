@@ -14,7 +14,7 @@ using namespace airlight::path_tracer::test;
 namespace {
 
 const Vec3 up(0, 1, 0);
-constexpr std::uint64_t samples = 1 << 19;
+constexpr std::uint64_t samples = 1 << 17;
 
 // Fog over a floor, under a sky and a lamp that is close enough to be connected.
 std::shared_ptr<const scene::Scene> scene_with(double floor_albedo) {
