@@ -36,7 +36,7 @@ void catch_interrupts() {
   if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
-bool interrupted() { return signals.load() > 0 || stopped; }
+bool interrupted() { return signals.load() > 0 || stopped || scene::time_is_over(); }
 
 void stop_with(const std::string& why) {
   const std::lock_guard lock(reason_mutex);
@@ -44,11 +44,10 @@ void stop_with(const std::string& why) {
   stopped = true;
 }
 
-const std::string& stopped_by() { return reason; }
+std::string stopped_by() { return !reason.empty() || !scene::time_is_over() ? reason : scene::over_time_text(); }
 
 void check_interrupted() {
   if (stopped) throw Error(reason);
-  scene::check_time();
   if (interrupted()) throw scene::Interrupted("interrupted");
 }
 

@@ -8,13 +8,13 @@
 namespace airlight::experiments {
 
 void catch_interrupts();
-bool interrupted();  // by a signal, or by stop_with
+bool interrupted();  // by a signal, by stop_with, or because the time that --limit allows is over
 
 // Ends work in progress like a signal, for a reason that is then told instead (exit code 2). From any thread; the first reason counts.
 void stop_with(const std::string& reason);
-const std::string& stopped_by();  // empty: by a signal, or not at all
+std::string stopped_by();  // empty: by a signal, or not at all
 
-// Throws scene::Interrupted if a signal came, Error if stop_with was called or the time that --limit allows is over.
+// Throws scene::Interrupted if a signal came or the time that --limit allows is over, Error if stop_with was called.
 void check_interrupted();
 
 // Settings for a render that only watches for signals.

@@ -66,9 +66,8 @@ void Progress::update(double fraction) {
 
 // What the first second showed of the rest.
 void Progress::hold_to_limit(double fraction, double spent) const {
-  if (spent < 1) return;
+  if (spent < 1 || scene::time_is_over()) return;
   try {
-    scene::check_time();
     if (fraction > 0) scene::require_time(spent * (1 - fraction) / fraction, what_);
   } catch (const Error& error) {
     stop_with(error.what());

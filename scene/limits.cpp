@@ -92,9 +92,10 @@ void require_time(double seconds, const std::string& what) {
                      duration(seconds)));
 }
 
-void check_time() {
-  if (allowed_seconds < unlimited && seconds_spent() > allowed_seconds)
-    throw Error(fmt::format("not done after {}, which is what --limit allows", duration(allowed_seconds)));
+bool time_is_over() { return allowed_seconds < unlimited && seconds_spent() > allowed_seconds; }
+
+std::string over_time_text() {
+  return fmt::format("not done after {}, which is what --limit allows", duration(allowed_seconds));
 }
 
 }  // namespace airlight::scene

@@ -19,7 +19,8 @@ void on_long_work(std::function<void(const std::string& line)>);
 void require_memory(double bytes, const std::string& what);
 // Throws Error where that is more than is left of the time allowed.
 void require_time(double seconds, const std::string& what);
-// Throws Error if the time allowed is over.
-void check_time();
+// Whether the time allowed is over; from any thread. And the line that says so.
+bool time_is_over();
+std::string over_time_text();
 
 }  // namespace airlight::scene

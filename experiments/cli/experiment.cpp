@@ -259,6 +259,10 @@ int gates(const ExperimentOptions& options) {
     // What ends the command says nothing about accuracy: an error beside the gates that were judged.
     if (!options.junit.empty()) write_junit(options.junit, results, error.what());
     throw;
+  } catch (const scene::Interrupted& stop) {
+    const std::string line = stopped_by();
+    if (!options.junit.empty()) write_junit(options.junit, results, line.empty() ? stop.what() : line.c_str());
+    throw;
   }
 }
 

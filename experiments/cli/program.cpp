@@ -416,7 +416,7 @@ int run(int argc, char** argv) {
     say(error.what());
     return error.exit_code();
   } catch (const scene::Interrupted&) {
-    if (const std::string& line = stopped_by(); !line.empty()) {
+    if (const std::string line = stopped_by(); !line.empty()) {
       say(line);
       return 2;
     }

@@ -131,19 +131,21 @@ Check read_optical_depth(const Value& v) {
           }};
 }
 
-// A cell of the fogmap of the optical depths, seed 0: tighter bounds than the hull of its coefficients are as rigorous.
+// A cell of a fogmap of the optical depths, by default of 8 by 8 coefficients and seed 0. Bounds tighter than the hull of the coefficients
+// are as rigorous.
 Check cell_bounds(const Value& v) {
   const Value in = v["input"], expected = v["expected"];
   const std::vector<double> cell = in["cell"].numbers(), hull = expected["hull"].numbers(),
                             sampled = expected["sampled"].numbers();
   if (cell.size() != 2 || hull.size() != 2 || sampled.size() != 2) v.complain("cell, hull and sampled of two numbers");
-  const int degree = in["degree"].integer_in(0, 3);
+  const int degree = in["degree"].integer_in(0, 3), n = in.has("n") ? in["n"].integer_in(1, 256) : 8,
+            seed = in.has("seed") ? in["seed"].integer_in(0, 1000000) : 0;
   const double accuracy = v["accuracy"]["abs"].number();
   return {
       "", [=](VerifyProfile) {
         constexpr double inside = 1e-12;  // no neighbour touches
         const double lo[2] = {cell[0] + inside, cell[1] + inside}, hi[2] = {cell[0] + 1 - inside, cell[1] + 1 - inside};
-        const Interval bounds = modular_fogmap(8, 0, degree, 0)->map.bounds(lo, hi);
+        const Interval bounds = modular_fogmap(n, seed, degree, 0)->map.bounds(lo, hi);
         return Outcome{{truth("within the hull", bounds.lo >= hull[0] - accuracy && bounds.hi <= hull[1] + accuracy),
                         truth("contains samples", bounds.lo <= sampled[0] && bounds.hi >= sampled[1])}};
       }};

@@ -2,8 +2,11 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "experiments/verify/readers.h"
 #include "reference/stable_fluids/advection.h"
+#include "scene/error.h"
 
 namespace airlight::experiments::verification {
 
@@ -20,7 +23,12 @@ inline scene::FlowProblem flat_problem(double size, scene::Side::Kind sides) {
 struct Row {
   std::string scheme;
   std::vector<double> numbers;  // of the other columns
-  int whole(std::size_t i) const { return int(numbers[i]); }
+  // Cells, or steps: more take minutes.
+  int whole(std::size_t i, int most = 4096) const {
+    if (!(numbers[i] >= 1 && numbers[i] <= most && numbers[i] == std::floor(numbers[i])))
+      throw Error(fmt::format("a row has {}, expected a whole number from 1 to {}", numbers[i], most));
+    return int(numbers[i]);
+  }
   stable_fluids::Scheme advection() const {
     return scheme == "mc" ? stable_fluids::Scheme::maccormack : stable_fluids::Scheme::semi_lagrangian;
   }

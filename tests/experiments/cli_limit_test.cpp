@@ -6,6 +6,7 @@
 
 #include "scene/grey_image.h"
 #include "tests/experiments/run_program.h"
+#include "tests/experiments/small_project.h"
 
 namespace cli_limit_test {
 
@@ -86,6 +87,18 @@ TEST_CASE("time that a command may not take is refused before it is spent", "[cl
           "path_tracer fog: takes about ");
   refused(folder, "simulate flow.toml --set n=4 --set dt=1e-8 --out o --limit 20s", "stable_fluids f: takes about ");
   CHECK(run("render fog.toml -m path_tracer --samples 4 -o a.exr --limit 1h --limit 1GiB", folder).code == 0);
+}
+
+// Within a row, not only between rows; and no gate is said to fail.
+TEST_CASE("an experiment ends where its time is over", "[cli][limit]") {
+  const SmallProject project(box_of_fog(64, 64),
+                             against_quadrature({{"slow", "ray_marcher", "1", "steps = 65536, shadow_steps = 1024"}}));
+  for (const std::string command : {"experiment run", "gates --junit report.xml"}) {
+    refused(project, command + " --root . --limit 2s", "not done after 2 s, which is what --limit allows");
+    CHECK_THAT(run(command + " --root . --limit 2s", project).out, !Contains("FAILED"));
+  }
+  const std::string report = read_bytes(project.file("report.xml"));
+  CHECK_THAT(report, Contains("<error") && Contains("not done after 2 s") && !Contains("<failure"));
 }
 
 TEST_CASE("a limit is an amount with a unit", "[cli][limit]") {

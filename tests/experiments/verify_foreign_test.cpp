@@ -1,12 +1,14 @@
-// Oracle vectors that are not ours: other ids, and other values that follow from ours by a law.
+// Oracle vectors that are not ours: other ids, other values that follow from ours by a law, and others made by scripts of their own.
 #include <catch2/catch.hpp>
 #include <charconv>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "experiments/json.h"
+#include "experiments/verify/check.h"
 #include "experiments/verify/verify.h"
 #include "scene/error.h"
 #include "scene/math/types.h"
@@ -167,6 +169,61 @@ TEST_CASE("values that follow from our vectors by a law are met, too", "[verify]
     CHECK(result.code == 0);
     CHECK(result.numbers > 0);
   }
+}
+
+namespace {
+
+// Kinds that are measured by Monte Carlo, or take seconds for another reason.
+bool is_slow(const std::string& kind) {
+  return kind.starts_with("slab_") || kind.starts_with("sphere_") || kind == "halfspace" || kind == "identity" ||
+         kind == "single_scattering_environment" || kind == "multiple_scattering_monte_carlo";
+}
+
+// Ten tolerances on every number that the vector names.
+json made_wrong(json v) {
+  const json wrong = v["wrong"];
+  for (const auto& [pointer, by] : wrong.items()) {
+    json& at = v[json::json_pointer(pointer)];
+    if (by.is_string())
+      at = by;
+    else if (at.is_number_integer() && by.is_number_integer())
+      at = at.get<int>() + by.get<int>();
+    else
+      at = number(at) + by.get<double>();
+  }
+  return v;
+}
+
+void check_others(bool slow) {
+  for (const char* name :
+       {"references", "fogshop", "shadow_planes", "wavelet_fog", "legendre_fluids", "compensated_ray_marching"}) {
+    json file = experiments::read_json(vectors + "other/" + name + ".json");
+    std::set<std::string> kinds;
+    const json all = file["vectors"];
+    for (const json& v : all) {
+      kinds.insert(v["kind"]);
+      if (is_slow(v["kind"]) != slow) continue;
+      file["vectors"] = {v};
+      const Result right = verified(file);
+      file["vectors"] = {made_wrong(v)};
+      const Result wrong = verified(file);
+      CAPTURE(name, v["id"].get<std::string>(), right.text, wrong.text);
+      CHECK(right.code == 0);
+      CHECK(right.numbers > 0);
+      CHECK(wrong.code == 1);
+      CHECK(v["wrong"].size() > 0);
+      CHECK(wrong.out >= int(v["wrong"].size()));
+    }
+    const std::vector<std::string> known = experiments::verification::known_kinds(name);
+    CHECK(kinds == std::set<std::string>(known.begin(), known.end()));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("vectors of every kind that others made are met, and wrong ones are not", "[verify]") { check_others(false); }
+TEST_CASE("measured vectors that others made are met, and wrong ones are not", "[verify][thorough]") {
+  check_others(true);
 }
 
 TEST_CASE("cosines that are no numbers are refused with file and vector", "[verify]") {
