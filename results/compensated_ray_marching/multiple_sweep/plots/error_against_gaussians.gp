@@ -1,9 +1,9 @@
 # Draws error_against_gaussians.svg and error_against_gaussians.png from error_against_gaussians.csv: run gnuplot on this file in its folder.
 data = "error_against_gaussians.csv"
 set datafile separator comma
-set title "rel_l2 against Gaussians" noenhanced
-set xlabel "Gaussians" noenhanced
-set ylabel "rel_l2" noenhanced
+set title 'rel_l2 against Gaussians' noenhanced
+set xlabel 'Gaussians' noenhanced
+set ylabel 'rel_l2' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -16,21 +16,21 @@ set format y "%g"
 set yrange [0.0083373:3.18597]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_gaussians.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 40 iterations", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'paper, 40 iterations', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "paper, converged", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'paper, converged', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "grid", \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'grid', \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      0.0171694 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_gaussians.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "paper, 40 iterations", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'paper, 40 iterations', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "paper, converged", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'paper, converged', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "grid", \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'grid', \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      0.0171694 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
