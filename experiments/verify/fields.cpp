@@ -189,12 +189,13 @@ Check read_field_bounds(const Value& v) {
   const Box box{in["lo"].vector(), in["hi"].vector()};
   const double lower = expected["lower"].number(), upper = expected["upper"].number();
   const std::vector<double> sampled = expected["sampled"].numbers();
+  if (sampled.size() != 2) expected["sampled"].complain("two numbers");
   const double accuracy = v["accuracy"]["abs"].number();
   return {
       "", [=](VerifyProfile) {
         const Interval bounds = scene::density_bounds(medium, box);
         return Outcome{{absolute("lower", lower, bounds.lo, accuracy), absolute("upper", upper, bounds.hi, accuracy),
-                        truth("contains samples", bounds.lo <= sampled.at(0) && bounds.hi >= sampled.at(1))}};
+                        truth("contains samples", bounds.lo <= sampled[0] && bounds.hi >= sampled[1])}};
       }};
 }
 

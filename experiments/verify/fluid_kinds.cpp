@@ -213,6 +213,7 @@ Check read_rotation(const Value& v) {
 Check read_confinement(const Value& v) {
   const double epsilon = v["input"]["eps"].number(), h = v["input"]["h"].number_in(1e-2, 1);
   const auto radii = v["input"]["r"].numbers(), expected = v["expected"]["f_theta"].numbers();
+  if (expected.size() != radii.size()) v["expected"]["f_theta"].complain("a number for every r");
   return {"", [=](VerifyProfile) {
             FlowProblem problem = flat_problem(1, scene::Side::Kind::open);
             problem.box = {Point3(-4, -4, 0), Point3(4, 4, 0)};

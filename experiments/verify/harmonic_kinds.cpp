@@ -170,8 +170,10 @@ Check read_hg_zh(const Value& v) {
 
 Check read_sh_convolution(const Value& v) {
   const Value in = v["input"];
-  return list_check(
-      v, [f = harmonics_of(in["f"], order_of(in)), zonal = in["zonal"].numbers()] { return crm::convolved(f, zonal); });
+  const int order = order_of(in);
+  const std::vector<double> zonal = in["zonal"].numbers();
+  if (int(zonal.size()) != order) in["zonal"].complain("a coefficient for every band");
+  return list_check(v, [zonal, f = harmonics_of(in["f"], order)] { return crm::convolved(f, zonal); });
 }
 
 Check read_zh_rotation(const Value& v) {

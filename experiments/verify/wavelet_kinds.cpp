@@ -29,17 +29,27 @@ void compare(Outcome& outcome, const std::string& what, const std::vector<double
     outcome.comparisons.push_back(relative(fmt::format("{} {}", what, i), expected[i], got[i], rounding, rounding));
 }
 
+constexpr int most = 4096;  // indices and sizes of maps; more of them are no test
+
+// Rows of as many numbers as `v` says in width and height.
+Coefficients map_of(const Value& v, const std::string& field, std::array<int, 2> lo) {
+  const std::array<int, 2> size{v["width"].integer_in(1, most), v["height"].integer_in(1, most)};
+  const std::vector<double> values = v[field].numbers();
+  if (values.size() != std::size_t(size[0]) * std::size_t(size[1])) v[field].complain("width times height numbers");
+  return {{{lo[0], lo[1]}, {size[0], size[1]}}, values};
+}
+
 // Zeros beyond the stated indices are allowed: compared by index.
 struct Listed {
   Coefficients c;  // of a sequence: one row
 };
 Listed sequence(const Value& v) {
   const std::vector<double> values = v["values"].numbers();
-  return {{{{v["lo"].integer(), 0}, {int(values.size()), 1}}, values}};
+  return {{{{v["lo"].integer_in(-most, most), 0}, {int(values.size()), 1}}, values}};
 }
 Listed grid(const Value& v) {
   const Value lo = v["lo"];
-  return {{{{lo[0].integer(), lo[1].integer()}, {v["width"].integer(), v["height"].integer()}}, v["values"].numbers()}};
+  return {map_of(v, "values", {lo[0].integer_in(-most, most), lo[1].integer_in(-most, most)})};
 }
 void compare(Outcome& outcome, const std::string& what, const Coefficients& expected, const Coefficients& got) {
   const scene::SplineMap e(0, expected.range, expected.values), g(0, got.range, got.values);
@@ -71,8 +81,8 @@ Point3 upright(const Vec3& v) { return {v[0], v[2], v[1]}; }
 
 Fogmap fogmap_of(const Value& v) {
   Fogmap fog;
-  fog.map = scene::SplineMap(v["degree"].integer_in(0, 3), {{0, 0}, {v["width"].integer(), v["height"].integer()}},
-                             v["coef"].numbers());
+  const Coefficients c = map_of(v, "coef", {0, 0});
+  fog.map = scene::SplineMap(v["degree"].integer_in(0, 3), c.range, c.values);
   fog.profile = profile_of(v["profile"]);
   fog.x0 = v["origin"][0].number();
   fog.z0 = v["origin"][1].number();
@@ -144,6 +154,7 @@ Check read_family(const Value& v) {
   const std::vector<std::vector<double>> taps = {v["p"].numbers(), v["q"].numbers(), v["p_tilde"].numbers(),
                                                  v["q_tilde"].numbers()};
   const std::vector<double> offsets = v["offsets"].numbers();
+  if (offsets.size() != 4) v["offsets"].complain("four offsets");
   return {"", [=](VerifyProfile) {
             const Family& f = family(name);
             Outcome outcome;
@@ -245,7 +256,7 @@ Check read_multiresolution(const Value& v) {
   const Fogmap fog = fogmap_of(v);
   const Segment s = segment_of(v);
   const std::string name = v["family"].text();
-  const int L = v["levels"].integer();
+  const int L = v["levels"].integer_in(0, 12);
   const double mu = v["mu"].number(), sigma = v["sigma"].number(), tolerance = v["rtol_f64"].number();
   const double depth = v["expected"]["optical_depth"].number(), full = v["expected"]["full_optical_depth"].number();
   return {

@@ -1,4 +1,5 @@
 // Oracle vectors that are not ours: other ids, other values that follow from ours by a law, and others made by scripts of their own.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <charconv>
 #include <cmath>
@@ -236,6 +237,38 @@ TEST_CASE("cosines that are no numbers are refused with file and vector", "[veri
     CAPTURE(name);
     CHECK_THROWS_WITH(experiments::verify({folder.file("foreign.json")}, "", VerifyProfile::quick, out),
                       Catch::Contains("foreign.json: vector 0 'foreign 0'") && Catch::Contains("as its name"));
+  }
+}
+
+// Each was read beyond its end, or not refused by name.
+TEST_CASE("vectors whose sizes do not agree are refused with file and vector", "[verify]") {
+  struct Fault {
+    const char *file, *id, *pointer;
+    json value;
+    const char* expected;
+  };
+  const Fault faults[] = {
+      {"wavelet_fog", "mr-cdf22-1.0", "/height", -6, "an integer from 1 to 4096"},
+      {"wavelet_fog", "od-1x1", "/height", 50, "width times height numbers"},
+      {"wavelet_fog", "ana2d-cdf22", "/expected/dd/width", 9, "width times height numbers"},
+      {"wavelet_fog", "fam-haar", "/offsets", {0, 0, 0}, "four offsets"},
+      {"compensated_ray_marching", "conv_hg", "/input/zonal", {1, 2, 3, 4, 5, 6, 7}, "a coefficient for every band"},
+      {"references", "fluid-confinement", "/expected/f_theta", {0.1}, "a number for every r"},
+      {"references", "fluid-poisson", "/input/n", {2, 2, 2}, "three digits, a cell, as its name"},
+      {"references", "fluid-diffusion", "/expected/rows/0/2", 1e9, "a whole number from 1 to 4096"},
+      {"references", "bound-gauss", "/expected/sampled", {0.5}, "two numbers"},
+  };
+  for (const Fault& fault : faults) {
+    json file = experiments::read_json(vectors + fault.file + ".json");
+    const json all = file["vectors"];
+    const auto found = std::find_if(all.begin(), all.end(), [&](const json& v) { return v["id"] == fault.id; });
+    REQUIRE(found != all.end());
+    file["vectors"] = {*found};
+    if (file.contains("count")) file["count"] = 1;
+    file["vectors"][0][json::json_pointer(fault.pointer)] = fault.value;
+    CAPTURE(fault.id, fault.pointer);
+    CHECK_THROWS_WITH(verified(file), Catch::Contains("foreign.json: vector ") && Catch::Contains(fault.id) &&
+                                          Catch::Contains(fault.expected));
   }
 }
 

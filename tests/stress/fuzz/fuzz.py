@@ -119,10 +119,10 @@ class Runner:
 
 
 def work(options, items, end, number):
-    """Runs one input after the other; returns (inputs, codes, failures, seconds and memory at most)."""
+    """Runs one input after the other; returns (inputs, codes, failures, seconds and memory at most of each target)."""
     memory = '/dev/shm' if os.access('/dev/shm', os.W_OK) else None
     folder = tempfile.mkdtemp(prefix='airlight_fuzz_', dir=memory)
-    done, failures, codes, most = 0, [], {}, [0, 0]
+    done, failures, codes, most = 0, [], {}, {}
     try:
         runner = Runner(options, folder)
         for target, index in items:
@@ -131,7 +131,8 @@ def work(options, items, end, number):
             result, wrong, arguments = runner.one(target, index)
             done += 1
             codes[(target, result['code'])] = codes.get((target, result['code']), 0) + 1
-            most = [max(most[0], result['seconds']), max(most[1], result['kib'])]
+            seconds, kib = most.get(target, (0, 0))
+            most[target] = max(seconds, result['seconds']), max(kib, result['kib'])
             if wrong:
                 failures.append((target, index, wrong))
                 print(f'FAILED {target}:{index}: {wrong}\n       {" ".join(map(repr, arguments))[:300]}', flush=True)
@@ -175,14 +176,18 @@ def main():
         parts = [pool.submit(work, options, items[i::jobs], begin + options.seconds, i) for i in range(jobs)]
         results = [p.result() for p in parts]
     done, failures = sum(r[0] for r in results), [f for r in results for f in r[2]]
-    codes = {}
+    codes, mosts = {}, {}
     for r in results:
         for (target, code), count in r[1].items():
             codes.setdefault(target, {})[code] = codes.get(target, {}).get(code, 0) + count
+        for target, most in r[3].items():
+            mosts[target] = [max(pair) for pair in zip(mosts.get(target, (0, 0)), most)]
     if not options.quiet:
         for target, counts in codes.items():
-            print(f'{target:12} ' + ', '.join(f'exit code {c}: {n}' for c, n in sorted(counts.items(), key=str)))
-    most = [max(r[3][i] for r in results) for i in (0, 1)]
+            wrong = sum(f[0] == target for f in failures)
+            print(f'{target:12} {sum(counts.values())} inputs, {wrong} failures, at most {mosts[target][0]:.1f} s and '
+                  f'{mosts[target][1] / 2 ** 10:.0f} MiB; ' + ', '.join(f'exit code {c}: {n}' for c, n in sorted(counts.items(), key=str)))
+    most = [max((m[i] for m in mosts.values()), default=0) for i in (0, 1)]
     print(f'{done} inputs in {time.monotonic() - begin:.0f} s, {len(failures)} failures; at most {most[0]:.1f} s and {most[1] / 2 ** 10:.0f} MiB')
     # A target that never succeeds, or is never refused, tests nothing.
     for target, counts in codes.items():

@@ -49,7 +49,8 @@ class Box:
         data = self.source / 'experiments' / 'data'
         self.scenes = re.findall(r'```toml\n(.*?)```', (self.source / 'scene' / 'README.md').read_text().replace('../data/', 'data/'), re.S)
         self.vectors = [json.loads((self.source / 'tests' / 'vectors' / f'{name}.json').read_text())
-                        for name in ('references', 'shadow_planes', 'fogshop')]
+                        for name in ('references', 'shadow_planes', 'fogshop', 'wavelet_fog', 'legendre_fluids',
+                                     'compensated_ray_marching')]
         for name in ('blobs.csv', 'base.toml'):
             self.write(name, CSV if name == 'blobs.csv' else CAMERA + FOG)
         os.makedirs(self.folder / 'data', exist_ok=True)
@@ -164,7 +165,8 @@ def author(r, box):
 
 
 SLOW = ('multiple_scattering_monte_carlo', 'slab_table', 'slab_orders', 'slab_exit_radiance', 'slab_point', 'halfspace', 'identity',
-        'sphere_environment_all_orders', 'sphere_central_point', 'single_scattering_environment')
+        'sphere_environment_all_orders', 'sphere_central_point', 'single_scattering_environment', 'march_single_scattering', 'ol_table',
+        'multiple_scattering_sphere')
 
 
 def shorter(r, value):
