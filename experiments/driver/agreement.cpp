@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "experiments/json.h"
 #include "experiments/json_value.h"
@@ -45,7 +46,10 @@ bool is_time(const std::string& metric) {
 
 class Comparison {
  public:
-  explicit Comparison(const IsSpeed& is_speed) : is_speed_(is_speed) {}
+  Comparison(const IsSpeed& is_speed, const std::vector<Row>& committed) : is_speed_(is_speed) {
+    for (const Row& row : committed)
+      for (const Measure& m : row.measures) known_.insert(m.name);
+  }
 
   void rows(const Row& ours, const Row& committed) {
     if (ours.unavailable || committed.unavailable || ours.device != committed.device) {
@@ -57,7 +61,8 @@ class Comparison {
     for (const Row* row : {&committed, &ours})
       for (const Measure& m : row->measures)
         if (std::find(metrics.begin(), metrics.end(), m.name) == metrics.end()) metrics.push_back(m.name);
-    for (const std::string& metric : metrics) figure(ours, committed, metric);
+    for (const std::string& metric : metrics)
+      if (known_.count(metric)) figure(ours, committed, metric);
   }
 
   Agreement result() {
@@ -97,6 +102,7 @@ class Comparison {
   }
 
   const IsSpeed& is_speed_;
+  std::set<std::string> known_;  // metrics of the committed table, which may be older than some
   std::vector<double> ratios_;
 };
 
@@ -126,7 +132,7 @@ bool Agreement::agrees() const {
 }
 
 Agreement compare_tables(const std::vector<Row>& ours, const std::vector<Row>& committed, const IsSpeed& is_speed) {
-  Comparison comparison(is_speed);
+  Comparison comparison(is_speed, committed);
   for (const Row& row : ours) {
     if (const Row* other = find_row(committed, row))
       comparison.rows(row, *other);

@@ -91,6 +91,18 @@ TEST_CASE("rows that one table lacks are counted, and those of another device no
         "2 rows of another device not compared");
 }
 
+TEST_CASE("metrics that the committed table lacks are not compared", "[agreement]") {
+  Row more = exact("m", 0.0104);
+  more.measures.push_back({"rmse", 0.3, 0.3, 0.3, 0, false});
+  CHECK(compared(more, exact("m", 0.0104)).agrees());
+  CHECK(compared(more, exact("m", 0.0104)).figures == 1);
+  CHECK_FALSE(compared(exact("m", 0.0104), more).agrees());
+  // Where another row of that table has it, one without is a difference.
+  Row other = more;
+  other.method = "n";
+  CHECK_FALSE(compared({more, other}, {exact("m", 0.0104), other}).agrees());
+}
+
 TEST_CASE("times are put in proportion and never differ", "[agreement]") {
   std::vector<Row> ours, committed;
   for (int i = 0; i < 11; ++i) {

@@ -107,7 +107,7 @@ TEST_CASE("a run into another folder says whether it agrees with the committed t
   REQUIRE(run("experiment run g/e --root .", project).code == 0);
   const auto there = [&] { return run("experiment run --root . --results there", project).out; };
   const std::string agrees = there();
-  CHECK_THAT(agrees, Contains("\n  agrees with results/g/e: 1 of 1 figure; times ") &&
+  CHECK_THAT(agrees, Contains("\n  agrees with results/g/e: 2 of 2 figures; times ") &&
                          Contains("\n  there is no committed table to compare with\n") &&
                          Catch::EndsWith(
                              "\n1 of 1 experiments agree with the committed tables; 1 without a committed table\n"));
@@ -120,7 +120,7 @@ TEST_CASE("a run into another folder says whether it agrees with the committed t
   }
   project.write("results/g/e/run.json", record);
   CHECK_THAT(there(), Contains("\n  DIFFERS from results/g/e: rel_l2 of one, marcher: ") &&
-                          Contains(", committed 0.75 (1 of 1 figure)") &&
+                          Contains(", committed 0.75 (1 of 2 figures)") &&
                           Contains("\n0 of 1 experiments agree with the committed tables; differs: g/e; 1 without"));
 }
 
