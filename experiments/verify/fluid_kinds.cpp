@@ -187,7 +187,7 @@ void compare_rotation(const Row& row, double tolerance, Outcome& out) {
   add("energy", row.numbers[2], squares(f) / squares(first));
   add("mass", row.numbers[3], mass / mass_before);
   add("greatest", row.numbers[4], greatest);
-  // Of the greatest value at first, 1: the least may be 0.
+  // The least value may be 0, so its tolerance is a share of the greatest value at the start, which is 1.
   out.comparisons.push_back(absolute(name + ", least", row.numbers[5], least, tolerance));
   add("error", row.numbers[6], std::sqrt(error / squares(first)));
 }

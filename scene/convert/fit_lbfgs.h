@@ -6,8 +6,7 @@
 namespace airlight::scene {
 
 // Zhou et al. 2008, section 5.1, uses L-BFGS-B; Ceres' line search knows no bounds, so that a variable is lo + (hi - lo) sigmoid(q). Each
-// Gaussian's q is counted in units of its own five variables' Gauss-Newton matrix, as if it were alone: scaled as in the publication, with
-// lengths of 0.05 of the box, it took up to twice as long for the same error. Throws Error where Ceres fails.
+// Gaussian's q is counted in units of its own five variables' Gauss-Newton matrix, as if it were alone. Throws Error where Ceres fails.
 Minimization minimize_lbfgs(FitObjective<float>&, const FitBounds&, std::vector<Gaussian>&, const MinimizerOptions&);
 
 }  // namespace airlight::scene

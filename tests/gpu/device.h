@@ -14,7 +14,7 @@ inline Context* device() {
   try {
     return &Context::get();
   } catch (const Unavailable& reason) {
-    WARN("test skipped: " << reason.what());
+    WARN("test skipped: no device: " << reason.what());
     return nullptr;
   }
 }
