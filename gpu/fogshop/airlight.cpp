@@ -23,14 +23,9 @@ struct RayValues {
   int light_steps() const { return lights > 0 ? std::max(8, slices / lights) : 0; }
   int nodes() const { return even_steps() + 1 + lights * light_steps(); }
   int fields() const { return 5 + slices + 1 + std::max(2 * nodes(), 4 * slices + 1); }
-  Definitions definitions() const {
-    Definitions d = square;
-    d["SLICES"] = std::to_string(slices);
-    d["LIGHTS"] = std::to_string(lights);
-    d["EVEN_STEPS"] = std::to_string(even_steps());
-    d["LIGHT_STEPS"] = std::to_string(light_steps());
-    d["NODES"] = std::to_string(nodes());
-    return d;
+  void set(Program& p) const {
+    p.set("slice_count", slices);
+    p.set("node_count", nodes());
   }
 };
 
@@ -60,12 +55,14 @@ void FogOnDevice::make_programs() {
   programs_.tiles = &program("fogshop/tiles.comp", square);
   const Definitions noise = {{"NOISE", model_.noise ? "1" : "0"}};
   if (model_.paper()) {
-    programs_.paper = &program("fogshop/paper.comp", with(square, with(noise, {{"LIGHTS", std::to_string(lights)}})));
+    programs_.paper = &program("fogshop/paper.comp", with(square, noise));
     check_iterations(context_, n * (1.0 + lights), "the paper's airlight");
   }
   if (model_.paper() && !needs_.sky_volume) return;
-  const Definitions sizes = with(RayValues{o.slices, model_.paper() ? 0 : lights}.definitions(), noise);
-  programs_.stretch = &program("fogshop/stretch.comp", with(sizes, {{"SKY", needs_.sky_volume ? "1" : "0"}}));
+  const Definitions sizes = with(square, noise);
+  programs_.stretch = &program(
+      "fogshop/stretch.comp",
+      with(sizes, {{"LIGHTS", std::to_string(model_.paper() ? 0 : lights)}, {"SKY", needs_.sky_volume ? "1" : "0"}}));
   if (sliced()) {
     programs_.shares = &program("fogshop/shares.comp", sizes);
     programs_.edges = &program("fogshop/edges.comp", sizes);
@@ -117,7 +114,8 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   }
   const int columns = blocks(grid.width(), tile), rows = blocks(grid.height(), tile), n = model_.gaussians.count;
   const bool hands_on = sliced() || needs_.sky_volume;
-  const int fields = hands_on ? RayValues{o.slices, sliced() ? model_.scattered_lights() : 0}.fields() : 0;
+  const RayValues values{o.slices, sliced() ? model_.scattered_lights() : 0};
+  const int fields = hands_on ? values.fields() : 0;
   const std::size_t row_of_lists = std::size_t(columns) * (n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
@@ -131,12 +129,19 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   for (Program* p :
        {programs_.paper, programs_.stretch, programs_.shares, programs_.slice_depths, programs_.even_depths})
     if (p) set_noise(*p);
+  for (Program* p : {programs_.stretch, programs_.shares, programs_.edges, programs_.slice_depths,
+                     programs_.slice_light, programs_.even_depths, programs_.sky_light})
+    if (p) values.set(*p);
+  for (Program* p : {programs_.paper, programs_.shares, programs_.slice_light})
+    if (p) p->set("light_count", model_.scattered_lights());
   for (Program* p : {programs_.paper, programs_.slice_light})
     if (p) p->set("source_radius", o.source_radius);
   if (sliced()) {
     programs_.edges->set("grid_width", grid.width());
     programs_.edges->set("gaussian_count", n);
     programs_.shares->set("boxes", o.boxes);
+    programs_.stretch->set("even_steps", values.even_steps());
+    programs_.stretch->set("light_steps", values.light_steps());
     programs_.stretch->set("clearest", float((model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff()));
     programs_.slice_light->set("extrapolate", o.extrapolate);
     programs_.slice_light->set("map_directions", o.map_directions);

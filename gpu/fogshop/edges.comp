@@ -13,12 +13,12 @@ void main() {
   if (!(lo < hi)) return;
   float node0 = lo, node1 = ray_value[value_at(nodes + 1, ray)];
   float share0 = ray_value[value_at(shares, ray)], share1 = ray_value[value_at(shares + 1, ray)];
-  float first = share0, total = ray_value[value_at(shares + NODES - 1, ray)] - first;
+  float first = share0, total = ray_value[value_at(shares + node_count - 1, ray)] - first;
   ray_value[value_at(edges, ray)] = lo;
   int at = 1;
-  for (int i = 1; i < SLICES; ++i) {
-    float wanted = first + total * float(i) / float(SLICES);
-    while (at + 1 < NODES && share1 < wanted) {
+  for (int i = 1; i < slice_count; ++i) {
+    float wanted = first + total * float(i) / float(slice_count);
+    while (at + 1 < node_count && share1 < wanted) {
       ++at;
       node0 = node1, share0 = share1;
       node1 = ray_value[value_at(nodes + at, ray)], share1 = ray_value[value_at(shares + at, ray)];
@@ -26,5 +26,5 @@ void main() {
     float s = share1 > share0 ? clamp((wanted - share0) / (share1 - share0), 0, 1) : 0;
     ray_value[value_at(edges + i, ray)] = node0 + s * (node1 - node0);
   }
-  ray_value[value_at(edges + SLICES, ray)] = hi;
+  ray_value[value_at(edges + slice_count, ray)] = hi;
 }

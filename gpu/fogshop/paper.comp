@@ -21,10 +21,9 @@ void main() {
   float end = visible ? ray_length(pixel) : far_away;
   int count = near_count();
   if (count < 0) return;  // the whole tile
-  const int to_view = LIGHTS * gaussian_count, to_lights = to_view + gaussian_count;
+  int to_view = light_count * gaussian_count, to_lights = to_view + gaussian_count;
 
-  vec3 sum[LIGHTS + 1];
-  for (int l = 0; l < LIGHTS; ++l) sum[l] = vec3(0);
+  vec3 airlight = vec3(0);
   float depth = constant > 0 ? constant * end : 0;
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
@@ -41,7 +40,7 @@ void main() {
 #endif
       vec3 x = origin + t * direction;
       depth += whole;
-      for (int l = 0; l < LIGHTS; ++l) {
+      for (int l = 0; l < light_count; ++l) {
         vec3 offset = x - lights[l].position;
         float distance_ = length(offset);
         Crossing towards = cross_line(g, lights[l].position, offset / max(distance_, 1e-30), distance_);
@@ -54,16 +53,12 @@ void main() {
 #if COLOURED
         term *= colour_of(int(g.place));
 #endif
-        sum[l] += term;
+        airlight += lights[l].intensity * term;
       }
     }
   }
-  vec3 airlight = vec3(0);
-  for (int l = 0; l < LIGHTS; ++l) {
-    if (constant > 0)  // Eqs. 16 and 17
-      sum[l] += exp(-hue * segment_depth[to_lights + l]) *
+  for (int l = 0; l < light_count && constant > 0; ++l)  // Eqs. 16 and 17
+    airlight += lights[l].intensity * exp(-hue * segment_depth[to_lights + l]) *
                 homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
-    airlight += lights[l].intensity * sum[l];
-  }
   if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

@@ -33,18 +33,18 @@ void main() {
 
   float node[nodes_each], share[nodes_each], whole[nodes_each / 8];  // the last of the boxes that end before a block
   for (int k = 0; k < nodes_each; ++k) {
-    node[k] = wanted ? ray_value[value_at(nodes + min(first_node + k, NODES - 1), ray)] : 0;
+    node[k] = wanted ? ray_value[value_at(nodes + min(first_node + k, node_count - 1), ray)] : 0;
     share[k] = wanted ? (node[k] - lo) / ((hi - lo) * parts) : 0;
   }
 #define NONE(b) whole[b] = 0;
   EACH_BLOCK(NONE)
-  for (int l = 0; l < LIGHTS; ++l) {
+  for (int l = 0; l < light_count; ++l) {
     LightFromRay seen = light_from_ray(lights[l], origin, direction);
     float h = max(seen.h, least_h), xa = lo - seen.along, xb = hi - seen.along;
     float span = angle_of(h * (hi - lo), h * h + xa * xb);
     if (!(span > 0)) continue;
     for (int k = 0; k < nodes_each; ++k)  // the angle from `lo`, without cancelling
-      share[k] += angle_of(h * (node[k] - lo), h * h + xa * (node[k] - seen.along)) / (span * parts * float(LIGHTS));
+      share[k] += angle_of(h * (node[k] - lo), h * h + xa * (node[k] - seen.along)) / (span * parts * float(light_count));
   }
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
@@ -68,6 +68,6 @@ void main() {
   }
   if (!wanted) return;
 #define WRITE(k) \
-  if (first_node + k < NODES) ray_value[value_at(shares + first_node + k, ray)] = share[k] + whole[(k) / 8];
+  if (first_node + k < node_count) ray_value[value_at(shares + first_node + k, ray)] = share[k] + whole[(k) / 8];
   EACH_OF_EIGHT(0, WRITE) EACH_OF_EIGHT(1, WRITE) EACH_OF_EIGHT(2, WRITE) EACH_OF_EIGHT(3, WRITE)
 }

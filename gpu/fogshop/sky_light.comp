@@ -36,8 +36,8 @@ void main() {
   if (!(lo < hi)) return;
   vec3 origin, direction, sum = vec3(0);
   camera_ray(film_position(pixel), origin, direction);
-  float step_ = (hi - lo) / float(SLICES), before = ray_value[value_at(slices, ray)];
-  for (int k = 0; k < SLICES; ++k) {
+  float step_ = (hi - lo) / float(slice_count), before = ray_value[value_at(slices, ray)];
+  for (int k = 0; k < slice_count; ++k) {
     vec3 x = origin + (lo + step_ * (float(k) + 0.5)) * direction;
     float depth = ray_value[value_at(slices + 1 + k, ray)];
     sum += sky_at(x) * exp(-hue * before) * opacity_of(hue * depth);

@@ -30,8 +30,8 @@ void main() {
   vec3 scattered[8];
 #endif
   for (int k = 0; k <= 8; ++k) {  // beyond the last they are empty
-    int i = min(first_slice + k, SLICES);
-    edge[k] = EVEN != 0 ? (i < SLICES ? lo + (hi - lo) / float(SLICES) * float(i) : hi)
+    int i = min(first_slice + k, slice_count);
+    edge[k] = EVEN != 0 ? (i < slice_count ? lo + (hi - lo) / float(slice_count) * float(i) : hi)
                         : (wanted ? ray_value[value_at(edges + i, ray)] : 0);
   }
 #if COLOURED
@@ -76,7 +76,7 @@ void main() {
 #define WRITE_COLOUR(k)
 #endif
 #define WRITE(k)                                                               \
-  if (first_slice + k < SLICES) {                                              \
+  if (first_slice + k < slice_count) {                                              \
     ray_value[value_at(slices + 1 + first_slice + k, ray)] = depth[k];         \
     WRITE_COLOUR(k)                                                            \
   }

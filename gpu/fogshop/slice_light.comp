@@ -72,14 +72,14 @@ void main() {
   camera_ray(film_position(pixel), origin, direction);
   float end = ray_length(pixel), before = ray_value[value_at(slices, ray)];
   vec3 airlight = vec3(0);
-  for (int l = 0; l < LIGHTS; ++l) {
+  for (int l = 0; l < light_count; ++l) {
     Light light = lights[l];
     LightFromRay seen = light_from_ray(light, origin, direction);
     float h = max(length(vec2(seen.h, source_radius)), least_h), view_depth = before;
     vec3 sum = vec3(0), half_sum = vec3(0), pair_scattered = vec3(0);
     Edge last = Edge(0, 0, 0), pair = last;
     float pair_angle = 0, pair_phase = 0;
-    for (int k = 0; k <= SLICES; ++k) {
+    for (int k = 0; k <= slice_count; ++k) {
       float t = ray_value[value_at(edges + k, ray)], depth = k > 0 ? ray_value[value_at(slices + k, ray)] : 0;
       view_depth += depth;
       vec3 x = origin + t * direction;

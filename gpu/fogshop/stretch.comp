@@ -11,6 +11,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/light.glsl"
 
 uniform float clearest;  // least hue above 0
+uniform int even_steps, light_steps;
 
 #if LIGHTS
 // The nodes in order: equal steps of the ray, and of the angle as seen from each light. Those of a light are (h, x) turned step by
@@ -23,18 +24,18 @@ void write_nodes(int ray, vec3 origin, vec3 direction, float lo, float hi) {
   for (int l = 0; l < LIGHTS; ++l) {
     seen[l] = light_from_ray(lights[l], origin, direction);
     float h = max(seen[l].h, least_h), xa = lo - seen[l].along, xb = hi - seen[l].along;
-    float angle = angle_of(h * (hi - lo), h * h + xa * xb) / float(LIGHT_STEPS + 1), t = tangent(0.5 * angle);
+    float angle = angle_of(h * (hi - lo), h * h + xa * xb) / float(light_steps + 1), t = tangent(0.5 * angle);
     turn[l] = vec2((1 - t) * (1 + t), 2 * t) / (1 + t * t);
     turned[l] = vec2(h, xa);
     next[l] = lo;
-    left[l] = LIGHT_STEPS + 1;  // the first is `lo` itself, and is left out
+    left[l] = light_steps + 1;  // the first is `lo` itself, and is left out
   }
   int even = 0;
-  for (int k = -LIGHTS; k < NODES; ++k) {
+  for (int k = -LIGHTS; k < node_count; ++k) {
     int from = -1;
-    float t = even < EVEN_STEPS ? lo + (hi - lo) * float(even) / float(EVEN_STEPS) : hi;
+    float t = even < even_steps ? lo + (hi - lo) * float(even) / float(even_steps) : hi;
     for (int l = 0; l < LIGHTS; ++l)
-      if (left[l] > LIGHT_STEPS || (left[l] > 0 && next[l] < t)) t = next[l], from = l;
+      if (left[l] > light_steps || (left[l] > 0 && next[l] < t)) t = next[l], from = l;
     if (k >= 0) ray_value[value_at(nodes + k, ray)] = t;
     if (from < 0) ++even;
     for (int l = 0; l < LIGHTS; ++l)
@@ -90,7 +91,7 @@ void main() {
       dark = max(dark, 0.5 * (c - d_sv) * (c + d_sv) / (c - seen.along));
     }
     lo = 0;
-    hi = min(min(end, beyond * (1 + float(SLICES) / 16)), dark);
+    hi = min(min(end, beyond * (1 + float(slice_count) / 16)), dark);
   }
   bool sliced = visible && lo < hi;
   ray_value[value_at(slices_from, ray)] = sliced ? lo : 0;
