@@ -38,7 +38,7 @@ void main() {
 #if NOISE
       whole = bent_depth(g, c, origin, direction, end);
 #endif
-      vec3 x = origin + t * direction;
+      vec3 x = origin + t * direction, scattered = vec3(0);
       depth += whole;
       for (int l = 0; l < light_count; ++l) {
         vec3 offset = x - lights[l].position;
@@ -53,8 +53,9 @@ void main() {
 #if COLOURED
         term *= colour_of(int(g.place));
 #endif
-        airlight += lights[l].intensity * term;
+        scattered += lights[l].intensity * term;
       }
+      airlight += scattered;
     }
   }
   for (int l = 0; l < light_count && constant > 0; ++l)  // Eqs. 16 and 17
