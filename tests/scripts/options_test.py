@@ -124,7 +124,7 @@ class Setup(Machine):
     def test_check_lists_and_installs_nothing(self):
         code, out, err = self.run_script("setup", "--check")
         self.assertEqual((code, err), (3, ""))
-        self.assertIn("airlight needs 2 packages that are not installed: " + " ".join(NOT_INSTALLED), out)
+        self.assertIn("airlight needs 2 packages that are not installed, and 1 for one test only: " + " ".join(NOT_INSTALLED), out)
         self.assertIn("with what they depend on: 88 packages, 20.5 MB to download, 1021 MB on disk\n", out)
         self.assertIn(self.line, out)
         self.assertEqual(self.installs(), [])
