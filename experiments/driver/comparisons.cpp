@@ -140,6 +140,12 @@ std::optional<Estimate> speed_up_at_equal_error(const Outcome& outcome, const Sp
   return exact ? std::optional(Estimate{*exact, *exact, *exact}) : std::nullopt;
 }
 
+std::optional<double> least_speed_up(const Outcome& outcome, const SpeedUpCase& s, const std::string& scene) {
+  const auto apart = apart_in_error(points_of(curve_rows(outcome, scene, s.baseline, s.metric), s.metric),
+                                    points_of(curve_rows(outcome, scene, s.method, s.metric), s.metric));
+  return apart && apart->other_is_closer ? std::optional(1 / apart->fastest_to_closest) : std::nullopt;
+}
+
 TextTable orders(const Outcome& outcome) {
   TextTable lines{{"scene", "method", "metric", "settings", "orders"}};
   for (const std::string& scene : scene_names(outcome))

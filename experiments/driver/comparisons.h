@@ -21,6 +21,10 @@ TextTable equal_error_and_time(const Outcome&);
 // so many times faster than the baseline. Where they reach no common error but both reach 0: the ratio of time there.
 std::optional<Estimate> speed_up_at_equal_error(const Outcome&, const SpeedUpCase&, const std::string& scene);
 
+// Where even the method's fastest row has a smaller error than the baseline's closest: time of the latter over time of the
+// former. At any error that the baseline reaches the method is at least so many times faster.
+std::optional<double> least_speed_up(const Outcome&, const SpeedUpCase&, const std::string& scene);
+
 // Of flows: for each scene, method and error of at least two rows at rising numeric settings, the order p with which the
 // error falls as setting^-p from each to the next. Header only where there is none.
 TextTable orders(const Outcome&);

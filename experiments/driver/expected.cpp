@@ -18,13 +18,16 @@ struct Found {
   Estimate figure;
   bool below_floor = false;  // nothing is known but figure.high
   const Row* row = nullptr;  // null: read off several
+  bool at_least = false;     // it may be greater
 };
 
 std::optional<Found> find_figure(const Outcome& outcome, const ExpectedCase& e) {
   if (e.method.empty()) return std::nullopt;
   if (!e.baseline.empty()) {
-    const auto ratio = speed_up_at_equal_error(outcome, {e.baseline, e.method, e.metric}, e.scene);
-    return ratio ? std::optional(Found{*ratio}) : std::nullopt;
+    const SpeedUpCase both{e.baseline, e.method, e.metric};
+    if (const auto ratio = speed_up_at_equal_error(outcome, both, e.scene)) return Found{*ratio};
+    const auto least = least_speed_up(outcome, both, e.scene);
+    return least ? std::optional(Found{{*least, *least, *least}, false, nullptr, true}) : std::nullopt;
   }
   for (const Row& row : outcome.rows) {
     if (row.scene != e.scene || row.method != e.method || (!e.setting.empty() && row.setting != e.setting)) continue;
@@ -97,6 +100,7 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
         if (m.name == e.metric) return text(m);
     }
     if (found->below_floor) return figure_text(outcome, e);
+    if (found->at_least) return figure_text(outcome, e);
     std::string out = in_unit(f.value, e);
     if (f.low < f.high) out += fmt::format(" [{}, {}]", in_unit(f.low, e), in_unit(f.high, e));
     const bool film = found->row && e.metric == "seconds" && outcome.experiment.kind == "images";
@@ -122,7 +126,8 @@ bool fits_unit(const ExpectedCase& e) {
 std::string figure_text(const Outcome& outcome, const ExpectedCase& e) {
   const auto found = find_figure(outcome, e);
   if (!found) return not_available;
-  return found->below_floor ? "at most " + in_unit(found->figure.high, e) : in_unit(found->figure.value, e);
+  if (found->below_floor) return "at most " + in_unit(found->figure.high, e);
+  return (found->at_least ? "at least " : "") + in_unit(found->figure.value, e);
 }
 
 TextTable expected_table(const Outcome& outcome) {

@@ -103,6 +103,19 @@ TEST_CASE("a figure that a probe gives in a unit keeps it", "[expected]") {
   CHECK(figure_text(outcome, expect("m", "ratio", "times")) == "2.5 times");
 }
 
+// Slow: errors 0.1 and 0.01 in 0.1 and 1 s. Close: 0.005 in 0.2 s.
+TEST_CASE("without a common error the expected speed-up is a bound from below", "[expected]") {
+  Outcome outcome = two_curves();
+  outcome.rows.resize(2);
+  outcome.rows[0].seconds = {0.1, 0.1, 0.1};
+  outcome.rows[1].seconds = {1, 1, 1};
+  outcome.rows.push_back(timed("close", 0.2, {0.005, 0.005, 0.005}));
+  CHECK(figure_text(outcome, expect("close", "rel_l2", "", "slow")) == "at least 5.0 times");
+  CHECK(figure_text(outcome, expect("slow", "rel_l2", "", "close")) == "not available");  // it never gets so close
+  outcome.experiment.expected = {expect("close", "rel_l2", "", "slow")};
+  CHECK(expected_table(outcome).at(1).at(2) == "at least 5.0 times");
+}
+
 TEST_CASE("an expected speed-up is the geometric mean at equal error", "[expected]") {
   Outcome outcome = two_curves();
   CHECK(figure_text(outcome, expect("fast", "rel_l2", "", "slow")) == "10 times");
