@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0031231:3.43851]
+set xrange [0.00191254:2.37846]
 set logscale y
 set format y "%g"
 set yrange [0.0113375:2.95768]

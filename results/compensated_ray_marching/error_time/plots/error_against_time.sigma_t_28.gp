@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00292287:12.6167]
+set xrange [0.00170298:8.82654]
 set logscale y
 set format y "%g"
 set yrange [0.0200873:0.884464]

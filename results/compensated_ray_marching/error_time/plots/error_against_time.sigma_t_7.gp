@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00257586:8.98078]
+set xrange [0.00175742:6.0602]
 set logscale y
 set format y "%g"
 set yrange [0.00646062:3.12799]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00223568:1.37536]
+set xrange [0.00189822:1.15453]
 set logscale y
 set format y "%g"
 set yrange [0.00396275:5.83195]

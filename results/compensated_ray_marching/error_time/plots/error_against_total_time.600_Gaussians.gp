@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0252709:3.06302]
+set xrange [0.0170133:2.1098]
 set logscale y
 set format y "%g"
 set yrange [0.0113375:2.95768]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0338706:10.9914]
+set xrange [0.0182353:7.72395]
 set logscale y
 set format y "%g"
 set yrange [0.0200873:0.884464]

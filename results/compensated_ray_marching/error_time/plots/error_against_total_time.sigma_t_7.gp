@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.017149:8.0757]
+set xrange [0.0121785:5.43812]
 set logscale y
 set format y "%g"
 set yrange [0.00646062:3.12799]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0210229:1.48798]
+set xrange [0.0129317:1.04133]
 set logscale y
 set format y "%g"
 set yrange [0.00396275:5.83195]

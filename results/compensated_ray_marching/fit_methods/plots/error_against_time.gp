@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0649894:0.370075]
+set xrange [0.0373226:0.178213]
 set yrange [0:1.7391]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.svg"

@@ -1,9 +1,9 @@
 # Draws error_against_cells.g_0.5.svg and error_against_cells.g_0.5.png from error_against_cells.g_0.5.csv: run gnuplot on this file in its folder.
 data = "error_against_cells.g_0.5.csv"
 set datafile separator comma
-set title "rel_l2 against setting: g 0.5" noenhanced
-set xlabel "setting" noenhanced
-set ylabel "rel_l2" noenhanced
+set title 'rel_l2 against setting: g 0.5' noenhanced
+set xlabel 'setting' noenhanced
+set ylabel 'rel_l2' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -13,20 +13,20 @@ set format x "%g"
 set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [0.00921792:0.0548109]
+set yrange [0.0091777:0.0540429]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.g_0.5.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "order", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'order', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
      0.0218268 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_cells.g_0.5.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "order", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'order', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
      0.0218268 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

@@ -1,9 +1,9 @@
 # Draws error_against_cells.sigma_t_28.svg and error_against_cells.sigma_t_28.png from error_against_cells.sigma_t_28.csv: run gnuplot on this file in its folder.
 data = "error_against_cells.sigma_t_28.csv"
 set datafile separator comma
-set title "rel_l2 against setting: sigma_t 28" noenhanced
-set xlabel "setting" noenhanced
-set ylabel "rel_l2" noenhanced
+set title 'rel_l2 against setting: sigma_t 28' noenhanced
+set xlabel 'setting' noenhanced
+set ylabel 'rel_l2' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -13,14 +13,14 @@ set format x "%g"
 set xrange [7.18457:53.4479]
 set logscale y
 set format y "%g"
-set yrange [0.0213721:0.305]
+set yrange [0.0213746:0.304377]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.sigma_t_28.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      0.024643 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_cells.sigma_t_28.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      0.024643 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

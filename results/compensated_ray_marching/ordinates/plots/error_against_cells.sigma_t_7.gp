@@ -1,9 +1,9 @@
 # Draws error_against_cells.sigma_t_7.svg and error_against_cells.sigma_t_7.png from error_against_cells.sigma_t_7.csv: run gnuplot on this file in its folder.
 data = "error_against_cells.sigma_t_7.csv"
 set datafile separator comma
-set title "rel_l2 against setting: sigma_t 7" noenhanced
-set xlabel "setting" noenhanced
-set ylabel "rel_l2" noenhanced
+set title 'rel_l2 against setting: sigma_t 7' noenhanced
+set xlabel 'setting' noenhanced
+set ylabel 'rel_l2' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -13,28 +13,28 @@ set format x "%g"
 set xrange [0.812252:39.3966]
 set logscale y
 set format y "%g"
-set yrange [0.0075126:0.0662707]
+set yrange [0.00742159:0.0652934]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_cells.sigma_t_7.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "levels of ordinates", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'levels of ordinates', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "azimuths", \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'azimuths', \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      0.0171653 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_cells.sigma_t_7.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle, \
      data index 1 using 2:5 with points lc rgb "#0072B2" pt 10 ps 0.9 notitle, \
-     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title "levels of ordinates", \
+     data index 2 using 2:5 with linespoints lc rgb "#D55E00" pt 5 ps 0.7 lw 1.6 title 'levels of ordinates', \
      data index 2 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#D55E00" pt 0 lw 0.8 notitle, \
      data index 3 using 2:5 with points lc rgb "#D55E00" pt 10 ps 0.9 notitle, \
-     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title "azimuths", \
+     data index 4 using 2:5 with linespoints lc rgb "#009E73" pt 9 ps 0.7 lw 1.6 title 'azimuths', \
      data index 4 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#009E73" pt 0 lw 0.8 notitle, \
      data index 5 using 2:5 with points lc rgb "#009E73" pt 10 ps 0.9 notitle, \
      0.0171653 with lines dt 2 lw 1 lc rgb "#888888" title "noise floor"

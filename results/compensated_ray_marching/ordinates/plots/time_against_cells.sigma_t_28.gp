@@ -1,9 +1,9 @@
 # Draws time_against_cells.sigma_t_28.svg and time_against_cells.sigma_t_28.png from time_against_cells.sigma_t_28.csv: run gnuplot on this file in its folder.
 data = "time_against_cells.sigma_t_28.csv"
 set datafile separator comma
-set title "time of preparation [s] against setting: sigma_t 28" noenhanced
-set xlabel "setting" noenhanced
-set ylabel "time of preparation [s]" noenhanced
+set title 'time of preparation [s] against setting: sigma_t 28' noenhanced
+set xlabel 'setting' noenhanced
+set ylabel 'time of preparation [s]' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -13,12 +13,12 @@ set format x "%g"
 set xrange [7.18457:53.4479]
 set logscale y
 set format y "%g"
-set yrange [0.0673572:15.2688]
+set yrange [0.0210546:3.57073]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_cells.sigma_t_28.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "time_against_cells.sigma_t_28.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "cells", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'cells', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle

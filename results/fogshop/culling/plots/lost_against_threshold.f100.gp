@@ -1,9 +1,9 @@
 # Draws lost_against_threshold.f100.svg and lost_against_threshold.f100.png from lost_against_threshold.f100.csv: run gnuplot on this file in its folder.
 data = "lost_against_threshold.f100.csv"
 set datafile separator comma
-set title "p999 against eps_T: f100" noenhanced
-set xlabel "eps_T" noenhanced
-set ylabel "p999" noenhanced
+set title 'p999 against eps_T: f100' noenhanced
+set xlabel 'eps_T' noenhanced
+set ylabel 'p999' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
@@ -16,9 +16,9 @@ set format y "%g"
 set yrange [3.03304e-06:0.165686]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "lost_against_threshold.f100.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "by depth", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'by depth', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "lost_against_threshold.f100.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "by depth", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'by depth', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00122187:0.386215]
+set xrange [0.000996258:0.300724]
 set logscale y
 set format y "%g"
 set yrange [3.05485e-05:0.723922]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00145782:6.70088]
+set xrange [0.00155996:3.41938]
 set logscale y
 set format y "%g"
 set yrange [0.00225013:9.88888]

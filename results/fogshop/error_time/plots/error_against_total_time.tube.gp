@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00211791:6.56127]
+set xrange [0.00199904:3.37246]
 set logscale y
 set format y "%g"
 set yrange [0.00225013:9.88888]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.130855:10.393]
+set xrange [0.0857893:9.09907]
 set logscale y
 set format y "%g"
 set yrange [0.00749482:3.10777]

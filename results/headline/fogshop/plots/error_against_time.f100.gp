@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0278013:1.30093]
+set xrange [0.0205736:1.41183]
 set logscale y
 set format y "%g"
 set yrange [0.000137176:0.375652]

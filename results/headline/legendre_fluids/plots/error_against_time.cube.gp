@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00433928:0.0360333]
+set xrange [0.00365184:0.0300975]
 set logscale y
 set format y "%g"
 set yrange [3.47393e-09:0.223337]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0579674:2.33366]
+set xrange [0.044212:1.75203]
 set logscale y
 set format y "%g"
 set yrange [0.000399347:0.324792]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0199319:0.993648]
+set xrange [0.0139432:0.76608]
 set logscale y
 set format y "%g"
 set yrange [4.58615e-09:0.397618]

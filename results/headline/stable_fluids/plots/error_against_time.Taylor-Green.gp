@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [8.77439e-05:0.805075]
+set xrange [5.10414e-05:0.510824]
 set logscale y
 set format y "%g"
 set yrange [4.36735e-05:0.507091]

@@ -8,7 +8,7 @@ set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.106057]
+set xrange [0:0.0586895]
 set logscale y
 set format y "%g"
 set yrange [7.09516e-07:0.136462]

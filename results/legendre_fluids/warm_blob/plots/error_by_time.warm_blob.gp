@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00090986:17.0618]
+set xrange [0.000525575:11.7406]
 set logscale y
 set format y "%g"
 set yrange [0.00197064:0.840824]

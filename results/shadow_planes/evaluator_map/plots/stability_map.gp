@@ -8,7 +8,7 @@ set cbrange [-16:2]
 set xtics 2
 set ytics 2
 set palette defined (0 "#440154", 1 "#3b528b", 2 "#21918c", 3 "#5ec962", 4 "#fde725", 4.5 "#d55e00")
-set cblabel "log10 of the relative error" noenhanced
+set cblabel 'log10 of the relative error' noenhanced
 set object rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb "#bbbbbb" fillstyle solid noborder
 $line0 << EOD
 6.0000,-6.0000
@@ -91,72 +91,72 @@ EOD
 set terminal svg dynamic size 1500,710 font "sans-serif,11"
 set output "stability_map.svg"
 set multiplot layout 2,4
-set title "polynomial, differences, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, differences, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 0 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, part by part, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, part by part, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 1 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 8 nodes, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 8 nodes, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 2 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 16 nodes, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 16 nodes, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 3 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, differences, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, differences, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 4 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, part by part, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, part by part, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 5 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 32 nodes, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 32 nodes, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 6 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 64 nodes, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 64 nodes, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 7 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
 unset multiplot
 set terminal pngcairo size 1800,860 font "Sans,11"
 set output "stability_map.png"
 set multiplot layout 2,4
-set title "polynomial, differences, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, differences, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 0 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, part by part, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, part by part, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 1 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 8 nodes, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 8 nodes, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 2 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 16 nodes, single" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 16 nodes, single' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 3 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, differences, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, differences, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 4 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "polynomial, part by part, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'polynomial, part by part, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 5 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 32 nodes, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 32 nodes, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 6 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
-set title "rule, 64 nodes, double" noenhanced
-set xlabel "log10 extinction [1/m]" offset 0,0.5 noenhanced
-set ylabel "log10 h [m]" offset 1,0 noenhanced
+set title 'rule, 64 nodes, double' noenhanced
+set xlabel 'log10 extinction [1/m]' offset 0,0.5 noenhanced
+set ylabel 'log10 h [m]' offset 1,0 noenhanced
 plot data index 7 using (log10($1)):(log10($2)):(log10($3 < 1e-16 ? 1e-16 : $3)) with image notitle, $line0 using 1:2 with lines lw 1 dt 1 lc rgb "white" notitle, $line1 using 1:2 with lines lw 1 dt 2 lc rgb "white" notitle
 unset multiplot

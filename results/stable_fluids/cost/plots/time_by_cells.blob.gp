@@ -9,7 +9,7 @@ set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
 set xrange [0:73.6]
-set yrange [0:4.38247e-07]
+set yrange [0:2.54229e-07]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_by_cells.blob.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'semi-Lagrangian', \

@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [0:73.6]
 set logscale y
 set format y "%g"
-set yrange [15.0994:2590.59]
+set yrange [12.2375:1893.67]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_size.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'transforms, float', \

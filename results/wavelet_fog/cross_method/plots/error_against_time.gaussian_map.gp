@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00364689:0.0655796]
+set xrange [0.00121206:0.0361965]
 set logscale y
 set format y "%g"
 set yrange [6.43418e-08:0.00724265]

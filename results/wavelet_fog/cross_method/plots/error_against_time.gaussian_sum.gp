@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.000360453:0.0398385]
+set xrange [0.000218558:0.0196641]
 set logscale y
 set format y "%g"
 set yrange [2.02433e-08:4.29273e-05]

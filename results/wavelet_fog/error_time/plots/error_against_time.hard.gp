@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00221754:0.130404]
+set xrange [0.0014999:0.0976723]
 set logscale y
 set format y "%g"
 set yrange [1.3999e-08:1.19632]

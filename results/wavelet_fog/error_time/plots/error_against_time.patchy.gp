@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00173905:0.141595]
+set xrange [0.00134658:0.0807508]
 set logscale y
 set format y "%g"
 set yrange [2.1429e-08:0.904021]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00229116:0.1693]
+set xrange [0.00132746:0.0859402]
 set logscale y
 set format y "%g"
 set yrange [2.6141e-08:0.136373]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.00236821:0.129954]
+set xrange [0.0015144:0.0976387]
 set logscale y
 set format y "%g"
 set yrange [1.3999e-08:1.19632]

@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [0.0023116:0.169248]
+set xrange [0.00124622:0.3135]
 set logscale y
 set format y "%g"
 set yrange [2.6141e-08:0.136373]

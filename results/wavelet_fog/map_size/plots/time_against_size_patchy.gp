@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [13.5479:302.334]
 set logscale y
 set format y "%g"
-set yrange [0.00195238:0.0299889]
+set yrange [0.000528879:0.012787]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_size_patchy.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'patchy, direct', \

@@ -13,7 +13,7 @@ set format x "%g"
 set xrange [13.5479:302.334]
 set logscale y
 set format y "%g"
-set yrange [0.000891872:0.0250275]
+set yrange [0.000539499:0.0140597]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_against_size_smooth.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'smooth, direct', \

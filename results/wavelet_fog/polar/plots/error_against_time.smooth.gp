@@ -1,22 +1,22 @@
 # Draws error_against_time.smooth.svg and error_against_time.smooth.png from error_against_time.smooth.csv: run gnuplot on this file in its folder.
 data = "error_against_time.smooth.csv"
 set datafile separator comma
-set title "rmse against time of one render [s]: smooth" noenhanced
-set xlabel "time of one render [s]" noenhanced
-set ylabel "rmse" noenhanced
+set title 'rmse against time of one render [s]: smooth' noenhanced
+set xlabel 'time of one render [s]' noenhanced
+set ylabel 'rmse' noenhanced
 set key outside right center vertical Left reverse noenhanced
 set grid xtics ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3 lc rgb "#444444"
 set tics nomirror
-set xrange [0:0.00361266]
+set xrange [0:0.00373968]
 set logscale y
 set format y "%g"
 set yrange [1.46795e-07:5.87843e-05]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "error_against_time.smooth.svg"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'polar', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
 set terminal pngcairo size 1230,660 font "Sans,13"
 set output "error_against_time.smooth.png"
-plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title "polar", \
+plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'polar', \
      data index 0 using 2:5:3:4:6:7 with xyerrorbars lc rgb "#0072B2" pt 0 lw 0.8 notitle
