@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "experiments/interrupt.h"
+#include "experiments/json_value.h"
 #include "experiments/verify/fluid_tables.h"
 #include "reference/stable_fluids/stable_fluids.h"
 
@@ -42,7 +43,9 @@ CavityTable read_cavity_table(const verification::Value& v) {
   for (const std::string& reynolds : v["expected"].fields()) {
     const verification::Value expected = v["expected"][reynolds];
     const bool both = !expected.is_array();
-    table.profiles.push_back({std::stod(reynolds), (both ? expected["u"] : expected).numbers(),
+    const nlohmann::json name = reynolds;
+    table.profiles.push_back({verification::Value(name, expected.where() + ", its name").number_in(1e-3, 1e6),
+                              (both ? expected["u"] : expected).numbers(),
                               both ? expected["v"].numbers() : std::vector<double>{}});
     const CavityProfiles& p = table.profiles.back();
     if (p.u.size() != table.y.size() || p.v.size() != table.x.size()) expected.complain("as many numbers as places");

@@ -174,9 +174,15 @@ Check read_legendre_upwind(const Value& v) {
                g = v["g"].number_in(-0.999, 0.999);
   const double incoming = v["E_in"].number_in(0, 1e9);
   const double omega = phase_value(scene::HenyeyGreenstein{g}, std::clamp(light.dot(view), -1.0, 1.0));
-  const Tensor direct = tensor_from(v["E_d_coeffs"]), scattered = tensor_from(v["E_s_coeffs"]);
-  // In two dimensions L_0 along z is left out of the coefficients.
-  const double flat = v["R"][0][0].is_array() ? 1 : std::sqrt(0.5);
+  const bool flat_box = !v["R"][0][0].is_array();
+  const scene::TensorShape all = {options.n, options.n, flat_box ? 1 : options.n};
+  const auto coefficients = [&](const char* field) {
+    const Tensor tensor = tensor_from(v[field]);
+    if (tensor.shape != all) v[field].complain(fmt::format("{} coefficients along each axis", options.n));
+    return tensor;
+  };
+  const Tensor direct = coefficients("E_d_coeffs"), scattered = coefficients("E_s_coeffs");
+  const double flat = flat_box ? std::sqrt(0.5) : 1;  // in two dimensions L_0 along z is left out of the coefficients
   std::optional<Tensor> image;
   std::vector<double> across, along;
   int axis = 0, side = 0;

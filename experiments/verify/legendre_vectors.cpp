@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/error.h"
+
 namespace airlight::experiments::verification {
 
 Tensor tensor_from(const Value& v) {
@@ -37,6 +39,8 @@ Tensor tensor_from(const Value& v) {
 
 std::vector<Comparison> largest_differences(const std::string& name, const Eigen::VectorXd& expected,
                                             const Eigen::VectorXd& got, double tolerance) {
+  if (expected.size() != got.size())
+    throw Error(fmt::format("{}: found {} numbers, expected {}", name, expected.size(), got.size()));
   Eigen::Index worst = 0;
   (expected - got).cwiseAbs().maxCoeff(&worst);
   const double scale = expected.cwiseAbs().maxCoeff();

@@ -15,6 +15,7 @@ struct Tensor {
 Tensor tensor_from(const Value&);  // complains where rows differ in length
 
 // One comparison: the entry that differs most, judged by `tolerance` times the largest entry expected.
+// Throws Error if there are not as many of both.
 std::vector<Comparison> largest_differences(const std::string& name, const Eigen::VectorXd& expected,
                                             const Eigen::VectorXd& got, double tolerance);
 

@@ -257,6 +257,9 @@ TEST_CASE("vectors whose sizes do not agree are refused with file and vector", "
       {"references", "fluid-poisson", "/input/n", {2, 2, 2}, "three digits, a cell, as its name"},
       {"references", "fluid-diffusion", "/expected/rows/0/2", 1e9, "a whole number from 1 to 4096"},
       {"references", "bound-gauss", "/expected/sampled", {0.5}, "two numbers"},
+      {"references", "fluid-cavity-lid", "/expected", {{"a", {0.5}}}, "a number from 0.001 to 1000000"},
+      {"legendre_fluids", "dg-3d-n3", "/E_d_coeffs", json::array({json::array({json::array({1.0})})}),
+       "3 coefficients along each axis"},
   };
   for (const Fault& fault : faults) {
     json file = experiments::read_json(vectors + fault.file + ".json");
