@@ -1,4 +1,5 @@
 // The scenes after the paper's figures: numbers of triangles, and meshes that a stencil may count by.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "methods/shadow_planes/shadow_volumes.h"

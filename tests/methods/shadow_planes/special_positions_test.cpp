@@ -1,4 +1,5 @@
 // Cameras, lights and edges in one plane; lights on surfaces.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 

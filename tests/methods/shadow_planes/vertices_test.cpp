@@ -1,4 +1,5 @@
 // Evaluation at the vertices of planes, surfaces and boundaries of media.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
