@@ -1,4 +1,6 @@
 // Exact optical depths of the oracle on the device: a film of one pixel from A towards a wall at B.
+#include <Eigen/Geometry>
+
 #include "scene/media/fogmap.h"
 #include "scene/media/spline_map.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
