@@ -10,7 +10,7 @@ set border 3 lc rgb "#444444"
 set tics nomirror
 set logscale x
 set format x "%g"
-set xrange [5.10414e-05:0.510824]
+set xrange [4.17536e-05:0.506875]
 set logscale y
 set format y "%g"
 set yrange [4.36735e-05:0.507091]

@@ -11,7 +11,7 @@ set tics nomirror
 set xrange [3.16:32.84]
 set logscale y
 set format y "%g"
-set yrange [0.00193023:1526.35]
+set yrange [0.000985298:4379.47]
 set terminal svg size 820,440 dynamic font "sans-serif,13"
 set output "time_by_coefficients.svg"
 plot data index 0 using 2:5 with linespoints lc rgb "#0072B2" pt 7 ps 0.7 lw 1.6 title 'step', \
