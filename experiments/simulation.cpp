@@ -143,9 +143,9 @@ class Folder {
   // The density of a frame that is there; `flow` says in which box, where it lies there as coefficients.
   scene::DensityField density(int frame, const scene::Flow& flow) const {
     if (coefficients_ == 0) return std::make_shared<const scene::VoxelGrid>(scene::read_vdb(at(frame_name(frame))));
-    const auto& now = *std::get<scene::LegendrePointer>(flow.medium());
+    const auto now = std::get<scene::LegendrePointer>(flow.medium());  // the flow keeps no box: this one is made for us
     return std::make_shared<const scene::LegendreBox>(
-        now.box(), now.shape(), scene::load::read_legendre_csv(at(coefficients_name(0, frame)), now.shape()));
+        now->box(), now->shape(), scene::load::read_legendre_csv(at(coefficients_name(0, frame)), now->shape()));
   }
 
   void keep(int frame, const scene::Flow& flow, const scene::FlowParticles& particles, double dt) {
