@@ -356,8 +356,8 @@ TEST_CASE("no committed reference is missing, none is left over, and all fit int
   CHECK(bytes <= most_committed_bytes);
   for (const CommittedReference& r : references_of_project()) {
     INFO(r.asked_by << ": " << r.file.string());
-    CHECK(films.erase(r.file.filename().string()) ==
-          1);  // else: airlight experiment run NAME --fresh-references, and commit the film
+    // If not: airlight experiment run NAME --fresh-references, and commit the film.
+    CHECK(films.erase(r.file.filename().string()) == 1);
   }
   for (const auto& [name, size] : films)
     FAIL_CHECK("no experiment uses " << committed_folder << "/" << name << ": delete it");
