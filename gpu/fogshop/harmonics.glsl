@@ -69,7 +69,7 @@ vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
   for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));
 #if TRANSFER
   for (ShPair y = first_pair(to_light); y.m < sh_order; next_pair(y, to_light)) {
-    int i = r.low + y.l * (y.l + 1);
+    int i = y.l * (y.l + 1);
     sum += weight_of(y.l) * (y.plus * functions[i + y.m] + y.minus * functions[i - y.m]);
   }
 #else
@@ -103,7 +103,7 @@ vec3 reflect_band(Reflected r, int l) {
   for (int i = 0; i <= 2 * l; ++i) {
     vec3 light = rgb_at(environment_at + 3 * (l * l + i));
 #if TRANSFER
-    sum += light * functions[r.low + l * l + i];
+    sum += light * functions[l * l + i];
 #elif TURNED
     sum += light * row_at(i);
 #endif

@@ -59,10 +59,13 @@ SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, cons
       harmonics && std::any_of(lighting_.reflectances->tables().begin(), lighting_.reflectances->tables().end(),
                                [](const auto& table) { return table.has_value(); });
   const bool turned = tabulated && (environment || transfer);
-  // Of harmonics.glsl's rows in shared memory those of 8 x 8 invocations take more than 32 KiB from 9 bands on.
-  const int order = model_.options.sh_order;
+  // As many invocations as there is shared memory for what they hold (harmonics.glsl, transfer.glsl).
+  const int order = model_.options.sh_order, rows = (turned ? 2 * (2 * order - 1) : 0) + order;
+  const int held = 4 * (3 * rows + (transfer ? (tabulated ? 4 : 2) * order * order : 0));  // [B]
+  int height = 8;
+  while (height > 1 && 8 * height * held > 32768) height /= 2;
   Definitions definitions{{"LOCAL_SIZE_X", "8"},
-                          {"LOCAL_SIZE_Y", turned && order > 8 ? "4" : "8"},
+                          {"LOCAL_SIZE_Y", std::to_string(height)},
                           {"TABULATED", flag(tabulated)},
                           {"TURNED", flag(turned)},
                           {"SH_ORDER", std::to_string(order)},

@@ -51,10 +51,9 @@ void main() {
       Reflected reflected = reflectance_of(material, n, to_view);
 #if TRANSFER
       turn_reflectance(reflected);
-      if (primitive < triangle_count) {
-        vec3 diffuse = material.diffuse.w == 2 ? vec3(0) : material.diffuse.rgb;  // of a table nothing is known to be
-        shadow_reflectance(reflected, diffuse, triangles[primitive], point, normal);
-      }
+      vec3 diffuse = material.diffuse.w == 2 ? vec3(0) : material.diffuse.rgb;  // of a table nothing is known to be
+      if (primitive >= triangle_count || !shadow_reflectance(reflected, diffuse, triangles[primitive], point, normal))
+        keep_reflectance(reflected);
 #endif
 #endif
       for (int l = 0; l < light_count; ++l) {
