@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "methods/compensated_ray_marching/gaussian_columns.h"
+#include "methods/compensated_ray_marching/grid_columns.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/math/dense.h"
@@ -182,11 +183,15 @@ void LitGrid::in_columns(const scene::Execution& execution, const OfColumns& of)
   std::optional<GaussianColumns> gaussians;
   if (sum && GaussianColumns::knows(*sum) && std::holds_alternative<scene::Unbounded>(medium_.region))
     gaussians.emplace(*sum);
+  std::optional<GridColumns> voxels;
+  if (const scene::VoxelGrid* grid = scene::grid_of(medium_.field); grid && GridColumns::knows(*grid))
+    voxels.emplace(*grid);
   in_runs(execution, [&](std::size_t first, std::size_t count) {
     std::vector<Point3> points;
     for (std::size_t i = first; i < first + count; ++i) points.push_back(grid_.node(nodes_[i]));
     of(first, count, [&](const Vec3& direction, float* columns) {
       if (gaussians) return gaussians->from(points, direction, columns);
+      if (voxels) return voxels->from(points, direction, medium_.region, columns);
       for (std::size_t i = 0; i < count; ++i)
         columns[i] = float(density_integral(medium_, {points[i], direction}, {0, infinity}));
     });

@@ -1,0 +1,28 @@
+// What a grid's density has along many parallel rays.
+#pragma once
+#include <vector>
+
+#include "scene/media/region.h"
+#include "scene/media/voxel_grid.h"
+
+namespace airlight::compensated_ray_marching {
+
+class GridColumns {
+ public:
+  // Voxels are numbered by 32 bits.
+  static bool knows(const scene::VoxelGrid&);
+  // Copies the samples, two layers of voxels wider on each side. The grid outlives this.
+  explicit GridColumns(const scene::VoxelGrid&);
+
+  // Integrals of the density from each point along a direction (unit) to where the region ends [m], as density_integral: two-point Gauss in
+  // every voxel crossed. Single precision: 1e-6 of the greatest column.
+  void from(const std::vector<Point3>& points, const Vec3& direction, const scene::Region&, float* columns) const;
+
+ private:
+  static constexpr int pad = 2;  // voxels: rays that end by rounding only beyond the first voxel outside stay within
+  const scene::VoxelGrid& grid_;
+  int row_, slice_;
+  std::vector<float> values_;
+};
+
+}  // namespace airlight::compensated_ray_marching
