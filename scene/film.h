@@ -5,6 +5,7 @@
 //   mean           all orders together; written as plain R, G, B so that any viewer shows it
 //   airlight       (m, s) = (1, 0): light scattered once by the medium and by nothing else
 //   surface        (0, s), s >= 0: surfaces and background seen through the medium
+//   ambient        ambient_in_scatter of the scene times 1 - transmittance, where a method has it
 //   transmittance  of the camera ray, from the camera to what ends it
 //   distance       [m] of what ends the ray of a pixel's centre, 0 where nothing does (airlight render --distance)
 //   se             standard error of `mean` (references only)

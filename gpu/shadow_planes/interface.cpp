@@ -51,6 +51,7 @@ std::map<std::string, std::string> shared_definitions() {
           {"AIRLIGHT_LAYER", at::airlight_layer},
           {"TRANSMITTANCE_LAYER", at::transmittance_layer},
           {"SURFACE_LAYER", at::surface_layer},
+          {"AMBIENT_LAYER", at::ambient_layer},
           {"MEAN_LAYER", at::mean_layer},
           {"CASES", at::cases},
           {"INTEGRALS", at::integrals}},

@@ -34,6 +34,7 @@ enum Binding {
   // composition.comp
   distances = 1,
   airlight_layer = 0,
+  ambient_layer = 2,
   transmittance_layer = 3,
   surface_layer = 4,
   mean_layer = 5,

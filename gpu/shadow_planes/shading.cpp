@@ -144,7 +144,9 @@ void PlaneShading::compose(const LitPicture& picture, const Layers& layers) cons
   set_view(p, picture.view);
   p.set("has_distances", picture.distances != nullptr);
   p.set("lights", !picture.empty);
-  p.set("ambient", options_.ambient ? scene_->ambient_in_scatter : Rgb::Zero());
+  layers.ambient ? layers.ambient->bind(at::ambient_layer) : layers.mean.bind(at::ambient_layer);
+  p.set("has_ambient", layers.ambient != nullptr);
+  p.set("ambient", layers.ambient ? scene_->ambient_in_scatter : Rgb(Rgb::Zero()));
   p.dispatch(picture.view.width, picture.view.height);
 }
 

@@ -46,6 +46,7 @@ class PlaneShading {
   // Layers of 3 floats per pixel.
   struct Layers {
     const Buffer &airlight, &transmittance, &surface, &mean;
+    const Buffer* ambient;  // null where it is left out
   };
   void compose(const LitPicture&, const Layers&) const;
 

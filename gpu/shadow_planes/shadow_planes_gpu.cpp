@@ -239,7 +239,10 @@ void PreparedShadowPlanesGpu::draw(const View& view) const {
     frame_.download.add(name, buffer, pixels * 12);
     return buffer;
   };
-  of_.shading->compose(picture, {layer("airlight"), layer("transmittance"), layer("surface"), layer("mean")});
+  const bool fogged = std::any_of(scene_->media.begin(), scene_->media.end(), scene::extinguishes);
+  const bool ambient = options_.ambient && fogged && scene_->ambient_in_scatter.maxCoeff() > 0;
+  of_.shading->compose(picture, {layer("airlight"), layer("transmittance"), layer("surface"), layer("mean"),
+                                 ambient ? &layer("ambient") : nullptr});
   frame_.download.add_values("counters", picture.counters, sizeof(CountersData));
   for (std::size_t l = 0; l < of_.edges.size(); ++l)
     if (of_.edges[l].state)

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "methods/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/lit_grid.h"
 #include "methods/compensated_ray_marching/smoke_volume.h"
 #include "methods/compensated_ray_marching/warm_start.h"
-#include "scene/background.h"
-#include "scene/camera_rays.h"
 #include "scene/math/special_functions.h"
+#include "scene/picture.h"
 #include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
@@ -23,9 +21,12 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-struct Pixel {
-  Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
+struct Work {
   long slices = 0, samples = 0;
+  void operator+=(const Work& more) {
+    slices += more.slices;
+    samples += more.samples;
+  }
 };
 
 // Most media are grey: one expensive function instead of three.
@@ -58,8 +59,9 @@ class PreparedPicture final : public scene::Prepared {
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && smoke_; }
-  Pixel pixel(const Ray&, const View&, const GaussianRow*, const SmokeVolume::Values&, const std::vector<Rgb>& towards,
-              std::vector<double>& density, std::vector<Rgb>& weighted) const;
+  scene::Pixel pixel(const Ray&, const View&, const GaussianRow*, const SmokeVolume::Values&,
+                     const std::vector<Rgb>& towards, std::vector<double>& density, std::vector<Rgb>& weighted,
+                     Work&) const;
   Rgb behind(const Ray&, const scene::RayEnd&) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -200,28 +202,25 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
 Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
   if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
-  const scene::Material& material = scene_->surfaces[std::size_t(hit.surface)].material;
   if (centres_)  // of Lambert's
-    return scene::brdf(material, hit.normal, hit.normal, hit.normal) *
+    return scene::brdf(scene_->surfaces[std::size_t(hit.surface)].material, hit.normal, hit.normal, hit.normal) *
            centres_->irradiance(hit.position, hit.normal, hit.surface);
   Rgb sum = Rgb::Zero();
   for (std::size_t k = 0; k < incoming_->directions().size(); ++k) {
     const Vec3& to_light = incoming_->directions()[k];
-    const double cosine = hit.normal.dot(to_light);
-    if (!(cosine > 0)) continue;
-    const Rgb reflected = scene::brdf(material, hit.normal, to_light, -ray.direction) * incoming_->power()[k] * cosine;
-    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, to_light);
-    if ((reflected == 0).all() || scene_->geometry->occluded({start, to_light})) continue;
+    const Rgb reflected =
+        scene::reflected_light(*scene_, hit, -ray.direction, {to_light, infinity, incoming_->power()[k]});
+    if ((reflected == 0).all()) continue;
     const double column = smoke_ ? density_integral(smoke_->medium(), {hit.position, to_light}, {0, infinity}) : 0;
     sum += smoke_ ? Rgb(reflected * (-smoke_->medium().sigma_t * column).exp()) : reflected;
   }
   return sum.max(0);
 }
 
-Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow* row,
-                             const SmokeVolume::Values& voxels, const std::vector<Rgb>& towards,
-                             std::vector<double>& density, std::vector<Rgb>& weighted) const {
-  Pixel p;
+scene::Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow* row,
+                                    const SmokeVolume::Values& voxels, const std::vector<Rgb>& towards,
+                                    std::vector<double>& density, std::vector<Rgb>& weighted, Work& work) const {
+  scene::Pixel p;
   const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
   const Interval t = row ? row->extent(ray, {0, end.t}) : smoke_ ? smoke_->extent(ray, {0, end.t}) : Interval{};
   if (!t.empty()) {
@@ -235,14 +234,14 @@ Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const GaussianRow
                               ? Rgb(smoke_->medium().albedo * incoming_->brightest())
                               : Rgb(Rgb::Constant(infinity));
     const bool exact = options_.weight == SliceWeight::exact;
-    if (row) p.samples = row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
+    if (row) work.samples += row->add(ray, slices, density.data(), centres_ ? weighted.data() : nullptr);
     for (int k = 0; k < slices.count; ++k) {
       const Point3 x = ray.at(slices.middle(k));
       const double of_gaussians = density[std::size_t(k)];
       const SmokeVolume::Sample voxel = volume_ ? volume_->between(voxels, x) : SmokeVolume::Sample{};
       const double here = volume_ ? voxel.density : smoke_->density(x, of_gaussians);
       if (!(here > 0)) continue;
-      ++p.slices;
+      ++work.slices;
       const Rgb depth = smoke_->medium().sigma_t * here * slices.step, lost = one_minus_exp(depth);
       Rgb source = Rgb::Zero();
       if (!scatters_) {
@@ -273,9 +272,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
       {"method", "compensated_ray_marching"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
   if (const std::string doubt = doubt_of(*scene_, options_, multiple()); !doubt.empty())
     film.metadata["warning"] = "compensated_ray_marching: " + doubt;
-  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
-  float *airlight = film.add("airlight").data(), *surface = film.add("surface").data();
-  float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
+  const scene::PictureLayers layers(film, {.ambient = ambient_kept()});
   scene::Stopwatch watch;
   std::vector<Rgb> towards;
   if (grid_) towards = grid_->towards(view.camera, execution);
@@ -287,9 +284,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
     result.times.push_back({"volume pass", watch.lap()});
   }
   const scene::CameraRays rays(view.camera, view.width, view.height);
-  std::mutex mutex;
-  long slices = 0, samples = 0;
-  scene::parallel_rows(view.height, execution, [&](int y) {
+  const auto work = scene::sum_over_rows<Work>(view.height, execution, [&](int y, Work& of_row) {
     std::vector<double> density;
     std::vector<Rgb> weighted;
     std::optional<GaussianRow> row;
@@ -300,29 +295,13 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
       row.emplace(*smoke_->gaussians(), centres_ ? &towards : nullptr, first.origin,
                   first.direction.cross(across).normalized());
     }
-    long row_slices = 0, row_samples = 0;
-    for (int x = 0; x < view.width; ++x) {
-      const Pixel p = pixel(rays(x + 0.5, y + 0.5), view, row ? &*row : nullptr, voxels, towards, density, weighted);
-      const Rgb sum = p.airlight + p.surface + p.ambient;
-      const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto channel = Eigen::Index(c);
-        mean[at + c] = float(sum[channel]);
-        airlight[at + c] = float(p.airlight[channel]);
-        surface[at + c] = float(p.surface[channel]);
-        transmittance[at + c] = float(p.transmittance[channel]);
-        if (ambient) ambient[at + c] = float(p.ambient[channel]);
-      }
-      row_slices += p.slices;
-      row_samples += p.samples;
-    }
-    const std::lock_guard lock(mutex);
-    slices += row_slices;
-    samples += row_samples;
+    for (int x = 0; x < view.width; ++x)
+      layers.put(
+          x, y, pixel(rays(x + 0.5, y + 0.5), view, row ? &*row : nullptr, voxels, towards, density, weighted, of_row));
   });
   result.times.push_back({smoke_ ? "march" : "camera rays", watch.lap()});
   result.counters = {
-      {"rays", double(film.pixels())}, {"slices", double(slices)}, {"gaussian_samples", double(samples)}};
+      {"rays", double(film.pixels())}, {"slices", double(work.slices)}, {"gaussian_samples", double(work.samples)}};
   if (grid_) {
     result.counters["iterations"] = grid_->iterations();
     result.counters["multiple_error"] = grid_->error();

@@ -23,6 +23,11 @@ struct RayOptions {
 struct RayVisits {
   long segments = 0, shadow_rays = 0;
   PanelRule::Work work;
+  void operator+=(const RayVisits& more) {
+    segments += more.segments;
+    shadow_rays += more.shadow_rays;
+    work.panels += more.work.panels;
+  }
 };
 
 class LightRays {

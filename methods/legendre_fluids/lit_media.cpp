@@ -86,25 +86,6 @@ double negative_share(const scene::TensorShape& shape, const Eigen::VectorXd& co
   return share;
 }
 
-Rgb sent_back(const scene::Scene& scene, const std::vector<scene::DirectionalLight>& lights, const Ray& ray,
-              const scene::RayEnd& end, const LeftOfLight& left) {
-  if (!end.hit) return scene::background(scene, end, ray.direction);
-  const scene::Hit& hit = *end.hit;
-  const scene::Material& material = scene.surfaces[std::size_t(hit.surface)].material;
-  Rgb sum = Rgb::Zero();
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    const scene::DirectionalLight& light = lights[l];
-    const double cosine = hit.normal.dot(light.to_light);
-    if (!(cosine > 0)) continue;
-    const Rgb reflected = scene::brdf(material, hit.normal, light.to_light, -ray.direction) * light.irradiance * cosine;
-    if ((reflected == 0).all()) continue;
-    const Point3 start = scene.geometry->offset_origin(hit.position, hit.normal, light.to_light);
-    if (scene.geometry->occluded({start, light.to_light})) continue;
-    sum += reflected * left(hit.position, l);
-  }
-  return sum;
-}
-
 bool may_shadow(const scene::Surface& surface, const Box& box, const Vec3& to_light) {
   const auto least = [](const Box& b, const Vec3& d) {
     return d.cwiseProduct((d.array() > 0).select(b.lo, b.hi)).sum();

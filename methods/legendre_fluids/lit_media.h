@@ -1,7 +1,5 @@
 // Media as Legendre boxes under directional lights (environments are such lights already): what rays through them read. The preparation of variant `ray`.
 #pragma once
-#include <functional>
-
 #include "methods/legendre_fluids/light_columns.h"
 #include "scene/scene.h"
 
@@ -26,11 +24,6 @@ struct LitMedia {
   Rgb view_depth(const Ray&, double end) const;
 };
 
-// What a camera ray ends on sends back [W/m^2/sr], without the media in between: a surface lit by directional lights, or the background.
-// `left` is what media leave of a light on its way to a place.
-using LeftOfLight = std::function<Rgb(const Point3&, std::size_t light)>;
-Rgb sent_back(const scene::Scene&, const std::vector<scene::DirectionalLight>&, const Ray&, const scene::RayEnd&,
-              const LeftOfLight& left);
 // Can a surface stand between a medium's box and a light: not if all of it lies behind the box, as seen from the light.
 bool may_shadow(const scene::Surface&, const Box&, const Vec3& to_light);
 

@@ -8,9 +8,8 @@
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_view.h"
 #include "methods/legendre_fluids/point_values.h"
-#include "scene/background.h"
-#include "scene/camera_rays.h"
 #include "scene/error.h"
+#include "scene/picture.h"
 #include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
@@ -150,14 +149,16 @@ Rgb PreparedPaper::left_of_light(const Point3& x, std::size_t light) const {
 }
 
 void PreparedPaper::look(int y, const scene::CameraRays& rays, PaperView::Row& row, std::vector<Rgb>& behind) const {
-  const LeftOfLight left = [&](const Point3& x, std::size_t light) { return left_of_light(x, light); };
   const bool kept = behind_kept();
   for (std::size_t x = 0; x < behind.size(); ++x) {
     const Ray ray = rays(double(x) + 0.5, y + 0.5);
     const scene::RayEnd end = scene::camera_end(*scene_, ray);
     row.end[x] = end.t;
     row.seen[x] = row.seen[x] || end.t < infinity || end.seen;
-    if (row.seen[x] && kept) behind[x] = sent_back(*scene_, lights_, ray, end, left);
+    if (row.seen[x] && kept)
+      behind[x] = scene::end_radiance(*scene_, ray, end, lights_, [&](const scene::Incident&, std::size_t l) {
+        return left_of_light(end.hit->position, l);
+      });
   }
 }
 
@@ -167,10 +168,8 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
   const auto wanted = [&](const char* name) { return !execution.layers || execution.layers->contains(name); };
-  const auto layer = [&](const char* name, bool made) { return made ? film.add(name).data() : nullptr; };
-  float *mean = layer("mean", true), *airlight = layer("airlight", wanted("airlight"));
-  float* surface = layer("surface", ends() && wanted("surface"));
-  float* transmittance = layer("transmittance", ends() && wanted("transmittance"));
+  const bool transmittance = ends() && wanted("transmittance");
+  const scene::PictureLayers layers(film, {wanted("airlight"), ends() && wanted("surface"), false, transmittance});
   film.metadata = {
       {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
   scene::Stopwatch watch;
@@ -191,18 +190,11 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
     if (ends()) look(y, rays, row, behind);
     if (medium) medium->row(y, row);
     for (std::size_t x = 0; x < width; ++x) {
-      const std::size_t at = 3 * (std::size_t(y) * width + x);
-      const Rgb lit = medium ? Rgb(row.airlight[x].max(0)) : Rgb(Rgb::Zero());
-      Rgb clear = Rgb::Ones();
-      if (medium && row.column[x] != 0) clear = (-medium_->sigma_t * row.column[x]).exp();
-      const Rgb seen = clear * behind[x];
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto channel = Eigen::Index(c);
-        mean[at + c] = float(lit[channel] + seen[channel]);
-        if (airlight) airlight[at + c] = float(lit[channel]);
-        if (surface) surface[at + c] = float(seen[channel]);
-        if (transmittance) transmittance[at + c] = float(clear[channel]);
-      }
+      scene::Pixel pixel;
+      if (medium) pixel.airlight = row.airlight[x].max(0);
+      if (medium && row.column[x] != 0) pixel.transmittance = (-medium_->sigma_t * row.column[x]).exp();
+      pixel.surface = pixel.transmittance * behind[x];
+      layers.put(int(x), y, pixel);
     }
     const std::lock_guard lock(mutex);
     met += row.met;

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 
-#include "scene/background.h"
-#include "scene/camera_rays.h"
+#include "scene/picture.h"
 #include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
@@ -31,9 +29,6 @@ class PreparedRays final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
-  struct Pixel {
-    Rgb airlight = Rgb::Zero(), surface = Rgb::Zero(), transmittance = Rgb::Ones(), ambient = Rgb::Zero();
-  };
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool any_medium() const { return !rays_.media().media.empty(); }
   bool scatters() const {
@@ -46,7 +41,7 @@ class PreparedRays final : public scene::Prepared {
            !scene_->backdrops.empty();
   }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
-  Pixel pixel(const Ray&, RayVisits&) const;
+  scene::Pixel pixel(const Ray&, RayVisits&) const;
 
   scene::Stopwatch watch_;
   std::shared_ptr<const Scene> scene_;
@@ -87,17 +82,18 @@ std::vector<scene::Stage> PreparedRays::stages() const {
                                             : fmt::format("{} directions", options_.environment_directions)}};
 }
 
-PreparedRays::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
-  Pixel pixel;
+scene::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
+  scene::Pixel pixel;
   const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
   const Rgb depth = rays_.media().view_depth(ray, end.t);
   pixel.transmittance = (-depth).exp();
   if (scatters()) pixel.airlight = rays_.airlight(ray, end.t, visits);
   if (behind_kept() && pixel.transmittance.maxCoeff() > 0)
-    pixel.surface = pixel.transmittance *
-                    sent_back(*scene_, rays_.media().lights, ray, end, [&](const Point3& x, std::size_t light) -> Rgb {
-                      return (-rays_.media().light_depth(x, light)).exp();
-                    });
+    pixel.surface =
+        pixel.transmittance *
+        scene::end_radiance(*scene_, ray, end, rays_.media().lights, [&](const scene::Incident&, std::size_t l) -> Rgb {
+          return (-rays_.media().light_depth(end.hit->position, l)).exp();
+        });
   // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
   if (ambient_kept())
     pixel.ambient = scene_->ambient_in_scatter * depth.unaryExpr([](double d) { return -std::expm1(-d); });
@@ -108,9 +104,7 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
   require_own_camera(*scene_, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
-  float *airlight = film.add("airlight").data(), *surface = film.add("surface").data();
-  float* ambient = ambient_kept() ? film.add("ambient").data() : nullptr;
+  const scene::PictureLayers layers(film, {.ambient = ambient_kept()});
   film.metadata = {
       {"method", "legendre_fluids"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
   if (scene::has_environment(*scene_) && !rays_.media().lights.empty())
@@ -118,29 +112,8 @@ scene::Rendering PreparedRays::render(const View& view, const Execution& executi
         fmt::format("legendre_fluids: {} directional lights stand for each environment (environment_directions)",
                     options_.environment_directions);
   scene::Stopwatch watch;
-  const scene::CameraRays rays(view.camera, view.width, view.height);
-  std::mutex mutex;
-  RayVisits total;
-  scene::parallel_rows(view.height, execution, [&](int y) {
-    RayVisits visits;
-    for (int x = 0; x < view.width; ++x) {
-      const Pixel p = pixel(rays(x + 0.5, y + 0.5), visits);
-      const Rgb sum = p.airlight + p.surface + p.ambient;
-      const std::size_t at = 3 * (std::size_t(y) * std::size_t(view.width) + std::size_t(x));
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto channel = Eigen::Index(c);
-        mean[at + c] = float(sum[channel]);
-        airlight[at + c] = float(p.airlight[channel]);
-        surface[at + c] = float(p.surface[channel]);
-        transmittance[at + c] = float(p.transmittance[channel]);
-        if (ambient) ambient[at + c] = float(p.ambient[channel]);
-      }
-    }
-    const std::lock_guard lock(mutex);
-    total.segments += visits.segments;
-    total.work.panels += visits.work.panels;
-    total.shadow_rays += visits.shadow_rays;
-  });
+  const auto total = scene::draw_pixels<RayVisits>(
+      view, execution, layers, [&](const Ray& ray, RayVisits& visits) { return pixel(ray, visits); });
   result.times.push_back({"rays", watch.lap()});
   result.counters = {{"rays", double(film.pixels())},
                      {"segments", double(total.segments)},

@@ -70,13 +70,13 @@ void add_lit_parts(const LitLight& lit, std::optional<int> count, std::vector<Pi
     Pixel& pixel = pixels[i];
     if (counted) {
       for (std::size_t k = first[i]; k < first[i + 1]; ++k)
-        pixel.in_air += over(lit, pixel.ray, {parts[k].begin, parts[k].end}, counts);
+        pixel.airlight += over(lit, pixel.ray, {parts[k].begin, parts[k].end}, counts);
     } else if (!lit.shadows) {
-      pixel.in_air += over(lit, pixel.ray, {0, pixel.end.t}, counts);
+      pixel.airlight += over(lit, pixel.ray, {0, pixel.end.t}, counts);
     } else {
       const int m = find(pixel);
       counts.crossings += double(crossings.size());
-      pixel.in_air += signed_sum(lit, pixel.ray, pixel.end.t, m, crossings, counts);
+      pixel.airlight += signed_sum(lit, pixel.ray, pixel.end.t, m, crossings, counts);
     }
   }
   seconds.planes += watch.lap();

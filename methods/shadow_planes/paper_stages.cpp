@@ -177,7 +177,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   scene::Stopwatch watch;
   Work work;
   work.first.push_back(0);
-  for (const Pixel& pixel : pixels) work.sum.push_back(pixel.in_air);  // the frame buffer is that of all lights
+  for (const Pixel& pixel : pixels) work.sum.push_back(pixel.airlight);  // the frame buffer is that of all lights
   std::vector<int> at_origin(pixels.size(), 0), edges;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!shadows_.empty() && in_air(airlight_terms_, pixels[i].ray, pixels[i].end.t)) {
@@ -201,7 +201,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
     draw_planes(l, a, pixels, work, counts);
     seconds.planes += watch.lap();
   }
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].in_air = work.sum[i];
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].airlight = work.sum[i];
 }
 
 // Stage 3: where the ray leaves the air, or ends, if the stencil is 0 there.

@@ -1,6 +1,6 @@
 // What the stages of a picture pass on to one another.
 #pragma once
-#include "scene/scene.h"
+#include "scene/picture.h"
 
 namespace airlight::shadow_planes {
 
@@ -15,10 +15,9 @@ struct Counts {
   double by_pixel = 0;   // of the parts, evaluated for their pixel
 };
 
-struct Pixel {
+struct Pixel : scene::Pixel {
   Ray ray;
   scene::RayEnd end;
-  Rgb visible = Rgb::Ones(), in_air = Rgb::Zero(), on_surface = Rgb::Zero();
 };
 
 }  // namespace airlight::shadow_planes

@@ -53,8 +53,8 @@ class PreparedShadowPlanes final : public scene::Prepared {
 
  private:
   std::vector<scene::StageTime> begin(std::shared_ptr<const Scene>);
-  void render_tile(const Frame&, int tile_x, int tile_y, scene::Film&, Tally&) const;
-  Rgb reflected(const scene::Hit&, const Vec3& to_view) const;
+  void render_tile(const Frame&, int tile_x, int tile_y, const scene::PictureLayers&, Tally&) const;
+  bool ambient() const { return options_.ambient && needs_.medium && scene_->ambient_in_scatter.maxCoeff() > 0; }
   bool in_stages() const;  // of the paper
 
   std::shared_ptr<const Scene> scene_;
@@ -125,21 +125,7 @@ bool PreparedShadowPlanes::in_stages() const {
          (needs_.shadows && options_.shadows == Options::Shadows::stencil);
 }
 
-Rgb PreparedShadowPlanes::reflected(const scene::Hit& hit, const Vec3& to_view) const {
-  Rgb sum = Rgb::Zero();
-  for (const scene::Light& light : scene_->lights) {
-    const scene::Incident in = scene::incident(light, hit.position);
-    const double cosine = hit.normal.dot(in.to_light);
-    if (!(cosine > 0) || !(in.irradiance > 0).any()) continue;
-    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, in.to_light);
-    if (scene_->geometry->occluded({start, in.to_light}, in.distance)) continue;
-    sum += scene::brdf(scene_->surfaces[hit.surface].material, hit.normal, in.to_light, to_view) * cosine *
-           in.irradiance * transmittance(scene_->media, {hit.position, in.to_light}, {0, in.distance});
-  }
-  return sum;
-}
-
-void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_y, scene::Film& film,
+void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_y, const scene::PictureLayers& layers,
                                        Tally& tally) const {
   scene::Stopwatch watch;
   const View& view = frame.view;
@@ -152,8 +138,15 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
       Pixel& pixel = pixels.emplace_back();
       pixel.ray = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
       pixel.end = scene::ray_end(*scene_, pixel.ray);
-      if (needs_.medium) pixel.visible = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
-      if (pixel.end.hit) pixel.on_surface = pixel.visible * reflected(*pixel.end.hit, -pixel.ray.direction);
+      if (needs_.medium) pixel.transmittance = transmittance(scene_->media, pixel.ray, {0, pixel.end.t});
+      if (pixel.end.hit)
+        pixel.surface =
+            pixel.transmittance *
+            scene::direct_light(
+                *scene_, *pixel.end.hit, -pixel.ray.direction, scene_->lights,
+                [&](const scene::Incident& in, std::size_t) {
+                  return transmittance(scene_->media, {pixel.end.hit->position, in.to_light}, {0, in.distance});
+                });
     }
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     const auto count = frame.at_camera.empty() ? std::nullopt : std::optional(frame.at_camera[l]);
@@ -166,26 +159,16 @@ void PreparedShadowPlanes::render_tile(const Frame& frame, int tile_x, int tile_
                     count, pixels, tally.counts, tally.seconds);
     watch.lap();
   }
-  std::vector<float>&airlight_layer = film.layers["airlight"], &surface = film.layers["surface"],
-  &transmittance_layer = film.layers["transmittance"], &mean = film.layers["mean"];
   for (std::size_t k = 0; k < pixels.size(); ++k) {
-    Pixel& pixel = pixels[k];
-    if (options_.ambient && needs_.medium) pixel.in_air += scene_->ambient_in_scatter * (1 - pixel.visible);
-    const std::size_t x = tile_x * tile_side + k % width, y = tile_y * tile_side + k / width;
-    const std::size_t i = y * view.width + x;
-    for (int c = 0; c < 3; ++c) {
-      airlight_layer[3 * i + c] = float(pixel.in_air[c]);
-      surface[3 * i + c] = float(pixel.on_surface[c]);
-      transmittance_layer[3 * i + c] = float(pixel.visible[c]);
-      mean[3 * i + c] = float(pixel.in_air[c] + pixel.on_surface[c]);
-    }
+    if (ambient()) pixels[k].ambient = scene_->ambient_in_scatter * (1 - pixels[k].transmittance);
+    layers.put(tile_x * tile_side + int(k) % width, tile_y * tile_side + int(k) / width, pixels[k]);
   }
   tally.seconds.scene += watch.lap();
 }
 
 scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution& execution) const {
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
-  for (const char* layer : {"airlight", "surface", "transmittance", "mean"}) result.film.add(layer);
+  const scene::PictureLayers layers(result.film, {.ambient = ambient()});
   if (options_.evaluation == Options::Evaluation::vertices && view.camera.kind != scene::Camera::Kind::perspective)
     throw Error("evaluation = vertices is for perspective cameras");
   const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
@@ -202,9 +185,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
-  scene::parallel_rows(columns * rows, execution, [&](int tile) {
-    render_tile(frame, tile % columns, tile / columns, result.film, tallies[tile]);
-  });
+  scene::parallel_rows(columns * rows, execution,
+                       [&](int tile) { render_tile(frame, tile % columns, tile / columns, layers, tallies[tile]); });
   const double wall = watch.lap();
   Tally all;
   for (const Tally& t : tallies) {

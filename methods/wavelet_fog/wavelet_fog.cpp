@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "methods/wavelet_fog/compression.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "methods/wavelet_fog/sun_scattering.h"
-#include "scene/background.h"
-#include "scene/camera_rays.h"
 #include "scene/error.h"
+#include "scene/picture.h"
 #include "scene/scattered_lights.h"
 #include "scene/stopwatch.h"
 
@@ -23,18 +21,18 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-struct Fate {
+struct Cover {
   Rgb transmittance, opacity;
 };
 // Of depths >= 0, by one exponential a channel, once where they are equal: the smaller of the two to all its digits, since thin fog has
 // an opacity of 1e-8.
-Fate fate(const Rgb& depth) {
-  Fate fate;
+Cover cover_of(const Rgb& depth) {
+  Cover cover;
   for (int c = 0; c < 3; ++c) {
-    double &clear = fate.transmittance[c], &dense = fate.opacity[c];
+    double &clear = cover.transmittance[c], &dense = cover.opacity[c];
     if (c > 0 && depth[c] == depth[c - 1]) {
-      clear = fate.transmittance[c - 1];
-      dense = fate.opacity[c - 1];
+      clear = cover.transmittance[c - 1];
+      dense = cover.opacity[c - 1];
     } else if (depth[c] < 0.6) {
       dense = -std::expm1(-depth[c]);
       clear = 1 - dense;
@@ -43,12 +41,20 @@ Fate fate(const Rgb& depth) {
       dense = 1 - clear;
     }
   }
-  return fate;
+  return cover;
 }
 
-void put(const Rgb& value, float* to) {
-  for (int c = 0; c < 3; ++c) to[c] = float(value[c]);
-}
+struct Work {
+  Visits visits;
+  SunVisits of_sun;
+  void operator+=(const Work& more) {
+    visits.cells += more.visits.cells;
+    visits.coefficients += more.visits.coefficients;
+    visits.lookups += more.visits.lookups;
+    of_sun.points += more.of_sun.points;
+    of_sun.shadow_rays += more.of_sun.shadow_rays;
+  }
+};
 
 class PreparedWaveletFog final : public scene::Prepared {
  public:
@@ -71,7 +77,7 @@ class PreparedWaveletFog final : public scene::Prepared {
   bool sunlit() const { return options_.sun && why_no_sun(*scene_).empty(); }
   bool ends() const { return scene_->geometry || !scene_->lights.empty() || !scene_->backdrops.empty(); }
   Rgb depth(const Ray&, double length, Visits&, const std::vector<PolarTable>& tables = {}) const;
-  Rgb behind(const Ray&, const scene::RayEnd&, Visits&) const;
+  scene::Pixel pixel(const Ray&, const std::vector<PolarTable>&, Work&) const;
 
   std::shared_ptr<const Scene> scene_;
   Options options_;
@@ -155,34 +161,28 @@ Rgb PreparedWaveletFog::depth(const Ray& ray, double length, Visits& visits,
   return sum;
 }
 
-// What the ray ends on sends back, without the fog in between.
-Rgb PreparedWaveletFog::behind(const Ray& ray, const scene::RayEnd& end, Visits& visits) const {
-  if (!end.hit) return scene::background(*scene_, end, ray.direction);
-  const scene::Hit& hit = *end.hit;
-  const scene::Material& material = scene_->surfaces[hit.surface].material;
-  Rgb sum = Rgb::Zero();
-  for (const scene::Light& light : scene_->lights) {
-    if (!scene::is_delta(light)) continue;
-    const scene::Incident in = scene::incident(light, hit.position);
-    const double cosine = hit.normal.dot(in.to_light);
-    if (!(cosine > 0) || !(in.irradiance.maxCoeff() > 0)) continue;
-    const Rgb reflected = scene::brdf(material, hit.normal, in.to_light, -ray.direction) * in.irradiance * cosine;
-    if (!(reflected.maxCoeff() > 0)) continue;
-    const Point3 start = scene_->geometry->offset_origin(hit.position, hit.normal, in.to_light);
-    if (scene_->geometry->occluded({start, in.to_light}, in.distance)) continue;
-    sum += reflected * (-depth({hit.position, in.to_light}, in.distance, visits)).exp();
-  }
-  return sum;
+scene::Pixel PreparedWaveletFog::pixel(const Ray& ray, const std::vector<PolarTable>& tables, Work& work) const {
+  scene::Pixel pixel;
+  const scene::RayEnd end = ends() ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
+  const Cover cover = cover_of(depth(ray, end.t, work.visits, tables));
+  pixel.transmittance = cover.transmittance;
+  if (ends() && cover.transmittance.maxCoeff() > 0)
+    pixel.surface =
+        cover.transmittance *
+        scene::end_radiance(*scene_, ray, end, scene_->lights, [&](const scene::Incident& in, std::size_t) -> Rgb {
+          Visits of_surfaces;  // not counted
+          return (-depth({end.hit->position, in.to_light}, in.distance, of_surfaces)).exp();
+        });
+  if (ambient()) pixel.ambient = scene_->ambient_in_scatter * cover.opacity;  // eq. 4
+  if (sun_) pixel.airlight = sun_->airlight(ray, end.t, work.of_sun);
+  return pixel;
 }
 
 scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& execution) const {
   require_own_camera(*scene_, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
-  // Looked up once: by name for every pixel it would take as long as the rest of polar.
-  float *mean = film.add("mean").data(), *transmittance = film.add("transmittance").data();
-  float *surface = film.add("surface").data(), *ambient = this->ambient() ? film.add("ambient").data() : nullptr;
-  float* airlight = sun_ ? film.add("airlight").data() : nullptr;
+  const scene::PictureLayers layers(film, {.airlight = sun_.has_value(), .ambient = ambient()});
   scene::Stopwatch watch;
   std::vector<PolarTable> tables;
   if (options_.variant == Options::Variant::polar) {
@@ -190,52 +190,17 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
     for (const LeveledFog& fog : fogs_) tables.push_back(fog.polar_table(view, execution));
     result.times.push_back({"polar tables", watch.lap()});
   }
-  const bool ends = this->ends();
-  const scene::CameraRays rays(view.camera, view.width, view.height);
-  std::mutex mutex;
-  Visits total;
-  SunVisits of_sun;
-  for (const PolarTable& table : tables) total.cells += table.cells();
-  scene::parallel_rows(view.height, execution, [&](int y) {
-    Visits visits, of_surfaces;
-    SunVisits sun_visits;
-    for (int x = 0; x < view.width; ++x) {
-      const Ray ray = rays(x + 0.5, y + 0.5);
-      const scene::RayEnd end = ends ? scene::camera_end(*scene_, ray) : scene::RayEnd{};
-      const Rgb optical = depth(ray, end.t, visits, tables);
-      const auto [clear, dense] = fate(optical);
-      const Rgb reflected =
-          ends && clear.maxCoeff() > 0 ? Rgb(clear * behind(ray, end, of_surfaces)) : Rgb(Rgb::Zero());
-      Rgb sum = reflected;
-      const std::size_t pixel = 3 * (std::size_t(y) * view.width + x);
-      put(clear, transmittance + pixel);
-      put(reflected, surface + pixel);
-      if (ambient) {
-        const Rgb fog = scene_->ambient_in_scatter * dense;  // eq. 4
-        put(fog, ambient + pixel);
-        sum += fog;
-      }
-      if (airlight) {
-        const Rgb scattered = sun_->airlight(ray, end.t, sun_visits);
-        put(scattered, airlight + pixel);
-        sum += scattered;
-      }
-      put(sum, mean + pixel);
-    }
-    const std::lock_guard lock(mutex);
-    total.cells += visits.cells;
-    total.coefficients += visits.coefficients;
-    total.lookups += visits.lookups;
-    of_sun.points += sun_visits.points;
-    of_sun.shadow_rays += sun_visits.shadow_rays;
-  });
+  Work work = scene::draw_pixels<Work>(view, execution, layers,
+                                       [&](const Ray& ray, Work& of_row) { return pixel(ray, tables, of_row); });
+  for (const PolarTable& table : tables) work.visits.cells += table.cells();
   result.times.push_back({fogs_.empty() ? "camera rays" : "transmittance", watch.lap()});
-  result.counters = {
-      {"rays", double(film.pixels())}, {"cells", double(total.cells)}, {"coefficients", double(total.coefficients)}};
-  if (!tables.empty()) result.counters["lookups"] = double(total.lookups);
+  result.counters = {{"rays", double(film.pixels())},
+                     {"cells", double(work.visits.cells)},
+                     {"coefficients", double(work.visits.coefficients)}};
+  if (!tables.empty()) result.counters["lookups"] = double(work.visits.lookups);
   if (sun_) {
-    result.counters["sun_points"] = double(of_sun.points);
-    result.counters["shadow_rays"] = double(of_sun.shadow_rays);
+    result.counters["sun_points"] = double(work.of_sun.points);
+    result.counters["shadow_rays"] = double(work.of_sun.shadow_rays);
   }
   if (options_.keep < 1) {
     for (const CompressionReport& report : compression_) {

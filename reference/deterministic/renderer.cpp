@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-#include <chrono>
-
 #include "reference/deterministic/airlight.h"
 #include "reference/deterministic/limits.h"
-#include "reference/deterministic/surface_light.h"
 #include "scene/error.h"
+#include "scene/picture.h"
 #include "scene/place_error.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::deterministic {
 namespace {
@@ -32,9 +30,14 @@ bool any(const Scene& scene, bool delta) {
   return false;
 }
 
-// Counts of a render, added up over rows.
 struct Counts {
-  std::atomic<long> rays{0}, evaluations{0}, unmet{0}, infinite{0};
+  long rays = 0, evaluations = 0, unmet = 0, infinite = 0;
+  void operator+=(const Counts& more) {
+    rays += more.rays;
+    evaluations += more.evaluations;
+    unmet += more.unmet;
+    infinite += more.infinite;
+  }
 };
 
 class DeterministicPrepared final : public scene::Prepared {
@@ -72,16 +75,18 @@ class DeterministicPrepared final : public scene::Prepared {
     scene::Rendering out;
     out.film = scene::Film(view.width, view.height);
     scene::Film& film = out.film;
-    for (const char* layer : {"mean", "transmittance"}) film.add(layer);
-    if (airlight_kept()) film.add("airlight"), film.add("error");
-    if (surface_kept()) film.add("surface");
-    if (ambient_kept()) film.add("ambient");
-    Counts counts;
-    const auto begin = std::chrono::steady_clock::now();
-    scene::parallel_rows(view.height, execution, [&](int y) {
-      for (int x = 0; x < view.width; ++x) pixel(view, x, y, film, counts);
+    const scene::PictureLayers layers(film, {airlight_kept(), surface_kept(), ambient_kept()});
+    if (airlight_kept()) film.add("error");
+    scene::Stopwatch watch;
+    const scene::CameraRays rays(view.camera, view.width, view.height);
+    const auto counts = scene::sum_over_rows<Counts>(view.height, execution, [&](int y, Counts& of_row) {
+      for (int x = 0; x < view.width; ++x) {
+        Airlight airlight;
+        layers.put(x, y, pixel(rays(x + 0.5, y + 0.5), airlight, of_row));
+        if (airlight_kept()) film.set("error", x, y, airlight.error);
+      }
     });
-    out.times.push_back({"render", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+    out.times.push_back({"render", watch.lap()});
     out.counters = {{"rays", double(counts.rays)},
                     {"evaluations", double(counts.evaluations)},
                     {"pixels over tolerance", double(counts.unmet)},
@@ -101,37 +106,31 @@ class DeterministicPrepared final : public scene::Prepared {
   bool surface_kept() const { return scene_->geometry || any(*scene_, false) || !scene_->backdrops.empty(); }
   bool ambient_kept() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !scene_->media.empty(); }
 
-  void pixel(const scene::View& view, int x, int y, scene::Film& film, Counts& counts) const {
-    const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
+  scene::Pixel pixel(const Ray& ray, Airlight& airlight, Counts& counts) const {
+    scene::Pixel pixel;
     const scene::RayEnd end = scene::camera_end(*scene_, ray);
     const Rgb depth = integrator_.optical_depth(ray, end.t);
-    const Rgb transmittance = (-depth).exp();
-    film.set("transmittance", x, y, transmittance);
-    Rgb mean = Rgb::Zero();
+    pixel.transmittance = (-depth).exp();
     ++counts.rays;
     if (airlight_kept()) {
-      const Airlight airlight = integrator_(ray, end.t);
+      airlight = integrator_(ray, end.t);
       counts.evaluations += airlight.evaluations;
       if (!airlight.radiance.allFinite())
         ++counts.infinite;
       else if (!airlight.converged)
         ++counts.unmet;
-      film.set("airlight", x, y, airlight.radiance);
-      film.set("error", x, y, airlight.error);
-      mean += airlight.radiance;
+      pixel.airlight = airlight.radiance;
     }
-    if (surface_kept() && transmittance.maxCoeff() > 0) {
-      const Rgb surface = transmittance * end_radiance(*scene_, integrator_, ray, end);
-      film.set("surface", x, y, surface);
-      mean += surface;
-    }
-    if (ambient_kept()) {
-      // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
-      const Rgb opacity = (-depth).unaryExpr([](double d) { return -std::expm1(d); });
-      film.set("ambient", x, y, scene_->ambient_in_scatter * opacity);
-      mean += scene_->ambient_in_scatter * opacity;
-    }
-    film.set("mean", x, y, mean);
+    if (surface_kept() && pixel.transmittance.maxCoeff() > 0)
+      pixel.surface =
+          pixel.transmittance *
+          scene::end_radiance(*scene_, ray, end, scene_->lights, [&](const scene::Incident&, std::size_t l) -> Rgb {
+            return (-integrator_.light_depth(end.hit->position, int(l))).exp();
+          });
+    // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
+    if (ambient_kept())
+      pixel.ambient = scene_->ambient_in_scatter * depth.unaryExpr([](double d) { return -std::expm1(-d); });
+    return pixel;
   }
 
   std::shared_ptr<const Scene> scene_;

@@ -93,7 +93,7 @@ bool serves(const std::vector<Pass>& passes, std::size_t pass, int light) {
   return true;
 }
 
-void Counters::add(const Counters& other) {
+void Counters::operator+=(const Counters& other) {
   rays += other.rays;
   steps += other.steps;
   shadow_rays += other.shadow_rays;

@@ -45,7 +45,7 @@ struct Counters {
   long long occlusion_rays = 0;  // shadow rays tested against surfaces
   double ray_seconds = 0, march_seconds = 0, occlusion_seconds = 0, shadow_seconds = 0, scattering_seconds = 0,
          surface_seconds = 0;
-  void add(const Counters&);
+  void operator+=(const Counters&);
 };
 
 }  // namespace airlight::ray_marcher

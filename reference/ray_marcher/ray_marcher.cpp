@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <mutex>
 
 #include "reference/ray_marcher/limits.h"
 #include "reference/ray_marcher/plan.h"
@@ -15,7 +14,9 @@
 #include "reference/ray_marcher/tile.h"
 #include "scene/error.h"
 #include "scene/light_on_ray.h"
+#include "scene/picture.h"
 #include "scene/place_error.h"
+#include "scene/stopwatch.h"
 
 namespace airlight::ray_marcher {
 namespace {
@@ -80,18 +81,15 @@ class PreparedMarch final : public scene::Prepared {
     require_lights_apart(*plan_.scene, view, 1e-13, "ray_marcher");
     scene::Rendering result;
     result.film = scene::Film(view.width, view.height);
-    float *mean = result.film.add("mean").data(), *airlight = result.film.add("airlight").data(),
-          *surface = result.film.add("surface").data(), *transmittance = result.film.add("transmittance").data();
+    const scene::PictureLayers layers(result.film, {});
     result.film.metadata = {
         {"method", "ray_marcher"}, {"settings", settings_}, {"scene", plan_.scene->name}, {"hash", plan_.scene->hash}};
-    Counters total;
-    std::mutex mutex;
-    const double start = now();
+    scene::Stopwatch watch;
     // Steps of this many are in memory at once, a quarter of a kilobyte each.
     const auto rays_at_once =
         std::size_t(std::clamp(double(1 << 18) / steps_per_ray(*plan_.scene, plan_.options), 1.0, 64.0));
     const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
-    scene::parallel_rows(columns * rows, execution, [&](int tile) {
+    const auto total = scene::sum_over_rows<Counters>(columns * rows, execution, [&](int tile, Counters& counters) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
       const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
       const FlushSubnormals flush;
@@ -101,22 +99,12 @@ class PreparedMarch final : public scene::Prepared {
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x)
           rays.push_back(camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height));
-      Counters counters;
       const std::vector<Pixel> pixels =
           plan_.options.simd ? marcher.march_in_parts(plan_, rays, rays_at_once, counters) : plain(rays, counters);
-      for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const std::size_t at = 3 * ((y0 + i / (x1 - x0)) * view.width + x0 + i % (x1 - x0));
-        for (int c = 0; c < 3; ++c) {
-          mean[at + c] = float(pixels[i].airlight[c] + pixels[i].surface[c]);
-          airlight[at + c] = float(pixels[i].airlight[c]);
-          surface[at + c] = float(pixels[i].surface[c]);
-          transmittance[at + c] = float(pixels[i].transmittance[c]);
-        }
-      }
-      const std::lock_guard lock(mutex);
-      total.add(counters);
+      for (int i = 0; i < int(pixels.size()); ++i)
+        layers.put(x0 + i % (x1 - x0), y0 + i / (x1 - x0), pixels[std::size_t(i)]);
     });
-    const double seconds = now() - start;
+    const double seconds = watch.lap();
     result.times = stage_times(stages_, total, seconds);
     result.counters = {{"rays", double(total.rays)},
                        {"steps", double(total.steps)},

@@ -6,14 +6,11 @@
 //   S = sum over lights and media of scattering(x) * phase * irradiance(x) * exp(-optical depth to the light).
 #pragma once
 #include "reference/ray_marcher/plan.h"
+#include "scene/picture.h"
 
 namespace airlight::ray_marcher {
 
-struct Pixel {
-  Rgb airlight = Rgb::Zero();  // (1, 0)
-  Rgb surface = Rgb::Zero();   // (0, 0) background and (0, 1) lit surface
-  Rgb transmittance = Rgb::Ones();
-};
+using scene::Pixel;
 
 // The media between 0 and t_end alone: airlight and transmittance.
 Pixel march_media(const Plan&, const Ray&, double t_end, Counters&);

@@ -5,7 +5,6 @@
 
 #include "reference/deterministic/airlight.h"
 #include "reference/deterministic/renderer.h"
-#include "reference/deterministic/surface_light.h"
 #include "scene/geometry/shapes.h"
 
 namespace shadow_test {
