@@ -33,25 +33,25 @@ class PictureLayers {
   std::size_t width_;
 };
 
-// Calls row(y, tally) for every row on all threads, as parallel_rows, with a tally that begins as Tally(); the sum of them by +=.
-template <class Tally, class Row>
-Tally sum_over_rows(int rows, const Execution& execution, const Row& row) {
+// parallel_for of body(i, tally), where each tally begins as Tally(). Returns their sum by +=.
+template <class Tally, class Body>
+Tally parallel_sum(int count, const Execution& execution, const Body& body) {
   std::mutex mutex;
   Tally total{};
-  parallel_rows(rows, execution, [&](int y) {
+  parallel_for(count, execution, [&](int i) {
     Tally tally{};
-    row(y, tally);
+    body(i, tally);
     const std::lock_guard lock(mutex);
     total += tally;
   });
   return total;
 }
 
-// Puts pixel(ray, tally) for the ray through the centre of every pixel; the tallies as in sum_over_rows.
+// Puts pixel(ray, tally) for the ray through the centre of every pixel; the tallies as in parallel_sum.
 template <class Tally, class OfRay>
 Tally draw_pixels(const View& view, const Execution& execution, const PictureLayers& layers, const OfRay& pixel) {
   const CameraRays rays(view.camera, view.width, view.height);
-  return sum_over_rows<Tally>(view.height, execution, [&](int y, Tally& tally) {
+  return parallel_sum<Tally>(view.height, execution, [&](int y, Tally& tally) {
     for (int x = 0; x < view.width; ++x) layers.put(x, y, pixel(rays(x + 0.5, y + 0.5), tally));
   });
 }

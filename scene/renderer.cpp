@@ -23,7 +23,7 @@ std::unique_ptr<Prepared> Renderer::prepare(std::shared_ptr<const Scene> scene, 
   return prepare_supported(std::move(scene), settings, execution);
 }
 
-void parallel_rows(int rows, const Execution& execution, const std::function<void(int)>& body) {
+void parallel_for(int rows, const Execution& execution, const std::function<void(int)>& body) {
   std::atomic<int> done{0};
   std::atomic<bool> stopped{false};
   tbb::task_arena arena(threads_for(execution.threads));

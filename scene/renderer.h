@@ -96,9 +96,9 @@ class Renderer : public Component {
                                                       const Execution&) const = 0;
 };
 
-// Runs body(row) for every row of [0, rows) on all threads, reports progress, throws Interrupted if asked to stop,
-// rethrows the first exception of a body.
-void parallel_rows(int rows, const Execution&, const std::function<void(int row)>& body);
+// Runs body(i) for every i of [0, count) on all threads, reports progress, throws Interrupted if asked to stop, rethrows the
+// first exception of a body.
+void parallel_for(int count, const Execution&, const std::function<void(int i)>& body);
 
 // True for pixels whose ray touches a light's ball, or whose centre ray passes within it: metrics leave them out.
 std::vector<unsigned char> ball_mask(const Scene&, const View&);

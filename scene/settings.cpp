@@ -107,6 +107,11 @@ Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, s
     check(*spec, text, where);
     values_[name] = text;
   }
+  for (const auto& [name, text] : given)
+    for (const auto& [other, values] : spec(name).read_where)
+      if (std::find(values.begin(), values.end(), values_.at(other)) == values.end())
+        throw Error(fmt::format("{}: {} = {} is not read with {} = {}, expected {} = {}", where, name, text, other,
+                                values_.at(other), other, fmt::join(values, " or ")));
 }
 
 const SettingSpec& Settings::spec(const std::string& name) const {

@@ -15,19 +15,26 @@ struct SettingSpec {
   double least = 0;      // inclusive range of integer and real
   double greatest = 1e300;
   std::vector<std::string> choices = {};  // of a choice
+  // The setting is read only where each of these others has one of the values; everywhere where this is empty.
+  std::map<std::string, std::vector<std::string>> read_where = {};
+
+  SettingSpec where(std::string other, std::vector<std::string> values) && {
+    read_where.emplace(std::move(other), std::move(values));
+    return std::move(*this);
+  }
 };
 
 // `fallback` as text keeps the spelling that canonical() prints.
 inline SettingSpec integer_setting(std::string name, std::string fallback, double least, double greatest,
                                    std::string doc) {
-  return {std::move(name), SettingSpec::Type::integer, std::move(fallback), std::move(doc), least, greatest, {}};
+  return {std::move(name), SettingSpec::Type::integer, std::move(fallback), std::move(doc), least, greatest};
 }
 inline SettingSpec real_setting(std::string name, std::string fallback, double least, double greatest,
                                 std::string doc) {
-  return {std::move(name), SettingSpec::Type::real, std::move(fallback), std::move(doc), least, greatest, {}};
+  return {std::move(name), SettingSpec::Type::real, std::move(fallback), std::move(doc), least, greatest};
 }
 inline SettingSpec flag_setting(std::string name, bool fallback, std::string doc) {
-  return {std::move(name), SettingSpec::Type::flag, fallback ? "true" : "false", std::move(doc), 0, 0, {}};
+  return {std::move(name), SettingSpec::Type::flag, fallback ? "true" : "false", std::move(doc), 0, 0};
 }
 inline SettingSpec choice_setting(std::string name, std::string fallback, std::vector<std::string> choices,
                                   std::string doc) {
@@ -37,8 +44,8 @@ inline SettingSpec choice_setting(std::string name, std::string fallback, std::v
 // Values for all specs of one renderer.
 class Settings {
  public:
-  // Throws Error for an unknown name (with the nearest valid one), a wrong type, a value out of range. `where` begins
-  // the message.
+  // Throws Error for an unknown name (with the nearest valid one), a wrong type, a value out of range, and for a setting that
+  // is not read beside the others. `where` begins the message.
   Settings(std::vector<SettingSpec> specs, const std::map<std::string, std::string>& given,
            const std::string& where = "settings");
 

@@ -25,13 +25,20 @@ std::string range(const scene::SettingSpec& spec) {
   }
 }
 
+std::string condition(const scene::SettingSpec& spec) {
+  std::string text;
+  for (const auto& [other, values] : spec.read_where)
+    text += fmt::format("{} {} = {}", text.empty() ? "; read only with" : " and", other, fmt::join(values, " or "));
+  return text;
+}
+
 void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
   fmt::print("\n{}: {}\n", renderer.name(), renderer.about());
   if (const std::string device = renderer.device(); !device.empty()) fmt::print("  on {}\n", device);
   const scene::Settings settings(renderer.settings(), given, renderer.name());
   fmt::print("  settings (name = value here; range; meaning)\n");
   for (const scene::SettingSpec& spec : renderer.settings())
-    fmt::print("    {} = {}; {}; {}\n", spec.name, settings.text(spec.name), range(spec), spec.doc);
+    fmt::print("    {} = {}; {}; {}{}\n", spec.name, settings.text(spec.name), range(spec), spec.doc, condition(spec));
   const auto reasons = renderer.supports(*scene, settings);
   if (!reasons.empty()) {
     fmt::print("  cannot render this scene:\n");

@@ -79,7 +79,7 @@ scene::VoxelGrid stirred_smoke(int n, const Vec3& risen, Density&& density) {
   grid.voxel_size = 1.0 / n;
   grid.translation = Vec3::Constant(0.5 / n);
   grid.values.resize(std::size_t(n) * n * n);
-  scene::parallel_rows(n, {}, [&](int z) {
+  scene::parallel_for(n, {}, [&](int z) {
     float* to = grid.values.data() + std::size_t(z) * n * n;
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {

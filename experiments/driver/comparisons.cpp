@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/driver/drawn_again.h"
+#include "experiments/driver/bootstrap.h"
 #include "experiments/front.h"
 #include "experiments/statistics.h"
 
@@ -106,7 +106,7 @@ TextTable equal_error_and_time(const Outcome& outcome) {
       std::vector<std::string> line{scene, s.method, s.baseline, s.metric};
       if (const auto faster = speed_up(baseline, other))
         line.insert(line.end(), {fmt::format("{:.3g}", faster->geometric_mean),
-                                 interval_text(drawn_again(baseline_rows, other_rows, s.metric, mean_of(speed_up))),
+                                 interval_text(bootstrap(baseline_rows, other_rows, s.metric, mean_of(speed_up))),
                                  fmt::format("{:.3g} to {:.3g}", faster->least, faster->greatest),
                                  fmt::format("{:.2g} to {:.2g}", faster->from, faster->to),
                                  faster_from_nothing(baseline_rows, other_rows, s.metric),
@@ -116,7 +116,7 @@ TextTable equal_error_and_time(const Outcome& outcome) {
                                  faster_from_nothing(baseline_rows, other_rows, s.metric), ""});
       if (const auto better = error_ratio(baseline, other))
         line.insert(line.end(), {fmt::format("{:.3g}", better->geometric_mean),
-                                 interval_text(drawn_again(baseline_rows, other_rows, s.metric, mean_of(error_ratio))),
+                                 interval_text(bootstrap(baseline_rows, other_rows, s.metric, mean_of(error_ratio))),
                                  fmt::format("{:.3g} to {:.3g}", better->least, better->greatest),
                                  fmt::format("{} to {}", duration(better->from), duration(better->to))});
       else
@@ -134,7 +134,7 @@ std::optional<Estimate> speed_up_at_equal_error(const Outcome& outcome, const Sp
   if (baseline.empty() || other.empty()) return std::nullopt;
   if (const auto faster = speed_up(baseline, other)) {
     const double mean = faster->geometric_mean;
-    return drawn_again(baseline_rows, other_rows, s.metric, mean_of(speed_up)).value_or(Estimate{mean, mean, mean});
+    return bootstrap(baseline_rows, other_rows, s.metric, mean_of(speed_up)).value_or(Estimate{mean, mean, mean});
   }
   const auto exact = speed_up_of_exact(baseline, other);
   return exact ? std::optional(Estimate{*exact, *exact, *exact}) : std::nullopt;

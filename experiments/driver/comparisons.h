@@ -14,7 +14,7 @@ std::vector<bool> on_front(const Outcome&);
 
 // A line for each [[speed_up]] and scene: ratios of time over the errors that both reach, after how many renders a
 // longer preparation is repaid (in the middle of those errors), ratios of error over the times that both reach; both
-// with the interval that the runs and errors leave them (drawn_again.h).
+// with the interval that the runs and errors leave them (bootstrap.h).
 TextTable equal_error_and_time(const Outcome&);
 
 // The first of those ratios of one scene, a geometric mean with its interval where that is known: at equal error the method is

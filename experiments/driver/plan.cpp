@@ -85,7 +85,7 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
 
 std::vector<unsigned char> foreground_of(const scene::Scene& scene, const scene::View& view) {
   std::vector<unsigned char> mask(std::size_t(view.width) * std::size_t(view.height), 0);
-  scene::parallel_rows(view.height, quiet_execution(0), [&](int y) {
+  scene::parallel_for(view.height, quiet_execution(0), [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const Ray ray = scene::camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height);
       const Rgb t = scene::transmittance(scene.media, ray, {0, scene::camera_end(scene, ray).t});

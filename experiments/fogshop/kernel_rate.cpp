@@ -47,8 +47,8 @@ double bare_seconds(BareLoop what, fogshop::Erf erf, const scene::Execution& exe
   std::vector<double> sums(execution.threads);
   const double time = seconds_of(
       [&] {
-        scene::parallel_rows(execution.threads, execution,
-                             [&](int i) { sums[i] = fogshop::bare_loop(what, erf, count, i); });
+        scene::parallel_for(execution.threads, execution,
+                            [&](int i) { sums[i] = fogshop::bare_loop(what, erf, count, i); });
       },
       processor_time);
   for (const double sum : sums)

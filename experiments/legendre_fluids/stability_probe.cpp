@@ -75,8 +75,8 @@ Findings LegendreStability::run(const ProbeInput&, const scene::Settings& s, con
                 {}};
   const std::size_t columns = map.y.values.size(), count = map.x.values.size() * columns;
   std::vector<Cell> cells(count);
-  scene::parallel_rows(int(count), execution,
-                       [&](int i) { cells[i] = stirred(s, map.x.values[i / columns], map.y.values[i % columns]); });
+  scene::parallel_for(int(count), execution,
+                      [&](int i) { cells[i] = stirred(s, map.x.values[i / columns], map.y.values[i % columns]); });
   int unstable = 0, least = int(s.integer("steps"));
   double growth = 0;
   for (const Cell& c : cells) {

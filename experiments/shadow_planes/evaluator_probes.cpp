@@ -80,7 +80,7 @@ Findings EvaluatorMap::run(const ProbeInput&, const scene::Settings& settings,
   const std::size_t columns = map.y.values.size();
   map.values.resize(map.x.values.size() * columns);
   std::vector<double> own(map.x.values.size());
-  scene::parallel_rows(int(map.x.values.size()), execution, [&](int i) {
+  scene::parallel_for(int(map.x.values.size()), execution, [&](int i) {
     for (std::size_t k = 0; k < columns; ++k) {
       map.values[i * columns + k] = map_error(evaluator, map.x.values[i], map.y.values[k]);
       own[i] = std::max(own[i], map_reference_error(map.x.values[i], map.y.values[k]));

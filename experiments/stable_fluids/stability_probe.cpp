@@ -130,8 +130,8 @@ Findings FlowStability::run(const ProbeInput&, const scene::Settings& s, const s
                 {}};
   const std::size_t columns = map.y.values.size(), cells = map.x.values.size() * columns;
   std::vector<Growth> growths(cells);
-  scene::parallel_rows(int(cells), execution,
-                       [&](int i) { growths[i] = flow.growth(map.x.values[i / columns], map.y.values[i % columns]); });
+  scene::parallel_for(int(cells), execution,
+                      [&](int i) { growths[i] = flow.growth(map.x.values[i / columns], map.y.values[i % columns]); });
   Growth greatest;
   int growing = 0, not_finite = 0;
   std::size_t worst = 0;

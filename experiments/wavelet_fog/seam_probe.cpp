@@ -11,11 +11,11 @@ namespace {
 namespace fog = airlight::wavelet_fog;
 
 constexpr double near_object = 20, far_object = 80;  // [cells]
-enum class Depth { paper, tele, dist, direct };
+enum class Depth { paper, tele, direct };
 
 struct Reading {
   Depth depth;
-  double mu, near;
+  double mu;
 
   // Column over t of a ray that ends at `length`.
   double operator()(const fog::Levels& levels, const scene::MapLine& line, Interval t, double length,
@@ -28,17 +28,9 @@ struct Reading {
       case Depth::tele:
         return fog::telescoped_depth(levels, same, line, t, reach, mu, visits);
       case Depth::direct:
-        return fog::integral_of_level(levels.grid[0], 0, same, line, t, visits);
-      case Depth::dist:
         break;
     }
-    double sum = 0, from = 0;
-    for (int l = 0; l <= levels.count(); ++l) {
-      const double to = l == levels.count() ? infinity : std::ldexp(near, l);
-      sum += fog::integral_of_level(levels.grid[l], l, same, line, intersect(t, {from, to}), visits);
-      from = to;
-    }
-    return sum;
+    return fog::integral_of_level(levels.grid[0], 0, same, line, t, visits);
   }
 };
 
@@ -61,12 +53,11 @@ std::string WaveletSeams::about() const {
 }
 
 std::vector<scene::SettingSpec> WaveletSeams::settings() const {
-  return {scene::choice_setting("depth", "paper", {"paper", "tele", "dist", "direct"},
+  return {scene::choice_setting("depth", "paper", {"paper", "tele", "direct"},
                                 "how the depth comes about, as the variants of wavelet_fog"),
           scene::choice_setting("coarse", "wavelet", {"wavelet", "clamped", "restricted"}, "coarse grids"),
           scene::integer_setting("levels", "3", 0, 20, "of the decomposition"),
           scene::real_setting("mu", "0.6", 0, 1, "detail m counts up to |OP| mu^m"),
-          scene::real_setting("near", "16", 0, 1e9, "cells, of dist"),
           scene::real_setting("mean_depth", "1", 1e-6, 1e3, "mean optical depth of the rays"),
           scene::integer_setting("angles", "96", 1, 100000, "directions of each of six eyes, five lengths each")};
 }
@@ -77,7 +68,7 @@ std::vector<std::string> WaveletSeams::figures() const {
 
 Findings WaveletSeams::run(const ProbeInput& input, const scene::Settings& s, const scene::Execution&) const {
   const MapRays rays = map_rays(input.file, input.overrides, int(s.integer("angles")), s.real("mean_depth"));
-  const Reading reading{s.choice<Depth>("depth"), s.real("mu"), s.real("near")};
+  const Reading reading{s.choice<Depth>("depth"), s.real("mu")};
   const fog::Levels levels = fog::make_levels(rays.map, families[rays.map.degree()], s.choice<fog::Coarse>("coarse"),
                                               int(s.integer("levels")), reading.depth == Depth::paper);
   Spread error, seam;

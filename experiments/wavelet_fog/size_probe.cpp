@@ -70,11 +70,11 @@ std::string WaveletMapSize::about() const {
 }
 
 std::vector<scene::SettingSpec> WaveletMapSize::settings() const {
-  return {scene::choice_setting("depth", "direct", {"direct", "skip", "bound", "tele", "dist", "polar", "paper"},
+  return {scene::choice_setting("depth", "direct", {"direct", "skip", "bound", "tele", "polar", "paper"},
                                 "how it comes about, as the variants of wavelet_fog"),
           scene::choice_setting("fog", "smooth", {"smooth", "patchy", "hard"}, "of 64 m a side, drawn at any size"),
           scene::integer_setting("size", "64", 2, 8192, "of the map, coefficients a side"),
-          scene::integer_setting("levels", "3", 0, 12, "of paper, tele, dist and bound"),
+          scene::integer_setting("levels", "3", 0, 12, "of paper, tele and bound"),
           scene::real_setting("tolerance", "0.03", 0, 1e9, "of bound, in optical depth"),
           scene::real_setting("mu", "0.4", 0, 1, "of paper and tele"),
           scene::integer_setting("width", "160", 4, 4096, "of the picture, pixels; the height is three quarters of it"),
@@ -87,10 +87,10 @@ Findings WaveletMapSize::run(const ProbeInput&, const scene::Settings& s, const 
   const auto scene = make_scene(s.choice<Kind>("fog"), int(s.integer("size")), int(s.integer("width")));
   const airlight::wavelet_fog::WaveletFog method;
   const std::string variant = s.text("depth");
-  const scene::Settings settings(method.settings(), {{"variant", variant},
-                                                     {"levels", fmt::format("{}", s.integer("levels"))},
-                                                     {"tolerance", fmt::format("{}", s.real("tolerance"))},
-                                                     {"mu", fmt::format("{}", s.real("mu"))}});
+  std::map<std::string, std::string> given{{"variant", variant}, {"levels", fmt::format("{}", s.integer("levels"))}};
+  if (variant == "bound") given["tolerance"] = fmt::format("{}", s.real("tolerance"));
+  if (variant == "paper" || variant == "tele") given["mu"] = fmt::format("{}", s.real("mu"));
+  const scene::Settings settings(method.settings(), given);
   const scene::Settings exact(method.settings(), {{"variant", "direct"}});
   scene::Stopwatch watch;
   const auto prepared = method.prepare(scene, settings, execution);

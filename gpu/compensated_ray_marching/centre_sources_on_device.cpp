@@ -140,7 +140,7 @@ std::vector<double> CentreSourcesOnDevice::passed_by_directions(const scene::Gau
   smoke.constant = 0;
   const std::size_t n = smoke.gaussians.size(), parts = directions_.size();
   std::vector<double> passed(n * parts * extinctions_.size());  // [extinction][direction][centre]
-  scene::parallel_rows(int(n), execution, [&](int i) {
+  scene::parallel_for(int(n), execution, [&](int i) {
     for (std::size_t k = 0; k < parts; ++k) {
       const Ray ray{smoke.gaussians[std::size_t(i)].center, directions_[k].direction};
       const double share = compensated_ray_marching::visible_share(objects, ray.origin, ray.direction,

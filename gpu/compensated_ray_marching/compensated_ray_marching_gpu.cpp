@@ -11,6 +11,7 @@
 #include "gpu/compensated_ray_marching/smoke_source.h"
 #include "gpu/compensated_ray_marching/smoke_volume.h"
 #include "gpu/compensated_ray_marching/surroundings.h"
+#include "gpu/film_layers.h"
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/scattered_lights.h"
@@ -82,10 +83,10 @@ class PreparedSmokeGpu final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
-std::vector<std::string> why_refused(const Scene& scene, const Options& options) {
-  std::vector<std::string> reasons = compensated_ray_marching::reasons_against(scene, options);
+std::vector<std::string> unsupported_on_device(const Scene& scene, const Options& options) {
+  std::vector<std::string> reasons = compensated_ray_marching::unsupported(scene, options);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  for (const std::string& reason : smoke::reasons_against(scene, options)) reasons.push_back(reason);
+  for (const std::string& reason : smoke::unsupported(scene, options)) reasons.push_back(reason);
   return reasons;
 }
 
@@ -185,8 +186,7 @@ void PreparedSmokeGpu::begin_centres(StageTimer& timer, const Execution& executi
 // Lights alone: the smoke, its depths and the last multiple scattering stay on the device.
 std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_ptr<const Scene> scene,
                                                                     const Execution& execution) {
-  if (scene->matter_hash != scene_->matter_hash ||
-      !compensated_ray_marching::reasons_against(*scene, options_).empty() ||
+  if (scene->matter_hash != scene_->matter_hash || !compensated_ray_marching::unsupported(*scene, options_).empty() ||
       (incoming_ && !incoming_->fits(scene->lights)) ||
       (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
@@ -199,7 +199,7 @@ std::optional<std::vector<scene::StageTime>> PreparedSmokeGpu::next(std::shared_
 // Without a solution nothing is kept: then the next frame is prepared anew. A frame without smoke passes on what it was given.
 std::unique_ptr<PreparedSmokeGpu> PreparedSmokeGpu::in_other_smoke(std::shared_ptr<const Scene> scene,
                                                                    const Execution& execution) const {
-  if (!why_refused(*scene, options_).empty()) return nullptr;
+  if (!unsupported_on_device(*scene, options_).empty()) return nullptr;
   const Use use(context_);
   compensated_ray_marching::Solution now = source_    ? source_->solution()
                                            : centres_ ? centres_->solution()
@@ -279,7 +279,7 @@ void PreparedSmokeGpu::march(const View& view) const {
   (ends ? of_pixels("distances", view, 4) : ranges).bind(at::distances);
   find.set("has_ends", ends);
   ranges.bind(at::ranges);
-  airlight.bind(at::airlight);
+  airlight.bind(at::airlight_layer);
   column.bind(at::column);
   set_camera(find, view, middle_);
   density_->bind(find);
@@ -335,20 +335,10 @@ void PreparedSmokeGpu::dim(const View& view, const scene::Light& light) const {
 void PreparedSmokeGpu::compose(const View& view) const {
   Program& p = *composition_;
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
-  const auto layer = [&](const char* name, int binding) {
-    const Buffer& buffer = of_pixels(name, view, 12);
-    buffer.bind(binding);
-    frame_.download.add(name, buffer, 12 * pixels);
-  };
-  layer("mean", at::mean);
-  layer("transmittance", at::transmittance);
-  layer("airlight", at::airlight);
-  layer("surface", at::surface);
-  if (ambient())
-    layer("ambient", at::ambient);
-  else
-    of_pixels("mean", view, 12).bind(at::ambient);
-  p.set("values", int(3 * pixels));
+  bind_film_layers(frame_, pixels, p,
+                   {at::mean_layer, at::transmittance_layer, at::surface_layer, at::airlight_layer, at::ambient_layer},
+                   {true, ambient() ? std::optional(scene_->ambient_in_scatter) : std::nullopt});
+  p.set("pixels", int(pixels));
   const Buffer& column = of_pixels("column", view, 4);
   column.bind(at::column);
   p.set("sigma_t", smoke_ ? smoke_->medium().sigma_t : Rgb(Rgb::Zero()));
@@ -359,9 +349,7 @@ void PreparedSmokeGpu::compose(const View& view) const {
   (seen ? of_pixels("seen", view, 12) : column).bind(at::seen);
   p.set("has_lit", lit);
   p.set("has_seen", seen);
-  p.set("has_ambient", ambient());
-  p.set("ambient", ambient() ? scene_->ambient_in_scatter : Rgb(Rgb::Zero()));
-  p.dispatch(int(3 * pixels));
+  p.dispatch(int(pixels));
 }
 
 scene::Rendering PreparedSmokeGpu::render(const View& view, const Execution& execution) const {
@@ -428,7 +416,7 @@ std::vector<scene::SettingSpec> CompensatedRayMarchingGpu::settings() const {
 
 std::vector<std::string> CompensatedRayMarchingGpu::supports(const Scene& scene,
                                                              const scene::Settings& settings) const {
-  return why_refused(scene, compensated_ray_marching::read_options(settings));
+  return unsupported_on_device(scene, compensated_ray_marching::read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> CompensatedRayMarchingGpu::prepare_supported(std::shared_ptr<const Scene> scene,

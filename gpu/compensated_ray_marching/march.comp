@@ -5,7 +5,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/opacity.glsl"
 #include "compensated_ray_marching/smoke_density.glsl"
 layout(std430, binding = AT_RANGES) readonly buffer Ranges { vec4 ranges[]; };  // start, length of a slice [m], slices, slope
-layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_COLUMN) buffer Column { float column[]; };  // so far [m]
 uniform int first_slice, weight;  // as SliceWeight
 uniform vec3 sigma_t;

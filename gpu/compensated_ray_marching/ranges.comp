@@ -3,7 +3,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "compensated_ray_marching/smoke_density.glsl"
 layout(std430, binding = AT_RANGES) writeonly buffer Ranges { vec4 ranges[]; };  // start, length of a slice [m], slices, slope
-layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_COLUMN) writeonly buffer Column { float column[]; };  // [m]
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // where something ends the ray [m]
 uniform int has_ends;

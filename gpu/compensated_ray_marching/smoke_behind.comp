@@ -2,7 +2,7 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/environment.glsl"
-layout(std430, binding = AT_SURFACE) buffer Surface { float surface[]; };
+layout(std430, binding = AT_SURFACE_LAYER) buffer Surface { float surface[]; };
 layout(std430, binding = AT_PRIMITIVES) readonly buffer Primitives { int primitive_of[]; };  // by pixel; -1: none
 uniform int first, has_primitives;  // nothing is there yet; rays may end
 

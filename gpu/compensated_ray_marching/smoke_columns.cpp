@@ -81,7 +81,7 @@ void SmokeColumns::find(std::size_t direction, const Vec3& to_light, const scene
 
 std::vector<std::uint32_t> SmokeColumns::hidden_from(const Vec3& to_light, const scene::Execution& execution) const {
   std::vector<std::uint32_t> hidden(hidden_->bytes() / 4, 0);
-  scene::parallel_rows(int(hidden.size()), execution, [&](int word) {
+  scene::parallel_for(int(hidden.size()), execution, [&](int word) {
     const std::size_t first = 32 * std::size_t(word), last = std::min(first + 32, grid_.nodes().size());
     for (std::size_t i = first; i < last; ++i)
       if (scene_.geometry->occluded({grid_.grid().node(grid_.nodes()[i]), to_light}))

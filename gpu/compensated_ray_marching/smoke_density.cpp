@@ -88,7 +88,7 @@ void SmokeDensity::bind(Program& p) const {
   p.set("border", border_);
 }
 
-std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   const bool paper = options.variant == Options::Variant::paper;
   if (paper && options.paper.store == compensated_ray_marching::ResidualStore::grid)

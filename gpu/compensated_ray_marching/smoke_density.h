@@ -9,7 +9,7 @@ namespace airlight::gpu::smoke {
 
 class SmokeDensity {
  public:
-  // Uploads the field of the smoke, which `reasons_against` must have accepted. Places on the device are relative to `middle` [m]. With
+  // Uploads the field of the smoke, of which `unsupported` names nothing. Places on the device are relative to `middle` [m]. With
   // `paper` the march also interpolates the source radiance between the centres of the Gaussians, or between voxels (SmokeVolume).
   SmokeDensity(Context&, const compensated_ray_marching::SmokeField&, const Point3& middle, bool paper);
   // Uploads Gaussians that no region cuts off.
@@ -38,6 +38,6 @@ class SmokeDensity {
 };
 
 // Why the device does not march through a medium; empty: it does.
-std::vector<std::string> reasons_against(const scene::Scene&, const compensated_ray_marching::Options&);
+std::vector<std::string> unsupported(const scene::Scene&, const compensated_ray_marching::Options&);
 
 }  // namespace airlight::gpu::smoke

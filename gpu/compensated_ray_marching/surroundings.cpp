@@ -44,7 +44,7 @@ void Surroundings::find_ends(const scene::View& view, Frame& frame) const {
 }
 
 void Surroundings::look_behind(const scene::View& view, Frame& frame) const {
-  of_pixels(frame, "surface", view, 12).bind(at::surface);
+  of_pixels(frame, "surface", view, 12).bind(at::surface_layer);
   for (int l = 0; l < environments_->count(); ++l) {
     Program& p = *behind_[std::size_t(l)];
     set_camera(p, view);

@@ -142,7 +142,8 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
     programs_.shares->set("boxes", o.boxes);
     programs_.stretch->set("even_steps", values.even_steps());
     programs_.stretch->set("light_steps", values.light_steps());
-    programs_.stretch->set("clearest", float((model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff()));
+    programs_.stretch->set(
+        "clearest", float((model_.fog.extinction_ratio > 0).select(model_.fog.extinction_ratio, 1.0).minCoeff()));
     programs_.slice_light->set("extrapolate", o.extrapolate);
     programs_.slice_light->set("map_directions", o.map_directions);
     programs_.slice_light->set("map_edges", o.map_edges);

@@ -10,7 +10,7 @@ layout(std430, binding = AT_PSF_BANDS) readonly buffer Bands { float bands[]; };
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
 uniform int has_distances, everywhere;
 #include "common/far_away.glsl"
-uniform vec3 hue;
+uniform vec3 extinction_ratio;
 uniform int band_depths;                         // 1: the same for every depth
 uniform float log_least_depth, log_depth_range;  // of the table
 
@@ -29,7 +29,7 @@ void main() {
   vec3 origin, direction;
   camera_ray(vec2(pixel) + 0.5, origin, direction);
   // The tiny number keeps the logarithm finite; below the table's first depth the place is its first anyway.
-  vec3 T = pixels[index].w * hue, sum = vec3(0);
+  vec3 T = pixels[index].w * extinction_ratio, sum = vec3(0);
   vec3 place = clamp((log(max(T, 1e-30)) - log_least_depth) / log_depth_range, 0, 1) * (band_depths - 1);
   vec3 weight[SH_ORDER];
   for (int l = 0; l < sh_order; ++l) weight[l] = vec3(band(l, place.r), band(l, place.g), band(l, place.b));

@@ -32,7 +32,7 @@ void FogOnDevice::add_environment(const scene::View& view, bool has_distances, F
   Program& p = *programs_.environment;
   using Table = fogshop::PsfBands;
   set_camera(p, view);
-  p.set("hue", model_.fog.hue);
+  p.set("extinction_ratio", model_.fog.extinction_ratio);
   p.set("has_distances", has_distances);
   p.set("everywhere", model_.options.environment_everywhere);
   p.set("sh_order", bands_);

@@ -13,8 +13,8 @@ struct Gaussian {
 
 layout(std430, binding = AT_GAUSSIANS) readonly buffer Gaussians { Gaussian gaussians[]; };
 uniform int gaussian_count;
-uniform float constant;  // extinction without Gaussians where the hue is 1 [1/m]
-uniform vec3 hue;        // extinction per channel over the greatest
+uniform float constant;  // extinction without Gaussians where `extinction_ratio` is 1 [1/m]
+uniform vec3 extinction_ratio;        // extinction per channel over the greatest
 uniform float phase_g;   // of the phase function, Henyey-Greenstein's; 0: isotropic
 uniform vec3 albedo;
 #if COLOURED || NOISE || F_TABLE
@@ -110,5 +110,5 @@ float depth_between(Gaussian g, vec3 from, vec3 direction, float length_) {
   return c.met ? depth_at(c, length_) : 0;
 }
 
-// Of a depth where the hue is 1; a channel that the medium does not dim stays 1 however deep it is.
-vec3 transmittance_of(float depth) { return mix(vec3(1), exp(-hue * depth), greaterThan(hue, vec3(0))); }
+// Of a depth where `extinction_ratio` is 1; a channel that the medium does not dim stays 1 however deep it is.
+vec3 transmittance_of(float depth) { return mix(vec3(1), exp(-extinction_ratio * depth), greaterThan(extinction_ratio, vec3(0))); }

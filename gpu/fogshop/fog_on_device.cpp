@@ -127,7 +127,7 @@ void FogOnDevice::use(Program& p) const {
   if (!model_.fog.one_albedo()) p.set("constant_colour", model_.fog.constant_colour);
   p.set("gaussian_count", model_.gaussians.count);
   p.set("constant", model_.fog.sum.constant);
-  p.set("hue", model_.fog.hue);
+  p.set("extinction_ratio", model_.fog.extinction_ratio);
   p.set("phase_g", model_.fog.g);
   p.set("albedo", model_.fog.albedo);
 }

@@ -39,7 +39,7 @@ class FogOnDevice {
   void upload_environment(const fogshop::EnvironmentLighting&);
   void fill_sky_volume(const scene::Scene&, const scene::Execution&);
 
-  // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where the hue is 1. `distances` holds d_vp of every pixel [m];
+  // 4 floats per pixel: airlight [W/m^2/sr], T(v,p) [-] where `extinction_ratio` is 1. `distances` holds d_vp of every pixel [m];
   // null: every ray is infinite (or reaches to the environment's distance). Tiles first list the Gaussians that their
   // rays may meet; images are done in strips.
   const Buffer& airlight(const scene::View&, const Buffer* distances, Frame&);

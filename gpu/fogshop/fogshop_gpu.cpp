@@ -181,7 +181,7 @@ void PreparedFogshopGpu::refuse_cut_loops(const scene::Film& film) const {
 
 scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
   if (model_.options.source_radius == 0) require_lights_apart(*scene_, view, 1e-9, "fogshop_gpu");
-  const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
+  const std::string objection = unsupported_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;

@@ -82,9 +82,9 @@ float homogeneous_airlight(LightFromRay light, float length_, float beta) {
 #endif
 vec3 homogeneous_airlight(LightFromRay light, float length_) {
   vec3 result;
-  result.x = homogeneous_airlight(light, length_, constant * hue.x);
-  result.y = hue.y == hue.x ? result.x : homogeneous_airlight(light, length_, constant * hue.y);
-  result.z = hue.z == hue.x ? result.x : homogeneous_airlight(light, length_, constant * hue.z);
+  result.x = homogeneous_airlight(light, length_, constant * extinction_ratio.x);
+  result.y = extinction_ratio.y == extinction_ratio.x ? result.x : homogeneous_airlight(light, length_, constant * extinction_ratio.y);
+  result.z = extinction_ratio.z == extinction_ratio.x ? result.x : homogeneous_airlight(light, length_, constant * extinction_ratio.z);
 #if COLOURED
   result *= constant_colour;
 #endif

@@ -49,7 +49,7 @@ void main() {
                          depth_at(towards, distance_) - before;
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
         if (phase_g != 0) weight *= phase_of(dot(offset, direction) / max(distance_, 1e-30));  // k(alpha) of Eq. 12
-        vec3 term = hue * weight * exp(hue * exponent);
+        vec3 term = extinction_ratio * weight * exp(extinction_ratio * exponent);
 #if COLOURED
         term *= colour_of(int(g.place));
 #endif
@@ -59,7 +59,7 @@ void main() {
     }
   }
   for (int l = 0; l < light_count && constant > 0; ++l)  // Eqs. 16 and 17
-    airlight += lights[l].intensity * exp(-hue * segment_depth[to_lights + l]) *
+    airlight += lights[l].intensity * exp(-extinction_ratio * segment_depth[to_lights + l]) *
                 homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
   if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

@@ -40,7 +40,7 @@ void main() {
   for (int k = 0; k < slice_count; ++k) {
     vec3 x = origin + (lo + step_ * (float(k) + 0.5)) * direction;
     float depth = ray_value[value_at(slices + 1 + k, ray)];
-    sum += sky_at(x) * exp(-hue * before) * opacity_of(hue * depth);
+    sum += sky_at(x) * exp(-extinction_ratio * before) * opacity_of(extinction_ratio * depth);
     before += depth;
   }
   pixels[place_of(pixel)].rgb += sum * albedo;

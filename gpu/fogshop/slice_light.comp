@@ -47,10 +47,10 @@ vec3 light_of_slice(float angle, float h, Edge begin, Edge end, vec3 scattered) 
   float length_ = end.t - begin.t;
   if (!(length_ > 0)) return vec3(0);
   float mean_inverse_square = angle / (h * length_);
-  vec3 e0 = exp(-hue * begin.depth), q = hue * (end.depth - begin.depth), mean;
+  vec3 e0 = exp(-extinction_ratio * begin.depth), q = extinction_ratio * (end.depth - begin.depth), mean;
   vec3 series = 1 + q * (-0.5 + q * (1.0 / 6 + q * (-1.0 / 24 + q / 120)));
-  for (int c = 0; c < 3; ++c) mean[c] = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-hue[c] * end.depth)) / q[c];
-  return mean_inverse_square * hue * scattered * mean;
+  for (int c = 0; c < 3; ++c) mean[c] = abs(q[c]) < 0.1 ? e0[c] * series[c] : (e0[c] - exp(-extinction_ratio[c] * end.depth)) / q[c];
+  return mean_inverse_square * extinction_ratio * scattered * mean;
 }
 
 vec3 scattered_by(int slice, int ray, float depth) {
@@ -108,7 +108,7 @@ void main() {
     if (extrapolate != 0) sum = max(sum + (sum - half_sum) / 3, 0);
     sum /= 4 * pi;
     if (constant > 0 && hi < end)
-      sum += exp(-hue * (view_depth + last.shadow)) * homogeneous_airlight(LightFromRay(seen.along - hi, seen.h), end - hi);
+      sum += exp(-extinction_ratio * (view_depth + last.shadow)) * homogeneous_airlight(LightFromRay(seen.along - hi, seen.h), end - hi);
     airlight += light.intensity * sum;
   }
   pixels[place_of(pixel)].rgb = airlight * albedo;

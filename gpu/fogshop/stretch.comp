@@ -10,7 +10,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/noise.glsl"
 #include "fogshop/light.glsl"
 
-uniform float clearest;  // least hue above 0
+uniform float clearest;  // least extinction_ratio above 0
 uniform int even_steps, light_steps;
 
 #if LIGHTS

@@ -71,11 +71,11 @@ void main() {
         }
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;
         float depth = depth_from_light(l, vec3(point)) + constant * d;
-        direct += reflectance * cosine * irradiance * exp(-depth * hue);
+        direct += reflectance * cosine * irradiance * exp(-depth * extinction_ratio);
 #if SUN
-        scattered += irradiance * reflect_sun(material, n, to_view, towards, depth * hue);
+        scattered += irradiance * reflect_sun(material, n, to_view, towards, depth * extinction_ratio);
 #elif HARMONICS
-        if (has_scattered != 0) scattered += irradiance * reflect_point(reflected, towards, depth * hue);
+        if (has_scattered != 0) scattered += irradiance * reflect_point(reflected, towards, depth * extinction_ratio);
 #endif
       }
       scattered = max(scattered * albedo, vec3(0));  // harmonics cut off at a band may swing below 0
@@ -86,7 +86,7 @@ void main() {
       float depth = average_depth(vec3(point));
 #endif
       vec3 arriving, spread;
-      reflect_environment(reflected, (depth + environment_depth) * hue, arriving, spread);
+      reflect_environment(reflected, (depth + environment_depth) * extinction_ratio, arriving, spread);
       direct += arriving;
       scattered += albedo * spread;
 #endif

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "gpu/film_layers.h"
 #include "gpu/frame.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/light_media_on_device.h"
@@ -154,7 +155,7 @@ void PreparedLightGpu::follow(const View& view, const Buffer* distances, std::si
   (distances ? *distances : columns).bind(at::distances);
   reached.bind(at::reached);
   columns.bind(at::columns);
-  frame_.buffers.get("airlight", 12 * pixels).bind(at::airlight);
+  frame_.buffers.get("airlight", 12 * pixels).bind(at::airlight_layer);
   set_view(p, view);
   p.set("has_distances", distances != nullptr);
   p.set("loop_count", 3);
@@ -222,24 +223,15 @@ void PreparedLightGpu::dim(const View& view, const scene::Light& light) const {
 
 void PreparedLightGpu::compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const {
   Program& p = *composition_;
-  const auto layer = [&](const char* name, int binding) {
-    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
-    buffer.bind(binding);
-    frame_.download.add(name, buffer, 12 * pixels);
-  };
-  layer("transmittance", at::transmittance);
-  layer("surface", at::surface);
-  layer("mean", at::mean);
-  layer("airlight", at::airlight);
-  if (ambient()) layer("ambient", at::ambient);
+  bind_film_layers(frame_, pixels, p,
+                   {at::mean_layer, at::transmittance_layer, at::surface_layer, at::airlight_layer, at::ambient_layer},
+                   {true, ambient() ? std::optional(scene_->ambient_in_scatter) : std::nullopt});
   lit.bind(at::lit);
   (any_medium() ? frame_.buffers.get("columns", 4 * pixels * lit_.media.size()) : lit).bind(at::columns);
   (seen ? *seen : lit).bind(at::seen);
   p.set("has_seen", seen != nullptr);
   p.set("pixels", int(pixels));
   p.set("has_lit", surfaces_->shines());
-  p.set("has_ambient", ambient());
-  p.set("ambient", scene_->ambient_in_scatter);
   for (std::size_t m = 0; m < lit_.media.size(); ++m)
     p.set(fmt::format("sigma_t[{}]", m), lit_.media[m].medium->sigma_t);
   p.dispatch(int(pixels));
@@ -330,11 +322,11 @@ std::vector<std::string> LegendreLightGpu::supports(const Scene& scene, const sc
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const legendre_fluids::LightOptions options = legendre_fluids::read_light_options(settings);
   if (options.variant == legendre_fluids::LightOptions::Variant::paper)
-    for (const std::string& reason : legendre::reasons_against_paper(scene, options.paper)) reasons.push_back(reason);
+    for (const std::string& reason : legendre::unsupported_paper(scene, options.paper)) reasons.push_back(reason);
   if (!reasons.empty() || options.variant == legendre_fluids::LightOptions::Variant::paper) return reasons;
   const auto lit = with_sky({std::shared_ptr<const Scene>(), &scene}, options.ray);
   const LightRays rays(*lit, options.ray);
-  for (const std::string& reason : legendre::reasons_against(rays.media())) reasons.push_back(reason);
+  for (const std::string& reason : legendre::unsupported(rays.media())) reasons.push_back(reason);
   if (rays.shadowed())
     reasons.push_back("surfaces that may stand between a light and a medium: shaders know no shadows within media");
   return reasons;

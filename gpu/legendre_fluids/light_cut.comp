@@ -7,7 +7,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_REACHED) buffer Reached { double reached[]; };                // how far a ray is done [m]
 layout(std430, binding = AT_COLUMNS) writeonly buffer Columns { float columns[]; };
-layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_STRETCHES) buffer Stretches { dvec2 stretches[]; };  // its end, and how long the next may be [m]
 uniform int has_distances, begins, first_light;
 const float margin = 1e-4;  // of a stretch, from a change of sign that it begins at

@@ -84,7 +84,7 @@ class Rule {
 
 }  // namespace
 
-std::vector<std::string> reasons_against(const LitMedia& media) {
+std::vector<std::string> unsupported(const LitMedia& media) {
   std::vector<std::string> reasons;
   const TensorShape shape = shape_of(media);
   if (const std::size_t count = media.media.size() * std::size_t(shape[0] * shape[1] * 4 * fours(shape[2]));

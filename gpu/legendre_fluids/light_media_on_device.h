@@ -13,7 +13,7 @@ constexpr int most_densities =
     4096;  // coefficients of all media, each filled up to the same shape: 16 KiB of a uniform block
 
 // Why shaders cannot hold media that the CPU can; empty if they can.
-std::vector<std::string> reasons_against(const legendre_fluids::LitMedia&);
+std::vector<std::string> unsupported(const legendre_fluids::LitMedia&);
 
 class LightMediaOnDevice {
  public:

@@ -11,7 +11,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // along the rays [m]
 layout(std430, binding = AT_REACHED) buffer Reached { double reached[]; };                // how far a ray is done [m]
 layout(std430, binding = AT_COLUMNS) buffer Columns { float columns[]; };                 // of each medium up to there [m]
-layout(std430, binding = AT_AIRLIGHT) buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) buffer Airlight { float airlight[]; };
 #if NEGATIVE
 layout(std430, binding = AT_STRETCHES) buffer Stretches { dvec2 stretches[]; };  // of light_cut.comp
 layout(std430, binding = AT_WAYS) readonly buffer Ways { float ways[]; };        // of light_columns.comp

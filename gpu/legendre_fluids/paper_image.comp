@@ -3,14 +3,14 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 layout(std430, binding = AT_FACES) readonly buffer Faces { float faces[]; };  // of paper_kept.comp
-layout(std430, binding = AT_AIRLIGHT) writeonly buffer Airlight { float airlight[]; };
-layout(std430, binding = AT_MEAN) writeonly buffer Mean { float mean_layer[]; };
+layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight[]; };
+layout(std430, binding = AT_MEAN_LAYER) writeonly buffer Mean { float mean_layer[]; };
 layout(std430, binding = AT_STATUS) buffer Status { uint counts[]; };  // rays that meet the box, those below 0
 #if ENDS
 layout(std430, binding = AT_RAY_ENDS) readonly buffer Ends { float ends[]; };  // [m] along rays
 layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen[]; };      // there [W/m^2/sr]; -1: nothing
-layout(std430, binding = AT_TRANSMITTANCE) writeonly buffer Transmittance { float transmittance[]; };
-layout(std430, binding = AT_SURFACE) writeonly buffer Surface { float surface[]; };
+layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer Transmittance { float transmittance[]; };
+layout(std430, binding = AT_SURFACE_LAYER) writeonly buffer Surface { float surface[]; };
 uniform vec3 sigma_t;                                 // [1/m]
 const float node[] = NODES, node_weight[] = WEIGHTS;  // of [0, 1], exact for the density on any line
 #endif

@@ -128,13 +128,13 @@ bool PreparedPaperGpu::take(const DensityOnDevice& density) {
 void PreparedPaperGpu::draw(const View& view) const {
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   Program& p = *image_;
-  std::vector<std::pair<const char*, int>> all{{"mean", at::mean}, {"airlight", at::airlight}};
+  std::vector<std::pair<const char*, int>> all{{"mean", at::mean_layer}, {"airlight", at::airlight_layer}};
   if (backdrops_) {
     const Buffer &ends = frame_.buffers.get("ends", 4 * pixels), &seen = frame_.buffers.get("seen", 12 * pixels);
     backdrops_->find(view, ends, false, seen);
     ends.bind(at::ray_ends);
     seen.bind(at::seen);
-    all.insert(all.end(), {{"surface", at::surface}, {"transmittance", at::transmittance}});
+    all.insert(all.end(), {{"surface", at::surface_layer}, {"transmittance", at::transmittance_layer}});
     p.set("sigma_t", media_.medium->sigma_t);
   }
   for (const auto& [name, binding] : all) {
@@ -226,7 +226,7 @@ void object_to_backdrops(const Scene& scene, std::vector<std::string>& reasons) 
 
 }  // namespace
 
-std::vector<std::string> reasons_against_paper(const Scene& scene, const legendre_fluids::PaperOptions& options) {
+std::vector<std::string> unsupported_paper(const Scene& scene, const legendre_fluids::PaperOptions& options) {
   std::vector<std::string> reasons;
   if (!scene.surfaces.empty() || scene::has_environment(scene))
     reasons.push_back("variant = paper with surfaces or an environment: shaders know backdrops and particles alone");

@@ -16,7 +16,7 @@ class TakesDensity {
 };
 
 // Why shaders cannot do what the CPU's variant can; empty if they can.
-std::vector<std::string> reasons_against_paper(const scene::Scene&, const legendre_fluids::PaperOptions&);
+std::vector<std::string> unsupported_paper(const scene::Scene&, const legendre_fluids::PaperOptions&);
 
 // Throws Error where a system does not converge.
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const scene::Scene>,

@@ -89,10 +89,8 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
           gaussians += field.count;
         },
         [&](const scene::GridPointer&) { set_grid(); },
-        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, in spite of its objections"); },
-        [](const scene::LegendrePointer&) {
-          throw Error("ray_marcher_gpu: a Legendre box, in spite of its objections");
-        },
+        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, which supports() refuses"); },
+        [](const scene::LegendrePointer&) { throw Error("ray_marcher_gpu: a Legendre box, which supports() refuses"); },
         [&](const scene::FittedPointer&) { set_grid(); });
     data.push_back(d);
   }

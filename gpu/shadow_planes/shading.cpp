@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gpu/film_layers.h"
 #include "gpu/material_tables.h"
 #include "gpu/view_uniforms.h"
 #include "methods/shadow_planes/paper_stages.h"
@@ -131,22 +132,18 @@ void PlaneShading::add(LitPicture& picture, int index, int term, const Edges& li
   }
 }
 
-void PlaneShading::compose(const LitPicture& picture, const Layers& layers) const {
+void PlaneShading::compose(const LitPicture& picture, Frame& frame, const std::optional<Rgb>& ambient) const {
   const Use use(context_);
   Program& p = composition_;
   if (picture.distances) picture.distances->bind(at::distances);
   picture.pixels.bind(at::pixels);
   airlight_terms_.bind_media(p);
-  layers.airlight.bind(at::airlight_layer);
-  layers.transmittance.bind(at::transmittance_layer);
-  layers.surface.bind(at::surface_layer);
-  layers.mean.bind(at::mean_layer);
+  bind_film_layers(frame, std::size_t(picture.view.width) * std::size_t(picture.view.height), p,
+                   {at::mean_layer, at::transmittance_layer, at::surface_layer, at::airlight_layer, at::ambient_layer},
+                   {true, ambient});
   set_view(p, picture.view);
   p.set("has_distances", picture.distances != nullptr);
   p.set("lights", !picture.empty);
-  layers.ambient ? layers.ambient->bind(at::ambient_layer) : layers.mean.bind(at::ambient_layer);
-  p.set("has_ambient", layers.ambient != nullptr);
-  p.set("ambient", layers.ambient ? scene_->ambient_in_scatter : Rgb(Rgb::Zero()));
   p.dispatch(picture.view.width, picture.view.height);
 }
 

@@ -43,12 +43,8 @@ class PlaneShading {
   // Crossings of a pixel that a dispatch takes in.
   int crossings_of_dispatch() const { return most_hits * most_gatherings_; }
 
-  // Layers of 3 floats per pixel.
-  struct Layers {
-    const Buffer &airlight, &transmittance, &surface, &mean;
-    const Buffer* ambient;  // null where it is left out
-  };
-  void compose(const LitPicture&, const Layers&) const;
+  // Into the frame's layers; with the ambient term where there is one.
+  void compose(const LitPicture&, Frame&, const std::optional<Rgb>& ambient) const;
 
  private:
   Program& shade_program(int light, int term, const LitPicture&, bool crossings, bool values) const;

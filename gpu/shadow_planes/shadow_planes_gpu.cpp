@@ -26,8 +26,8 @@ using shadow_planes::Options;
 
 constexpr int most_degree = 16;  // single precision
 
-std::vector<std::string> why_refused(const Scene& scene, const Options& options) {
-  std::vector<std::string> reasons = shadow_planes::reasons_against(scene, options);
+std::vector<std::string> unsupported_on_device(const Scene& scene, const Options& options) {
+  std::vector<std::string> reasons = shadow_planes::unsupported(scene, options);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   if (options.evaluator == Options::Evaluator::polynomial && options.degree > most_degree)
     reasons.push_back(fmt::format("degree = {}: single precision takes {} at most", options.degree, most_degree));
@@ -165,7 +165,7 @@ std::vector<scene::Stage> PreparedShadowPlanesGpu::stages() const {
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanesGpu::next(std::shared_ptr<const Scene> scene,
                                                                            const Execution&) {
   if (scene->surfaces.size() != scene_->surfaces.size() || scene->lights.size() != scene_->lights.size() ||
-      !why_refused(*scene, options_).empty() || !shadow_planes::same_media(scene->media, scene_->media))
+      !unsupported_on_device(*scene, options_).empty() || !shadow_planes::same_media(scene->media, scene_->media))
     return std::nullopt;
   for (std::size_t l = 0; l < scene->lights.size(); ++l)
     if (scene::shines(scene->lights[l]) != scene::shines(scene_->lights[l]) ||
@@ -222,7 +222,6 @@ void PreparedShadowPlanesGpu::add_light(int l, LitPicture& picture) const {
 }
 
 void PreparedShadowPlanesGpu::draw(const View& view) const {
-  const std::size_t pixels = std::size_t(view.width) * view.height;
   if (moved_) {
     frame_.timer.begin("silhouettes");
     find_silhouettes();
@@ -234,15 +233,9 @@ void PreparedShadowPlanesGpu::draw(const View& view) const {
   }
   for (std::size_t l = 0; l < scene_->lights.size(); ++l) add_light(int(l), picture);
   frame_.timer.begin("composition");
-  const auto layer = [&](const char* name) -> const Buffer& {
-    const Buffer& buffer = frame_.buffers.get(name, pixels * 12);
-    frame_.download.add(name, buffer, pixels * 12);
-    return buffer;
-  };
   const bool fogged = std::any_of(scene_->media.begin(), scene_->media.end(), scene::extinguishes);
   const bool ambient = options_.ambient && fogged && scene_->ambient_in_scatter.maxCoeff() > 0;
-  of_.shading->compose(picture, {layer("airlight"), layer("transmittance"), layer("surface"), layer("mean"),
-                                 ambient ? &layer("ambient") : nullptr});
+  of_.shading->compose(picture, frame_, ambient ? std::optional(scene_->ambient_in_scatter) : std::nullopt);
   frame_.download.add_values("counters", picture.counters, sizeof(CountersData));
   for (std::size_t l = 0; l < of_.edges.size(); ++l)
     if (of_.edges[l].state)
@@ -313,7 +306,7 @@ std::vector<scene::SettingSpec> ShadowPlanesGpu::settings() const {
 }
 
 std::vector<std::string> ShadowPlanesGpu::supports(const Scene& scene, const scene::Settings& settings) const {
-  return why_refused(scene, shadow_planes::read_options(settings));
+  return unsupported_on_device(scene, shadow_planes::read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> ShadowPlanesGpu::prepare_supported(std::shared_ptr<const Scene> scene,

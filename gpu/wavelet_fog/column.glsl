@@ -58,15 +58,6 @@ float column(dvec3 origin, dvec3 direction, double length_) {
   }
 #endif
   return sum;
-#elif VARIANT == VARIANT_DIST
-  float sum = 0;
-  double from = 0;
-  for (int level = 0; level <= fog.levels && from < length_ && !(sum > fog.enough); ++level) {
-    double to = level == fog.levels ? length_ : min(length_, fog.least_near * double(1 << level));
-    sum += integral_of_level(level, line, both(done, dvec2(from, to)));
-    from = to;
-  }
-  return sum;
 #else
   return integral_of_level(0, line, done);
 #endif

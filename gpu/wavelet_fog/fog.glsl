@@ -7,7 +7,6 @@ struct Fog {
   double map_x0, map_z0, cos_over_cell, sin_over_cell;
   double region_lo[3], region_hi[3];  // of the box; centre and radius; normal and both heights [m]
   double lowest, highest;             // [m] outside there is nothing
-  double least_near;                  // [m] where dist leaves the finest grid
   double mu;
   float sigma_t[3];   // [1/m]
   float enough;       // integral of the density at which a ray ends [m]

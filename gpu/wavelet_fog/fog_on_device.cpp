@@ -247,11 +247,10 @@ void FogOnDevice::write(const scene::Medium& medium) {
   const Interval heights = occupied_heights(fog.profile);
   data_.lowest = std::max(heights.lo, -double(far_away));
   data_.highest = std::min(heights.hi, double(far_away));
-  data_.least_near = options_.near * fog.cell;
   data_.mu = options_.mu;
   for (int c = 0; c < 3; ++c) data_.sigma_t[c] = float(medium.sigma_t[c]);
   const Variant v = options_.variant;
-  const bool ends = v == Variant::skip || v == Variant::bound || v == Variant::dist || v == Variant::polar;
+  const bool ends = v == Variant::skip || v == Variant::bound || v == Variant::polar;
   data_.enough = ends ? finite(wavelet_fog::enough_column(medium, options_)) : far_away;
   const double thickest = medium.sigma_t.maxCoeff();
   data_.allowed = thickest > 0 ? finite(options_.tolerance / thickest) : 0;

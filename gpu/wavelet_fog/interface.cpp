@@ -28,7 +28,6 @@ Definitions shared_definitions() {
   using Variant = wavelet_fog::Options::Variant;
   number("VARIANT_PAPER", Variant::paper);
   number("VARIANT_TELE", Variant::tele);
-  number("VARIANT_DIST", Variant::dist);
   number("VARIANT_BOUND", Variant::bound);
   number("VARIANT_POLAR", Variant::polar);
   const std::pair<const char*, int> bindings[] = {{"FOG", at::fog},

@@ -46,7 +46,7 @@ enum class Profile { none, layers, exponential };
 struct FogData {
   double map_x0, map_z0, cos_over_cell, sin_over_cell;
   double region_lo[3], region_hi[3];
-  double lowest, highest, least_near, mu;
+  double lowest, highest, mu;
   float sigma_t[3], enough, allowed, scale_height;
   int region, knots, levels, details, cells, errors;
   int map, degree, profile, first_knot, first_word, unused;

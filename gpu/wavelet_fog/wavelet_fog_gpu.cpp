@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gpu/film_layers.h"
 #include "gpu/wavelet_fog/sun_on_device.h"
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/wavelet_fog/sun_scattering.h"
@@ -99,7 +100,7 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
     return x->map == y->map && (x->scale == y->scale).all() && x->to_map == y->to_map && x->sh.empty() && y->sh.empty();
   };
   if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size() ||
-      scene->media.size() != scene_->media.size() || !wavelet_fog::reasons_against(*scene, options_).empty() ||
+      scene->media.size() != scene_->media.size() || !wavelet_fog::unsupported(*scene, options_).empty() ||
       !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light) ||
       lamps_light_surfaces(*scene) != lamps_light_surfaces(*scene_) ||
       (options_.sun && wavelet_fog::why_no_sun(*scene).empty() != wavelet_fog::why_no_sun(*scene_).empty()))
@@ -134,30 +135,14 @@ void PreparedWaveletFogGpu::find_depths(const View& view, const Buffer* distance
 void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, const Buffer& lit) const {
   const std::size_t pixels = std::size_t(view.width) * view.height;
   Program& p = *composition_;
-  const auto layer = [&](const char* name, int binding) {
-    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
-    buffer.bind(binding);
-    frame_.download.add(name, buffer, 12 * pixels);
-  };
-  layer("transmittance", at::transmittance_layer);
-  layer("surface", at::surface_layer);
-  layer("mean", at::mean_layer);
-  if (ambient())
-    layer("ambient", at::ambient_layer);
-  else
-    depths.bind(at::ambient_layer);
-  if (sun_)
-    layer("airlight", at::airlight_layer);
-  else
-    depths.bind(at::airlight_layer);
+  bind_film_layers(frame_, pixels, p,
+                   {at::mean_layer, at::transmittance_layer, at::surface_layer, at::airlight_layer, at::ambient_layer},
+                   {sun_ != nullptr, ambient() ? std::optional(scene_->ambient_in_scatter) : std::nullopt});
   depths.bind(at::depths);
   lit.bind(at::lit);
-  p.set("has_airlight", sun_ != nullptr);
   p.set("pixels", int(pixels));
   p.set("has_fog", !fogs_.empty());
   p.set("has_lit", surfaces_->shines());
-  p.set("has_ambient", ambient());
-  p.set("ambient", scene_->ambient_in_scatter);
   p.dispatch(int(pixels));
 }
 

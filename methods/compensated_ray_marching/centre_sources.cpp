@@ -54,8 +54,8 @@ void CentreSources::light(const std::vector<scene::Light>& lights, bool scatters
     sources_.assign(sources_.size(), std::vector<Rgb>(1, Rgb::Zero()));
     return;
   }
-  scene::parallel_rows(int(sources_.size()), execution,
-                       [&](int i) { sources_[std::size_t(i)] = radiance_->at(sum_.gaussians[std::size_t(i)].center); });
+  scene::parallel_for(int(sources_.size()), execution,
+                      [&](int i) { sources_[std::size_t(i)] = radiance_->at(sum_.gaussians[std::size_t(i)].center); });
   times_.push_back({"single scattering", watch.lap()});
   if (!single_only_.empty()) return;
   scatter_again();

@@ -12,7 +12,7 @@ std::vector<scene::SettingSpec> CompensatedRayMarching::settings() const { retur
 
 std::vector<std::string> CompensatedRayMarching::supports(const scene::Scene& scene,
                                                           const scene::Settings& settings) const {
-  return reasons_against(scene, read_options(settings));
+  return unsupported(scene, read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> CompensatedRayMarching::prepare_supported(std::shared_ptr<const scene::Scene> scene,

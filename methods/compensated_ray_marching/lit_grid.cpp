@@ -229,7 +229,7 @@ Eigen::ArrayXXd LitGrid::left(std::size_t first, std::size_t count, double sigma
 void LitGrid::in_runs(const scene::Execution& execution,
                       const std::function<void(std::size_t, std::size_t)>& of) const {
   const std::size_t runs = (nodes_.size() + run - 1) / run;
-  scene::parallel_rows(int(runs), execution, [&](int row) {
+  scene::parallel_for(int(runs), execution, [&](int row) {
     const std::size_t first = std::size_t(row) * run;
     of(first, std::min(run, nodes_.size() - first));
   });

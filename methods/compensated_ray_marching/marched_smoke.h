@@ -12,7 +12,7 @@ namespace airlight::compensated_ray_marching {
 // fitted smoke is what its Gaussians alone have at the voxels, for both variants. A region cuts off all of them.
 class SmokeField {
  public:
-  // Takes a medium that `reasons_against` has accepted, and copies it where its residual is left out.
+  // Takes a medium of which `unsupported` names nothing, and copies it where its residual is left out.
   SmokeField(const scene::Medium&, const Options&);
 
   const scene::Medium& medium() const { return own_ ? *own_ : *given_; }

@@ -97,7 +97,7 @@ Eigen::ArrayXd mean_densities(const scene::Medium& medium, const NodeGrid& grid,
         }
     return means;
   }
-  scene::parallel_rows(grid.cells.size[2], {threads, {}}, [&](int plane) {
+  scene::parallel_for(grid.cells.size[2], {threads, {}}, [&](int plane) {
     Eigen::Index at = plane * Eigen::Index(grid.cells.size[0]) * grid.cells.size[1];
     for (int y = 0; y < grid.cells.size[1]; ++y)
       for (int x = 0; x < grid.cells.size[0]; ++x, ++at) {

@@ -17,7 +17,7 @@ namespace {
 constexpr int most_paper_gaussians = 4096;               // the diffusion system is dense
 constexpr double most_left_out = 0.6 * 0.6 * 0.6 * 0.6;  // of a phase function: its first moment without a band
 
-std::vector<std::string> reasons_against_medium(const scene::Scene& scene, std::size_t i, const Options& o) {
+std::vector<std::string> unsupported_medium(const scene::Scene& scene, std::size_t i, const Options& o) {
   const bool paper = o.variant == Options::Variant::paper;
   std::vector<std::string> reasons;
   const scene::Medium& medium = scene.media[i];
@@ -66,26 +66,37 @@ std::vector<scene::SettingSpec> option_settings() {
       flag_setting("residual", true, "with what the Gaussians leave of fitted smoke; false: the Gaussians alone"),
       choice_setting("residual_store", "auto", {"auto", "grid", "bricks", "hash"},
                      "of paper, where it is looked up: a float a sample, bricks of 8 bits, a perfect hash of 8 bits; "
-                     "auto is grid, on a device, which has no grid, bricks"),
+                     "auto is grid, on a device, which has no grid, bricks")
+          .where("variant", {"paper"}),
       real_setting("tolerance", "2e-4", 1e-12, 1, "of multiple scattering, relative"),
       integer_setting("iterations", "200", 1, 100000, "of multiple scattering, at most"),
       integer_setting("levels", "8", 2, 32,
-                      "of grid: L x 2L directions that light is gathered from, bands of the environment"),
-      integer_setting("cells", "32", 1, 96, "of grid: cells along the longest side of the smoke"),
+                      "of grid: L x 2L directions that light is gathered from, bands of the environment")
+          .where("variant", {"grid"}),
+      integer_setting("cells", "32", 1, 96, "of grid: cells along the longest side of the smoke")
+          .where("variant", {"grid"}),
       real_setting("deepest_cell", "1.5", 0.01, 1e9,
-                   "of grid: optical depth; where cells are deeper they are made smaller"),
+                   "of grid: optical depth; where cells are deeper they are made smaller")
+          .where("variant", {"grid"}),
       integer_setting(
           "ordinate_levels", "0", 0, 16,
-          "of ordinates: levels on either side of the horizontal; 0: as many as the order needs, half of it"),
+          "of ordinates: levels on either side of the horizontal; 0: as many as the order needs, half of it")
+          .where("variant", {"grid"})
+          .where("multiple", {"auto", "ordinates"}),
       integer_setting("azimuths", "0", 0, 64,
-                      "of ordinates: directions on a level; 0: as many as the order needs, twice of it"),
+                      "of ordinates: directions on a level; 0: as many as the order needs, twice of it")
+          .where("variant", {"grid"})
+          .where("multiple", {"auto", "ordinates"}),
       choice_setting("transmittance", "hyb", {"ol", "hyb", "series", "directional"},
-                     "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions"),
+                     "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions")
+          .where("variant", {"paper"}),
       choice_setting("solver", "cg", {"cg", "cg_scaled", "lsqr", "lsqr_scaled"},
                      "of paper's diffusion system: conjugate gradients on the normal equations, or LSQR; scaled: of "
-                     "rows of length 1"),
+                     "rows of length 1")
+          .where("variant", {"paper"}),
       integer_setting("mesh_spheres", "32", 0, 1000,
-                      "of paper: spheres that stand for a mesh which casts shadows; 0: meshes cast none"),
+                      "of paper: spheres that stand for a mesh which casts shadows; 0: meshes cast none")
+          .where("variant", {"paper"}),
   };
 }
 
@@ -125,14 +136,14 @@ Options read_options(const scene::Settings& settings) {
   return o;
 }
 
-std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& o) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o) {
   const bool paper = o.variant == Options::Variant::paper;
   std::vector<std::string> reasons;
   int media = 0;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     if (!extinguishes(scene.media[i])) continue;
     ++media;
-    const std::vector<std::string> some = reasons_against_medium(scene, i, o);
+    const std::vector<std::string> some = unsupported_medium(scene, i, o);
     reasons.insert(reasons.end(), some.begin(), some.end());
   }
   if (media > 1) reasons.push_back("more than one medium");

@@ -37,7 +37,7 @@ struct Options {
 
 std::vector<scene::SettingSpec> option_settings();
 Options read_options(const scene::Settings&);
-std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
+std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
 // Which phase functions are too narrow for the bands that stand for them, in one line; empty: none. `again`: whether multiple scattering is
 // kept. The first band left out is (2l+1)/(4 pi) of its moment, g^l of Henyey-Greenstein's: no more than 0.6^4, |g| = 0.6 at order 4.

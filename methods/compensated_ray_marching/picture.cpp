@@ -129,7 +129,7 @@ std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution)
 // Lights alone: the smoke, its depths and the last multiple scattering are kept.
 std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_ptr<const Scene> scene,
                                                                    const Execution& execution) {
-  if (scene->matter_hash != scene_->matter_hash || !reasons_against(*scene, options_).empty() ||
+  if (scene->matter_hash != scene_->matter_hash || !unsupported(*scene, options_).empty() ||
       (incoming_ && !incoming_->fits(scene->lights)) ||
       (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
@@ -151,7 +151,7 @@ std::unique_ptr<PreparedPicture> PreparedPicture::in_other_smoke(std::shared_ptr
                                                                  const Execution& execution) const {
   Solution now = grid_ ? grid_->solution() : centres_ ? centres_->solution() : Solution{};
   if (now.empty()) now = last_;
-  if (now.empty() || !reasons_against(*scene, options_).empty()) return nullptr;
+  if (now.empty() || !unsupported(*scene, options_).empty()) return nullptr;
   return std::make_unique<PreparedPicture>(std::move(scene), options_, settings_, std::move(now), execution);
 }
 
@@ -284,7 +284,7 @@ scene::Rendering PreparedPicture::render(const View& view, const Execution& exec
     result.times.push_back({"volume pass", watch.lap()});
   }
   const scene::CameraRays rays(view.camera, view.width, view.height);
-  const auto work = scene::sum_over_rows<Work>(view.height, execution, [&](int y, Work& of_row) {
+  const auto work = scene::parallel_sum<Work>(view.height, execution, [&](int y, Work& of_row) {
     std::vector<double> density;
     std::vector<Rgb> weighted;
     std::optional<GaussianRow> row;

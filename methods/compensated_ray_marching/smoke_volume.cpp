@@ -36,7 +36,7 @@ SmokeVolume::SmokeVolume(const SmokeField& smoke, const scene::Execution& execut
     : smoke_(smoke), densities_(std::size_t(smoke.voxels()->size.prod())) {
   const scene::VoxelGrid& grid = *smoke_.voxels();
   const std::size_t slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
-  scene::parallel_rows(grid.size[2], execution, [&](int k) {
+  scene::parallel_for(grid.size[2], execution, [&](int k) {
     std::vector<double> sum(slice, smoke_.centres().constant);
     const auto add = [&](const std::vector<scene::Gaussian>& gaussians) {
       for (const scene::Gaussian& g : gaussians)
@@ -58,7 +58,7 @@ SmokeVolume::Values SmokeVolume::values(const std::vector<Rgb>& towards, const s
   const std::vector<scene::Gaussian>& gaussians = smoke_.centres().gaussians;
   const std::size_t slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
   Values values(densities_.size());
-  scene::parallel_rows(grid.size[2], execution, [&](int k) {
+  scene::parallel_for(grid.size[2], execution, [&](int k) {
     std::vector<double> weight(slice, 0.0);
     std::vector<Rgb> sum(slice, Rgb::Zero());
     for (std::size_t i = 0; i < gaussians.size(); ++i)

@@ -49,7 +49,7 @@ void compute(const Model& model, const ViewModel& view_model, const scene::View&
   const int width = (view.width + step - 1) / step, height = (view.height + step - 1) / step;
   const int rows = (height + tile_size - 1) / tile_size;
   std::vector<std::array<double, 3>> counts(rows);
-  scene::parallel_rows(rows, execution, [&](int row) {
+  scene::parallel_for(rows, execution, [&](int row) {
     RayAirlight rays(model, view_model);
     const int y0 = row * tile_size, y1 = std::min(height, y0 + tile_size);
     std::vector<int> places;

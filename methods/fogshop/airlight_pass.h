@@ -8,7 +8,7 @@ namespace airlight::fogshop {
 
 struct AirlightImage {
   std::vector<Rgb> airlight;  // L_a [W/m^2/sr], row 0 at the top
-  std::vector<double> depth;  // T(v, p) [-], hue 1
+  std::vector<double> depth;  // T(v, p) [-], at extinction ratio 1
   double evaluations = 0;     // of the error function
   double crossed = 0;         // pairs of pixel and Gaussian
   double candidates = 0;      // the same for the lists of the tiles

@@ -65,7 +65,7 @@ HWY_INLINE V share_up_to(V t, V a, V middle, V base) {
   return hn::Max(hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(t, middle))), base), hn::Zero(d));
 }
 
-// Eqs. 10 to 13 for one Gaussian and one light, but for the hue: the term is weight exp(exponent).
+// Eqs. 10 to 13 for one Gaussian and one light, but for the extinction ratio: the term is weight exp(exponent).
 struct PaperTerm {
   V weight, exponent;
 };

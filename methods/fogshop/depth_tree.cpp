@@ -80,9 +80,9 @@ class DepthTreeMaker {
     open.push_back(std::move(root));
     while (!open.empty()) {
       std::vector<char> ends(open.size());
-      scene::parallel_rows(int(open.size()), execution_, [&](int k) { ends[k] = resolve_some(open[k]); });
+      scene::parallel_for(int(open.size()), execution_, [&](int k) { ends[k] = resolve_some(open[k]); });
       if (open.front().level == deepest_level || (open.front().level > 0 && crowded(open, ends))) {
-        scene::parallel_rows(int(open.size()), execution_, [&](int k) {
+        scene::parallel_for(int(open.size()), execution_, [&](int k) {
           if (!ends[k]) resolve_rest(open[k], losses_of(gaussians_, open[k]));
         });
         ends.assign(open.size(), 1);

@@ -31,7 +31,7 @@ class DepthTree {
   // Gaussians that are not listed. Requires a Gaussian.
   DepthTree(const GaussianArrays&, const std::vector<scene::Surface>&, double tolerance, const scene::Execution&);
 
-  // At a point of a surface; hue 1, without the constant.
+  // At a point of a surface; extinction_ratio 1, without the constant.
   double operator()(const Point3&) const;
 
   const Point3& corner() const { return corner_; }  // of the root, a cube

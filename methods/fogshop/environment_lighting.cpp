@@ -21,7 +21,7 @@ EnvironmentLighting::EnvironmentLighting(const scene::Scene& scene, const Option
 std::vector<Rgb> EnvironmentLighting::spread(const Fog& fog, double depth) const {
   std::vector<Rgb> factors(order_);
   for (int c = 0; c < 3; ++c) {
-    const double T = depth * fog.hue[c];
+    const double T = depth * fog.extinction_ratio[c];
     const std::vector<double> g = (*bands_)(T);
     for (int l = 0; l < order_; ++l)
       factors[l][c] = std::sqrt(4 * pi / (2 * l + 1)) * g[l] * T * std::exp(-T) * fog.albedo[c];
@@ -40,7 +40,7 @@ Rgb EnvironmentLighting::airlight(const Fog& fog, double depth, const Vec3& dire
 
 IncidentHarmonics EnvironmentLighting::incident(const Fog& fog, double depth, bool scattered) const {
   IncidentHarmonics result;
-  const Rgb arriving = (-depth * fog.hue).exp();
+  const Rgb arriving = (-depth * fog.extinction_ratio).exp();
   for (const Rgb& light : light_) result.attenuated.push_back(arriving * light);
   if (!scattered) return result;
   const std::vector<Rgb> factors = spread(fog, depth);
@@ -64,13 +64,13 @@ std::vector<double> up_to_environment(const Options& options, std::vector<double
 void environment_pass(const scene::Scene& scene, const Model& model, const EnvironmentLighting* lighting,
                       const scene::View& view, const std::vector<double>& distance, const std::vector<double>& depth,
                       const scene::Execution& execution, std::vector<float>& airlight, std::vector<float>& surface) {
-  scene::parallel_rows(view.height, execution, [&](int y) {
+  scene::parallel_for(view.height, execution, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       const bool open = distance[i] == infinity;
       if (!open && !(lighting && model.options.environment_everywhere)) continue;
       const Vec3 direction = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
-      const Rgb seen = (-depth[i] * model.fog.hue).exp() * background(scene, direction);
+      const Rgb seen = (-depth[i] * model.fog.extinction_ratio).exp() * background(scene, direction);
       const Rgb scattered = lighting ? lighting->airlight(model.fog, depth[i], direction) : Rgb(Rgb::Zero());
       for (int c = 0; c < 3; ++c) {
         airlight[3 * i + c] += float(scattered[c]);

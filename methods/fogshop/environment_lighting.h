@@ -23,11 +23,11 @@ class EnvironmentLighting {
   EnvironmentLighting(const scene::Scene&, const Options&, bool spreads);
 
   // Eq. 28: light of the environment scattered once towards the eye along a ray that no surface ends [W/m^2/sr], the
-  // medium's albedo included. `direction` is the ray's, `depth` T(v,p) [-] for a hue of 1. Has no direct term. Bands
+  // medium's albedo included. `direction` is the ray's, `depth` T(v,p) [-] for an extinction ratio of 1. Has no direct term. Bands
   // cut off may swing below 0: then it is 0.
   Rgb airlight(const Fog&, double depth, const Vec3& direction) const;
 
-  // Eq. 27 for an average depth T of the point (Eq. 26) [-], hue 1.
+  // Eq. 27 for an average depth T of the point (Eq. 26) [-], at extinction ratio 1.
   IncidentHarmonics incident(const Fog&, double depth, bool scattered) const;
 
   const std::vector<Rgb>& light() const { return light_; }
@@ -44,7 +44,7 @@ class EnvironmentLighting {
   std::unique_ptr<PsfBands> bands_;
 };
 
-// Eq. 26: optical depth from a point to the environment, averaged over all directions [-], hue 1; the constant reaches
+// Eq. 26: optical depth from a point to the environment, averaged over all directions [-], at extinction ratio 1; the constant reaches
 // Options::environment_distance far. By the tree where there is one (then the point is on a surface), else all Gaussians
 // are summed: the average falls as 1/distance^2 only.
 double average_depth(const Model&, const Point3&, const DepthTree* = nullptr);

@@ -38,7 +38,7 @@ std::string objection_to(const GaussianSum& sum) {
 
 }  // namespace
 
-std::vector<std::string> objections(const std::vector<Medium>& media) {
+std::vector<std::string> unsupported_media(const std::vector<Medium>& media) {
   std::vector<std::string> reasons;
   const Medium* first = nullptr;
   for (std::size_t i = 0; i < media.size(); ++i) {
@@ -65,8 +65,10 @@ std::vector<std::string> objections(const std::vector<Medium>& media) {
       first = &medium;
       continue;
     }
-    const Rgb hue = medium.sigma_t / medium.sigma_t.maxCoeff(), other = first->sigma_t / first->sigma_t.maxCoeff();
-    if (((hue - other).abs() > 1e-12).any()) object("extinguishes in another hue than the first");
+    const Rgb extinction_ratio = medium.sigma_t / medium.sigma_t.maxCoeff(),
+              other = first->sigma_t / first->sigma_t.maxCoeff();
+    if (((extinction_ratio - other).abs() > 1e-12).any())
+      object("extinguishes in another extinction_ratio than the first");
   }
   return reasons;
 }
@@ -75,13 +77,13 @@ Fog make_fog(const std::vector<Medium>& media) {
   Fog fog;
   bool first = true;
   std::vector<Rgb> albedos;           // of the Gaussians
-  Rgb from_constant = Rgb::Zero();    // what the constants scatter [1/m], hue 1
+  Rgb from_constant = Rgb::Zero();    // what the constants scatter [1/m], at extinction ratio 1
   std::vector<Rgb> constant_albedos;  // of media with a constant
   for (const Medium& medium : media) {
     if (!extinguishes(medium)) continue;
     const double strength = medium.sigma_t.maxCoeff();
     if (first) {
-      fog.hue = medium.sigma_t / strength;
+      fog.extinction_ratio = medium.sigma_t / strength;
       fog.albedo = medium.albedo;
       fog.g = mean_cosine_of(medium.phase).value();
       first = false;
@@ -102,10 +104,10 @@ Fog make_fog(const std::vector<Medium>& media) {
             albedos.push_back(medium.albedo);
           }
         },
-        [](const GridPointer&) { throw Error("fogshop: a grid, in spite of its objections"); },
-        [](const FogmapPointer&) { throw Error("fogshop: a fogmap, in spite of its objections"); },
-        [](const LegendrePointer&) { throw Error("fogshop: a Legendre box, in spite of its objections"); },
-        [](const FittedPointer&) { throw Error("fogshop: a fitted grid, in spite of its objections"); });
+        [](const GridPointer&) { throw Error("fogshop: a grid, which supports() refuses"); },
+        [](const FogmapPointer&) { throw Error("fogshop: a fogmap, which supports() refuses"); },
+        [](const LegendrePointer&) { throw Error("fogshop: a Legendre box, which supports() refuses"); },
+        [](const FittedPointer&) { throw Error("fogshop: a fitted grid, which supports() refuses"); });
   }
   const auto differs = [&](const Rgb& albedo) { return ((albedo - fog.albedo).abs() > 1e-12).any(); };
   if (std::none_of(albedos.begin(), albedos.end(), differs) &&

@@ -74,7 +74,7 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
 
 scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
   require_own_camera(*scene_, view);
-  const std::string objection = objection_to_view(*scene_, model_.fog, model_.options, view.camera);
+  const std::string objection = unsupported_view(*scene_, model_.fog, model_.options, view.camera);
   if (!objection.empty()) throw Error(scene_->name + ": " + objection);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   scene::Film& film = result.film;
@@ -106,10 +106,10 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
                                                               execution, result.times, result.counters)
                                     : airlight_pass(model_, view_model, view, ends, execution);
     for (std::size_t i = 0; i < pixels; ++i) {
-      const Rgb visible = (-image.depth[i] * model_.fog.hue).exp();
+      const Rgb visible = (-image.depth[i] * model_.fog.extinction_ratio).exp();
       for (int c = 0; c < 3; ++c) {
         airlight[3 * i + c] = float(image.airlight[i][c]);
-        transmittance[3 * i + c] = model_.fog.hue[c] > 0 ? float(visible[c]) : 1.0f;
+        transmittance[3 * i + c] = model_.fog.extinction_ratio[c] > 0 ? float(visible[c]) : 1.0f;
       }
     }
     depth = image.depth;
@@ -157,7 +157,7 @@ std::vector<scene::SettingSpec> Fogshop::settings() const { return setting_specs
 
 std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Settings& settings) const {
   const Options options = read_options(settings);
-  std::vector<std::string> reasons = objections(scene.media);
+  std::vector<std::string> reasons = unsupported_media(scene.media);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (const std::string why = scene::unknown_light<scene::PointLight, scene::EnvironmentLight>(scene.lights, i);
         !why.empty())
@@ -189,7 +189,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     if (fog.g != 0 && (options.reflectance != Options::Reflectance::direct || has_environment(scene)))
       reasons.push_back(
           "phase function hg: NPSF is that of isotropic scattering, expected reflectance = direct and point lights only");
-    const std::string objection = objection_to_view(scene, fog, options, scene.camera);
+    const std::string objection = unsupported_view(scene, fog, options, scene.camera);
     if (!objection.empty()) reasons.push_back(objection);
   }
   return reasons;

@@ -1,6 +1,6 @@
 // The inner loops of the method, for vectors of doubles; the best instruction set is chosen at run time.
 //
-// Depths are those of the Gaussians alone, for a hue of 1 (see fog.h); the constant term is added by the callers.
+// Depths are those of the Gaussians alone, for an extinction ratio of 1 (see fog.h); the constant term is added by the callers.
 #pragma once
 #include <vector>
 

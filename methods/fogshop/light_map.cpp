@@ -32,7 +32,7 @@ LightMap::LightMap(const GaussianArrays& gaussians, const Point3& light, int dir
   const int side = directions + 2;
   depths_.assign(std::size_t(side) * side * (edges + 1), 0.0f);
   std::vector<double> evaluations(side, 0.0);
-  scene::parallel_rows(side, execution, [&](int row) {
+  scene::parallel_for(side, execution, [&](int row) {
     Crossings crossings;
     std::vector<double> depth(padded);
     for (int column = 0; column < side; ++column) {

@@ -39,7 +39,7 @@ class LightMap {
   // error function are counted in `evaluations`.
   LightMap(const GaussianArrays&, const Point3& light, int directions, int edges, Erf, const scene::Execution&);
 
-  // Depths between the light and the points at parameters t of a ray [-], for a hue of 1, without the constant term;
+  // Depths between the light and the points at parameters t of a ray [-], for an extinction ratio of 1, without the constant term;
   // `t` and `depth` hold a multiple of 8 values.
   void depths(const Line& ray, const double* t, int count, double* depth) const;
 

@@ -55,7 +55,7 @@ int most_alike(const Corners& c, const std::vector<double>& low_distance, double
 std::vector<double> low_distances(const scene::Scene& scene, const scene::View& view, const LowResolution& r,
                                   const scene::Execution& execution) {
   std::vector<double> distance(std::size_t(r.low_width()) * r.low_height());
-  scene::parallel_rows(r.low_height(), execution, [&](int y) {
+  scene::parallel_for(r.low_height(), execution, [&](int y) {
     for (int x = 0; x < r.low_width(); ++x)
       distance[std::size_t(y) * r.low_width() + x] =
           camera_end(scene, camera_ray(view.camera, r.factor * (x + 0.5), r.factor * (y + 0.5), r.width, r.height)).t;

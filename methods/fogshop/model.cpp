@@ -163,7 +163,7 @@ std::vector<double> depths_to_centers(const Model& model, const Point3& from, co
   const Erf erf = model.options.erf;
   std::vector<double> depths(g.count), calls(g.count);
   constexpr int chunk = 64;
-  scene::parallel_rows((g.count + chunk - 1) / chunk, execution, [&](int row) {
+  scene::parallel_for((g.count + chunk - 1) / chunk, execution, [&](int row) {
     Crossings crossings;
     for (int i = row * chunk; i < std::min(g.count, (row + 1) * chunk); ++i) {
       const Line line = line_between(from, g.center(i));

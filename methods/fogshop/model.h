@@ -57,9 +57,10 @@ Options read_options(const scene::Settings&);
 
 struct LightModel {
   Point3 position;
-  Rgb intensity;                     // [W/sr]
-  std::vector<double> center_depth;  // paper: T(s,b_i) - T_i(s,b_i) by place, the constant included [-], hue 1
-  std::unique_ptr<LightMap> map;     // slices, if asked for
+  Rgb intensity;  // [W/sr]
+  std::vector<double>
+      center_depth;  // paper: T(s,b_i) - T_i(s,b_i) by place, the constant included [-], at extinction ratio 1
+  std::unique_ptr<LightMap> map;  // slices, if asked for
 };
 
 struct Model {
@@ -88,11 +89,11 @@ struct Model {
 // Everything but the tables.
 Model make_model(const scene::Scene&, const Options&);
 
-// T(from, b_i) - T_i(from, b_i) for every Gaussian, the constant included [-], hue 1: n rays against n Gaussians, each
+// T(from, b_i) - T_i(from, b_i) for every Gaussian, the constant included [-], at extinction ratio 1: n rays against n Gaussians, each
 // cut off at its radius. Adds to `evaluations`.
 std::vector<double> depths_to_centers(const Model&, const Point3& from, const scene::Execution&, double& evaluations);
 
-// The Gaussians' optical depth between two points [-], hue 1, without the constant.
+// The Gaussians' optical depth between two points [-], at extinction ratio 1, without the constant.
 double gaussian_depth(const Model&, const Point3& a, const Point3& b, Crossings&, double& evaluations);
 
 }  // namespace airlight::fogshop

@@ -17,7 +17,7 @@ constexpr hn::RebindToSigned<D> long_integers;
 // Lanes are Gaussians.
 template <Erf kind>
 void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light,
-                   const double* hue, int channels, double* sums) {
+                   const double* extinction_ratio, int channels, double* sums) {
   const V zero = hn::Zero(d), length = set(view.length), softness = set(light.softness);
   const Vec3 from_light = view.origin - light.position;
   V sum[3] = {zero, zero, zero};
@@ -46,7 +46,8 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
     }
     const auto valid = hn::FirstN(d, c.count - first);
     for (int k = 0; k < channels; ++k) {
-      V term = hn::Mul(hn::Mul(set(hue[k]), weight), exp_of(hn::Mul(set(hue[k]), p.exponent)));
+      V term =
+          hn::Mul(hn::Mul(set(extinction_ratio[k]), weight), exp_of(hn::Mul(set(extinction_ratio[k]), p.exponent)));
       if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], c.place));
       sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
     }
@@ -55,10 +56,10 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
 }
 
 void GaussianTermsAny(const GaussianArrays& g, const Crossings& c, const Line& view, const PaperLight& light, Erf erf,
-                      const double* hue, int channels, double* sums) {
-  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, hue, channels, sums);
-  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, hue, channels, sums);
-  return GaussianTerms<Erf::paper>(g, c, view, light, hue, channels, sums);
+                      const double* extinction_ratio, int channels, double* sums) {
+  if (erf == Erf::precise) return GaussianTerms<Erf::precise>(g, c, view, light, extinction_ratio, channels, sums);
+  if (erf == Erf::erf10) return GaussianTerms<Erf::erf10>(g, c, view, light, extinction_ratio, channels, sums);
+  return GaussianTerms<Erf::paper>(g, c, view, light, extinction_ratio, channels, sums);
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE
@@ -70,9 +71,9 @@ namespace airlight::fogshop {
 HWY_EXPORT(GaussianTermsAny);
 
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings& crossings, const Line& view,
-                        const PaperLight& light, Erf erf, const Rgb& hue, bool coloured, Rgb& airlight) {
+                        const PaperLight& light, Erf erf, const Rgb& extinction_ratio, bool coloured, Rgb& airlight) {
   HWY_DYNAMIC_DISPATCH(GaussianTermsAny)
-  (gaussians, crossings, view, light, erf, hue.data(), coloured ? 3 : 1, airlight.data());
+  (gaussians, crossings, view, light, erf, extinction_ratio.data(), coloured ? 3 : 1, airlight.data());
 }
 
 }  // namespace airlight::fogshop

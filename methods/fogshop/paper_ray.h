@@ -10,7 +10,7 @@ struct PaperLight {
   double softness = 0;  // r_s^2 [m^2]
   double g = 0;         // of the phase function
   // E_i = T_i(s,b_i) + T_i(v,b_i) - T(s,b_i) - T(v,b_i): the exponent of f^1 with the compensation of f^0; by place in
-  // the whole arrays [-], for a hue of 1, the constant term of the medium included.
+  // the whole arrays [-], for an extinction ratio of 1, the constant term of the medium included.
   std::vector<double> exponent;
 };
 
@@ -18,6 +18,6 @@ struct PaperLight {
 // those that were crossed; `exponent` is by their `index`. Three channels if `coloured`, else the first only. Where the
 // Gaussians have colours, each term is scaled by its Gaussian's. T_i(v,p) is Crossings::whole, T_i(v,b_i^r) to_nearest.
 void add_gaussian_terms(const GaussianArrays& gaussians, const Crossings&, const Line& view, const PaperLight&, Erf,
-                        const Rgb& hue, bool coloured, Rgb& airlight);
+                        const Rgb& extinction_ratio, bool coloured, Rgb& airlight);
 
 }  // namespace airlight::fogshop

@@ -67,7 +67,7 @@ RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int ray
     const int count = int(mesh->vertices.size());
     coefficients_[s].assign(std::size_t(count) * size, 0.0f);
     std::vector<double> cast(count, 0.0);
-    scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
+    scene::parallel_for((count + chunk - 1) / chunk, execution, [&](int row) {
       std::vector<double> sum(size);
       for (int v = row * chunk; v < std::min(count, (row + 1) * chunk); ++v) {
         Vec3 outward = Vec3::Zero();
@@ -137,7 +137,7 @@ std::vector<std::vector<RadianceTransfer::Seen>> RadianceTransfer::look_around(c
     const std::size_t first = seen.size();
     seen.resize(first + std::size_t(count));
     std::vector<double> cast(std::size_t(count), 0.0);
-    scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
+    scene::parallel_for((count + chunk - 1) / chunk, execution, [&](int row) {
       for (int v = row * chunk; v < std::min(count, (row + 1) * chunk); ++v) {
         Vec3 outward = Vec3::Zero();
         for (const Vec3& face : faces[std::size_t(v)]) outward += face;
@@ -174,7 +174,7 @@ void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<std:
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     const int count = int(coefficients_[s].size() / size);
     reflections[s].assign(3 * std::size_t(count) * size, 0.0f);
-    scene::parallel_rows((count + chunk - 1) / chunk, execution, [&](int row) {
+    scene::parallel_for((count + chunk - 1) / chunk, execution, [&](int row) {
       std::vector<Rgb> sum(size);
       for (auto v = std::size_t(row * chunk); v < std::size_t(std::min(count, (row + 1) * chunk)); ++v) {
         std::fill(sum.begin(), sum.end(), Rgb::Zero());

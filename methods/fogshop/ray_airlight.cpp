@@ -80,7 +80,8 @@ Rgb RayAirlight::sky(const Line& line) {
     const double depth = std::max(view_depth_[k + 1] - view_depth_[k], 0.0);
     Rgb light = model_.sky->at(line.origin + 0.5 * (t_[k] + t_[k + 1]) * line.direction);
     for (int c = 0; c < 3; ++c)
-      light[c] *= std::exp(-view_depth_[k] * model_.fog.hue[c]) * -std::expm1(-depth * model_.fog.hue[c]);
+      light[c] *= std::exp(-view_depth_[k] * model_.fog.extinction_ratio[c]) *
+                  -std::expm1(-depth * model_.fog.extinction_ratio[c]);
     sum += light;
   }
   return sum;
@@ -94,7 +95,7 @@ Rgb RayAirlight::homogeneous(const LightFromRay& light, double length) const {
       result[c] = result[0];
       continue;
     }
-    const double beta = model_.fog.sum.constant * model_.fog.hue[c];
+    const double beta = model_.fog.sum.constant * model_.fog.extinction_ratio[c];
     result[c] = model_.f_table ? model_.f_table->homogeneous_airlight(light, length, beta)
                                : softened_homogeneous_airlight(light, length, beta, model_.options.source_radius);
   }
@@ -113,11 +114,12 @@ Rgb RayAirlight::paper(const GaussianArrays& near, const Line& line) {
   Rgb airlight = Rgb::Zero();
   for (std::size_t k = 0; k < model_.lights.size(); ++k) {
     Rgb sum = Rgb::Zero();
-    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.hue, coloured(), sum);
+    add_gaussian_terms(near, crossings_, line, view_.lights[k], model_.options.erf, model_.fog.extinction_ratio,
+                       coloured(), sum);
     evaluations += 2.0 * crossings_.count;
     if (!coloured()) sum = Rgb::Constant(sum[0]);
     if (model_.fog.sum.constant > 0)
-      sum += (-model_.fog.hue * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);
+      sum += (-model_.fog.extinction_ratio * view_.shadow[k]).exp() * homogeneous(seen_[k], line.length);
     airlight += model_.lights[k].intensity * sum;
   }
   return airlight;
@@ -135,7 +137,7 @@ Interval RayAirlight::stretch(const Line& line) const {
   // With a constant every part of the ray shines. The slices cover it until long after the last Gaussian and the
   // lights, or until 40 more depths (of the clearest colour) than the straight way from the light have been passed; the
   // rest of the ray is homogeneous and has a closed form.
-  const double clearest = (model_.fog.hue > 0).select(model_.fog.hue, 1.0).minCoeff();
+  const double clearest = (model_.fog.extinction_ratio > 0).select(model_.fog.extinction_ratio, 1.0).minCoeff();
   double beyond = std::max(0.0, reach.hi), dark = 0;
   for (const LightFromRay& light : seen_) {
     beyond = std::max(beyond, std::abs(light.along) + light.h);
@@ -151,8 +153,8 @@ Rgb RayAirlight::sum_of_slices(const LightFromRay& light, bool separate) {
   const double* const scattering[] = {scattering_[0].data(), scattering_[1].data(), scattering_[2].data()};
   const SliceEdges edges{t_.data(), view_depth_.data(), light_depth_.data(), separate ? scattering : nullptr};
   Rgb sum = Rgb::Zero(), half = Rgb::Zero();
-  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.g, model_.fog.hue, coloured(), slice_scratch_, sum,
-             o.extrapolate ? &half : nullptr);
+  sum_slices(edges, o.slices, light, o.source_radius, model_.fog.g, model_.fog.extinction_ratio, coloured(),
+             slice_scratch_, sum, o.extrapolate ? &half : nullptr);
   // The error is c K^-2 + O(K^-4): with half the slices it is four times as large.
   if (o.extrapolate) sum = (sum + (sum - half) / 3).max(0.0);
   return coloured() ? sum : Rgb::Constant(sum[0]);
@@ -216,7 +218,7 @@ Rgb RayAirlight::slices(const GaussianArrays& near, const Line& line) {
     }
     Rgb sum = sum_of_slices(seen_[l], separate);
     if (constant > 0 && range.hi < line.length)
-      sum += (-model_.fog.hue * (view_depth_[slices] + last_shadow)).exp() *
+      sum += (-model_.fog.extinction_ratio * (view_depth_[slices] + last_shadow)).exp() *
              homogeneous({seen_[l].along - range.hi, seen_[l].h}, line.length - range.hi);
     airlight += light.intensity * sum;
   }

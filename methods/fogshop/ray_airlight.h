@@ -12,7 +12,7 @@ namespace airlight::fogshop {
 // What depends on the view point but not on the ray: paper variant only.
 struct ViewModel {
   std::vector<PaperLight> lights;
-  std::vector<double> shadow;  // T(s,v) of the Gaussians alone, by light [-], hue 1
+  std::vector<double> shadow;  // T(s,v) of the Gaussians alone, by light [-], at extinction ratio 1
 };
 ViewModel make_view_model(const Model&, const Point3& view, const scene::Execution&, double& evaluations);
 
@@ -22,7 +22,7 @@ class RayAirlight {
   RayAirlight(const Model& model, const ViewModel& view) : model_(model), view_(view) {}
 
   // `near` holds every Gaussian that the ray may meet. Sets the airlight [W/m^2/sr] with albedo and intensities, and
-  // the optical depth to the end of the line [-] for a hue of 1. The line may be infinite.
+  // the optical depth to the end of the line [-] for an extinction ratio of 1. The line may be infinite.
   void evaluate(const GaussianArrays& near, const Line&, Rgb& airlight, double& depth);
 
   double evaluations = 0;  // of the error function
@@ -48,7 +48,7 @@ class RayAirlight {
   std::vector<LightFromRay> seen_;
   std::vector<int> places_;
   std::vector<double> t_, view_depth_, light_depth_;
-  // What the medium up to an edge scatters, per channel [-], hue 1; unused where that is what is extinguished.
+  // What the medium up to an edge scatters, per channel [-], at extinction ratio 1; unused where that is what is extinguished.
   std::array<std::vector<double>, 3> scattering_;
 };
 

@@ -25,7 +25,7 @@ Rgb ScatteredReflection::operator()(const scene::Scene& scene, const Model& mode
     const double depth = light_depth(model, light.position, point.position, crossings, evaluations, found);
     Rgb reflected = Rgb::Zero();
     for (int c = 0; c < 3; ++c) {
-      const double T = depth * model.fog.hue[c];
+      const double T = depth * model.fog.extinction_ratio[c];
       if (!(T > 0)) continue;
       const Rgb all = (sun_ ? sun_->reflect(material, point.normal, to_view, to_light, T)
                             : reflect_zonal(reflectance, bands_(T), to_light)) *

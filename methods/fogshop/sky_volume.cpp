@@ -55,7 +55,7 @@ OpenBeams::OpenBeams(const scene::Geometry& geometry, const SkyGrid& grid, const
       rays(double(grid.nodes()) * double(beams.size())) {
   const std::size_t row = std::size_t(grid.last[0] + 1);
   std::vector<char> reached(grid.nodes(), false);
-  scene::parallel_rows(int(grid.nodes() / row), execution, [&](int line) {
+  scene::parallel_for(int(grid.nodes() / row), execution, [&](int line) {
     for (std::size_t i = std::size_t(line) * row; i < std::size_t(line + 1) * row; ++i)
       for (std::size_t b = 0; b < beams.size(); ++b) {
         if (geometry.occluded({grid.node(i), beams[b].direction})) continue;
@@ -97,7 +97,7 @@ SkyVolume::SkyVolume(const scene::Scene& scene, const Fog& fog, const GaussianAr
   }
   const int rows = lines * layers;
   std::vector<double> calls(rows, 0.0);
-  scene::parallel_rows(rows, execution, [&](int row) {
+  scene::parallel_for(rows, execution, [&](int row) {
     Crossings crossings;
     for (int x = 0; x < across; ++x) {
       const std::size_t place = std::size_t(row) * std::size_t(across) + std::size_t(x);
@@ -108,7 +108,7 @@ SkyVolume::SkyVolume(const scene::Scene& scene, const Fog& fog, const GaussianAr
         if (open && !open->open(place, b)) continue;
         cross(gaussians, {node, beam.direction, infinity}, erf, crossings);
         calls[row] += 2.0 * crossings.count;
-        sum += beam.weight * (-total_depth(crossings, infinity, erf) * fog.hue).exp();
+        sum += beam.weight * (-total_depth(crossings, infinity, erf) * fog.extinction_ratio).exp();
       }
       values_[place] = sum;
     }

@@ -44,8 +44,8 @@ HWY_INLINE V mean_phase(double g, V xa, V xb, double h) {
 
 // What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, times the phase function, depths and transmittances of
 // the whole way from the light at the edges.
-void Prepare(const SliceEdges& e, int slices, double along, double h, double beside, double g, const double* hue,
-             int channels, SliceScratch& out) {
+void Prepare(const SliceEdges& e, int slices, double along, double h, double beside, double g,
+             const double* extinction_ratio, int channels, SliceScratch& out) {
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {
     const V t0 = hn::LoadU(d, e.t + k), t1 = hn::LoadU(d, e.t + k + 1);
     const V xa = hn::Sub(t0, set(along)), xb = hn::Sub(t1, set(along));
@@ -58,7 +58,7 @@ void Prepare(const SliceEdges& e, int slices, double along, double h, double bes
     const V whole = hn::Add(hn::LoadU(d, e.view_depth + k), hn::LoadU(d, e.light_depth + k));
     hn::StoreU(whole, d, out.depth.data() + k);
     for (int c = 0; c < channels; ++c)
-      hn::StoreU(exp_of(hn::Mul(set(-hue[c]), whole)), d, out.transmittance[c].data() + k);
+      hn::StoreU(exp_of(hn::Mul(set(-extinction_ratio[c]), whole)), d, out.transmittance[c].data() + k);
   }
 }
 
@@ -76,7 +76,7 @@ HWY_INLINE Ends ends(const double* values, int k) {
 }
 
 template <int stride>
-void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const double* hue, int channels,
+void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const double* extinction_ratio, int channels,
          double* sums) {
   const V zero = hn::Zero(d), one = set(1);
   V sum[3] = {zero, zero, zero};
@@ -96,7 +96,7 @@ void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const
       const auto [e0, e1] = ends<stride>(s.transmittance[c].data(), k);
       // Mean of e^-s where s goes from s0 to s1 linearly: the depth from the light may fall as that from the view
       // grows. Its divisor is that of the mean of 1/d^2, too.
-      const V q = hn::Mul(set(hue[c]), hn::Sub(s1, s0));
+      const V q = hn::Mul(set(extinction_ratio[c]), hn::Sub(s1, s0));
       const auto small = hn::Lt(hn::Abs(q), set(1e-3));
       const V series = hn::MulAdd(q, hn::MulAdd(q, hn::MulAdd(q, set(-1.0 / 24), set(1.0 / 6)), set(-0.5)), one);
       const V mean = hn::IfThenElse(small, hn::Mul(e0, series), hn::Sub(e0, e1));
@@ -106,18 +106,19 @@ void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const
         const auto [c0, c1] = ends<stride>(e.scattering[c], k);
         scattered = hn::Sub(c1, c0);
       }
-      const V slice = hn::Div(hn::Mul(hn::Mul(angle, hn::Mul(set(hue[c]), hn::Max(scattered, zero))), mean), divisor);
+      const V slice =
+          hn::Div(hn::Mul(hn::Mul(angle, hn::Mul(set(extinction_ratio[c]), hn::Max(scattered, zero))), mean), divisor);
       sum[c] = hn::Add(sum[c], hn::IfThenElseZero(used, slice));
     }
   }
   for (int c = 0; c < channels; ++c) sums[c] += hn::GetLane(hn::SumOfLanes(d, sum[c])) / (4 * pi);
 }
 
-void SumSlices(const SliceEdges& e, int slices, double along, double h, double beside, double g, const double* hue,
-               int channels, SliceScratch& scratch, double* all, double* pairs) {
-  Prepare(e, slices, along, h, beside, g, hue, channels, scratch);
-  Sum<1>(e, scratch, slices, h, hue, channels, all);
-  if (pairs) Sum<2>(e, scratch, slices / 2, h, hue, channels, pairs);
+void SumSlices(const SliceEdges& e, int slices, double along, double h, double beside, double g,
+               const double* extinction_ratio, int channels, SliceScratch& scratch, double* all, double* pairs) {
+  Prepare(e, slices, along, h, beside, g, extinction_ratio, channels, scratch);
+  Sum<1>(e, scratch, slices, h, extinction_ratio, channels, all);
+  if (pairs) Sum<2>(e, scratch, slices / 2, h, extinction_ratio, channels, pairs);
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE
@@ -129,7 +130,7 @@ namespace airlight::fogshop {
 HWY_EXPORT(SumSlices);
 
 void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, double source_radius, double g,
-                const Rgb& hue, bool coloured, SliceScratch& scratch, Rgb& all, Rgb* pairs) {
+                const Rgb& extinction_ratio, bool coloured, SliceScratch& scratch, Rgb& all, Rgb* pairs) {
   constexpr double least_h = 1e-9;  // [m]
   const double h = std::max(std::hypot(light.h, source_radius), least_h);
   const std::size_t room = slice_room(slices);
@@ -137,8 +138,8 @@ void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, 
                   &scratch.transmittance[2]})
     v->resize(room);
   HWY_DYNAMIC_DISPATCH(SumSlices)
-  (edges, slices, light.along, h, std::max(light.h, least_h), g, hue.data(), coloured ? 3 : 1, scratch, all.data(),
-   pairs ? pairs->data() : nullptr);
+  (edges, slices, light.along, h, std::max(light.h, least_h), g, extinction_ratio.data(), coloured ? 3 : 1, scratch,
+   all.data(), pairs ? pairs->data() : nullptr);
 }
 
 }  // namespace airlight::fogshop

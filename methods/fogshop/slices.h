@@ -14,10 +14,10 @@ namespace airlight::fogshop {
 // What is known at the edges of K slices: arrays of K + 1 values with room as slice_room says.
 struct SliceEdges {
   const double* t;  // [m]
-  // Depths [-], hue 1, from the camera and from the light, the medium's constant included.
+  // Depths [-], at extinction ratio 1, from the camera and from the light, the medium's constant included.
   const double* view_depth;
   const double* light_depth;
-  // What the medium up to the edge scatters, per channel [-], hue 1; null: what it extinguishes, view_depth.
+  // What the medium up to the edge scatters, per channel [-], at extinction ratio 1; null: what it extinguishes, view_depth.
   const double* const* scattering;
 };
 // Values that arrays over the edges hold: whole vectors are read beyond the last.
@@ -36,7 +36,7 @@ struct SliceScratch {
 // is null, that of half as many slices between every other edge: the same placement with K/2 slices, K even. Three
 // channels if `coloured`, else the first only. source_radius softens 1/d^2 [m]. g: of the phase function, whose mean over
 // the angle of a slice is taken by Boole's rule.
-void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, double g, const Rgb& hue,
-                bool coloured, SliceScratch&, Rgb& all, Rgb* pairs);
+void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, double g,
+                const Rgb& extinction_ratio, bool coloured, SliceScratch&, Rgb& all, Rgb* pairs);
 
 }  // namespace airlight::fogshop

@@ -178,8 +178,8 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
   return {needs, std::move(stage.stages), doubt};
 }
 
-std::string objection_to_view(const scene::Scene& scene, const Fog& fog, const Options& options,
-                              const scene::Camera& camera) {
+std::string unsupported_view(const scene::Scene& scene, const Fog& fog, const Options& options,
+                             const scene::Camera& camera) {
   if (camera.kind != scene::Camera::Kind::perspective)
     return options.variant == Options::Variant::paper
                ? "variant paper needs a perspective camera: its depths T(v, b_i) start from one view point"

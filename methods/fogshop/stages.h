@@ -32,6 +32,6 @@ struct Plan {
 Plan make_plan(const scene::Scene&, const Model&);
 
 // Why the scene cannot be seen from this camera; empty if it can.
-std::string objection_to_view(const scene::Scene&, const Fog&, const Options&, const scene::Camera&);
+std::string unsupported_view(const scene::Scene&, const Fog&, const Options&, const scene::Camera&);
 
 }  // namespace airlight::fogshop

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "methods/fogshop/surface_lighting.h"
+#include "scene/picture.h"
 
 namespace airlight::fogshop {
 
@@ -21,21 +22,12 @@ double light_depth(const Model& model, const Point3& source, const Point3& point
 
 Rgb direct_reflection(const scene::Scene& scene, const Model& model, const SurfacePoint& point, const Vec3& to_view,
                       Crossings& crossings, double& evaluations, std::vector<LightDepth>* found) {
-  Rgb radiance = Rgb::Zero();
-  for (const scene::Light& light : scene.lights) {
-    if (!scene::is_delta(light)) continue;
-    const scene::Incident in = scene::incident(light, point.position);
-    const double cosine = point.normal.dot(in.to_light);
-    if (!(cosine > 0)) continue;
-    const Rgb reflectance = scene::brdf(scene.surfaces[point.surface].material, point.normal, in.to_light, to_view);
-    if ((reflectance == 0).all()) continue;
-    const Point3 start = scene.geometry->offset_origin(point.position, point.normal, in.to_light);
-    if (scene.geometry->occluded({start, in.to_light}, in.distance)) continue;
-    const Point3 source = std::get<scene::PointLight>(light).position;
+  const scene::Hit hit{0, point.position, point.normal, point.surface, point.triangle};
+  return scene::direct_light(scene, hit, to_view, scene.lights, [&](const scene::Incident&, std::size_t l) -> Rgb {
+    const Point3& source = std::get<scene::PointLight>(scene.lights[l]).position;
     const double depth = light_depth(model, source, point.position, crossings, evaluations, found);
-    radiance += reflectance * cosine * in.irradiance * (-depth * model.fog.hue).exp();
-  }
-  return radiance;
+    return (-depth * model.fog.extinction_ratio).exp();
+  });
 }
 
 FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const scene::Execution& execution) {
@@ -43,7 +35,7 @@ FirstHits first_hits(const scene::Scene& scene, const scene::View& view, const s
   FirstHits hits{std::vector<double>(pixels, infinity),
                  std::vector<SurfacePoint>(pixels, SurfacePoint{Point3::Zero(), Vec3::Zero(), -1}),
                  std::vector<float>(scene.backdrops.empty() ? 0 : 3 * pixels, std::nanf(""))};
-  scene::parallel_rows(view.height, execution, [&](int y) {
+  scene::parallel_for(view.height, execution, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       const scene::RayEnd end =
@@ -61,7 +53,7 @@ double surface_pass(const scene::Scene& scene, const Model& model, const Surface
                     const std::vector<float>& transmittance, const scene::Execution& execution,
                     std::vector<float>& surface, std::vector<float>* scattered) {
   std::vector<double> calls(view.height, 0.0);
-  scene::parallel_rows(view.height, execution, [&](int y) {
+  scene::parallel_for(view.height, execution, [&](int y) {
     Crossings crossings;
     std::vector<LightDepth> found;
     for (int x = 0; x < view.width; ++x) {

@@ -24,7 +24,7 @@ struct FirstHits {
 };
 FirstHits first_hits(const scene::Scene&, const scene::View&, const scene::Execution&);
 
-// T(s,p) of a point light, constant included [-], hue 1: computed once for direct and for scattered light.
+// T(s,p) of a point light, constant included [-], at extinction ratio 1: computed once for direct and for scattered light.
 struct LightDepth {
   Point3 source;
   double depth;

@@ -160,7 +160,8 @@ std::vector<scene::SettingSpec> LegendreFluids::settings() const {
       scene::real_setting(
           "dt", "0", 0, 1e9,
           "longest step [s]; 0: a frame. Steps divide a frame evenly; galerkin divides its advection further"),
-      scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants"),
+      scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants")
+          .where("variant", {"paper", "paper_repaired"}),
       scene::choice_setting("mixing", "densities", {"densities", "albedo"},
                             "of two densities move both, or their sum and the first one's share (the paper's albedo)"),
       scene::real_setting("filter_velocity", "0", 0, 1e9,

@@ -13,7 +13,7 @@ std::string LegendreLight::about() const {
 std::vector<scene::SettingSpec> LegendreLight::settings() const { return light_settings(); }
 
 std::vector<std::string> LegendreLight::supports(const scene::Scene& scene, const scene::Settings& settings) const {
-  return reasons_against_light(scene, read_light_options(settings));
+  return unsupported_light(scene, read_light_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_ptr<const scene::Scene> scene,

@@ -23,19 +23,28 @@ std::vector<scene::SettingSpec> light_settings() {
           "variant", "ray", {"ray", "paper"},
           "ray: exact optical depths, Gauss points on panels of every camera ray; paper: equations 22 to 24, "
           "one medium seen by an orthographic camera"),
-      integer_setting("points", "8", 2, 16, "of ray: Gauss points of a panel"),
-      real_setting("tolerance", "1e-5", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative"),
+      integer_setting("points", "8", 2, 16, "of ray: Gauss points of a panel").where("variant", {"ray"}),
+      real_setting("tolerance", "1e-5", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative")
+          .where("variant", {"ray"}),
       integer_setting("shadow_steps", "64", 1, 65536,
                       "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
-                      "finds shadows wider than that"),
-      integer_setting("environment_directions", "256", 1, 65536, "of ray: directions that stand for each environment"),
-      integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis"),
+                      "finds shadows wider than that")
+          .where("variant", {"ray"}),
+      integer_setting("environment_directions", "256", 1, 65536, "of ray: directions that stand for each environment")
+          .where("variant", {"ray"}),
+      integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis")
+          .where("variant", {"paper"}),
       choice_setting("closure", "least_squares", {"least_squares", "upwind"},
-                     "of paper, where light comes in: rows of a system of least squares; weak upwind inflow"),
-      real_setting("boundary_weight", "3", 1e-6, 1e6, "of least_squares: weight of the rows of inflow"),
-      choice_setting("truncation", "l2", {"l2", "chebyshev"}, "of paper: T of its equations 22 and 23"),
+                     "of paper, where light comes in: rows of a system of least squares; weak upwind inflow")
+          .where("variant", {"paper"}),
+      real_setting("boundary_weight", "3", 1e-6, 1e6, "of least_squares: weight of the rows of inflow")
+          .where("variant", {"paper"})
+          .where("closure", {"least_squares"}),
+      choice_setting("truncation", "l2", {"l2", "chebyshev"}, "of paper: T of its equations 22 and 23")
+          .where("variant", {"paper"}),
       choice_setting("solver", "auto", {"auto", "dense", "gmres"},
-                     "of paper: auto is gmres with upwind and n of 5 or more, else dense, of at most 12^3 unknowns"),
+                     "of paper: auto is gmres with upwind and n of 5 or more, else dense, of at most 12^3 unknowns")
+          .where("variant", {"paper"}),
   };
 }
 
@@ -62,17 +71,17 @@ std::shared_ptr<const scene::Scene> with_sky(std::shared_ptr<const scene::Scene>
   return std::make_shared<const scene::Scene>(scene::with_sky_as_lights(*scene, o.environment_directions));
 }
 
-std::vector<std::string> reasons_against_light(const scene::Scene& scene, const LightOptions& o) {
+std::vector<std::string> unsupported_light(const scene::Scene& scene, const LightOptions& o) {
   std::vector<std::string> reasons;
   if (o.variant == LightOptions::Variant::paper) {
-    reasons = reasons_against_paper(scene, o.paper);
+    reasons = unsupported_paper(scene, o.paper);
     if (scene::has_environment(scene) && (scatters(scene) || scene.geometry))
       reasons.push_back(
           "variant = paper solves a system for each direction of light, and an environment has all of "
           "them: expected directional lights, or variant = ray");
   }
   for (std::size_t i = 0; i < scene.media.size(); ++i)
-    if (const std::string why = field_against(scene.media, i); !why.empty()) reasons.push_back(why);
+    if (const std::string why = unsupported_field(scene.media, i); !why.empty()) reasons.push_back(why);
   for (std::size_t i = 0; i < scene.lights.size() && o.variant == LightOptions::Variant::ray; ++i)
     if (const std::string why = scene::unknown_light<scene::DirectionalLight, scene::EnvironmentLight>(scene.lights, i);
         !why.empty())

@@ -16,6 +16,6 @@ std::vector<scene::SettingSpec> light_settings();
 LightOptions read_light_options(const scene::Settings&);
 // What `ray` renders: directional lights for each environment, where these light something.
 std::shared_ptr<const scene::Scene> with_sky(std::shared_ptr<const scene::Scene>, const RayOptions&);
-std::vector<std::string> reasons_against_light(const scene::Scene&, const LightOptions&);
+std::vector<std::string> unsupported_light(const scene::Scene&, const LightOptions&);
 
 }  // namespace airlight::legendre_fluids

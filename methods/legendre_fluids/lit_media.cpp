@@ -37,7 +37,7 @@ double column(const scene::LegendreBox& field, const Ray& ray, Interval t) {
 
 }  // namespace
 
-std::string field_against(const std::vector<scene::Medium>& media, std::size_t i) {
+std::string unsupported_field(const std::vector<scene::Medium>& media, std::size_t i) {
   const scene::Medium& medium = media[i];
   const std::string why = scene::unknown_field<scene::LegendrePointer, scene::Homogeneous>(media, i);
   if (!why.empty()) return why;

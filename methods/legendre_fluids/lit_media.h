@@ -12,7 +12,7 @@ struct LitMedium {
 };
 
 struct LitMedia {
-  // The scene outlives this, and has nothing that `field_against` objects to. Depths towards lights are right to `rounding` [-].
+  // The scene outlives this, and has only fields of which `unsupported_field` names nothing. Depths towards lights are right to `rounding` [-].
   LitMedia(const scene::Scene&, double rounding);
   std::vector<scene::DirectionalLight> lights;  // those that shine
   std::vector<LitMedium> media;                 // those that extinguish
@@ -28,7 +28,7 @@ struct LitMedia {
 bool may_shadow(const scene::Surface&, const Box&, const Vec3& to_light);
 
 // Why a medium is no polynomial in a box; empty if it is one.
-std::string field_against(const std::vector<scene::Medium>&, std::size_t i);
+std::string unsupported_field(const std::vector<scene::Medium>&, std::size_t i);
 // A medium that is one, as such: its box is what of the field's lies in the medium's region; null if nothing does.
 scene::LegendrePointer field_within_region(const scene::Medium&);
 // Share of [-1, 1]^3 where a series is below 0, at Gauss points.

@@ -16,7 +16,7 @@ struct Part {
 std::vector<Part> parts_of(const scene::Scene& scene) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < scene.media.size(); ++i)
-    if (extinguishes(scene.media[i]) && field_against(scene.media, i).empty())
+    if (extinguishes(scene.media[i]) && unsupported_field(scene.media, i).empty())
       parts.push_back({&scene.media[i], field_within_region(scene.media[i])});
   return parts;
 }

@@ -181,7 +181,7 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
   const scene::CameraRays rays(view.camera, view.width, view.height);
   std::mutex mutex;
   long met = 0, negative = 0;
-  scene::parallel_rows(view.height, execution, [&](int y) {
+  scene::parallel_for(view.height, execution, [&](int y) {
     const auto width = std::size_t(view.width);
     PaperView::Row row;
     row.end.assign(width, infinity);
@@ -237,7 +237,7 @@ namespace {
 
 bool surface_may_shadow(const scene::Scene& scene, std::size_t medium) {
   const scene::LegendrePointer field =
-      field_against(scene.media, medium).empty() ? field_within_region(scene.media[medium]) : nullptr;
+      unsupported_field(scene.media, medium).empty() ? field_within_region(scene.media[medium]) : nullptr;
   for (const scene::Light& light : scene.lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light); field && sun && sun->irradiance.maxCoeff() > 0)
       for (const scene::Surface& surface : scene.surfaces)
@@ -247,7 +247,7 @@ bool surface_may_shadow(const scene::Scene& scene, std::size_t medium) {
 
 }  // namespace
 
-std::vector<std::string> reasons_against_paper(const scene::Scene& scene, const PaperOptions& options) {
+std::vector<std::string> unsupported_paper(const scene::Scene& scene, const PaperOptions& options) {
   std::vector<std::string> reasons;
   if (scene.camera.kind != scene::Camera::Kind::orthographic)
     reasons.push_back("variant = paper has one image of a whole view: expected an orthographic camera");

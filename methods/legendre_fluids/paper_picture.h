@@ -6,7 +6,7 @@
 namespace airlight::legendre_fluids {
 
 // Why the paper's systems cannot do that scene; one line each.
-std::vector<std::string> reasons_against_paper(const scene::Scene&, const PaperOptions&);
+std::vector<std::string> unsupported_paper(const scene::Scene&, const PaperOptions&);
 
 // Along which axes the scene's lights or its camera's view move.
 std::array<bool, 3> moving_axes(const scene::Scene&);

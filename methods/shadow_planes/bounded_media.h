@@ -17,7 +17,7 @@ class BoundedMedia {
   // Requires homogeneous media, overlapping or not; an unbounded one is a region like others.
   explicit BoundedMedia(const std::vector<scene::Medium>&, bool printed_phases = false);
 
-  // L [W/m^2/sr] on a lit part of the ray, per W/sr of the light towards each point (times its hue). `intensity(d)`:
+  // L [W/m^2/sr] on a lit part of the ray, per W/sr of the light towards each point (times its intensity). `intensity(d)`:
   // relative, towards the unit direction d from the light. The rule's error on every stretch between the places where a
   // way enters or leaves a region or passes one of its edges.
   template <class Intensity>

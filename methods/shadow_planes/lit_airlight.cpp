@@ -53,7 +53,7 @@ Rgb LitAirlight::operator()(const scene::Light& light, const Ray& ray, Interval 
 
 Rgb LitAirlight::part(const scene::Light& light, const Point3& at, const Ray& ray, Interval lit) const {
   const auto* spot = std::get_if<scene::SpotLight>(&light);
-  const Rgb hue = spot ? spot->intensity : std::get<scene::PointLight>(light).intensity;
+  const Rgb light_intensity = spot ? spot->intensity : std::get<scene::PointLight>(light).intensity;
   scene::Light white = scene::PointLight{at, Rgb::Ones(), 0};
   if (spot) white = scene::SpotLight{at, spot->axis, spot->inner_angle, spot->outer_angle, Rgb::Ones(), 0};
   const auto towards = [&](const Vec3& d) { return intensity_towards(white, d)[0]; };
@@ -63,7 +63,7 @@ Rgb LitAirlight::part(const scene::Light& light, const Point3& at, const Ray& ra
     const double x = std::isfinite(lit.hi) ? 0.5 * (lit.lo + lit.hi) : std::max(lit.lo, from.T) + 1 + from.h;
     if (towards((ray.at(x) - at).normalized()) == 0) return Rgb::Zero();
   }
-  if (!alone_) return hue * bounded_.airlight(bounded_rule_, ray, at, lit, towards);
+  if (!alone_) return light_intensity * bounded_.airlight(bounded_rule_, ray, at, lit, towards);
   Rgb result = Rgb::Zero();
   for (int c = 0; c < 3; ++c) {
     const double k = extinction_[c];
@@ -86,7 +86,7 @@ Rgb LitAirlight::part(const scene::Light& light, const Point3& at, const Ray& ra
     }
     result[c] = albedo_[c] * shape;
   }
-  return hue * result;
+  return light_intensity * result;
 }
 
 double LitAirlight::polynomial(double extinction, const LightFromRay& light, Interval lit) const {

@@ -64,7 +64,7 @@ std::string silhouettes_found(std::size_t edges, std::size_t lights) {
   return fmt::format("{} edges for {} light{}, found again where lights move", edges, lights, lights == 1 ? "" : "s");
 }
 
-std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& options) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   refuse_backdrops(scene, reasons);
   for (std::size_t i = 0; i < scene.media.size(); ++i)

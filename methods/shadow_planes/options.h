@@ -39,7 +39,7 @@ Options read_options(const scene::Settings&);
 // For `explain`: how many edges of how many lights, and when they are found.
 std::string silhouettes_found(std::size_t edges, std::size_t lights);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
-std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
+std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
 // Of a medium in a scene against which there are no reasons: it is homogeneous [1/m].
 Rgb extinction_of(const scene::Medium&);

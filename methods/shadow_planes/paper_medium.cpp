@@ -51,7 +51,7 @@ Rgb PaperMedium::operator()(const scene::Light& light, const Ray& ray, Interval 
       cross_cone(from, ray.direction, spot->axis, angle, places);
   for (double& x : places) x = std::clamp(x, within.lo, within.hi);
   std::sort(places.begin(), places.end());
-  const Rgb hue = spot ? spot->intensity : std::get<scene::PointLight>(light).intensity;
+  const Rgb light_intensity = spot ? spot->intensity : std::get<scene::PointLight>(light).intensity;
   scene::Light white = light;
   if (spot) std::get<scene::SpotLight>(white).intensity.setOnes();
   const auto intensity = [&](double sine, double cosine) {
@@ -68,7 +68,7 @@ Rgb PaperMedium::operator()(const scene::Light& light, const Ray& ray, Interval 
     for (std::size_t i = 0; i + 1 < places.size(); ++i)
       if (places[i] < places[i + 1]) sum[c] += part(k, from, inside.lo, {places[i], places[i + 1]}, intensity);
   }
-  return hue * albedo_ * sum;
+  return light_intensity * albedo_ * sum;
 }
 
 template <class Intensity>

@@ -114,7 +114,7 @@ std::vector<scene::StageTime> PreparedShadowPlanes::begin(std::shared_ptr<const 
 std::optional<std::vector<scene::StageTime>> PreparedShadowPlanes::next(std::shared_ptr<const Scene> scene,
                                                                         const Execution&) {
   if (scene->surfaces.size() != scene_->surfaces.size() || scene->lights.size() != scene_->lights.size() ||
-      !reasons_against(*scene, options_).empty())
+      !unsupported(*scene, options_).empty())
     return std::nullopt;
   return begin(std::move(scene));
 }
@@ -185,8 +185,8 @@ scene::Rendering PreparedShadowPlanes::render(const View& view, const Execution&
   const StageSeconds once = stages ? stages->seconds() : StageSeconds();
   watch.lap();
   std::vector<Tally> tallies(std::size_t(columns) * rows);
-  scene::parallel_rows(columns * rows, execution,
-                       [&](int tile) { render_tile(frame, tile % columns, tile / columns, layers, tallies[tile]); });
+  scene::parallel_for(columns * rows, execution,
+                      [&](int tile) { render_tile(frame, tile % columns, tile / columns, layers, tallies[tile]); });
   const double wall = watch.lap();
   Tally all;
   for (const Tally& t : tallies) {
@@ -234,7 +234,7 @@ std::string ShadowPlanes::about() const {
 std::vector<scene::SettingSpec> ShadowPlanes::settings() const { return setting_specs(); }
 
 std::vector<std::string> ShadowPlanes::supports(const Scene& scene, const scene::Settings& settings) const {
-  return reasons_against(scene, read_options(settings));
+  return unsupported(scene, read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> ShadowPlanes::prepare_supported(std::shared_ptr<const Scene> scene,

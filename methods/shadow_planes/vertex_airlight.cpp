@@ -44,7 +44,7 @@ template <class VertexOf>
 std::vector<Rgb> VertexAirlight::evaluate(std::size_t count, int threads, VertexOf&& vertex_of) {
   constexpr std::size_t chunk = 64;
   std::vector<Rgb> values(count);
-  scene::parallel_rows(int((count + chunk - 1) / chunk), {threads, {}}, [&](int k) {
+  scene::parallel_for(int((count + chunk - 1) / chunk), {threads, {}}, [&](int k) {
     for (std::size_t i = k * chunk; i < std::min(count, (k + 1) * chunk); ++i) values[i] = gamma(vertex_of(i));
   });
   count_ += count;

@@ -14,10 +14,6 @@ double enough_column(const scene::Medium& medium, const Options& options) {
 
 namespace {
 
-double level_up_to(const Options& o, const scene::Fogmap& fog, int level) {
-  return std::ldexp(o.near * fog.cell, level);
-}
-
 bool same_map(const scene::SplineMap& a, const scene::SplineMap& b) {
   const scene::IndexRange &x = a.range(), &y = b.range();
   return a.degree() == b.degree() && std::equal(x.lo, x.lo + 2, y.lo) && std::equal(x.size, x.size + 2, y.size) &&
@@ -111,15 +107,6 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
       return summed_depth(levels_, profile, line, inside, reach, o.mu, visits);
     case Variant::tele:
       return telescoped_depth(levels_, profile, line, inside, reach, o.mu, visits);
-    case Variant::dist: {
-      double sum = 0, from = 0;
-      for (int level = 0; level <= levels_.count() && from < length && sum <= enough_; ++level) {
-        const double to = level == levels_.count() ? length : std::min(length, level_up_to(o, *fog_, level));
-        sum += part(level, from, to);
-        from = to;
-      }
-      return sum;
-    }
     case Variant::bound: {
       // The error is shared out over the way in the fog, in the thickest channel.
       const double thickest = medium_->sigma_t.maxCoeff();

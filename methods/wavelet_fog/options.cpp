@@ -12,18 +12,15 @@ std::vector<scene::SettingSpec> setting_specs() {
   using namespace scene;
   return {
       choice_setting(
-          "variant", "skip", {"paper", "tele", "dist", "direct", "skip", "bound", "polar", "pre"},
-          "paper: approximation and details, summed (section 4.3); tele: the same, one grid at a time; dist: levels by "
-          "absolute distance; direct: the map; skip: the map, empty blocks passed at once; bound: coarse where the "
+          "variant", "skip", {"paper", "tele", "direct", "skip", "bound", "polar", "pre"},
+          "paper: approximation and details, summed (section 4.3); tele: the same, one grid at a time; direct: the map; skip: the map, empty blocks passed at once; bound: coarse where the "
           "tolerance allows; polar: integrals from the eye, tabulated once per frame; pre: approximation and wavelets, "
           "summed (before section 4.3's deconstruction)"),
       choice_setting(
           "coarse", "wavelet", {"wavelet", "clamped", "restricted"},
           "coarse grids: analysis of Haar, CDF 2.2 or 3.3 by the map's degree; its values below 0 taken as 0; p/2"),
-      integer_setting("levels", "3", 0, 20, "of the decomposition, of paper, pre, tele, dist and bound"),
+      integer_setting("levels", "3", 0, 20, "of the decomposition, of paper, pre, tele and bound"),
       real_setting("mu", "0.6", 0, 1, "detail m of paper, pre and tele counts up to |OP| mu^m from the eye"),
-      real_setting("near", "16", 0, 1e9,
-                   "cells up to which dist reads the finest level; each coarser one reaches twice as far"),
       real_setting("tolerance", "0.03", 0, 1e9, "of bound: greatest error of a ray's optical depth"),
       integer_setting("angles", "512", 8, 65536,
                       "of polar, over the directions in the view; twice as many where it looks straight up or down"),
@@ -59,7 +56,6 @@ Options read_options(const scene::Settings& settings) {
   o.coarse = settings.choice<Coarse>("coarse");
   o.levels = int(settings.integer("levels"));
   o.mu = settings.real("mu");
-  o.near = settings.real("near");
   o.tolerance = settings.real("tolerance");
   o.angles = int(settings.integer("angles"));
   o.radial_step = settings.real("radial_step");
@@ -78,7 +74,7 @@ Options read_options(const scene::Settings& settings) {
 
 bool uses_levels(Options::Variant variant) {
   using V = Options::Variant;
-  return is_signed(variant) || variant == V::tele || variant == V::dist || variant == V::bound;
+  return is_signed(variant) || variant == V::tele || variant == V::bound;
 }
 
 bool is_signed(Options::Variant variant) {
@@ -128,7 +124,7 @@ void add_reasons_of_sun(const scene::Scene& scene, const Options& o, std::vector
 
 }  // namespace
 
-std::vector<std::string> reasons_against(const scene::Scene& scene, const Options& o) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o) {
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     const std::string why = scene::unknown_field<scene::FogmapPointer>(scene.media, i);

@@ -15,7 +15,6 @@ struct Options {
   enum class Variant {
     paper,   // approximation and details of any sign, summed, details up to distances (section 4.3)
     tele,    // the same by one grid at a time
-    dist,    // levels by absolute distance: no seams where the object behind changes
     direct,  // the map itself
     skip,    // the map itself, empty blocks passed at once
     bound,   // per block the coarsest level that keeps the error below the tolerance
@@ -26,7 +25,6 @@ struct Options {
   Coarse coarse = Coarse::wavelet;
   int levels = 3;
   double mu = 0.6;
-  double near = 16;          // [cells] the finest level of `dist` ends there, each coarser one twice as far
   double tolerance = 0.03;   // of `bound`, in optical depth
   int angles = 512;          // of `polar`
   double radial_step = 0.5;  // of `polar` [cells]
@@ -50,6 +48,6 @@ const char* family_of_degree(int degree);
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
-std::vector<std::string> reasons_against(const scene::Scene&, const Options&);
+std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
 }  // namespace airlight::wavelet_fog

@@ -162,7 +162,7 @@ PolarTable::PolarTable(const SplineMap& map, double u, double v, const Fan& fan,
   steps_ = all.steps;
   entries_.resize(std::size_t(angles_) * (steps_ + 1));
   std::mutex mutex;
-  scene::parallel_rows(angles_, execution, [&](int i) {
+  scene::parallel_for(angles_, execution, [&](int i) {
     Entry* spoke = entries_.data() + std::size_t(i) * (steps_ + 1);
     const double angle = fan_.first + (i - 1) * spacing_;
     const MapLine line{u, v, 0, std::cos(angle), std::sin(angle), 1};

@@ -72,7 +72,7 @@ SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, con
       rows_(rows_towards(*fog_, to_sun, step)) {
   if (rows_.upright) return;
   entries_.resize(std::size_t(rows_.columns) * rows_.rows);
-  scene::parallel_rows(rows_.rows, execution, [&](int row) { fill_row(row); });
+  scene::parallel_for(rows_.rows, execution, [&](int row) { fill_row(row); });
 }
 
 // From the sun's side on.

@@ -116,7 +116,7 @@ std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::shared_ptr<const 
 
 std::optional<std::vector<scene::StageTime>> PreparedWaveletFog::next(std::shared_ptr<const Scene> scene,
                                                                       const Execution& execution) {
-  if (!reasons_against(*scene, options_).empty()) return std::nullopt;
+  if (!unsupported(*scene, options_).empty()) return std::nullopt;
   return prepare(std::move(scene), std::exchange(fogs_, {}), execution);
 }
 
@@ -220,7 +220,7 @@ std::string WaveletFog::about() const {
 std::vector<scene::SettingSpec> WaveletFog::settings() const { return setting_specs(); }
 
 std::vector<std::string> WaveletFog::supports(const Scene& scene, const scene::Settings& settings) const {
-  return reasons_against(scene, read_options(settings));
+  return unsupported(scene, read_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> WaveletFog::prepare_supported(std::shared_ptr<const Scene> scene,

@@ -82,7 +82,7 @@ double terms_of_ray(const scene::Scene& scene) {
   return terms_of_evaluation(scene) * (1 + nodes * panels * double(lights));
 }
 
-std::string too_much(const scene::Scene& scene) {
+std::string unsupported(const scene::Scene& scene) {
   const double needed = double(scene.width) * scene.height * terms_of_ray(scene);
   if (!(needed > most_work)) return {};
   return fmt::format(

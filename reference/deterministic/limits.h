@@ -16,6 +16,6 @@ double terms_of_evaluation(const scene::Scene&);
 double terms_of_ray(const scene::Scene&);
 
 // In one line: that a picture of the scene needs more than most_work. Empty if not.
-std::string too_much(const scene::Scene&);
+std::string unsupported(const scene::Scene&);
 
 }  // namespace airlight::deterministic

@@ -79,7 +79,7 @@ class DeterministicPrepared final : public scene::Prepared {
     if (airlight_kept()) film.add("error");
     scene::Stopwatch watch;
     const scene::CameraRays rays(view.camera, view.width, view.height);
-    const auto counts = scene::sum_over_rows<Counts>(view.height, execution, [&](int y, Counts& of_row) {
+    const auto counts = scene::parallel_sum<Counts>(view.height, execution, [&](int y, Counts& of_row) {
       for (int x = 0; x < view.width; ++x) {
         Airlight airlight;
         layers.put(x, y, pixel(rays(x + 0.5, y + 0.5), airlight, of_row));
@@ -152,7 +152,7 @@ class DeterministicRenderer final : public scene::Renderer {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
       return {no_finite_answer};
     if (const std::string reason = scene::too_thick(scene, 0.01); !reason.empty()) return {reason};
-    if (const std::string reason = too_much(scene); !reason.empty()) return {reason};
+    if (const std::string reason = unsupported(scene); !reason.empty()) return {reason};
     return {};
   }
 

@@ -20,7 +20,8 @@ std::vector<scene::SettingSpec> setting_specs() {
       scene::integer_setting("roulette_order", "5", 1, 1e6, "scatterings and reflections before Russian roulette"),
       scene::real_setting("roulette_cap", "1", 0.01, 1, "greatest survival probability of the roulette"),
       scene::flag_setting("supergrid", true, "local majorants; false: one for each whole medium"),
-      scene::integer_setting("supergrid_cells", "0", 0, 1024, "majorant cells per axis; 0: 16, or one per 4^3 voxels"),
+      scene::integer_setting("supergrid_cells", "0", 0, 1024, "majorant cells per axis; 0: 16, or one per 4^3 voxels")
+          .where("supergrid", {"true"}),
       scene::real_setting("majorant_scale", "1", 1e-3, 1e3, "multiplies the majorants; below 1 injects a fault"),
       scene::choice_setting("transmittance", "column", {"column", "ratio"},
                             "of shadow rays: noise-free column, or ratio tracking"),

@@ -5,8 +5,8 @@
 #include <chrono>
 
 #include "reference/path_tracer/cache.h"
-#include "reference/path_tracer/refusals.h"
 #include "reference/path_tracer/stopping.h"
+#include "reference/path_tracer/unsupported.h"
 #include "scene/atomic_file.h"
 #include "scene/content_store.h"
 
@@ -87,7 +87,7 @@ std::string PathTracer::about() const {
 std::vector<scene::SettingSpec> PathTracer::settings() const { return setting_specs(); }
 
 std::vector<std::string> PathTracer::supports(const scene::Scene& scene, const scene::Settings& settings) const {
-  return refusals(scene, parse_options(settings));
+  return unsupported(scene, parse_options(settings));
 }
 
 std::unique_ptr<scene::Prepared> PathTracer::prepare_supported(std::shared_ptr<const scene::Scene> scene,

@@ -52,7 +52,7 @@ double steps_per_ray(const scene::Scene& scene, const Options& options) {
   return std::max(sum, 1.0);
 }
 
-std::vector<std::string> too_much(const scene::Scene& scene, const Options& options, double unit) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& options, double unit) {
   std::vector<std::string> reasons;
   const auto out_of_range = [&](const char* name, double metres) {
     const double length = metres / unit;

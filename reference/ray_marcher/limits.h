@@ -18,6 +18,6 @@ constexpr double most_ray_steps = 1 << 22;  // of one ray, its marches for light
 double steps_per_ray(const scene::Scene&, const Options&);
 
 // Reasons, one line each, before anything is allocated.
-std::vector<std::string> too_much(const scene::Scene&, const Options&, double unit);
+std::vector<std::string> unsupported(const scene::Scene&, const Options&, double unit);
 
 }  // namespace airlight::ray_marcher

@@ -89,7 +89,7 @@ class PreparedMarch final : public scene::Prepared {
     const auto rays_at_once =
         std::size_t(std::clamp(double(1 << 18) / steps_per_ray(*plan_.scene, plan_.options), 1.0, 64.0));
     const int columns = (view.width + tile_side - 1) / tile_side, rows = (view.height + tile_side - 1) / tile_side;
-    const auto total = scene::sum_over_rows<Counters>(columns * rows, execution, [&](int tile, Counters& counters) {
+    const auto total = scene::parallel_sum<Counters>(columns * rows, execution, [&](int tile, Counters& counters) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
       const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
       const FlushSubnormals flush;
@@ -142,7 +142,7 @@ std::vector<scene::SettingSpec> RayMarcher::settings() const { return option_spe
 
 std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const scene::Settings& settings) const {
   const double unit = length_unit(scene);
-  std::vector<std::string> reasons = too_much(scene, read_options(settings, unit), unit);
+  std::vector<std::string> reasons = unsupported(scene, read_options(settings, unit), unit);
   const auto visible = std::count_if(scene.media.begin(), scene.media.end(), scene::extinguishes);
   if (visible > std::ptrdiff_t(most_layers))
     reasons.push_back(fmt::format("{} media with extinction, at most {} are supported", visible, most_layers));

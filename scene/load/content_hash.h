@@ -27,6 +27,10 @@ class ContentHash {
   // Its length, then its values.
   void add(const std::vector<float>&);
   void add(const std::vector<double>&);
+  template <class... Values>
+  void all(const Values&... values) {
+    (add(values), ...);
+  }
 
   std::string digits() const;  // 32 hex digits
 

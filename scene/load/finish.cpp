@@ -16,58 +16,50 @@ namespace {
 using load::ContentHash;
 
 // Names, file names and the order of keys do not change the picture and are left out. What one kind does not use (the
-// height of a perspective camera) is left out too.
+// height of a perspective camera) is left out too. Every structure is taken apart into all its members: one that is added
+// later does not compile before this file says what it means for the hash.
 void add(ContentHash& hash, const Camera& camera) {
-  const bool perspective = camera.kind == Camera::Kind::perspective;
+  const auto& [kind, position, forward, right, up, vertical_fov, height] = camera;
+  const bool perspective = kind == Camera::Kind::perspective;
   hash.tag(perspective ? "perspective" : "orthographic");
-  hash.add(camera.position);
-  hash.add(camera.forward);
-  hash.add(camera.right);
-  hash.add(camera.up);
-  hash.add(perspective ? camera.vertical_fov : camera.height);
+  hash.all(position, forward, right, up, perspective ? vertical_fov : height);
 }
 
 void add(ContentHash& hash, const PointLight& light) {
-  hash.add(light.position);
-  hash.add(light.intensity);
-  hash.add(light.radius);
+  const auto& [position, intensity, radius] = light;
+  hash.all(position, intensity, radius);
 }
 
 void add(ContentHash& hash, const SpotLight& light) {
-  hash.add(light.position);
-  hash.add(light.axis);
-  hash.add(light.inner_angle);
-  hash.add(light.outer_angle);
-  hash.add(light.intensity);
-  hash.add(light.radius);
+  const auto& [position, axis, inner_angle, outer_angle, intensity, radius] = light;
+  hash.all(position, axis, inner_angle, outer_angle, intensity, radius);
 }
 
 void add(ContentHash& hash, const DirectionalLight& light) {
-  hash.add(light.to_light);
-  hash.add(light.irradiance);
+  const auto& [to_light, irradiance] = light;
+  hash.all(to_light, irradiance);
 }
 
 void add(ContentHash& hash, const EnvironmentLight& light) {
-  hash.add(light.scale);
-  hash.add(light.to_map);
-  hash.add(light.map ? light.map->width : 0);
-  hash.add(light.map ? light.map->height : 0);
-  if (light.map) hash.add(light.map->rgb);
-  hash.add(std::int64_t(light.sh.size()));
-  for (const Rgb& coefficient : light.sh) hash.add(coefficient);
+  const auto& [scale, to_map, map, sh, tables, source] = light;  // tables follow from the others
+  hash.all(scale, to_map);
+  const EnvironmentMap none;
+  const auto& [width, height, rgb] = map ? *map : none;
+  hash.all(width, height);
+  if (map) hash.add(rgb);
+  hash.add(std::int64_t(sh.size()));
+  for (const Rgb& coefficient : sh) hash.add(coefficient);
 }
 
-void add(ContentHash& hash, const Homogeneous& field) { hash.add(field.density); }
+void add(ContentHash& hash, const Homogeneous& field) {
+  const auto& [density] = field;
+  hash.add(density);
+}
 
 void add(ContentHash& hash, const GaussianSum& field) {
-  hash.add(field.constant);
-  hash.add(field.cutoff);
-  hash.add(std::int64_t(field.gaussians.size()));
-  for (const Gaussian& g : field.gaussians) {
-    hash.add(g.center);
-    hash.add(g.width);
-    hash.add(g.amplitude);
-  }
+  const auto& [gaussians, constant, cutoff] = field;
+  hash.all(constant, cutoff, std::int64_t(gaussians.size()));
+  for (const auto& [center, width, amplitude] : gaussians) hash.all(center, width, amplitude);
 }
 
 void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) { load::add(hash, *grid); }
@@ -75,25 +67,21 @@ void add(ContentHash& hash, const std::shared_ptr<const VoxelGrid>& grid) { load
 void add(ContentHash&, const SameAtAllHeights&) {}
 
 void add(ContentHash& hash, const Layers& layers) {
-  hash.add(layers.heights);
-  hash.add(layers.factors);
+  const auto& [heights, factors] = layers;
+  hash.all(heights, factors);
 }
 
 void add(ContentHash& hash, const ExponentialFall& fall) {
-  hash.add(fall.base);
-  hash.add(fall.scale_height);
+  const auto& [base, scale_height] = fall;
+  hash.all(base, scale_height);
 }
 
 void add(ContentHash& hash, const std::shared_ptr<const Fogmap>& fog) {
-  hash.add(fog->map.degree());
-  for (int axis = 0; axis < 2; ++axis) {
-    hash.add(fog->map.range().lo[axis]);
-    hash.add(fog->map.range().size[axis]);
-  }
-  hash.add(fog->map.coefficients());
-  for (const double value : {fog->x0, fog->z0, fog->cell, fog->cos_turn, fog->sin_turn}) hash.add(value);
-  hash.add(int(fog->profile.index()));
-  std::visit([&](const auto& profile) { add(hash, profile); }, fog->profile);
+  const auto& [map, profile, x0, z0, cell, cos_turn, sin_turn, note] = *fog;
+  hash.add(map.degree());
+  for (int axis = 0; axis < 2; ++axis) hash.all(map.range().lo[axis], map.range().size[axis]);
+  hash.all(map.coefficients(), x0, z0, cell, cos_turn, sin_turn, int(profile.index()));
+  std::visit([&](const auto& kind) { add(hash, kind); }, profile);
 }
 
 void add(ContentHash& hash, const std::shared_ptr<const LegendreBox>& field) {
@@ -104,58 +92,62 @@ void add(ContentHash& hash, const std::shared_ptr<const LegendreBox>& field) {
 }
 
 void add(ContentHash& hash, const FittedPointer& fitted) {
-  add(hash, fitted->gaussians);
-  load::add(hash, fitted->grid);
-  hash.tag(fitted->residual ? content_key(residual_bytes(*fitted->residual)) : "no residual");
+  const auto& [gaussians, residual, grid] = *fitted;
+  add(hash, gaussians);
+  load::add(hash, grid);
+  hash.tag(residual ? content_key(residual_bytes(*residual)) : "no residual");
 }
 
 void add(ContentHash& hash, const Medium& medium) {
-  hash.add(int(medium.field.index()));
-  std::visit([&](const auto& field) { add(hash, field); }, medium.field);
-  load::add(hash, medium.region);
-  hash.add(medium.sigma_t);
-  hash.add(medium.albedo);
-  hash.tag(phase_name(medium.phase));
+  const auto& [name, field, region, sigma_t, albedo, phase] = medium;
+  hash.add(int(field.index()));
+  std::visit([&](const auto& kind) { add(hash, kind); }, field);
+  load::add(hash, region);
+  hash.all(sigma_t, albedo);
+  hash.tag(phase_name(phase));
   match(
-      medium.phase, [](Isotropic) {}, [](Rayleigh) {}, [&](HenyeyGreenstein hg) { hash.add(hg.g); }, [](Hazy) {},
-      [](Murky) {});
+      phase, [](Isotropic) {}, [](Rayleigh) {},
+      [&](HenyeyGreenstein hg) {
+        const auto& [g] = hg;
+        hash.add(g);
+      },
+      [](Hazy) {}, [](Murky) {});
 }
 
-void add_matter(ContentHash& hash, const Scene& scene) {
+void add_matter(ContentHash& hash, const std::vector<Medium>& media, const std::vector<Surface>& surfaces) {
   hash.tag("media");
-  hash.add(std::int64_t(scene.media.size()));
-  for (const Medium& medium : scene.media) add(hash, medium);
+  hash.add(std::int64_t(media.size()));
+  for (const Medium& medium : media) add(hash, medium);
   hash.tag("surfaces");
-  hash.add(std::int64_t(scene.surfaces.size()));
-  for (const Surface& surface : scene.surfaces) load::add(hash, surface);
+  hash.add(std::int64_t(surfaces.size()));
+  for (const Surface& surface : surfaces) load::add(hash, surface);
 }
 
 std::string matter_hash(const Scene& scene) {
   ContentHash hash;
-  add_matter(hash, scene);
+  add_matter(hash, scene.media, scene.surfaces);
   return hash.digits();
 }
 
 std::string content_hash(const Scene& scene) {
   ContentHash hash;
   hash.tag("airlight scene 1");  // raised when the meaning of the values changes
-  hash.add(scene.width);
-  hash.add(scene.height);
-  hash.add(scene.ambient_in_scatter);
-  add(hash, scene.camera);
+  // The geometry follows from the surfaces.
+  const auto& [name, camera, width, height, lights, media, surfaces, geometry, backdrops, ambient_in_scatter, whole,
+               matter] = scene;
+  hash.all(width, height, ambient_in_scatter);
+  add(hash, camera);
   hash.tag("lights");
-  hash.add(std::int64_t(scene.lights.size()));
-  for (const Light& light : scene.lights) {
+  hash.add(std::int64_t(lights.size()));
+  for (const Light& light : lights) {
     hash.tag(light_name(light));
     std::visit([&](const auto& kind) { add(hash, kind); }, light);
   }
-  add_matter(hash, scene);
-  for (const auto& backdrop : scene.backdrops) {
-    hash.tag(backdrop->fills ? "backdrop" : "particles");
-    hash.add(backdrop->width);
-    hash.add(backdrop->height);
-    hash.add(backdrop->radiance);
-    hash.add(backdrop->depth);
+  add_matter(hash, media, surfaces);
+  for (const auto& one : backdrops) {
+    const auto& [columns, rows, radiance, depth, fills] = *one;
+    hash.tag(fills ? "backdrop" : "particles");
+    hash.all(columns, rows, radiance, depth);
   }
   return hash.digits();
 }

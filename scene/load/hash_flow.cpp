@@ -10,14 +10,11 @@ namespace {
 void add_start(ContentHash& hash, const std::vector<Blob>& blobs, const std::optional<Wave>& wave,
                const std::shared_ptr<const VoxelGrid>& grid) {
   hash.tag("blobs");
-  for (const Blob& blob : blobs) {
-    hash.add(blob.center);
-    for (const double value : {blob.width, blob.density, blob.temperature}) hash.add(value);
-  }
+  for (const auto& [center, width, density, temperature] : blobs) hash.all(center, width, density, temperature);
   hash.tag(wave ? "wave" : "no wave");
   if (wave) {
-    hash.add(wave->waves);
-    for (const double value : {wave->density, wave->offset, wave->phase}) hash.add(value);
+    const auto& [waves, density, offset, phase] = *wave;
+    hash.all(waves, density, offset, phase);
   }
   hash.tag(grid ? "density grid" : "no grid");
   if (grid) add(hash, *grid);
@@ -25,84 +22,80 @@ void add_start(ContentHash& hash, const std::vector<Blob>& blobs, const std::opt
 
 }  // namespace
 
-std::string content_hash(const FlowProblem& p) {
+// Every structure is taken apart into all its members: one that is added later does not compile before this file says what it
+// means for the hash.
+std::string content_hash(const FlowProblem& problem) {
+  const auto& [name, file, dimensions, box, sides, viscosity, diffusivity, decay, gravity, weight, expansion,
+               confinement, velocity, velocity_stays, density, temperature, blobs, wave, densities, density_grid,
+               temperature_grid, velocity_grid, sources, obstacles, pushes, particles, duration, frame_rate, known] =
+      problem;
   ContentHash hash;
   hash.tag("airlight flow 1");
-  hash.add(p.dimensions);
-  hash.add(p.box);
-  for (const auto& axis : p.sides)
-    for (const Side& side : axis) {
-      hash.tag(side_name(side.kind));
-      hash.add(side.velocity);
-      hash.add(int(side.regularized));
-      hash.add(side.density);
-      hash.add(side.temperature);
+  hash.all(dimensions, box);
+  for (const auto& axis : sides)
+    for (const auto& [kind, moves, regularized, carried, warmth, of] : axis) {  // of: below
+      hash.tag(side_name(kind));
+      hash.all(moves, int(regularized), carried, warmth);
     }
-  for (const double value : {p.viscosity, p.diffusivity, p.decay, p.weight, p.expansion, p.confinement, p.density,
-                             p.temperature, p.duration, p.frame_rate})
-    hash.add(value);
-  hash.add(p.gravity);
-  hash.add(int(p.velocity.index()));
+  hash.all(viscosity, diffusivity, decay, weight, expansion, confinement, density, temperature, duration, frame_rate,
+           gravity, int(velocity.index()));
   match(
-      p.velocity, [](const AtRest&) {},
-      [&](const TaylorGreen& v) {
-        hash.add(v.speed);
-        hash.add(v.waves);
+      velocity, [](const AtRest&) {},
+      [&](const TaylorGreen& start) {
+        const auto& [speed, waves] = start;
+        hash.all(speed, waves);
       },
-      [&](const Swirl& v) { hash.add(v.speed); },
-      [&](const RigidRotation& v) {
-        hash.add(v.center);
-        hash.add(v.rate);
+      [&](const Swirl& start) {
+        const auto& [speed] = start;
+        hash.add(speed);
       },
-      [&](const Wind& v) {
-        hash.add(v.velocity);
-        if (v.gust.isZero(0)) return;
-        hash.add(v.gust);
-        hash.add(v.frequency);
+      [&](const RigidRotation& start) {
+        const auto& [center, rate] = start;
+        hash.all(center, rate);
+      },
+      [&](const Wind& start) {
+        const auto& [mean, gust, frequency] = start;
+        hash.add(mean);
+        if (!gust.isZero(0)) hash.all(gust, frequency);
       });
-  hash.add(int(p.velocity_stays));
-  add_start(hash, p.blobs, p.wave, p.density_grid);
-  if (p.temperature_grid) {
+  hash.add(int(velocity_stays));
+  add_start(hash, blobs, wave, density_grid);
+  if (temperature_grid) {
     hash.tag("temperature grid");
-    add(hash, *p.temperature_grid);
+    add(hash, *temperature_grid);
   }
-  if (p.velocity_grid) {
+  if (velocity_grid) {
     hash.tag("velocity grid");
-    for (const VoxelGrid& component : *p.velocity_grid) add(hash, component);
+    for (const VoxelGrid& component : *velocity_grid) add(hash, component);
   }
   hash.tag("sources");
-  for (const Source& s : p.sources) {
-    add(hash, s.region);
-    for (const double value : {s.time.lo, s.time.hi, s.density_rate, s.temperature_rate, s.density.value_or(-1),
-                               s.temperature.value_or(infinity)})
-      hash.add(value);
-    hash.add(s.velocity.value_or(Vec3::Constant(infinity)));
+  for (const auto& [region, time, density_rate, temperature_rate, held, held_warmth, held_velocity, of] : sources) {
+    add(hash, region);
+    hash.all(time.lo, time.hi, density_rate, temperature_rate, held.value_or(-1), held_warmth.value_or(infinity),
+             Vec3(held_velocity.value_or(Vec3::Constant(infinity))));
   }
   hash.tag("obstacles");
-  for (const Surface& surface : p.obstacles) add(hash, surface);
+  for (const Surface& surface : obstacles) add(hash, surface);
   hash.tag("forces");
-  for (const Push& push : p.pushes) {
-    add(hash, push.region);
-    hash.add(push.acceleration);
-    for (const double value : {push.time.lo, push.time.hi, push.frequency}) hash.add(value);
+  for (const auto& [region, time, acceleration, frequency] : pushes) {
+    add(hash, region);
+    hash.all(acceleration, time.lo, time.hi, frequency);
   }
-  for (const NamedDensity& d : p.densities) {
-    hash.tag("density " + d.name);
-    hash.add(d.density);
-    add_start(hash, d.blobs, d.wave, d.grid);
+  for (const auto& [of_density, amount, its_blobs, its_wave, grid] : densities) {
+    hash.tag("density " + of_density);
+    hash.add(amount);
+    add_start(hash, its_blobs, its_wave, grid);
   }
-  if (!p.densities.empty()) {
-    for (const auto& axis : p.sides)
+  if (!densities.empty()) {
+    for (const auto& axis : sides)
       for (const Side& side : axis) hash.add(side.of);
-    for (const Source& s : p.sources) hash.add(s.of);
+    for (const Source& source : sources) hash.add(source.of);
   }
-  for (const ParticleSet& set : p.particles) {
+  for (const auto& [count, region, seed, fall, leaving] : particles) {
     hash.tag("particles");
-    hash.add(set.count);
-    add(hash, set.region);
-    hash.add(std::int64_t(set.seed));
-    hash.add(set.fall);
-    hash.add(int(set.leaving));
+    hash.add(count);
+    add(hash, region);
+    hash.all(std::int64_t(seed), fall, int(leaving));
   }
   return hash.digits();
 }

@@ -8,58 +8,53 @@ namespace {
 void add(ContentHash&, const Unbounded&) {}
 
 void add(ContentHash& hash, const Sphere& sphere) {
-  hash.add(sphere.center);
-  hash.add(sphere.radius);
+  const auto& [center, radius] = sphere;
+  hash.all(center, radius);
 }
 
 void add(ContentHash& hash, const Box& box) { hash.add(box); }
 
 void add(ContentHash& hash, const Slab& slab) {
-  hash.add(slab.normal);
-  hash.add(slab.lo);
-  hash.add(slab.hi);
+  const auto& [normal, lo, hi] = slab;
+  hash.all(normal, lo, hi);
 }
 
 void add(ContentHash& hash, const TriangleMesh& mesh) {
-  hash.add(std::int64_t(mesh.vertices.size()));
-  for (const Point3& vertex : mesh.vertices) hash.add(vertex);
-  hash.add(std::int64_t(mesh.triangles.size()));
-  for (const auto& triangle : mesh.triangles)
+  const auto& [vertices, triangles, removed_degenerate] = mesh;
+  hash.add(std::int64_t(vertices.size()));
+  for (const Point3& vertex : vertices) hash.add(vertex);
+  hash.add(std::int64_t(triangles.size()));
+  for (const auto& triangle : triangles)
     for (const int index : triangle) hash.add(index);
 }
 
 void add(ContentHash& hash, const Plane& plane) {
-  hash.add(plane.point);
-  hash.add(plane.normal);
+  const auto& [point, normal] = plane;
+  hash.all(point, normal);
 }
 
-void add(ContentHash& hash, const Lambert& material) { hash.add(material.albedo); }
+void add(ContentHash& hash, const Lambert& material) {
+  const auto& [albedo] = material;
+  hash.add(albedo);
+}
 
 void add(ContentHash& hash, const Phong& material) {
-  hash.add(material.diffuse);
-  hash.add(material.specular);
-  hash.add(material.exponent);
+  const auto& [diffuse, specular, exponent] = material;
+  hash.all(diffuse, specular, exponent);
 }
 
 void add(ContentHash& hash, const Tabulated& material) {
-  const BrdfTable& table = *material.table;
-  hash.add(table.thetas());
-  hash.add(table.phis());
-  for (const Rgb& value : table.values()) hash.add(value);
+  const auto& [table] = material;
+  hash.all(table->thetas(), table->phis());
+  for (const Rgb& value : table->values()) hash.add(value);
 }
 
 }  // namespace
 
 void add(ContentHash& hash, const VoxelGrid& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    hash.add(grid.size[axis]);
-    hash.add(grid.origin_index[axis]);
-  }
-  hash.add(grid.rotation);
-  hash.add(grid.voxel_size);
-  hash.add(grid.translation);
-  hash.add(int(grid.clamp_border));
-  hash.add(grid.values);
+  const auto& [size, origin_index, rotation, voxel_size, translation, clamp_border, values] = grid;
+  for (int axis = 0; axis < 3; ++axis) hash.all(size[axis], origin_index[axis]);
+  hash.all(rotation, voxel_size, translation, int(clamp_border), values);
 }
 
 void add(ContentHash& hash, const Region& region) {
@@ -68,10 +63,11 @@ void add(ContentHash& hash, const Region& region) {
 }
 
 void add(ContentHash& hash, const Surface& surface) {
-  hash.add(int(surface.shape.index()));
-  std::visit([&](const auto& shape) { add(hash, shape); }, surface.shape);
-  hash.add(int(surface.material.index()));
-  std::visit([&](const auto& material) { add(hash, material); }, surface.material);
+  const auto& [name, shape, material] = surface;
+  hash.add(int(shape.index()));
+  std::visit([&](const auto& kind) { add(hash, kind); }, shape);
+  hash.add(int(material.index()));
+  std::visit([&](const auto& kind) { add(hash, kind); }, material);
 }
 
 }  // namespace airlight::scene::load

@@ -219,7 +219,7 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums",
       CAPTURE(v.at("id").get<std::string>(), name);
       using compensated_ray_marching::SliceWeight;
       ranges.bind(at::ranges);
-      airlight.bind(at::airlight);
+      airlight.bind(at::airlight_layer);
       column.bind(at::column);
       ranges.bind(at::distances);
       set_camera(find, view);

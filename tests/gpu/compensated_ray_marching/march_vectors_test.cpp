@@ -92,7 +92,7 @@ class MarchOnDevice {
     definitions["SCATTERS"] = "1";
     gpu::Program& march = gpu::smoke::program(context_, "march", 8, 8, definitions);
     ranges.bind(at::ranges);
-    airlight.bind(at::airlight);
+    airlight.bind(at::airlight_layer);
     column.bind(at::column);
     sources_->bind(at::centre_sources);
     gpu::set_camera(march, view, middle_);

@@ -28,9 +28,8 @@ TEST_CASE("compensated march on the device, stress list: the processor's picture
   std::set<std::string> deep;  // transmittances of row 22
   for (const StressScene& s : StressScenes::all()) {
     if (!(paper ? s.for_paper : s.for_grid)) continue;
-    Given given = s.given;
+    Given given = given_of(s, paper);
     if (paper) {
-      given["variant"] = "paper";
       given["iterations"] = "6";  // before rounding steers: paper_test.cpp
     } else {
       // Few, but where the row's bounds on brightness are those of twelve.

@@ -230,8 +230,8 @@ TEST_CASE("fogshop: colours of scattering, GPU agrees with CPU", "[gpu][thorough
   scene->media[0].albedo = Rgb(0.9, 0.2, 0.5);
   other.albedo = Rgb(0.1, 0.6, 0.8);
   scene->media.push_back(other);
-  for (const Rgb& hue : {Rgb(1, 1, 1), Rgb(0.5, 0.8, 1)}) {
-    for (auto& medium : scene->media) medium.sigma_t = 0.25 * hue;
+  for (const Rgb& extinction_ratio : {Rgb(1, 1, 1), Rgb(0.5, 0.8, 1)}) {
+    for (auto& medium : scene->media) medium.sigma_t = 0.25 * extinction_ratio;
     for (const Pairs& given : {Pairs{{"variant", "paper"}, {"erf", "erf10"}}, Pairs{{"K", "24"}, {"erf", "erf10"}}}) {
       const scene::Film a = picture(fogshop::Fogshop(), scene, given), b = picture(gpu::FogshopGpu(), scene, given);
       CAPTURE(given);

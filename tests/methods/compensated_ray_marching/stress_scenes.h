@@ -24,6 +24,15 @@ struct StressScene {
   bool for_device = true;  // false: single precision refuses it by name
 };
 
+// Those of its settings that the variant reads.
+inline Given given_of(const StressScene& s, bool paper) {
+  Given given = s.given;
+  for (const char* other : paper ? std::vector{"cells", "deepest_cell"} : std::vector{"transmittance"})
+    given.erase(other);
+  if (paper) given["variant"] = "paper";
+  return given;
+}
+
 class StressScenes {
  public:
   static const std::vector<StressScene>& all() {

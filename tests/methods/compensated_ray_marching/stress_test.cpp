@@ -18,11 +18,8 @@ namespace {
 const CompensatedRayMarching method;
 
 Given settings_of(const StressScene& s, bool paper) {
-  Given given = s.given;
-  if (paper)
-    given["variant"] = "paper";
-  else
-    given.try_emplace("cells", "12");
+  Given given = given_of(s, paper);
+  if (!paper) given.try_emplace("cells", "12");
   return given;
 }
 

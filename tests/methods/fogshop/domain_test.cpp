@@ -123,7 +123,7 @@ TEST_CASE("no scene of the experiments is refused for its widths", "[fogshop][do
   for (const auto& file : std::filesystem::recursive_directory_iterator("experiments/scenes/fogshop")) {
     if (file.path().extension() != ".toml") continue;
     const scene::Scene scene = scene::load_scene(file.path().string(), {});
-    if (!objections(scene.media).empty()) continue;
+    if (!unsupported_media(scene.media).empty()) continue;
     CAPTURE(file.path().string());
     Options options;
     options.variant = Options::Variant::paper;

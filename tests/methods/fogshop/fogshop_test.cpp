@@ -113,7 +113,7 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
         finish(s);
       },
       "albedo", {{"reflectance", "npsf"}});
-  refused([](Scene& s) { s.media[1].sigma_t = Rgb(1, 2, 3); }, "hue");
+  refused([](Scene& s) { s.media[1].sigma_t = Rgb(1, 2, 3); }, "extinction_ratio");
   refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).gaussians[0].amplitude = -1; }, "negative");
   refused([](Scene& s) { std::get<scene::GaussianSum>(s.media[0].field).cutoff = 3; }, "widths");
   refused([](Scene& s) { s.lights.push_back(scene::SpotLight{}); }, "spot");
@@ -384,7 +384,7 @@ TEST_CASE("fogshop layers are those of the deterministic reference", "[fogshop]"
   }
 }
 
-// Media of one hue and different albedos against the deterministic reference, which adds media up point by point: the
+// Media of one extinction_ratio and different albedos against the deterministic reference, which adds media up point by point: the
 // albedo scales what scatters and leaves the transmittance alone. Black smoke among white steam, a red constant.
 TEST_CASE("fogshop scatters in the colour of each Gaussian", "[fogshop]") {
   Scene scene = small_scene();
@@ -396,8 +396,8 @@ TEST_CASE("fogshop scatters in the colour of each Gaussian", "[fogshop]") {
   scene.media[2].albedo = Rgb(0.9, 0.3, 0.3);
   scene.surfaces.push_back({"wall", scene::Plane{Point3(0, 0, -7), Vec3(0, 0, 1)}, scene::Lambert{Rgb(0.5, 0.6, 0.7)}});
   finish(scene);
-  for (const Rgb& hue : {Rgb(1, 1, 1), Rgb(0.4, 1, 0.7)}) {
-    for (auto& medium : scene.media) medium.sigma_t = hue;
+  for (const Rgb& extinction_ratio : {Rgb(1, 1, 1), Rgb(0.4, 1, 0.7)}) {
+    for (auto& medium : scene.media) medium.sigma_t = extinction_ratio;
     const auto reference = deterministic::make_renderer();
     const Film truth = reference->prepare(std::make_shared<const Scene>(scene), {reference->settings(), {}}, {})
                            ->render(view_of(scene), {})

@@ -82,10 +82,10 @@ TEST_CASE("slices do not see how a medium is split", "[fogshop]") {
                        ray_airlight(s, one, light, Rgb::Ones(), line)[0]) <= 1e-10);
 }
 
-// Three channels of one hue: each equals a grey medium with its own extinction.
+// Three channels of one extinction_ratio: each equals a grey medium with its own extinction.
 TEST_CASE("coloured extinction equals three grey media", "[fogshop]") {
   Fog fog = grey_fog({{{Point3(0.3, 0.2, 4), 1.1, 0.8}, {Point3(-0.5, 0, 5), 0.7, 1.2}}, 0.05, infinity});
-  fog.hue = Rgb(0.5, 1, 0.2);
+  fog.extinction_ratio = Rgb(0.5, 1, 0.2);
   fog.albedo = Rgb(0.9, 0.8, 0.5);
   const Line line{Point3(0, 0, 0), Vec3(0, 0, 1), 9};
   const Point3 light(1, 2, 3);
@@ -94,8 +94,8 @@ TEST_CASE("coloured extinction equals three grey media", "[fogshop]") {
     const Rgb coloured = ray_airlight(options, fog, light, Rgb::Ones(), line);
     for (int c = 0; c < 3; ++c) {
       Fog grey = grey_fog(fog.sum);
-      grey.sum.constant *= fog.hue[c];
-      for (auto& g : grey.sum.gaussians) g.amplitude *= fog.hue[c];
+      grey.sum.constant *= fog.extinction_ratio[c];
+      for (auto& g : grey.sum.gaussians) g.amplitude *= fog.extinction_ratio[c];
       const Rgb alone = ray_airlight(options, grey, light, Rgb::Ones(), line);
       // Without boxes the edges do not depend on the strength of the medium; the reach of the culled spheres does, by
       // parts in 1e3 of where the edges lie, which with 12 slices is worth 1e-4.

@@ -125,7 +125,7 @@ TEST_CASE("wavelet fog: grids without negative values take no light twice", "[wa
     for (const Coarse coarse : {Coarse::clamped, Coarse::restricted}) {
       if (degree == 3 && coarse == Coarse::clamped) continue;
       for (const Kind kind : kinds)
-        for (const V variant : {V::direct, V::skip, V::tele, V::dist, V::bound}) {
+        for (const V variant : {V::direct, V::skip, V::tele, V::bound}) {
           const scene::Medium medium = medium_of(degree, map_of(kind, 64, 64, 2), profiles()[2]);
           Options o;
           o.variant = variant;

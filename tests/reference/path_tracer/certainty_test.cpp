@@ -5,7 +5,7 @@
 
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/accumulation.h"
-#include "reference/path_tracer/refusals.h"
+#include "reference/path_tracer/unsupported.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 namespace certainty_test {
@@ -152,33 +152,34 @@ TEST_CASE("work without end is refused in one line", "[path_tracer]") {
   const auto scene = scene_of({cloud}, {scene::DirectionalLight{}});
   scene->width = 160;
   scene->height = 120;
-  REQUIRE(refusals(*scene, options).size() == 1);
-  CHECK_THAT(refusals(*scene, options).front(), Catch::Contains("160 x 120 pixels, 1048576 samples"));
+  REQUIRE(unsupported(*scene, options).size() == 1);
+  CHECK_THAT(unsupported(*scene, options).front(), Catch::Contains("160 x 120 pixels, 1048576 samples"));
   options.samples = 256;
-  CHECK(refusals(*scene, options).empty());
+  CHECK(unsupported(*scene, options).empty());
   // A supergrid that no memory holds, and one that takes days to fill.
   options.supergrid_cells = 1024;
-  REQUIRE(refusals(*scene, options).size() == 1);
-  CHECK(refusals(*scene, options).front() ==
+  REQUIRE(unsupported(*scene, options).size() == 1);
+  CHECK(unsupported(*scene, options).front() ==
         "supergrid_cells = 1024 takes 4.3 GB of majorants for 1 media, expected at most 1.1: fewer supergrid_cells");
   options.supergrid_cells = 400;
-  CHECK(refusals(*scene, options).empty());
+  CHECK(unsupported(*scene, options).empty());
   std::get<scene::GaussianSum>(scene->media[0].field).gaussians.resize(1 << 20, sum.gaussians[0]);
   options.samples = 1;
   scene->width = scene->height = 16;
   options.supergrid_cells = 512;
-  REQUIRE(refusals(*scene, options).size() == 1);
-  CHECK_THAT(refusals(*scene, options).front(),
+  REQUIRE(unsupported(*scene, options).size() == 1);
+  CHECK_THAT(unsupported(*scene, options).front(),
              Catch::Contains("supergrid_cells = 512: majorants of 1e+08 cells need 1e+14 evaluations"));
   options.supergrid_cells = 0;
-  CHECK(refusals(*scene, options).empty());
+  CHECK(unsupported(*scene, options).empty());
   options.samples = 256;
   // Endless fog that scatters everything: no end of collisions, unless paths end after one.
   const auto endless = scene_of({medium(scene::Unbounded{}, 1, 1)}, {scene::DirectionalLight{}});
-  REQUIRE(refusals(*endless, options).size() == 1);
-  CHECK_THAT(refusals(*endless, options).front(), Catch::StartsWith("medium 0 scatters everything"));  // it has no name
+  REQUIRE(unsupported(*endless, options).size() == 1);
+  CHECK_THAT(unsupported(*endless, options).front(),
+             Catch::StartsWith("medium 0 scatters everything"));  // it has no name
   options.paths = Options::Paths::scattered_to_surface;
-  CHECK(refusals(*endless, options).empty());
+  CHECK(unsupported(*endless, options).empty());
 }
 
 }  // namespace certainty_test

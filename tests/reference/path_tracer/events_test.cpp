@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "reference/path_tracer/refusals.h"
+#include "reference/path_tracer/unsupported.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 namespace events_test {
@@ -88,9 +88,9 @@ TEST_CASE("paths = scattered: all light but what is seen through the medium", "[
 TEST_CASE("a cap on events and paths of a lit surface exclude one another", "[path_tracer]") {
   Options options;
   options.max_events = 1;
-  CHECK(refusals(*scene_with(0.5), options).empty());
+  CHECK(unsupported(*scene_with(0.5), options).empty());
   options.paths = Options::Paths::lit_surface;
-  CHECK_THAT(refusals(*scene_with(0.5), options).at(0), Catch::Contains("max_events"));
+  CHECK_THAT(unsupported(*scene_with(0.5), options).at(0), Catch::Contains("max_events"));
 }
 
 }  // namespace events_test

@@ -17,7 +17,6 @@ using Figure =
 // for all rows that were timed together (what slowed the machine in a round slowed them alike), the median of each
 // row's times in them, and errors from a normal distribution with their intervals, each row's on its own. Nothing where
 // a row has fewer than five runs, or where a tenth of the draws has no such figure.
-std::optional<Estimate> drawn_again(const Curve& baseline, const Curve& other, const std::string& metric,
-                                    const Figure&);
+std::optional<Estimate> bootstrap(const Curve& baseline, const Curve& other, const std::string& metric, const Figure&);
 
 }  // namespace airlight::experiments

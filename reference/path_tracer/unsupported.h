@@ -19,6 +19,6 @@ namespace airlight::path_tracer {
 //     Gaussians; or that many to bound the Gaussians in the cells of the supergrid
 //   - more than 2^28 cells of supergrids (1 GB)
 //   - coloured extinction with ratio tracking, which needs exact densities
-std::vector<std::string> refusals(const scene::Scene&, const Options&);
+std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
 }  // namespace airlight::path_tracer

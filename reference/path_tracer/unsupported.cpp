@@ -1,4 +1,4 @@
-#include "reference/path_tracer/refusals.h"
+#include "reference/path_tracer/unsupported.h"
 
 #include <fmt/format.h>
 
@@ -131,7 +131,7 @@ bool white_room_with_light(const scene::Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> refusals(const scene::Scene& scene, const Options& options) {
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& options) {
   std::vector<std::string> reasons;
   const bool all_paths = !options.only_lit_surfaces();  // else they end after one scattering
   if (options.max_events >= 0 && !all_paths)

@@ -1,4 +1,4 @@
-#include "experiments/driver/drawn_again.h"
+#include "experiments/driver/bootstrap.h"
 
 #include <algorithm>
 #include <map>
@@ -54,8 +54,8 @@ class Draw {
 
 }  // namespace
 
-std::optional<Estimate> drawn_again(const Curve& baseline, const Curve& other, const std::string& metric,
-                                    const Figure& figure) {
+std::optional<Estimate> bootstrap(const Curve& baseline, const Curve& other, const std::string& metric,
+                                  const Figure& figure) {
   std::vector<Point> measured[2];
   for (const Curve* curve : {&baseline, &other})
     for (const Row* row : *curve) {

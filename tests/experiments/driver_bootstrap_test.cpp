@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/driver/bootstrap.h"
 #include "experiments/driver/comparisons.h"
-#include "experiments/driver/drawn_again.h"
 
-namespace driver_drawn_again_test {
+namespace driver_bootstrap_test {
 
 using namespace airlight::experiments;
 
@@ -25,8 +25,8 @@ Row timed_row(double factor, const std::string& group, std::size_t first = 0) {
 
 // Of one row each, at the same error.
 std::optional<Estimate> ratio_of_times(const Row& baseline, const Row& other) {
-  return drawn_again({&baseline}, {&other}, "rel_l2",
-                     [](const auto& a, const auto& b) { return std::optional(a[0].time.value / b[0].time.value); });
+  return bootstrap({&baseline}, {&other}, "rel_l2",
+                   [](const auto& a, const auto& b) { return std::optional(a[0].time.value / b[0].time.value); });
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ TEST_CASE("a speed-up of rows timed together does not feel what slowed both", "[
 TEST_CASE("a ratio of errors has the interval that theirs leave it", "[driver]") {
   Row a = timed_row(1, "g"), b = timed_row(1, "g");
   for (Row* row : {&a, &b}) row->measures = {{"rel_l2", 0.1, 0.1 - 0.00196, 0.1 + 0.00196, 0.001, false}};
-  const auto ratio = drawn_again({&a}, {&b}, "rel_l2", [](const auto& x, const auto& y) {
+  const auto ratio = bootstrap({&a}, {&b}, "rel_l2", [](const auto& x, const auto& y) {
     return std::optional(x[0].error.value / y[0].error.value);
   });
   REQUIRE(ratio);
@@ -71,7 +71,7 @@ namespace {
 std::vector<Point> drawn(const Row& row) {
   std::vector<Point> points;
   const Row one = timed_row(1, "another group");
-  drawn_again({&row}, {&one}, "rel_l2", [&](const auto& x, const auto&) {
+  bootstrap({&row}, {&one}, "rel_l2", [&](const auto& x, const auto&) {
     points.push_back(x[0]);
     return std::optional(1.0);
   });
@@ -126,8 +126,8 @@ TEST_CASE("without runs to draw from, or a figure in the draws, there is no inte
   CHECK_FALSE(ratio_of_times(few, timed_row(1, "g")));
   int calls = 0;
   const Row row = timed_row(1, "g");
-  CHECK_FALSE(drawn_again({&row}, {&row}, "rel_l2",
-                          [&](const auto&, const auto&) { return ++calls % 2 ? std::optional(1.0) : std::nullopt; }));
+  CHECK_FALSE(bootstrap({&row}, {&row}, "rel_l2",
+                        [&](const auto&, const auto&) { return ++calls % 2 ? std::optional(1.0) : std::nullopt; }));
 }
 
 TEST_CASE("a loaded machine is named in the conditions", "[driver]") {
@@ -147,4 +147,4 @@ TEST_CASE("a loaded machine is named in the conditions", "[driver]") {
   CHECK(load_warning(outcome).empty());
 }
 
-}  // namespace driver_drawn_again_test
+}  // namespace driver_bootstrap_test
