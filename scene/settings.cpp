@@ -93,7 +93,7 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
 
 Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, std::string>& given,
                    const std::string& where)
-    : specs_(std::move(specs)) {
+    : specs_(std::move(specs)), given_(given) {
   std::vector<std::string> names;
   for (const SettingSpec& s : specs_) {
     names.push_back(s.name);
@@ -139,6 +139,13 @@ const std::string& Settings::text(const std::string& name) const { return values
 int Settings::place_of_choice(const std::string& name) const {
   const std::vector<std::string>& choices = spec(name).choices;
   return int(std::find(choices.begin(), choices.end(), text(name)) - choices.begin());
+}
+
+std::map<std::string, std::string> Settings::given(const std::vector<SettingSpec>& specs) const {
+  std::map<std::string, std::string> some;
+  for (const SettingSpec& spec : specs)
+    if (const auto found = given_.find(spec.name); found != given_.end()) some.insert(*found);
+  return some;
 }
 
 std::string Settings::canonical() const {

@@ -59,6 +59,9 @@ class Settings {
     return Enum(place_of_choice(name));
   }
 
+  // What was given of these specs, without defaults: the settings of a renderer among those of a probe.
+  std::map<std::string, std::string> given(const std::vector<SettingSpec>&) const;
+
   // "name=value name=value ..." of all settings in the order of the specs: part of cache keys and metadata.
   std::string canonical() const;
 
@@ -66,7 +69,7 @@ class Settings {
   int place_of_choice(const std::string& name) const;
   const SettingSpec& spec(const std::string& name) const;
   std::vector<SettingSpec> specs_;
-  std::map<std::string, std::string> values_;
+  std::map<std::string, std::string> given_, values_;
 };
 
 // A candidate that begins with `word`, else the one with the smallest edit distance; empty if there are none.

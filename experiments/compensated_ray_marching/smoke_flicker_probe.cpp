@@ -88,9 +88,7 @@ std::vector<std::string> SmokeFlicker::figures() const {
 Findings SmokeFlicker::run(const ProbeInput& input, const scene::Settings& s, const scene::Execution& execution) const {
   if (input.file.empty()) throw Error("smoke_flicker: a [[scene]] is needed");
   const scene::Renderer& renderer = find_renderer(renderer_name, "smoke_flicker");
-  std::map<std::string, std::string> given;
-  for (const scene::SettingSpec& spec : renderer.settings()) given[spec.name] = s.text(spec.name);
-  const scene::Settings chosen(renderer.settings(), given);
+  const scene::Settings chosen(renderer.settings(), s.given(renderer.settings()));
   std::unique_ptr<scene::Prepared> prepared;
   Values truth, error, seconds;
   double errors = 0, truths = 0, error_changes = 0, changes = 0, iterations = 0;

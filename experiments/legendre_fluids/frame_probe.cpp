@@ -87,10 +87,11 @@ Findings frames_of(const scene::Solver& solver, const scene::Renderer& renderer,
                    scene::Execution execution) {
   const int n = int(s.integer("n"));
   const auto problem = rising_smoke(int(s.integer("particles")));
+  const std::string& variant = s.text("variant");
+  const auto of_variant = variant == "paper" ? std::pair("closure", s.text("closure"))
+                                             : std::pair("tolerance", fmt::format("{}", s.real("tolerance")));
   const scene::Settings of_solver(solver.settings(), {{"n", std::to_string(n)}}),
-      of_renderer(renderer.settings(), {{"tolerance", fmt::format("{}", s.real("tolerance"))},
-                                        {"variant", s.text("variant")},
-                                        {"closure", s.text("closure")}});
+      of_renderer(renderer.settings(), {{"variant", variant}, of_variant});
   const auto flow = solver.start(problem, of_solver, execution);
   scene::FlowParticles particles(*problem);
   const bool rides = particles.ride(*flow);

@@ -30,8 +30,9 @@ Cell stirred(const scene::Settings& s, double dt, double viscosity) {
   problem->viscosity = viscosity;
   problem->velocity = scene::Swirl{1};
   const legendre_fluids::LegendreFluids solver;
-  const std::map<std::string, std::string> settings{
-      {"variant", s.text("variant")}, {"n", std::to_string(s.integer("n"))}, {"truncation", s.text("truncation")}};
+  std::map<std::string, std::string> settings = s.given(solver.settings());
+  settings["variant"] = s.text("variant");
+  settings["n"] = std::to_string(s.integer("n"));
   Cell cell;
   const auto flow = solver.start(problem, scene::Settings(solver.settings(), settings), {});
   const double before = flow->totals().energy;

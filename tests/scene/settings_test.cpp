@@ -29,4 +29,13 @@ TEST_CASE("settings that nothing reads are refused with what would read them", "
   CHECK(Settings(specs(), {{"step", "0.1"}, {"sun", "true"}, {"variant", "paper"}}).real("step") == 0.1);
 }
 
+TEST_CASE("settings of one component among those of another are passed on as given", "[settings]") {
+  std::vector<SettingSpec> all = specs();
+  all.push_back(integer_setting("frames", "8", 2, 1000, "pictures"));
+  const Settings together(all, {{"variant", "paper"}, {"frames", "4"}});
+  const auto given = together.given(specs());
+  CHECK(given == std::map<std::string, std::string>{{"variant", "paper"}});
+  CHECK_NOTHROW(Settings(specs(), given));  // the default of cells, which this variant does not read, is not among them
+}
+
 }  // namespace settings_test
