@@ -73,7 +73,8 @@ Rgb direct_light(const Scene& scene, const Hit& hit, const Vec3& to_view, const 
   return sum;
 }
 
-// What ends a camera ray sends back, without media between it and the viewer: a lit surface or the background.
+// What ends a camera ray sends back, without media between it and the viewer: a lit surface, the background, or nothing from
+// a light's ball. Light that surfaces get from an environment or from each other is left out.
 template <class Lights, class OfLight>
 Rgb end_radiance(const Scene& scene, const Ray& ray, const RayEnd& end, const Lights& lights,
                  const OfLight& transmittance_to_light) {

@@ -110,5 +110,5 @@ float depth_between(Gaussian g, vec3 from, vec3 direction, float length_) {
   return c.met ? depth_at(c, length_) : 0;
 }
 
-// Of a depth where `extinction_ratio` is 1; a channel that the medium does not dim stays 1 however deep it is.
+// Transmittance of each channel for the depth of a channel of extinction ratio 1. Where the ratio is 0 it is 1, however deep the fog is.
 vec3 transmittance_of(float depth) { return mix(vec3(1), exp(-extinction_ratio * depth), greaterThan(extinction_ratio, vec3(0))); }

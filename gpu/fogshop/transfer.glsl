@@ -56,7 +56,7 @@ void turn_reflectance(Reflected r) {
 
 vec3 turned_scale(Reflected r) { return TABULATED != 0 ? vec3(1) : r.diffuse; }
 
-// Where no visibility is known.
+// Where no visibility is known, the reflectance alone.
 void keep_reflectance(Reflected r) {
   for (int i = 0; i < sh_order * sh_order; ++i) functions[i] = turned_scale(r) * turned_at(i);
 }

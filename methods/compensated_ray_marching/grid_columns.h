@@ -15,11 +15,12 @@ class GridColumns {
   explicit GridColumns(const scene::VoxelGrid&);
 
   // Integrals of the density from each point along a direction (unit) to where the region ends [m], as density_integral: two-point Gauss in
-  // every voxel crossed. Single precision: 1e-6 of the greatest column.
+  // every voxel crossed. Single precision: off by less than 5e-7 of the grid's longest side times its greatest density.
   void from(const std::vector<Point3>& points, const Vec3& direction, const scene::Region&, float* columns) const;
 
  private:
-  static constexpr int pad = 2;  // voxels: rays that end by rounding only beyond the first voxel outside stay within
+  // Layers of voxels around the grid. Rounding can let a ray end one voxel outside; a voxel reads samples on both of its sides.
+  static constexpr int pad = 2;
   const scene::VoxelGrid& grid_;
   int row_, slice_;
   std::vector<float> values_;

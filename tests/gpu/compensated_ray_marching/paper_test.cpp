@@ -51,13 +51,6 @@ scene::GaussianSum cloud(int count) {
   }
   return sum;
 }
-scene::EnvironmentLight uneven(double turn = 0) {
-  const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
-  const Mat3 rotation = Eigen::AngleAxisd(turn, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  return scene::make_sh_environment(
-      {Rgb::Constant(one), Rgb(-0.8 * slope, 0, 0.2), Rgb(0, 0.5, 0), Rgb(0, -0.5 * slope, 0.4)}, rotation,
-      Rgb::Ones());
-}
 std::shared_ptr<scene::Scene> scene_of(scene::DensityField field, double sigma_t, double albedo,
                                        scene::EnvironmentLight light) {
   auto s = std::make_shared<scene::Scene>();
@@ -309,10 +302,10 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
   bool was_even = true;  // a constant environment
   for (const auto& [even, light] : {std::pair(true, scene::make_constant_environment(Rgb::Constant(2))),
                                     {false, uneven()},
-                                    {false, uneven(0.5)},
+                                    {false, uneven(0.5, Vec3(1, 2, 3))},
                                     {true, scene::make_constant_environment(Rgb::Ones())},
-                                    {false, uneven(0.3)},
-                                    {false, uneven(0.4)}}) {
+                                    {false, uneven(0.3, Vec3(1, 2, 3))},
+                                    {false, uneven(0.4, Vec3(1, 2, 3))}}) {
     const auto scene = lit_by(light);
     REQUIRE(on_cpu->next(scene, {1, {}}));
     const gpu::Use use(*context);

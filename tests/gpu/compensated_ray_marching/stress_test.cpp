@@ -35,7 +35,7 @@ TEST_CASE("compensated march on the device, stress list: the processor's picture
       // Few, but where the row's bounds on brightness are those of twelve.
       given.try_emplace("cells", s.row == 5 || s.row == 7 ? "12" : "8");
     }
-    const std::string passing = given.count("transmittance") ? given.at("transmittance") : "hyb";
+    const std::string passing = s.given.count("transmittance") ? s.given.at("transmittance") : "hyb";
     CAPTURE(paper, s.row, s.what, s.sigma, passing);
     const auto reasons = device.supports(*s.scene, {device.settings(), given});
     CAPTURE(reasons);

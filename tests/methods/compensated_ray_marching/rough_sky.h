@@ -1,4 +1,4 @@
-// A coloured map of light and dark texels, brighter on one side, turned about an axis that is none of the world's.
+// Environments for tests: a map of coloured texels, brighter on one side and turned about a slanting axis; two bands of harmonics.
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
@@ -20,6 +20,15 @@ inline std::shared_ptr<const scene::EnvironmentMap> rough_map(int width, int hei
 inline scene::EnvironmentLight rough_sky(double turn, std::shared_ptr<const scene::EnvironmentMap> map) {
   return make_map_environment(std::move(map), Eigen::AngleAxisd(turn, Vec3(1, 2, 3).normalized()).toRotationMatrix(),
                               Rgb(0.3, 0.5, 0.4), "");
+}
+
+// Radiance 1 + 0.8 cos towards +y in the red, from the side in the other channels; turned about an axis.
+inline scene::EnvironmentLight uneven(double turn = 0, const Vec3& axis = Vec3::UnitZ()) {
+  const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
+  const Mat3 rotation = Eigen::AngleAxisd(turn, axis.normalized()).toRotationMatrix();
+  return scene::make_sh_environment(
+      {Rgb::Constant(one), Rgb(-0.8 * slope, 0, 0.2), Rgb(0, 0.5, 0), Rgb(0, -0.5 * slope, 0.4)}, rotation,
+      Rgb::Ones());
 }
 
 }  // namespace airlight::test

@@ -1,9 +1,11 @@
 // The stress list of compensated ray marching (section 10 of its specification), as far as pictures show it: scenes that both backends draw,
 // and what each picture must be. tests/stress/README.md lists the rest of the rows.
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/convert/gaussian_fit.h"
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/residual.h"
@@ -24,12 +26,15 @@ struct StressScene {
   bool for_device = true;  // false: single precision refuses it by name
 };
 
-// Those of its settings that the variant reads.
+// The settings of a stress scene for one of the variants. Settings that only the other variant reads are left out.
 inline Given given_of(const StressScene& s, bool paper) {
   Given given = s.given;
-  for (const char* other : paper ? std::vector{"cells", "deepest_cell"} : std::vector{"transmittance"})
-    given.erase(other);
-  if (paper) given["variant"] = "paper";
+  const std::string variant = paper ? "paper" : "grid";
+  for (const scene::SettingSpec& spec : compensated_ray_marching::CompensatedRayMarching().settings()) {
+    const auto read = spec.read_where.find("variant");
+    if (read != spec.read_where.end() && std::ranges::count(read->second, variant) == 0) given.erase(spec.name);
+  }
+  given["variant"] = variant;
   return given;
 }
 
