@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 

@@ -8,7 +8,7 @@
 #include "gpu/device_choice.h"
 #include "gpu/program.h"
 #include "gpu/raster_program.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

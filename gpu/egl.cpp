@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 

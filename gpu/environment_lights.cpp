@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

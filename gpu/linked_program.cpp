@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "gpu/shader_source.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

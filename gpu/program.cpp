@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

@@ -11,9 +11,9 @@
 #include <regex>
 #include <sstream>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
 #include "scene/load/content_hash.h"
-#include "scene/printable.h"
 
 namespace airlight::gpu {
 namespace {

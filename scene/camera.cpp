@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "scene/base/error.h"
 #include "scene/camera_rays.h"
-#include "scene/error.h"
 
 namespace airlight::scene {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {

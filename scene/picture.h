@@ -3,8 +3,8 @@
 #include <mutex>
 #include <vector>
 
-#include "scene/background.h"
 #include "scene/camera_rays.h"
+#include "scene/light/background.h"
 #include "scene/renderer.h"
 
 namespace airlight::scene {

@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "scene/threads.h"
+#include "scene/base/threads.h"
 
 namespace airlight::scene {
 

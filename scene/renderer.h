@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/component.h"
-#include "scene/error.h"
-#include "scene/film.h"
+#include "scene/base/component.h"
+#include "scene/base/error.h"
+#include "scene/film/film.h"
 #include "scene/scene.h"
 
 namespace airlight::scene {

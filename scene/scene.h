@@ -8,7 +8,7 @@
 #include "scene/backdrop.h"
 #include "scene/camera.h"
 #include "scene/geometry/geometry.h"
-#include "scene/light.h"
+#include "scene/light/light.h"
 #include "scene/media/medium.h"
 
 namespace airlight::scene {

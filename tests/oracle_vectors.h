@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "scene/math/types.h"
 
 namespace airlight::test {

@@ -10,12 +10,12 @@
 
 #include "experiments/authoring/operation.h"
 #include "experiments/authoring/write_scene.h"
-#include "scene/error.h"
-#include "scene/grey_image.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
+#include "scene/film/grey_image.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/ranges.h"
 #include "scene/media/voxel_grid.h"
-#include "scene/printable.h"
 
 namespace airlight::experiments::authoring {
 namespace {

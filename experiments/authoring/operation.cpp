@@ -7,11 +7,11 @@
 #include <cmath>
 #include <set>
 
-#include "scene/error.h"
-#include "scene/nearest.h"
-#include "scene/printable.h"
-#include "scene/read_file.h"
-#include "scene/settings.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/printable.h"
+#include "scene/base/read_file.h"
+#include "scene/base/settings.h"
 
 namespace airlight::experiments::authoring {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "scene/load/values.h"
 #include "scene/math/types.h"
 

@@ -11,7 +11,7 @@
 #include "methods/fogshop/authoring/emit.h"
 #include "methods/fogshop/authoring/frames.h"
 #include "methods/fogshop/authoring/paint.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::authoring {
 namespace {

@@ -9,13 +9,13 @@
 #include <functional>
 #include <string_view>
 
-#include "scene/atomic_file.h"
-#include "scene/error.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
+#include "scene/base/read_file.h"
 #include "scene/load/assets.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
-#include "scene/printable.h"
-#include "scene/read_file.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::authoring {

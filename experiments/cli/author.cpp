@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
+#include "experiments/application/interrupt.h"
 #include "experiments/authoring/fogmap_script.h"
 #include "experiments/authoring/write_scene.h"
 #include "experiments/cli/commands.h"
-#include "experiments/interrupt.h"
-#include "scene/error.h"
-#include "scene/file_ending.h"
+#include "scene/base/error.h"
+#include "scene/base/file_ending.h"
 
 namespace airlight::experiments::cli {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "scene/error.h"
-#include "scene/nearest.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
 
 namespace airlight::experiments::cli {
 namespace {

@@ -65,7 +65,7 @@ struct FitCommand {
   double unit = 0, allowed = 1.1;
   bool keep = false;
 };
-// Smoke as Gaussians and residuals, frame by frame, into the folder `out` (experiments/fit_sequence.h), or goes on with them.
+// Smoke as Gaussians and residuals, frame by frame, into the folder `out` (experiments/application/fit_sequence.h), or goes on with them.
 int fit(const FitCommand&);
 
 struct ExplainOptions {
@@ -83,7 +83,7 @@ struct SimulateOptions {
   double exposure = 0;
   int threads = 0;
 };
-// Writes the frames of a flow problem into the folder `out` (experiments/simulation.h), or goes on with them; and pictures of them,
+// Writes the frames of a flow problem into the folder `out` (experiments/application/simulation.h), or goes on with them; and pictures of them,
 // NAME.0000.png, ..., of a scene.
 int simulate(const SimulateOptions&);
 

@@ -4,11 +4,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "experiments/application/say.h"
 #include "experiments/cli/commands.h"
-#include "experiments/equality.h"
-#include "experiments/metrics.h"
-#include "experiments/say.h"
-#include "scene/error.h"
+#include "experiments/judging/equality.h"
+#include "experiments/judging/metrics.h"
+#include "scene/base/error.h"
 #include "scene/renderer.h"
 
 namespace airlight::experiments::cli {

@@ -6,13 +6,13 @@
 #include <filesystem>
 
 #include "experiments/cli/commands.h"
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/file_ending.h"
 #include "scene/convert/fogmap_columns.h"
 #include "scene/convert/legendre_projection.h"
-#include "scene/error.h"
-#include "scene/file_ending.h"
-#include "scene/film.h"
-#include "scene/grey_image.h"
+#include "scene/film/film.h"
+#include "scene/film/grey_image.h"
 #include "scene/load/parse_toml.h"
 #include "scene/media/legendre_box.h"
 #include "scene/media/voxel_grid.h"

@@ -3,15 +3,15 @@
 
 #include <cstdlib>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/machine.h"
+#include "experiments/application/probes.h"
+#include "experiments/application/renderers.h"
+#include "experiments/application/studies.h"
 #include "experiments/cli/commands.h"
-#include "experiments/machine.h"
-#include "experiments/probes.h"
-#include "experiments/renderers.h"
-#include "experiments/studies.h"
 #include "gpu/context.h"
 #include "gpu/kernel_drivers.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
 namespace {

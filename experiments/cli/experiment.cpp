@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "experiments/application/folders.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/progress.h"
+#include "experiments/application/say.h"
 #include "experiments/cli/commands.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/check.h"
@@ -14,13 +18,9 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/run_progress.h"
-#include "experiments/folders.h"
-#include "experiments/interrupt.h"
-#include "experiments/progress.h"
-#include "experiments/say.h"
 #include "gpu/context.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -198,19 +198,25 @@ int run_experiments(const ExperimentOptions& options) {
 }
 
 int plot_experiments(const ExperimentOptions& options) {
+  check_profile(options);
   const Folders folders = folders_of(options);
+  bool any = false;
   for (const std::string& id : choose_experiments(folders.root, options.names)) {
-    for (const std::string profile : {"quick", "paper"}) {
-      const std::string name = results_name(id, profile);
-      const auto folder = folders.results / name / "plots";
-      std::vector<std::string> scripts;
-      if (!std::filesystem::is_directory(folder)) continue;
+    const std::string name = results_name(id, options.profile);
+    const auto folder = folders.results / name / "plots";
+    std::vector<std::string> scripts;
+    if (std::filesystem::is_directory(folder))
       for (const auto& file : std::filesystem::directory_iterator(folder))
         if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
-      run_gnuplot(folder, scripts);
-      fmt::print("{}: {} plots\n", name, scripts.size());
-    }
+    if (scripts.empty()) continue;
+    any = true;
+    run_gnuplot(folder, scripts);
+    fmt::print("{}: {} plots\n", name, scripts.size());
   }
+  if (!any)
+    throw Error(
+        fmt::format("no gnuplot scripts of these experiments below {}: `airlight experiment run NAME` writes them",
+                    folders.results.string()));
   return 0;
 }
 

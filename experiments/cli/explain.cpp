@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
+#include "experiments/application/progress.h"
+#include "experiments/application/renderers.h"
 #include "experiments/cli/commands.h"
-#include "experiments/progress.h"
-#include "experiments/renderers.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::cli {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "experiments/application/fit_sequence.h"
+#include "experiments/application/progress.h"
 #include "experiments/cli/commands.h"
-#include "experiments/fit_sequence.h"
-#include "experiments/progress.h"
 
 namespace airlight::experiments::cli {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "scene/error.h"
-#include "scene/file_ending.h"
+#include "scene/base/error.h"
+#include "scene/base/file_ending.h"
 
 namespace airlight::experiments::cli {
 

@@ -11,21 +11,21 @@
 #include <iostream>
 #include <optional>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/renderers.h"
+#include "experiments/application/say.h"
+#include "experiments/application/studies.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
-#include "experiments/interrupt.h"
-#include "experiments/metrics.h"
-#include "experiments/renderers.h"
-#include "experiments/say.h"
-#include "experiments/studies.h"
+#include "experiments/judging/metrics.h"
 #include "experiments/verify/verify.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
+#include "scene/base/data_folder.h"
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
 #include "scene/convert/gaussian_fit.h"
-#include "scene/data_folder.h"
-#include "scene/error.h"
-#include "scene/limits.h"
 
 namespace airlight::experiments::cli {
 namespace {

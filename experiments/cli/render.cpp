@@ -3,16 +3,16 @@
 #include <chrono>
 #include <optional>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/progress.h"
+#include "experiments/application/renderers.h"
+#include "experiments/application/say.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "experiments/cli/samples.h"
-#include "experiments/interrupt.h"
-#include "experiments/progress.h"
-#include "experiments/renderers.h"
-#include "experiments/say.h"
-#include "scene/content_store.h"
-#include "scene/error.h"
+#include "scene/base/content_store.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
 namespace {

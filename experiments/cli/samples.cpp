@@ -5,11 +5,11 @@
 #include <charconv>
 #include <sstream>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "reference/path_tracer/accumulation.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
 

@@ -2,15 +2,15 @@
 
 #include <optional>
 
+#include "experiments/application/flow_pictures.h"
+#include "experiments/application/folders.h"
+#include "experiments/application/progress.h"
+#include "experiments/application/renderers.h"
+#include "experiments/application/simulation.h"
+#include "experiments/application/solvers.h"
 #include "experiments/cli/commands.h"
 #include "experiments/driver/sequences.h"
-#include "experiments/flow_pictures.h"
-#include "experiments/folders.h"
-#include "experiments/progress.h"
-#include "experiments/renderers.h"
-#include "experiments/simulation.h"
-#include "experiments/solvers.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::cli {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/application/renderers.h"
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
-#include "experiments/renderers.h"
+#include "scene/base/error.h"
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
 #include "scene/media/fitted.h"
 
 namespace airlight::experiments {

@@ -1,6 +1,6 @@
 // What a picture loses when smoke becomes Gaussians and a quantised residual.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -10,11 +10,11 @@
 #include <tuple>
 #include <vector>
 
-#include "experiments/build_info.h"
-#include "scene/content_key.h"
-#include "scene/content_store.h"
+#include "experiments/application/build_info.h"
+#include "scene/base/content_key.h"
+#include "scene/base/content_store.h"
+#include "scene/base/error.h"
 #include "scene/convert/gaussian_fit.h"
-#include "scene/error.h"
 #include "scene/load/hash_parts.h"
 #include "scene/load/parts.h"
 #include "scene/math/random.h"

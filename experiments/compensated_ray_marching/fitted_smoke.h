@@ -1,6 +1,6 @@
 // Smoke for the experiments of this folder, and Gaussians fitted to it.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 #include "scene/media/gaussian_sum.h"
 #include "scene/media/voxel_grid.h"
 

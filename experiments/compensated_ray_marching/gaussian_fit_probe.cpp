@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
+#include "scene/base/data_folder.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/gaussian_fit.h"
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/perfect_hash.h"
 #include "scene/convert/residual.h"
-#include "scene/data_folder.h"
-#include "scene/error.h"
 #include "scene/load/parts.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

@@ -1,6 +1,6 @@
 // How well and how fast Gaussians fit smoke: one frame, or a sequence.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -8,10 +8,10 @@
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
 #include "gpu/compensated_ray_marching/residual_on_device.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/residual.h"
-#include "scene/error.h"
 #include "scene/math/random.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

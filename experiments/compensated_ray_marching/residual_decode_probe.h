@@ -1,6 +1,6 @@
 // Look-ups in a residual on the device, in bricks and in hashes: what a march there pays for each sample.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 #include "gpu/context.h"
 
 namespace airlight::experiments {

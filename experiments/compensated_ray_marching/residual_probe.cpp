@@ -8,12 +8,12 @@
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
 #include "experiments/compensated_ray_marching/nano_grid.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/hashed_sequence.h"
 #include "scene/convert/perfect_hash.h"
 #include "scene/convert/residual.h"
-#include "scene/error.h"
 #include "scene/math/random.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

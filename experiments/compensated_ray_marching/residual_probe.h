@@ -1,6 +1,6 @@
 // Size, build time and look-up time of the stores that can hold a quantised residual.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/build_info.h"
-#include "experiments/renderers.h"
-#include "scene/content_key.h"
-#include "scene/content_store.h"
-#include "scene/error.h"
-#include "scene/stopwatch.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/renderers.h"
+#include "scene/base/content_key.h"
+#include "scene/base/content_store.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

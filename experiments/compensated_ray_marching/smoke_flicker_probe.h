@@ -1,6 +1,6 @@
 // Pictures of smoke from frame to frame, under light that turns: how much of what changes between two of them is error.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

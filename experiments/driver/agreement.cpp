@@ -8,10 +8,10 @@
 #include <limits>
 #include <set>
 
-#include "experiments/json.h"
-#include "experiments/json_value.h"
-#include "experiments/probes.h"
-#include "scene/error.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
+#include "experiments/application/probes.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <random>
 
-#include "experiments/statistics.h"
+#include "experiments/judging/statistics.h"
 
 namespace airlight::experiments {
 namespace {

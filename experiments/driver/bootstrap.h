@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/driver/row.h"
-#include "experiments/front.h"
+#include "experiments/judging/front.h"
 
 namespace airlight::experiments {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "scene/error.h"
-#include "scene/read_file.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::experiments {
 namespace {

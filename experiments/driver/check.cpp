@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <set>
 
+#include "experiments/application/interrupt.h"
 #include "experiments/driver/flows.h"
 #include "experiments/driver/journal.h"
 #include "experiments/driver/numbers.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/sequences.h"
-#include "experiments/interrupt.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

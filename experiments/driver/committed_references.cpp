@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <fstream>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
 #include "experiments/driver/packed_film.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/reference_cache.h"
-#include "scene/content_key.h"
-#include "scene/content_store.h"
-#include "scene/error.h"
+#include "scene/base/content_key.h"
+#include "scene/base/content_store.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "experiments/driver/bootstrap.h"
-#include "experiments/front.h"
-#include "experiments/statistics.h"
+#include "experiments/judging/front.h"
+#include "experiments/judging/statistics.h"
 
 namespace airlight::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "experiments/probes.h"
-#include "scene/error.h"
+#include "experiments/application/probes.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "scene/error.h"
-#include "scene/nearest.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

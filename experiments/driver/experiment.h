@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/folders.h"
+#include "experiments/application/folders.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {

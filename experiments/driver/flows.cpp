@@ -7,18 +7,18 @@
 #include <cstring>
 #include <map>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/frames.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/machine.h"
+#include "experiments/application/solvers.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/timing.h"
-#include "experiments/flow_metrics.h"
-#include "experiments/frames.h"
-#include "experiments/interrupt.h"
-#include "experiments/machine.h"
-#include "experiments/solvers.h"
-#include "scene/atomic_file.h"
-#include "scene/content_key.h"
-#include "scene/read_file.h"
+#include "experiments/judging/flow_metrics.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/content_key.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::experiments {
 namespace {

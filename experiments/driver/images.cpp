@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/application/interrupt.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/next_frames.h"
@@ -10,7 +11,6 @@
 #include "experiments/driver/reference_cache.h"
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/timing.h"
-#include "experiments/interrupt.h"
 
 namespace airlight::experiments {
 namespace {

@@ -8,12 +8,12 @@
 #include <cstring>
 #include <fstream>
 
-#include "experiments/folders.h"
-#include "experiments/json.h"
-#include "experiments/json_value.h"
-#include "scene/atomic_file.h"
-#include "scene/content_key.h"
-#include "scene/error.h"
+#include "experiments/application/folders.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/content_key.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
 
 namespace airlight::experiments {
 namespace {

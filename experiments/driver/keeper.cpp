@@ -9,17 +9,17 @@
 #include <map>
 #include <optional>
 
+#include "experiments/application/folders.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/machine.h"
+#include "experiments/application/progress.h"
+#include "experiments/application/say.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/tables.h"
 #include "experiments/driver/timing.h"
-#include "experiments/folders.h"
-#include "experiments/interrupt.h"
-#include "experiments/machine.h"
-#include "experiments/progress.h"
-#include "experiments/say.h"
 #include "gpu/context.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include "experiments/driver/journal.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/run_progress.h"
-#include "scene/content_store.h"
+#include "scene/base/content_store.h"
 #include "scene/renderer.h"
 
 namespace airlight::experiments {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "experiments/application/folders.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/tables.h"
-#include "experiments/folders.h"
-#include "scene/atomic_file.h"
-#include "scene/printable.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/printable.h"
 
 namespace airlight::experiments {
 namespace {

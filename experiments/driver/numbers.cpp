@@ -1,10 +1,10 @@
 #include "experiments/driver/numbers.h"
 
+#include "experiments/application/probes.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/plan.h"
-#include "experiments/probes.h"
-#include "scene/content_key.h"
-#include "scene/read_file.h"
+#include "scene/base/content_key.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::experiments {
 namespace {

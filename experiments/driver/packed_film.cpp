@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/batches.h"
-#include "scene/error.h"
-#include "scene/film_exr.h"
+#include "experiments/judging/batches.h"
+#include "scene/base/error.h"
+#include "scene/film/film_exr.h"
 #include "scene/math/random.h"
 
 namespace airlight::experiments {

@@ -12,7 +12,7 @@
 #pragma once
 #include <string>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 namespace airlight::experiments {
 

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "experiments/folders.h"
+#include "experiments/application/folders.h"
 
 namespace airlight::experiments {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "experiments/driver/experiment.h"
-#include "experiments/metrics.h"
-#include "scene/film.h"
+#include "experiments/judging/metrics.h"
+#include "scene/film/film.h"
 
 namespace airlight::experiments {
 

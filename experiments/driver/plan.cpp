@@ -4,15 +4,15 @@
 
 #include <algorithm>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/machine.h"
+#include "experiments/application/renderers.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/reference_cache.h"
-#include "experiments/interrupt.h"
-#include "experiments/machine.h"
-#include "experiments/renderers.h"
 #include "gpu/shader_source.h"
-#include "scene/content_key.h"
-#include "scene/error.h"
+#include "scene/base/content_key.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

@@ -13,12 +13,12 @@
 #include <cstring>
 #include <limits>
 
+#include "experiments/application/folders.h"
+#include "experiments/application/say.h"
 #include "experiments/driver/pictures.h"
-#include "experiments/folders.h"
-#include "experiments/say.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/printable.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

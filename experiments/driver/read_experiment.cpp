@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/application/probes.h"
+#include "experiments/application/renderers.h"
+#include "experiments/application/solvers.h"
 #include "experiments/driver/bounds.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
@@ -13,17 +16,14 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/toml_values.h"
-#include "experiments/flow_metrics.h"
-#include "experiments/metrics.h"
-#include "experiments/probes.h"
-#include "experiments/renderers.h"
-#include "experiments/solvers.h"
-#include "scene/error.h"
+#include "experiments/judging/flow_metrics.h"
+#include "experiments/judging/metrics.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/read_file.h"
+#include "scene/base/settings.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
-#include "scene/nearest.h"
-#include "scene/read_file.h"
-#include "scene/settings.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/json_value.h"
+#include "experiments/application/machine.h"
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/tables.h"
-#include "experiments/json_value.h"
-#include "experiments/machine.h"
 
 namespace airlight::experiments {
 using nlohmann::json;

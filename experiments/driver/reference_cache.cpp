@@ -4,12 +4,12 @@
 
 #include <chrono>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/renderers.h"
 #include "experiments/driver/committed_references.h"
-#include "experiments/renderers.h"
 #include "gpu/shader_source.h"
-#include "scene/content_key.h"
-#include "scene/content_store.h"
+#include "scene/base/content_key.h"
+#include "scene/base/content_store.h"
 
 namespace airlight::experiments {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 
 namespace airlight::experiments {
 using nlohmann::json;

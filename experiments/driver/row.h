@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/metrics.h"
-#include "experiments/probe.h"
-#include "experiments/statistics.h"
+#include "experiments/application/probe.h"
+#include "experiments/judging/metrics.h"
+#include "experiments/judging/statistics.h"
 
 namespace airlight::experiments {
 

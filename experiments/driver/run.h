@@ -2,8 +2,8 @@
 #pragma once
 #include <filesystem>
 
+#include "experiments/application/folders.h"
 #include "experiments/driver/outcome.h"
-#include "experiments/folders.h"
 
 namespace airlight::experiments {
 

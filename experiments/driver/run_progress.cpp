@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "experiments/application/interrupt.h"
+#include "experiments/application/progress.h"
 #include "experiments/driver/timing.h"
-#include "experiments/interrupt.h"
-#include "experiments/progress.h"
 
 namespace airlight::experiments {
 namespace {

@@ -7,21 +7,21 @@
 #include <cctype>
 #include <sstream>
 
+#include "experiments/application/fit_sequence.h"
+#include "experiments/application/folder_lock.h"
+#include "experiments/application/frames.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
+#include "experiments/application/progress.h"
+#include "experiments/application/say.h"
+#include "experiments/application/simulation.h"
+#include "experiments/application/solvers.h"
 #include "experiments/driver/toml_values.h"
-#include "experiments/fit_sequence.h"
-#include "experiments/folder_lock.h"
-#include "experiments/frames.h"
-#include "experiments/json.h"
-#include "experiments/json_value.h"
-#include "experiments/progress.h"
-#include "experiments/say.h"
-#include "experiments/simulation.h"
-#include "experiments/solvers.h"
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/nearest.h"
+#include "scene/base/printable.h"
+#include "scene/base/read_file.h"
 #include "scene/load/parse_toml.h"
-#include "scene/nearest.h"
-#include "scene/printable.h"
-#include "scene/read_file.h"
 
 namespace airlight::experiments {
 namespace fs = std::filesystem;

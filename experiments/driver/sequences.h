@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "experiments/application/probe.h"
 #include "experiments/driver/experiment.h"
-#include "experiments/probe.h"
 
 namespace airlight::experiments {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <set>
 
-#include "experiments/build_info.h"
+#include "experiments/application/build_info.h"
+#include "experiments/application/machine.h"
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/expected.h"
-#include "experiments/machine.h"
 
 namespace airlight::experiments {
 namespace {

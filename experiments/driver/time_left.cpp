@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
-#include "experiments/json.h"
-#include "experiments/json_value.h"
-#include "scene/error.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "experiments/machine.h"
+#include "experiments/application/machine.h"
 
 namespace airlight::experiments {
 namespace {

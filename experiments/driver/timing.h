@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiments/driver/experiment.h"
-#include "experiments/statistics.h"
+#include "experiments/judging/statistics.h"
 #include "scene/renderer.h"
 
 namespace airlight::experiments {

@@ -23,8 +23,8 @@
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/model.h"
 #include "methods/fogshop/surface_pass.h"
-#include "scene/error.h"
-#include "scene/threads.h"
+#include "scene/base/error.h"
+#include "scene/base/threads.h"
 
 namespace airlight::experiments {
 namespace {

@@ -1,7 +1,7 @@
 // How close fogshop comes to the machine: kernel evaluations per second in whole pictures against a bare loop of the same
 // arithmetic.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -1,6 +1,6 @@
 // Legendre fluids as probes: what its parts cost, where its variants stay bounded, which smoke a polynomial of a box can hold.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

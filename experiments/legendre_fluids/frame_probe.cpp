@@ -8,12 +8,12 @@
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "methods/legendre_fluids/light.h"
-#include "scene/error.h"
-#include "scene/flow_particles.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/flow/flow_particles.h"
+#include "scene/flow/particles.h"
 #include "scene/media/legendre_box.h"
-#include "scene/particles.h"
 #include "scene/scene.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

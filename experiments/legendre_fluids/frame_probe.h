@@ -1,6 +1,6 @@
 // A frame of Legendre fluids from start to end: a step of the fluid, particles that it carries, a picture of its smoke with them in it.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 #include "gpu/context.h"
 
 namespace airlight::experiments {

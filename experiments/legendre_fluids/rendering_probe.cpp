@@ -7,10 +7,10 @@
 #include "methods/legendre_fluids/light.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/legendre_projection.h"
 #include "scene/media/legendre_box.h"
 #include "scene/media/voxel_grid.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

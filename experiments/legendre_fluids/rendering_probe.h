@@ -1,7 +1,7 @@
 // Time and error of a picture of smoke, as Legendre coefficients and as voxels of the same smoke: what Gupta and Narasimhan 2007 compare in
 // Figures 10 and 11.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

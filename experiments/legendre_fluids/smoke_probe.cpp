@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "experiments/legendre_fluids/fluid_probes.h"
+#include "scene/base/error.h"
 #include "scene/convert/legendre_projection.h"
-#include "scene/error.h"
 #include "scene/math/legendre.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"

@@ -4,7 +4,7 @@
 
 #include "experiments/legendre_fluids/fluid_probes.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
-#include "scene/threads.h"
+#include "scene/base/threads.h"
 
 namespace airlight::experiments {
 namespace {

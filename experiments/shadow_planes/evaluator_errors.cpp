@@ -8,7 +8,7 @@
 
 #include "experiments/shadow_planes/light_on_ray.h"
 #include "gpu/shadow_planes/evaluator_on_device.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::shadow_planes {
 namespace {

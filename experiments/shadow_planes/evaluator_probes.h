@@ -1,6 +1,6 @@
 // Errors and times of the evaluators of shadow planes as probes (evaluator_errors.h).
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 #include "gpu/context.h"
 
 namespace airlight::experiments::shadow_planes {

@@ -3,11 +3,11 @@
 // store reads first (write-allocation) is not counted, here and in the streaming kernel alike.
 #include <cmath>
 
-#include "experiments/interrupt.h"
+#include "experiments/application/interrupt.h"
 #include "experiments/stable_fluids/probes.h"
 #include "experiments/stable_fluids/stages.h"
 #include "reference/stable_fluids/advection.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "experiments/interrupt.h"
-#include "experiments/json_value.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/fluid_tables.h"
 #include "reference/stable_fluids/stable_fluids.h"
 

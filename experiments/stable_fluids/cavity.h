@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "experiments/verify/entry.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::experiments {
 

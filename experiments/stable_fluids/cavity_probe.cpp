@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "experiments/json.h"
-#include "experiments/json_value.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
 #include "experiments/stable_fluids/cavity.h"
 #include "experiments/stable_fluids/probes.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

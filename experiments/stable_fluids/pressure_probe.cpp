@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "experiments/interrupt.h"
+#include "experiments/application/interrupt.h"
 #include "experiments/stable_fluids/probes.h"
 #include "experiments/stable_fluids/stages.h"
 #include "reference/stable_fluids/pressure.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 
 namespace airlight::experiments {

@@ -1,6 +1,6 @@
 // Stable Fluids as probes: a flow that is known, where it stays bounded, and what its stages cost.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -5,7 +5,7 @@
 #include "experiments/stable_fluids/probes.h"
 #include "experiments/stable_fluids/stages.h"
 #include "reference/stable_fluids/stable_fluids.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

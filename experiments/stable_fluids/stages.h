@@ -3,10 +3,10 @@
 #include <tbb/task_arena.h>
 
 #include "reference/stable_fluids/obstacles.h"
+#include "scene/base/stopwatch.h"
+#include "scene/base/threads.h"
 #include "scene/math/random.h"
 #include "scene/renderer.h"
-#include "scene/stopwatch.h"
-#include "scene/threads.h"
 
 namespace airlight::experiments {
 

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "experiments/json_value.h"
-#include "scene/error.h"
+#include "experiments/application/json_value.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::verification {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "experiments/verify/readers.h"
 #include "reference/stable_fluids/advection.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::verification {
 

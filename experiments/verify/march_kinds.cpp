@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/own_tolerance.h"
 #include "experiments/verify/ray_quadrature.h"
 #include "experiments/verify/readers.h"

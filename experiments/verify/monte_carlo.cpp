@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/interrupt.h"
-#include "scene/error.h"
+#include "experiments/application/interrupt.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments::verification {
 namespace {

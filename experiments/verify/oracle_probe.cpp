@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "experiments/verify/check.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 

@@ -1,6 +1,6 @@
 // Oracle vectors of one kind, recomputed (verify.h): numbers, how many are out of tolerance, the worst.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

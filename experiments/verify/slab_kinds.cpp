@@ -11,7 +11,7 @@
 #include <map>
 #include <utility>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/monte_carlo.h"
 #include "experiments/verify/readers.h"
 #include "experiments/verify/vector_scene.h"

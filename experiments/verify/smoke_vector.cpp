@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/math/spherical_harmonics.h"

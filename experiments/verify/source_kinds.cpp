@@ -1,7 +1,7 @@
 // Zhou et al. 2008: source radiance at a point and what it is made of, the diffusion system at the centres.
 #include <cmath>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/own_tolerance.h"
 #include "experiments/verify/readers.h"
 #include "experiments/verify/smoke_vector.h"

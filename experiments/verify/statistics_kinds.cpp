@@ -1,9 +1,9 @@
-// Formulas of experiments/statistics.h and experiments/front.h.
+// Formulas of experiments/judging/statistics.h and experiments/judging/front.h.
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/front.h"
-#include "experiments/statistics.h"
+#include "experiments/judging/front.h"
+#include "experiments/judging/statistics.h"
 #include "experiments/verify/readers.h"
 
 namespace airlight::experiments::verification {

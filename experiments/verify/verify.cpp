@@ -8,13 +8,13 @@
 #include <map>
 #include <set>
 
-#include "experiments/interrupt.h"
-#include "experiments/json.h"
-#include "experiments/json_value.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/check.h"
-#include "scene/error.h"
-#include "scene/nearest.h"
-#include "scene/settings.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/settings.h"
 
 namespace airlight::experiments {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/readers.h"
 #include "methods/wavelet_fog/levels.h"
 #include "methods/wavelet_fog/projection.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/bspline.h"
 #include "scene/media/fogmap.h"
 #include "scene/scene.h"

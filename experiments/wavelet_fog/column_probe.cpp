@@ -1,7 +1,7 @@
 #include "experiments/wavelet_fog/column_probe.h"
 
+#include "scene/base/error.h"
 #include "scene/convert/fogmap_columns.h"
-#include "scene/error.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {

@@ -1,6 +1,6 @@
 // What a voxel grid loses as a fogmap of its columns.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

@@ -5,7 +5,7 @@
 
 #include "experiments/wavelet_fog/errata_setup.h"
 #include "methods/wavelet_fog/leveled_fog.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::experiments {
 namespace {

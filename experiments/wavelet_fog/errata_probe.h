@@ -1,6 +1,6 @@
 // What the misprints of Giroud and Biri 2010 are worth: formulas as printed beside what they must be.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

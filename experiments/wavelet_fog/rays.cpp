@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/fogmap.h"
 
 namespace airlight::experiments {

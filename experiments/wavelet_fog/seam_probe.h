@@ -1,7 +1,7 @@
 // What it costs to drop details by the object's distance (Giroud and Biri 2010, section 4.4, eq. 12): errors, and seams, since the same fog
 // before a near and a far object is not the same.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

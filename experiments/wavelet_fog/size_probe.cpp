@@ -7,9 +7,9 @@
 
 #include "methods/wavelet_fog/authoring/canvas.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/base/stopwatch.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/spline_map.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::experiments {
 namespace {

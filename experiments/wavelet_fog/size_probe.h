@@ -1,6 +1,6 @@
 // Cost of a picture against the size of the map: where passing empty blocks, coarse blocks and tables from the eye pay.
 #pragma once
-#include "experiments/probe.h"
+#include "experiments/application/probe.h"
 
 namespace airlight::experiments {
 

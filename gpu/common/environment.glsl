@@ -1,5 +1,5 @@
 // Radiance of an environment light: KIND 0 is a constant, 1 a map, 2 spherical harmonics of SH_ORDER bands
-// (scene/environment.h).
+// (scene/light/environment.h).
 #include "common/angle.glsl"
 #include "common/pi.glsl"
 #if KIND == 2
@@ -15,7 +15,7 @@ vec3 value_at(int i) { return vec3(values[3 * i], values[3 * i + 1], values[3 * 
 
 vec3 shape_towards(vec3 w) {
 #if KIND == 1
-  // Bilinear between texel centres, around the world and up to the poles: scene/lat_long.h.
+  // Bilinear between texel centres, around the world and up to the poles: scene/light/lat_long.h.
   float column = (0.5 + angle_of(w.x, -w.z) / (2 * pi)) * float(map_width) - 0.5;
   float row = angle_of(length(w.xz), w.y) / pi * float(map_height) - 0.5;
   float first = clamp(floor(column), -1.0, float(map_width - 1)), above = clamp(floor(row), -1.0, float(map_height - 1));

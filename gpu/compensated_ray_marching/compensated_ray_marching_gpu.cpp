@@ -14,9 +14,9 @@
 #include "gpu/film_layers.h"
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/single_precision.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::gpu {
 namespace {

@@ -1,8 +1,8 @@
-// Projection of a lat-long map on spherical harmonics, on the device: project_environment of scene/environment.h, for the texels that lie
+// Projection of a lat-long map on spherical harmonics, on the device: project_environment of scene/light/environment.h, for the texels that lie
 // there. With the map's pole as axis the sums separate: Fourier sums of the rows, then sums over rows.
 #pragma once
 #include "gpu/compensated_ray_marching/smoke_interface.h"
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 
 namespace airlight::gpu::smoke {
 

@@ -9,7 +9,7 @@
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::gpu::smoke {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "gpu/fogshop/interface.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::fog {
 namespace {

@@ -12,8 +12,8 @@
 #include "gpu/raster/first_hits.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
-#include "scene/error.h"
-#include "scene/light_on_ray.h"
+#include "scene/base/error.h"
+#include "scene/light/light_on_ray.h"
 #include "scene/media/spline_map.h"
 #include "scene/single_precision.h"
 

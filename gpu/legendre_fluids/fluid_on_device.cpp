@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::gpu::legendre {
 namespace {

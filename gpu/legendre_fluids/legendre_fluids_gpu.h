@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "gpu/buffer.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::gpu {
 

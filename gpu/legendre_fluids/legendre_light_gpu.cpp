@@ -16,9 +16,9 @@
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/legendre_fluids/light.h"
 #include "methods/legendre_fluids/light_options.h"
-#include "scene/background.h"
-#include "scene/error.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/error.h"
+#include "scene/light/background.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {

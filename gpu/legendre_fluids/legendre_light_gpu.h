@@ -2,7 +2,7 @@
 // precision.
 #pragma once
 #include "gpu/context.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::gpu {
 

@@ -11,9 +11,9 @@
 #include "gpu/view_uniforms.h"
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_picture.h"
-#include "scene/background.h"
-#include "scene/error.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/error.h"
+#include "scene/light/background.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::gpu::legendre {
 namespace {

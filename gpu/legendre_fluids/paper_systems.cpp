@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::legendre {
 namespace {

@@ -1,5 +1,5 @@
-// Particles of one set move over a step of the flow that carries them: scene/flow_particles.cpp, one to an invocation. Places are in double
-// precision, velocities in single.
+// Moves particles of one set over a step of the flow that carries them, one to an invocation (scene/flow/flow_particles.cpp).
+// Places are in double precision, velocities in single.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "common/loops_cut.glsl"
 #include "legendre_fluids/philox.glsl"

@@ -1,8 +1,8 @@
 // Particles that a fluid on the device carries: they stay there, and move with its steps.
 #pragma once
 #include "gpu/legendre_fluids/fluid_on_device.h"
-#include "scene/flow_problem.h"
-#include "scene/particle_mover.h"
+#include "scene/flow/flow_problem.h"
+#include "scene/flow/particle_mover.h"
 
 namespace airlight::gpu::legendre {
 

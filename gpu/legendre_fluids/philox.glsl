@@ -1,4 +1,4 @@
-// Random numbers of particles that come back: scene/math/random.h and scene/random_points.cpp, bit for bit.
+// Random numbers of particles that come back: scene/math/random.h and scene/flow/random_points.cpp, bit for bit.
 uvec4 philox(uvec4 c, uvec2 key) {
   for (int round_ = 0; round_ < 10; ++round_) {
     uint high_0, low_0, high_1, low_1;

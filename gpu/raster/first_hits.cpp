@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "gpu/view_uniforms.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gpu/view_uniforms.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu {
 namespace {

@@ -9,7 +9,7 @@
 #include "gpu/ray_marcher/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "gpu/view_uniforms.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::marcher {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "gpu/ray_marcher/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::marcher {
 

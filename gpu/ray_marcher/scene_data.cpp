@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "reference/ray_marcher/shapes.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"

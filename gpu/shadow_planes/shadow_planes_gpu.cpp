@@ -9,9 +9,9 @@
 #include "gpu/shadow_planes/shading.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/shadow_planes.h"
-#include "scene/error.h"
-#include "scene/light_on_ray.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/error.h"
+#include "scene/light/light_on_ray.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {

@@ -9,7 +9,7 @@
 #include "gpu/raster/hit_image.h"
 #include "gpu/view_uniforms.h"
 #include "methods/wavelet_fog/leveled_fog.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::gpu::fogmaps {

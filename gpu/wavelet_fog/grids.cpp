@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {

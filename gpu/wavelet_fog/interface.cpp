@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "methods/wavelet_fog/leveled_fog.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {

@@ -1,4 +1,4 @@
-// The light in hand: scene/light.h.
+// The light in hand: scene/light/light.h.
 uniform int lamp_kind;        // 0 directional, 1 point, 2 spot
 uniform dvec3 lamp_position;  // of a point or spot light [m]
 uniform dvec3 lamp_axis;      // to a directional light, or where a spot shines

@@ -8,8 +8,8 @@
 
 #include "gpu/view_uniforms.h"
 #include "methods/wavelet_fog/sun_scattering.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/media/fogmap.h"
-#include "scene/scattered_lights.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {

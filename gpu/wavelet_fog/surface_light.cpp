@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "gpu/view_uniforms.h"
-#include "scene/error.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/error.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::gpu::fogmaps {
 namespace {

@@ -9,7 +9,7 @@
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/wavelet_fog/sun_scattering.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu {

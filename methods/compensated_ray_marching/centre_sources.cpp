@@ -8,8 +8,8 @@
 #include "methods/compensated_ray_marching/sphere_sets.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/base/stopwatch.h"
 #include "scene/math/spherical_harmonics.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::compensated_ray_marching {
 

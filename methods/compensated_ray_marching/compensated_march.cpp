@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/special_functions.h"
 #include "scene/math/spherical_harmonics.h"
 

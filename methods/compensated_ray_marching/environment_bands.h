@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "scene/light.h"
+#include "scene/light/light.h"
 
 namespace airlight::compensated_ray_marching {
 

@@ -5,7 +5,7 @@
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/random.h"
 #include "scene/math/spherical_harmonics.h"
 

@@ -11,10 +11,10 @@
 #include "methods/compensated_ray_marching/grid_columns.h"
 #include "methods/compensated_ray_marching/to_camera.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/base/stopwatch.h"
+#include "scene/base/threads.h"
 #include "scene/math/dense.h"
 #include "scene/math/spherical_harmonics.h"
-#include "scene/stopwatch.h"
-#include "scene/threads.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {

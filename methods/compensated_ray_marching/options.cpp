@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
-#include "scene/background.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/light/background.h"
 #include "scene/media/fitted.h"
 
 namespace airlight::compensated_ray_marching {

@@ -4,8 +4,8 @@
 #include "methods/compensated_ray_marching/diffusion_system.h"
 #include "methods/compensated_ray_marching/residual_store.h"
 #include "methods/compensated_ray_marching/source_radiance.h"
+#include "scene/base/settings.h"
 #include "scene/scene.h"
-#include "scene/settings.h"
 
 namespace airlight::compensated_ray_marching {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {

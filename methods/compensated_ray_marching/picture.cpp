@@ -9,10 +9,10 @@
 #include "methods/compensated_ray_marching/lit_grid.h"
 #include "methods/compensated_ray_marching/smoke_volume.h"
 #include "methods/compensated_ray_marching/warm_start.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/math/special_functions.h"
 #include "scene/picture.h"
-#include "scene/scattered_lights.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::compensated_ray_marching {
 namespace {

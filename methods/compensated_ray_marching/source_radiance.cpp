@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::compensated_ray_marching {

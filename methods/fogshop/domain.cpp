@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "scene/background.h"
+#include "scene/light/background.h"
 
 namespace airlight::fogshop {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "methods/fogshop/average_depths.h"
-#include "scene/background.h"
+#include "scene/light/background.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace airlight::fogshop {

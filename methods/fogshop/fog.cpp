@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"

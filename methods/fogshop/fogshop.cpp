@@ -10,9 +10,9 @@
 #include "methods/fogshop/low_resolution.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "methods/fogshop/surface_pass.h"
-#include "scene/background.h"
-#include "scene/error.h"
-#include "scene/stopwatch.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/background.h"
 
 namespace airlight::fogshop {
 namespace {

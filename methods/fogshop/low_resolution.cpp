@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "methods/fogshop/environment_lighting.h"
-#include "scene/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 namespace airlight::fogshop {
 namespace {

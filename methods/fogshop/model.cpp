@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "methods/fogshop/map_error.h"
-#include "scene/scattered_lights.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::fogshop {
 

@@ -8,7 +8,7 @@
 #include "methods/fogshop/domain.h"
 #include "methods/fogshop/map_error.h"
 #include "methods/fogshop/radiance_transfer.h"
-#include "scene/scattered_lights.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::fogshop {
 namespace {

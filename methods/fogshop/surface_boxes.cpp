@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 
 namespace airlight::fogshop {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/limits.h"
+#include "scene/base/limits.h"
 #include "scene/media/legendre_box.h"
 
 namespace airlight::legendre_fluids {

@@ -4,7 +4,7 @@
 
 #include "methods/legendre_fluids/fluid.h"
 #include "methods/legendre_fluids/reference_box.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 

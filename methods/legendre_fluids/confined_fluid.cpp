@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "methods/legendre_fluids/point_values.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/saved_state.h"
+#include "scene/base/saved_state.h"
 
 namespace airlight::legendre_fluids {
 

@@ -6,8 +6,8 @@
 
 #include "methods/legendre_fluids/cells.h"
 #include "methods/legendre_fluids/fluid.h"
-#include "scene/flow.h"
-#include "scene/stopwatch.h"
+#include "scene/base/stopwatch.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 

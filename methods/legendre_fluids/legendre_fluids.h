@@ -2,7 +2,7 @@
 // Participating Media" (SCA 2007), section 5. A box of n coefficients along each axis, in two or three dimensions.
 #pragma once
 #include "methods/legendre_fluids/confined_fluid.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "methods/legendre_fluids/paper_picture.h"
-#include "scene/background.h"
-#include "scene/scattered_lights.h"
-#include "scene/sky_directions.h"
+#include "scene/light/background.h"
+#include "scene/light/scattered_lights.h"
+#include "scene/light/sky_directions.h"
 
 namespace airlight::legendre_fluids {
 namespace {

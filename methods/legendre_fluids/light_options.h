@@ -2,7 +2,7 @@
 #pragma once
 #include "methods/legendre_fluids/light_rays.h"
 #include "methods/legendre_fluids/paper_light.h"
-#include "scene/settings.h"
+#include "scene/base/settings.h"
 
 namespace airlight::legendre_fluids {
 

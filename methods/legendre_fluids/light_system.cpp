@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "methods/legendre_fluids/gmres.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::legendre_fluids {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "scene/background.h"
+#include "scene/light/background.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/math/legendre_range.h"
-#include "scene/scattered_lights.h"
 
 namespace airlight::legendre_fluids {
 namespace {

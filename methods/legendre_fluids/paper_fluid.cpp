@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 #include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 #include "scene/math/dense.h"
 
 namespace airlight::legendre_fluids {

@@ -8,10 +8,10 @@
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_view.h"
 #include "methods/legendre_fluids/point_values.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/picture.h"
-#include "scene/scattered_lights.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::legendre_fluids {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "scene/base/stopwatch.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/picture.h"
-#include "scene/scattered_lights.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::legendre_fluids {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "methods/legendre_fluids/confined_space.h"
-#include "scene/flow_problem.h"
+#include "scene/flow/flow_problem.h"
 
 namespace airlight::legendre_fluids {
 

@@ -4,7 +4,7 @@
 
 #include "methods/shadow_planes/bounded_media.h"
 #include "methods/shadow_planes/options.h"
-#include "scene/light.h"
+#include "scene/light/light.h"
 
 namespace airlight::shadow_planes {
 

@@ -1,7 +1,7 @@
 #include "methods/shadow_planes/lit_parts.h"
 
 #include "methods/shadow_planes/general_position.h"
-#include "scene/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 namespace airlight::shadow_planes {
 namespace {

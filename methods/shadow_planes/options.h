@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/base/settings.h"
 #include "scene/scene.h"
-#include "scene/settings.h"
 
 namespace airlight::shadow_planes {
 

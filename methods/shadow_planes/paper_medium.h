@@ -6,7 +6,7 @@
 #include "methods/shadow_planes/light_from_ray.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/options.h"
-#include "scene/light.h"
+#include "scene/light/light.h"
 #include "scene/media/medium.h"
 
 namespace airlight::shadow_planes {

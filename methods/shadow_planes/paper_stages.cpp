@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "methods/shadow_planes/general_position.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::shadow_planes {
 namespace {

@@ -8,7 +8,7 @@
 #include "methods/shadow_planes/pixel.h"
 #include "methods/shadow_planes/plane_order.h"
 #include "methods/shadow_planes/vertex_airlight.h"
-#include "scene/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 namespace airlight::shadow_planes {
 

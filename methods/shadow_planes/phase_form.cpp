@@ -1,6 +1,6 @@
 #include "methods/shadow_planes/phase_form.h"
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 
 namespace airlight::shadow_planes {
 

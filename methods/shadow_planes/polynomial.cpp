@@ -1,6 +1,6 @@
 #include "methods/shadow_planes/polynomial.h"
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/types.h"
 
 namespace airlight::shadow_planes {

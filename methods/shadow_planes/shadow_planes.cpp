@@ -9,8 +9,8 @@
 #include "methods/shadow_planes/lit_parts.h"
 #include "methods/shadow_planes/paper_stages.h"
 #include "methods/shadow_planes/stage_list.h"
-#include "scene/error.h"
-#include "scene/scattered_lights.h"
+#include "scene/base/error.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::shadow_planes {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/scattered_lights.h"
+#include "scene/light/scattered_lights.h"
 
 namespace airlight::shadow_planes {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/bspline.h"
 
 namespace airlight::wavelet_fog {

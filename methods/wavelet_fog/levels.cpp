@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::wavelet_fog {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "methods/wavelet_fog/sun_map.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/fogmap.h"
 
 namespace airlight::wavelet_fog {

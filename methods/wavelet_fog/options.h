@@ -5,8 +5,8 @@
 
 #include "methods/wavelet_fog/levels.h"
 #include "methods/wavelet_fog/path_table.h"
+#include "scene/base/settings.h"
 #include "scene/scene.h"
-#include "scene/settings.h"
 
 namespace airlight::wavelet_fog {
 

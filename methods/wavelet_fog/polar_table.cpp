@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "methods/wavelet_fog/interpolation.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/spline_integral.h"
 
 namespace airlight::wavelet_fog {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/light/scattered_lights.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/media/fogmap.h"
-#include "scene/scattered_lights.h"
 
 namespace airlight::wavelet_fog {
 namespace {

@@ -9,10 +9,10 @@
 #include "methods/wavelet_fog/compression.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "methods/wavelet_fog/sun_scattering.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/scattered_lights.h"
 #include "scene/picture.h"
-#include "scene/scattered_lights.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::wavelet_fog {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "reference/deterministic/density_along_ray.h"
 #include "scene/geometry/surface.h"
-#include "scene/light.h"
+#include "scene/light/light.h"
 #include "scene/media/medium.h"
 
 namespace airlight::deterministic {

@@ -4,10 +4,10 @@
 
 #include "reference/deterministic/airlight.h"
 #include "reference/deterministic/limits.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/place_error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/picture.h"
-#include "scene/place_error.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::deterministic {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::exact_flows {
 namespace {

@@ -10,7 +10,7 @@
 //   start                            wind, rotation; no diffusion        the start where it came from, times that
 //   wave                             wind, periodic                      moved, and exp(-diffusivity k^2 t) times that
 #pragma once
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::exact_flows {
 

@@ -10,9 +10,9 @@
 #include <mutex>
 
 #include "reference/path_tracer/leaf.h"
-#include "scene/error.h"
-#include "scene/limits.h"
-#include "scene/threads.h"
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
+#include "scene/base/threads.h"
 
 namespace airlight::path_tracer {
 namespace {

@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "reference/path_tracer/stopping.h"
-#include "scene/content_key.h"
-#include "scene/error.h"
+#include "scene/base/content_key.h"
+#include "scene/base/error.h"
 
 namespace airlight::path_tracer {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "reference/path_tracer/accumulation.h"
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
 
 namespace airlight::path_tracer {
 

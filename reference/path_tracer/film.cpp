@@ -6,7 +6,7 @@
 
 #include "reference/path_tracer/accumulation.h"
 #include "reference/path_tracer/certainty.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::path_tracer {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <xmmintrin.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::path_tracer {
 namespace {

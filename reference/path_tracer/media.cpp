@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reference/path_tracer/sampling.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/elementary.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"

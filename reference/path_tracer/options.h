@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/settings.h"
+#include "scene/base/settings.h"
 
 namespace airlight::path_tracer {
 

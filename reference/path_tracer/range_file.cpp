@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "reference/path_tracer/accumulation.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/read_file.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::path_tracer {
 namespace {

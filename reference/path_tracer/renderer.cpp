@@ -7,8 +7,8 @@
 #include "reference/path_tracer/cache.h"
 #include "reference/path_tracer/stopping.h"
 #include "reference/path_tracer/unsupported.h"
-#include "scene/atomic_file.h"
-#include "scene/content_store.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/content_store.h"
 
 namespace airlight::path_tracer {
 namespace {

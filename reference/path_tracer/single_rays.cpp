@@ -7,8 +7,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "scene/error.h"
-#include "scene/threads.h"
+#include "scene/base/error.h"
+#include "scene/base/threads.h"
 
 namespace airlight::path_tracer {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/surface_sampling.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::path_tracer {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/background.h"
+#include "scene/light/background.h"
 
 namespace airlight::path_tracer {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "reference/ray_marcher/depth.h"
+#include "scene/base/place_error.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"
-#include "scene/place_error.h"
 
 namespace airlight::ray_marcher {
 

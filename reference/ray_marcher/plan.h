@@ -6,7 +6,7 @@
 #include "reference/ray_marcher/layer.h"
 #include "reference/ray_marcher/options.h"
 #include "reference/ray_marcher/spacing.h"
-#include "scene/sky_directions.h"
+#include "scene/light/sky_directions.h"
 
 namespace airlight::ray_marcher {
 

@@ -12,11 +12,11 @@
 #include "reference/ray_marcher/scalar.h"
 #include "reference/ray_marcher/stages.h"
 #include "reference/ray_marcher/tile.h"
-#include "scene/error.h"
-#include "scene/light_on_ray.h"
+#include "scene/base/error.h"
+#include "scene/base/place_error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/light_on_ray.h"
 #include "scene/picture.h"
-#include "scene/place_error.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::ray_marcher {
 namespace {

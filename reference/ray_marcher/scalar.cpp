@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "reference/ray_marcher/depth.h"
-#include "scene/background.h"
+#include "scene/light/background.h"
 
 namespace airlight::ray_marcher {
 namespace {

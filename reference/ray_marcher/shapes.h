@@ -1,7 +1,7 @@
 // Lights and phase functions of a scene as the kernels know them.
 #pragma once
 #include "reference/ray_marcher/kernels.h"
-#include "scene/light.h"
+#include "scene/light/light.h"
 #include "scene/phase.h"
 
 namespace airlight::ray_marcher {

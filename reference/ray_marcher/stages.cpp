@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/background.h"
+#include "scene/light/background.h"
 
 namespace airlight::ray_marcher {
 std::vector<scene::Stage> describe_stages(const Plan& plan) {

@@ -6,7 +6,7 @@
 #include "reference/ray_marcher/depth.h"
 #include "reference/ray_marcher/samples.h"
 #include "reference/ray_marcher/shapes.h"
-#include "scene/background.h"
+#include "scene/light/background.h"
 
 namespace airlight::ray_marcher {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::stable_fluids {
 

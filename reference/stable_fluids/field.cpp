@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::stable_fluids {
 

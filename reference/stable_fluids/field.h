@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/flow_problem.h"
+#include "scene/flow/flow_problem.h"
 
 namespace airlight::stable_fluids {
 

@@ -1,7 +1,7 @@
 // A flow's fields as others know them: voxel grids and frames.
 #pragma once
 #include "reference/stable_fluids/field.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::stable_fluids {
 

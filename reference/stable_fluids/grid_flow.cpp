@@ -12,10 +12,10 @@
 #include "reference/stable_fluids/frames.h"
 #include "reference/stable_fluids/requirements.h"
 #include "reference/stable_fluids/totals.h"
-#include "scene/error.h"
-#include "scene/saved_state.h"
-#include "scene/stopwatch.h"
-#include "scene/threads.h"
+#include "scene/base/error.h"
+#include "scene/base/saved_state.h"
+#include "scene/base/stopwatch.h"
+#include "scene/base/threads.h"
 
 namespace airlight::stable_fluids {
 namespace {

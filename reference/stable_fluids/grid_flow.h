@@ -2,7 +2,7 @@
 #pragma once
 #include "reference/stable_fluids/advection.h"
 #include "reference/stable_fluids/pressure.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::stable_fluids {
 

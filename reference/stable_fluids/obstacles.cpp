@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/geometry.h"
 
 namespace airlight::stable_fluids {

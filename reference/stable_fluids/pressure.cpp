@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reference/stable_fluids/conjugate_gradients.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::stable_fluids {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
-#include "scene/limits.h"
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
 
 namespace airlight::stable_fluids {
 namespace {

@@ -1,7 +1,7 @@
 // Stable Fluids: Stam, "Stable Fluids" (SIGGRAPH 1999), on a staggered grid, in two or three dimensions: the reference for
 // flows. A step adds forces, advects, diffuses, projects; then what the flow carries is advected with the new velocity.
 #pragma once
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::stable_fluids {
 

@@ -1,7 +1,7 @@
 // Sums over the box: what history.csv records and tests hold.
 #pragma once
 #include "reference/stable_fluids/obstacles.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 
 namespace airlight::stable_fluids {
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <exception>
 
+#include "scene/base/error.h"
 #include "scene/convert/fit_normal_matrix.h"
-#include "scene/error.h"
 
 namespace airlight::scene {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/threads.h"
+#include "scene/base/threads.h"
 
 namespace airlight::scene {
 

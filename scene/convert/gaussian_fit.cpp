@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/fit_gauss_newton.h"
 #include "scene/convert/fit_lbfgs.h"
 #include "scene/convert/fit_placement.h"
-#include "scene/error.h"
-#include "scene/nearest.h"
-#include "scene/stopwatch.h"
 
 namespace airlight::scene {
 namespace {

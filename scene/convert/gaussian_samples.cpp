@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "scene/base/limits.h"
+#include "scene/base/threads.h"
 #include "scene/convert/separable_gaussians.h"
-#include "scene/limits.h"
-#include "scene/threads.h"
 
 namespace airlight::scene {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/atomic_file.h"
-#include "scene/error.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/legendre_range.h"
 #include "scene/media/legendre_box.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/base/error.h"
 #include "scene/convert/perfect_hash.h"
-#include "scene/error.h"
 #include "scene/math/random.h"
 
 namespace airlight::scene {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/base/error.h"
 #include "scene/convert/gaussian_samples.h"
-#include "scene/error.h"
 #include "scene/load/content_hash.h"
 
 namespace airlight::scene {

@@ -15,10 +15,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/atomic_file.h"
-#include "scene/content_key.h"
-#include "scene/error.h"
-#include "scene/read_file.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/content_key.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::scene {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/geometry/text_lines.h"
-#include "scene/read_file.h"
 
 namespace airlight::scene {
 namespace {

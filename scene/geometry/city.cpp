@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "scene/math/random.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/candidate_tree.h"
 #include "scene/geometry/clean_mesh.h"
 #include "scene/geometry/ray_primitive.h"

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "scene/error.h"
-#include "scene/file_ending.h"
+#include "scene/base/error.h"
+#include "scene/base/file_ending.h"
+#include "scene/base/read_file.h"
 #include "scene/geometry/clean_mesh.h"
 #include "scene/geometry/polygon_cut.h"
 #include "scene/geometry/polygon_mesh.h"
-#include "scene/read_file.h"
 
 namespace airlight::scene {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/ply_header.h"
 #include "scene/geometry/polygon_mesh.h"
 

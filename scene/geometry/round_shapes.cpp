@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/sheet.h"
 
 namespace airlight::scene {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/error.h"
-#include "scene/printable.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
 
 namespace airlight::scene {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/byte_order_mark.h"
+#include "scene/base/byte_order_mark.h"
 
 namespace airlight::scene {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "scene/data_folder.h"
-#include "scene/error.h"
+#include "scene/base/data_folder.h"
+#include "scene/base/error.h"
 
 namespace fs = std::filesystem;
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "scene/base/read_file.h"
 #include "scene/load/table_reader.h"
-#include "scene/read_file.h"
 
 namespace airlight::scene::load {
 

@@ -4,10 +4,10 @@
 
 #include <charconv>
 
-#include "scene/byte_order_mark.h"
-#include "scene/error.h"
-#include "scene/printable.h"
-#include "scene/read_file.h"
+#include "scene/base/byte_order_mark.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -1,9 +1,9 @@
 // finish(): what a scene holds beside its description: the ray queries and the hash of its content.
 #include <string>
 
-#include "scene/content_key.h"
+#include "scene/base/content_key.h"
 #include "scene/convert/residual_file.h"
-#include "scene/light_on_surface.h"
+#include "scene/light/light_on_surface.h"
 #include "scene/load/hash_parts.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"

@@ -1,6 +1,6 @@
 // Parts of a flow's file.
 #pragma once
-#include "scene/flow_problem.h"
+#include "scene/flow/flow_problem.h"
 #include "scene/load/ranges.h"
 #include "scene/load/table_reader.h"
 

@@ -1,5 +1,5 @@
-#include "scene/flow_problem.h"
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
+#include "scene/flow/flow_problem.h"
 #include "scene/load/hash_parts.h"
 
 namespace airlight::scene {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "scene/color_image.h"
-#include "scene/error.h"
-#include "scene/file_ending.h"
+#include "scene/base/error.h"
+#include "scene/base/file_ending.h"
+#include "scene/film/color_image.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"

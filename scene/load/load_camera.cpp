@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
 

@@ -1,4 +1,4 @@
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"

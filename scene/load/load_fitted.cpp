@@ -1,6 +1,6 @@
 // A fitted grid: Gaussians as a CSV file, what they leave as a residual file, both as `airlight fit` writes them.
+#include "scene/base/error.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"

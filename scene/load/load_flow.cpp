@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <set>
 
-#include "scene/error.h"
-#include "scene/flow_problem.h"
+#include "scene/base/error.h"
+#include "scene/flow/flow_problem.h"
 #include "scene/load/assets.h"
 #include "scene/load/flow_parts.h"
 #include "scene/load/overrides.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/flow_parts.h"
 

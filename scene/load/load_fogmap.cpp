@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/error.h"
-#include "scene/grey_image.h"
+#include "scene/base/error.h"
+#include "scene/film/grey_image.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"

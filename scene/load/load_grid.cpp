@@ -1,7 +1,7 @@
 // A voxel grid: from an OpenVDB file, or a small one written in the scene file.
 #include <fmt/format.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"

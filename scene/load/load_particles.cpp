@@ -1,13 +1,13 @@
 // [[particles]]: positions from a file or at random, drawn as the scene's camera sees them.
 #include <fmt/format.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/flow/particles.h"
+#include "scene/flow/random_points.h"
 #include "scene/load/assets.h"
 #include "scene/load/csv_table.h"
 #include "scene/load/parts.h"
 #include "scene/load/ranges.h"
-#include "scene/particles.h"
-#include "scene/random_points.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/load/assets.h"
 #include "scene/load/overrides.h"
 #include "scene/load/parse_toml.h"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 // Procedural shapes of a scene file: their keys, and the mesh that they become.
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/city.h"
 #include "scene/geometry/round_shapes.h"
 #include "scene/geometry/teapot.h"

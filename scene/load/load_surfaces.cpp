@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/brdf_table.h"
 #include "scene/geometry/mesh_io.h"
 #include "scene/geometry/shapes.h"

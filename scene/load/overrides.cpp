@@ -7,12 +7,12 @@
 #include <charconv>
 #include <vector>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/printable.h"
+#include "scene/base/settings.h"
 #include "scene/load/parse_toml.h"
 #include "scene/load/table_reader.h"
-#include "scene/nearest.h"
-#include "scene/printable.h"
-#include "scene/settings.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/printable.h"
 #include "scene/load/overrides.h"
-#include "scene/printable.h"
 
 namespace airlight::scene::load {
 namespace {

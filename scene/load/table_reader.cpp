@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest.h"
+#include "scene/base/printable.h"
+#include "scene/base/settings.h"
 #include "scene/load/overrides.h"
 #include "scene/load/ranges.h"
-#include "scene/nearest.h"
-#include "scene/printable.h"
-#include "scene/settings.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "scene/base/printable.h"
 #include "scene/load/overrides.h"
-#include "scene/printable.h"
 
 namespace airlight::scene::load {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::scene {
 namespace {

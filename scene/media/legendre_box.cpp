@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/legendre_range.h"
 #include "scene/media/legendre_line.h"
 #include "scene/media/region.h"

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 #include "scene/media/gaussian_sum.h"
 #include "scene/media/region.h"
 #include "scene/phase.h"

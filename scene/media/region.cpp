@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 
 namespace airlight::scene {
 namespace {

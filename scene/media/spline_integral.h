@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "scene/kinds.h"
+#include "scene/base/kinds.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/media/spline_map.h"
 

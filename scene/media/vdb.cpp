@@ -1,7 +1,7 @@
 // Reading and writing of OpenVDB files, by the library airlight_vdb.so, which is loaded on first use.
 #include <dlfcn.h>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/vdb_module.h"
 
 namespace airlight::scene {

@@ -1,9 +1,9 @@
 // Densities, temperatures, velocities and frames of flows as grids of OpenVDB.
 #include <fmt/format.h>
 
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/flow.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/flow/flow.h"
 #include "scene/media/vdb_module.h"
 #include "scene/media/vdb_parts.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 #include "scene/media/start_grids.h"
 
 namespace airlight::scene::vdb {

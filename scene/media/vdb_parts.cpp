@@ -23,11 +23,11 @@
 #include <mutex>
 #include <sstream>
 
-#include "scene/error.h"
-#include "scene/limits.h"
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
+#include "scene/base/printable.h"
+#include "scene/base/read_file.h"
 #include "scene/media/vdb_layout.h"
-#include "scene/printable.h"
-#include "scene/read_file.h"
 
 namespace airlight::scene::vdb {
 

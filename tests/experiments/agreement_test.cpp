@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/probes.h"
 #include "experiments/driver/tables.h"
-#include "experiments/probes.h"
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
 

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "experiments/authoring/fogmap_script.h"
-#include "scene/error.h"
-#include "scene/grey_image.h"
+#include "scene/base/error.h"
+#include "scene/film/grey_image.h"
 #include "scene/media/fogmap.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"

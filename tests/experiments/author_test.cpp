@@ -7,10 +7,10 @@
 
 #include "experiments/authoring/script.h"
 #include "experiments/authoring/write_scene.h"
+#include "scene/base/error.h"
 #include "scene/convert/gaussian_fit.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
-#include "scene/grey_image.h"
+#include "scene/film/grey_image.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"

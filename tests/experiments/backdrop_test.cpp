@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 #include "scene/scene.h"
 
 namespace backdrop_test {

@@ -1,8 +1,8 @@
 // `airlight convert` of media: what it prints is a medium that loads.
 #include <catch2/catch.hpp>
 
-#include "scene/film.h"
-#include "scene/grey_image.h"
+#include "scene/film/film.h"
+#include "scene/film/grey_image.h"
 #include "scene/math/legendre.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 

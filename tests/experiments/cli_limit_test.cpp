@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "scene/grey_image.h"
+#include "scene/film/grey_image.h"
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 

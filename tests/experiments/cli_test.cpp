@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "methods/fogshop/fogshop.h"
-#include "scene/film.h"
+#include "scene/film/film.h"
 #include "scene/scene.h"
 #include "tests/experiments/run_program.h"
 

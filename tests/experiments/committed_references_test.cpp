@@ -6,11 +6,11 @@
 #include <iostream>
 #include <numeric>
 
+#include "experiments/application/json_value.h"
+#include "experiments/application/machine.h"
 #include "experiments/driver/run.h"
-#include "experiments/equality.h"
-#include "experiments/json_value.h"
-#include "experiments/machine.h"
-#include "scene/content_store.h"
+#include "experiments/judging/equality.h"
+#include "scene/base/content_store.h"
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 

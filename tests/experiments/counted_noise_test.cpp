@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/metrics.h"
-#include "scene/error.h"
+#include "experiments/judging/metrics.h"
+#include "scene/base/error.h"
 #include "tests/experiments/noisy_films.h"
 
 namespace counted_noise_test {

@@ -1,9 +1,9 @@
 // Experiments through the driver: what is written, kept, computed anew and refused.
 #include <catch2/catch.hpp>
 
+#include "experiments/application/json_value.h"
 #include "experiments/driver/run.h"
-#include "experiments/json_value.h"
-#include "scene/content_key.h"
+#include "scene/base/content_key.h"
 #include "tests/experiments/small_project.h"
 
 namespace driver_test {

@@ -1,11 +1,11 @@
 // The tests of equality: power, range, and small cases by hand.
-#include "experiments/equality.h"
+#include "experiments/judging/equality.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/metrics.h"
-#include "experiments/statistics.h"
+#include "experiments/judging/metrics.h"
+#include "experiments/judging/statistics.h"
 #include "tests/experiments/noisy_films.h"
 
 namespace equality_test {

@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/application/json_value.h"
 #include "experiments/driver/tables.h"
-#include "experiments/json_value.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/experiments/worked_row.h"
 
 using namespace airlight::experiments;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace experiment_test {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "experiments/driver/run.h"
-#include "scene/error.h"
-#include "scene/film.h"
+#include "scene/base/error.h"
+#include "scene/film/film.h"
 #include "tests/experiments/run_program.h"
 
 namespace finite_test {

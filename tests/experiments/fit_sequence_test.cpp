@@ -1,13 +1,13 @@
 // airlight fit: a folder of frames that a kill does not change, and one line for what is no good.
-#include "experiments/fit_sequence.h"
+#include "experiments/application/fit_sequence.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
 #include "scene/load/parts.h"
-#include "scene/read_file.h"
 #include "tests/temporary_folder.h"
 
 namespace fit_sequence_test {

@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/json_value.h"
+#include "experiments/application/solvers.h"
 #include "experiments/driver/run.h"
-#include "experiments/flow_metrics.h"
-#include "experiments/json_value.h"
-#include "experiments/solvers.h"
-#include "scene/error.h"
+#include "experiments/judging/flow_metrics.h"
+#include "scene/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace flows_test {

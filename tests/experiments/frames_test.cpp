@@ -1,8 +1,8 @@
 // Frames: sequences of grids that are swept, and lights that move from one timed run to the next.
 #include <catch2/catch.hpp>
 
+#include "experiments/application/json_value.h"
 #include "experiments/driver/run.h"
-#include "experiments/json_value.h"
 #include "scene/media/voxel_grid.h"
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"

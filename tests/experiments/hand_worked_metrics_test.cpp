@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/batches.h"
-#include "experiments/metrics.h"
-#include "experiments/statistics.h"
-#include "scene/error.h"
+#include "experiments/judging/batches.h"
+#include "experiments/judging/metrics.h"
+#include "experiments/judging/statistics.h"
+#include "scene/base/error.h"
 
 namespace hand_worked_metrics_test {
 

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "experiments/verify/verify.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace legendre_fluid_vectors_test {

@@ -1,11 +1,11 @@
-#include "experiments/metrics.h"
+#include "experiments/judging/metrics.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "experiments/equality.h"
-#include "scene/error.h"
+#include "experiments/judging/equality.h"
+#include "scene/base/error.h"
 #include "tests/experiments/noisy_films.h"
 
 namespace metrics_test {

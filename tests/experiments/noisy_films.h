@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 namespace airlight::test {
 

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "experiments/application/json_value.h"
+#include "experiments/application/probes.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/run.h"
-#include "experiments/json_value.h"
-#include "experiments/probes.h"
 #include "experiments/verify/check.h"
 #include "methods/fogshop/fogshop.h"
 #include "tests/experiments/run_program.h"

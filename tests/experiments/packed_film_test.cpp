@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "experiments/batches.h"
-#include "experiments/metrics.h"
+#include "experiments/judging/batches.h"
+#include "experiments/judging/metrics.h"
 #include "tests/experiments/noisy_films.h"
 #include "tests/temporary_folder.h"
 

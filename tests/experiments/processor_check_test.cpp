@@ -1,5 +1,5 @@
 // What a processor lacks that the program needs. The C library can be told to hide a feature, as if the processor lacked it.
-#include "experiments/processor_check.h"
+#include "experiments/application/processor_check.h"
 
 #include <catch2/catch.hpp>
 

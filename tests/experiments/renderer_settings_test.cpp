@@ -1,7 +1,7 @@
 // What every renderer's settings must keep.
 #include <catch2/catch.hpp>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 
 namespace renderer_settings_test {
 

@@ -9,8 +9,8 @@
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/nano_grid.h"
 #include "experiments/compensated_ray_marching/residual_decode_probe.h"
-#include "scene/data_folder.h"
-#include "scene/error.h"
+#include "scene/base/data_folder.h"
+#include "scene/base/error.h"
 #include "tests/gpu/device.h"
 #include "tests/temporary_folder.h"
 

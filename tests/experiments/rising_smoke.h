@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "scene/read_file.h"
+#include "scene/base/read_file.h"
 #include "tests/experiments/run_program.h"
 
 namespace airlight::test {

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/json_value.h"
 #include "experiments/driver/journal.h"
 #include "experiments/driver/outcome.h"
 #include "experiments/driver/tables.h"
-#include "experiments/json_value.h"
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
 

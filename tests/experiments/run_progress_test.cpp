@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "experiments/progress.h"
+#include "experiments/application/progress.h"
 #include "tests/temporary_folder.h"
 
 using namespace airlight::experiments;

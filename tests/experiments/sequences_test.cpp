@@ -5,7 +5,7 @@
 
 #include "experiments/driver/check.h"
 #include "experiments/driver/run.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/experiments/small_project.h"
 
 namespace sequences_test {

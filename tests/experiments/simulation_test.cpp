@@ -1,5 +1,5 @@
 // Sequences of frames: what they hold, and that an end at any moment changes none of them.
-#include "experiments/simulation.h"
+#include "experiments/application/simulation.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -7,9 +7,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "experiments/folder_lock.h"
-#include "experiments/solvers.h"
-#include "scene/error.h"
+#include "experiments/application/folder_lock.h"
+#include "experiments/application/solvers.h"
+#include "scene/base/error.h"
 #include "scene/media/legendre_box.h"
 #include "tests/experiments/rising_smoke.h"
 

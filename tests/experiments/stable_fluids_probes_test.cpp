@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/probes.h"
-#include "scene/error.h"
+#include "experiments/application/probes.h"
+#include "scene/base/error.h"
 #include "tests/experiments/run_program.h"
 
 namespace stable_fluids_probes_test {

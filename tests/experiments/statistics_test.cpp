@@ -1,11 +1,11 @@
-#include "experiments/statistics.h"
+#include "experiments/judging/statistics.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "experiments/front.h"
+#include "experiments/judging/front.h"
 
 namespace statistics_test {
 

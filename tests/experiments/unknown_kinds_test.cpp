@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 #include "scene/convert/residual.h"
 #include "scene/math/legendre.h"
 #include "scene/media/fitted.h"

@@ -8,10 +8,10 @@
 #include <set>
 #include <sstream>
 
-#include "experiments/json.h"
+#include "experiments/application/json.h"
 #include "experiments/verify/check.h"
 #include "experiments/verify/verify.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/types.h"
 #include "tests/temporary_folder.h"
 

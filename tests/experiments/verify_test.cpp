@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/types.h"
 #include "tests/temporary_folder.h"
 

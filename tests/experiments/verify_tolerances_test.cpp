@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "experiments/json_value.h"
+#include "experiments/application/json_value.h"
 #include "experiments/verify/check.h"
 #include "experiments/verify/monte_carlo.h"
 #include "experiments/verify/verify.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "gpu/context.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::gpu::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 namespace airlight::gpu::test {
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 #include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "scene/media/fitted.h"

@@ -42,7 +42,7 @@ class Builder:
         # What the program loads when it meets a file of OpenVDB.
         self.vdb_objects, self.vdb_libraries = self.linked("airlight_vdb.so")
         self.stands_for, self.planted_vdb = {}, set()
-        self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/main.cpp")] or [ROOT])
+        self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/application/main.cpp")] or [ROOT])
         self.root = os.path.dirname(os.path.dirname(self.root)) if self.root.endswith("main.cpp") else self.root
         self.batches = {}  # of the sources that are compiled together, where the preset does so
         for batch in self.commands:

@@ -16,13 +16,13 @@ COMPARISONS = "experiments/driver/comparisons.cpp", "experiments/comparisons_tes
 RUN = "experiments/driver/images.cpp", "experiments/driver_noise_test.cpp"
 PLAN = "experiments/driver/plan.cpp", "experiments/driver_noise_test.cpp"
 PICTURES = "experiments/driver/pictures.cpp", "experiments/driver_noise_test.cpp"
-METRICS = "experiments/metrics.cpp", "experiments/hand_worked_metrics_test.cpp"
-COUNTED = "experiments/metrics.cpp", "experiments/counted_noise_test.cpp"
-VALUES = "experiments/metric_values.cpp", "experiments/hand_worked_metrics_test.cpp"
-BATCHES = "experiments/batches.cpp", "experiments/hand_worked_metrics_test.cpp"
-EQUALITY = "experiments/equality.cpp", "experiments/equality_test.cpp"
-STATISTICS = "experiments/statistics.cpp", "experiments/statistics_test.cpp"
-FRONT = "experiments/front.cpp", "experiments/statistics_test.cpp"
+METRICS = "experiments/judging/metrics.cpp", "experiments/hand_worked_metrics_test.cpp"
+COUNTED = "experiments/judging/metrics.cpp", "experiments/counted_noise_test.cpp"
+VALUES = "experiments/judging/metric_values.cpp", "experiments/hand_worked_metrics_test.cpp"
+BATCHES = "experiments/judging/batches.cpp", "experiments/hand_worked_metrics_test.cpp"
+EQUALITY = "experiments/judging/equality.cpp", "experiments/equality_test.cpp"
+STATISTICS = "experiments/judging/statistics.cpp", "experiments/statistics_test.cpp"
+FRONT = "experiments/judging/front.cpp", "experiments/statistics_test.cpp"
 CHECK = "experiments/verify/check.cpp", "experiments/verify_tolerances_test.cpp"
 DRAWN_AGAIN = "experiments/driver/bootstrap.cpp", "experiments/driver_bootstrap_test.cpp"
 CONDITIONS = "experiments/driver/comparisons.cpp", "experiments/driver_bootstrap_test.cpp"
@@ -51,21 +51,21 @@ LIGHT_PHASES = "methods/legendre_fluids/light_rays.cpp", "methods/legendre_fluid
 PAPER_VIEW = "methods/legendre_fluids/paper_view.cpp", "methods/legendre_fluids/paper_view_test.cpp"
 PAPER_PICTURE = "methods/legendre_fluids/paper_picture.cpp", "methods/legendre_fluids/paper_view_test.cpp"
 POLYGONS = "scene/geometry/polygon_cut.cpp", "scene/polygon_cut_test.cpp"
-ATOMIC = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
-STORE = "scene/atomic_file.cpp", "scene/atomic_file_test.cpp"
-ENTRIES = "scene/content_store.cpp", "scene/atomic_file_test.cpp"
-SIMULATION = "experiments/simulation.cpp", "experiments/simulation_test.cpp"
+ATOMIC = "scene/base/atomic_file.cpp", "scene/atomic_file_test.cpp"
+STORE = "scene/base/atomic_file.cpp", "scene/atomic_file_test.cpp"
+ENTRIES = "scene/base/content_store.cpp", "scene/atomic_file_test.cpp"
+SIMULATION = "experiments/application/simulation.cpp", "experiments/simulation_test.cpp"
 WRITE_SCENE = "experiments/authoring/write_scene.cpp", "experiments/author_test.cpp"
 TOML = "scene/load/parse_toml.cpp", "experiments/author_test.cpp"
 INSTANCES = "scene/media/vdb_parts.cpp", "scene/media/vdb_io_test.cpp"
-COLOURS = "scene/film_exr_read.cpp", "scene/film_test.cpp"
-PARTICLES = "scene/flow_particles.cpp", "scene/flow_particles_test.cpp"
+COLOURS = "scene/film/film_exr_read.cpp", "scene/film_test.cpp"
+PARTICLES = "scene/flow/flow_particles.cpp", "scene/flow_particles_test.cpp"
 FORCES = "reference/stable_fluids/forces.cpp", "reference/stable_fluids/laws_test.cpp"
 OBSTACLES = "reference/stable_fluids/obstacles.cpp", "reference/stable_fluids/laws_test.cpp"
 GRID_FLOW = "reference/stable_fluids/grid_flow.cpp", "reference/stable_fluids/laws_test.cpp"
 FLOW_TOTALS = "reference/stable_fluids/totals.cpp", "reference/stable_fluids/laws_test.cpp"
 FLOW_DIFFUSION = "reference/stable_fluids/diffusion.cpp", "reference/stable_fluids/laws_test.cpp"
-FLOW_METRICS = "experiments/flow_metrics.cpp", "experiments/flows_test.cpp"
+FLOW_METRICS = "experiments/judging/flow_metrics.cpp", "experiments/flows_test.cpp"
 LEGENDRE_FILTER = "methods/legendre_fluids/confined_fluid.cpp", "methods/legendre_fluids/confined_space_test.cpp"
 FIT = "scene/convert/gaussian_fit.cpp", "scene/convert/fitted_sequence_test.cpp"
 PLACEMENT = "scene/convert/fit_placement.cpp", "scene/convert/gaussian_fit_test.cpp"
@@ -255,7 +255,7 @@ MUTANTS = [
     bug("alpha not shared", EQUALITY, "normal_quantile(1 - alpha / 6)", "normal_quantile(1 - alpha / 2)", "one block by hand"),
     bug("skewness of no account", EQUALITY, "if (!e.blocks_in_range) {", "if (false) {", "fireflies are out of the tests' range"),
     # Lights
-    bug("a linear spot cone", ("scene/light.cpp", "scene/light_test.cpp"), "return s * s * (3 - 2 * s);", "return s;",
+    bug("a linear spot cone", ("scene/light/light.cpp", "scene/light_test.cpp"), "return s * s * (3 - 2 * s);", "return s;",
         "a spot light has a full cone, a dark outside and a smooth edge"),
     # Oracle vectors
     bug("tolerances ten times as wide", CHECK, "std::abs(got - expected) <= tolerance", "std::abs(got - expected) <= 10 * tolerance",

@@ -1,4 +1,4 @@
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "scene/content_store.h"
+#include "scene/base/content_store.h"
 #include "tests/temporary_folder.h"
 
 namespace atomic_file_test {

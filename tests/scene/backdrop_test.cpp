@@ -7,8 +7,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "scene/background.h"
-#include "scene/film.h"
+#include "scene/film/film.h"
+#include "scene/light/background.h"
 #include "scene/renderer.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "reference/path_tracer/surface_sampling.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/surface.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/random.h"

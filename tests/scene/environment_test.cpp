@@ -1,13 +1,13 @@
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "experiments/statistics.h"
-#include "scene/error.h"
-#include "scene/film.h"
-#include "scene/lat_long.h"
+#include "experiments/judging/statistics.h"
+#include "scene/base/error.h"
+#include "scene/film/film.h"
+#include "scene/light/lat_long.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 #include "tests/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 #include <OpenEXR/ImfArray.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -16,10 +16,10 @@
 #include <cstring>
 #include <random>
 
-#include "scene/environment.h"
-#include "scene/error.h"
-#include "scene/film_exr.h"
-#include "scene/grey_image.h"
+#include "scene/base/error.h"
+#include "scene/film/film_exr.h"
+#include "scene/film/grey_image.h"
+#include "scene/light/environment.h"
 #include "tests/temporary_folder.h"
 
 namespace film_test {

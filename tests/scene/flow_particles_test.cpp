@@ -1,5 +1,5 @@
 // Particles that a flow carries, in flows whose paths are known.
-#include "scene/flow_particles.h"
+#include "scene/flow/flow_particles.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

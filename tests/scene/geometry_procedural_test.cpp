@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/city.h"
 #include "scene/geometry/round_shapes.h"
 #include "scene/geometry/teapot.h"

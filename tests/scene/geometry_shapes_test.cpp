@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "scene/geometry/surface.h"
-#include "scene/lat_long.h"
+#include "scene/light/lat_long.h"
 #include "scene/math/gauss_legendre.h"
 #include "tests/scene/geometry_scenes.h"
 

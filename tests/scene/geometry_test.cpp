@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"
 

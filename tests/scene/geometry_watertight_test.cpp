@@ -1,7 +1,7 @@
 // Rays against meshes where rounding hurts: edges, vertices, slivers, origins on the surface.
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/clean_mesh.h"
 #include "scene/geometry/shapes.h"
 #include "tests/scene/geometry_scenes.h"

@@ -1,13 +1,13 @@
 // Grey images: what PNG and EXR files say, and what is refused.
-#include "scene/grey_image.h"
+#include "scene/film/grey_image.h"
 
 #include <png.h>
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "scene/error.h"
-#include "scene/film.h"
+#include "scene/base/error.h"
+#include "scene/film/film.h"
 #include "tests/temporary_folder.h"
 
 namespace grey_image_test {

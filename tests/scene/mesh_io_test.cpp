@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/scene/geometry_scenes.h"
 #include "tests/scene/mesh_texts.h"
 #include "tests/temporary_folder.h"

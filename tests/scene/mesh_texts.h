@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/mesh_io.h"
 #include "tests/temporary_folder.h"
 

@@ -1,12 +1,12 @@
 // Particles as a camera sees them, and where random ones lie.
-#include "scene/particles.h"
+#include "scene/flow/particles.h"
 
 #include <cmath>
 
+#include "scene/base/error.h"
 #include "scene/camera_rays.h"
-#include "scene/error.h"
+#include "scene/flow/random_points.h"
 #include "scene/load/assets.h"
-#include "scene/random_points.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // What comes from outside stays on one line and is shown as it is written.
-#include "scene/printable.h"
+#include "scene/base/printable.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Settings as they are declared and given: names, values, and what is not read beside the others.
-#include "scene/settings.h"
+#include "scene/base/settings.h"
 
 #include <catch2/catch.hpp>
 

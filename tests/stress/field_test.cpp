@@ -1,10 +1,10 @@
 // Stress cases 18, 19 and 21 to 26: densities at the edge of what a density can be.
 #include "methods/wavelet_fog/leveled_fog.h"
+#include "scene/base/stopwatch.h"
 #include "scene/math/legendre.h"
 #include "scene/math/random.h"
 #include "scene/media/legendre_box.h"
 #include "scene/media/voxel_grid.h"
-#include "scene/stopwatch.h"
 #include "tests/stress/stress.h"
 
 namespace field_test {

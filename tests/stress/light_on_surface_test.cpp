@@ -1,4 +1,4 @@
-// A light exactly on a surface: it lights the side that the normal faces, in every renderer (scene/light_on_surface.h).
+// A light exactly on a surface: it lights the side that the normal faces, in every renderer (scene/light/light_on_surface.h).
 #include <Eigen/Geometry>
 
 #include "gpu/fogshop/fogshop_gpu.h"

@@ -11,7 +11,7 @@
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 namespace airlight::stress {

@@ -8,10 +8,10 @@
 #include <optional>
 #include <sstream>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 #include "reference/ray_marcher/options.h"
-#include "scene/error.h"
-#include "scene/film.h"
+#include "scene/base/error.h"
+#include "scene/film/film.h"
 #include "scene/scene.h"
 
 namespace airlight::stress {

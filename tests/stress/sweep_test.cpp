@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "experiments/renderers.h"
-#include "scene/atomic_file.h"
+#include "experiments/application/renderers.h"
+#include "scene/base/atomic_file.h"
 
 namespace sweep_test {
 

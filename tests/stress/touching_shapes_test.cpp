@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/renderers.h"
+#include "experiments/application/renderers.h"
 #include "tests/gpu/device.h"
 #include "tests/stress/shapes.h"
 #include "tests/stress/stress.h"

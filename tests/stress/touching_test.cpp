@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/renderers.h"
-#include "scene/error.h"
+#include "experiments/application/renderers.h"
+#include "scene/base/error.h"
 #include "tests/gpu/device.h"
 #include "tests/stress/stress.h"
 

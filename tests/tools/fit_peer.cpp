@@ -10,12 +10,12 @@
 #include <cstdlib>
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/convert/fit_gauss_newton.h"
 #include "scene/convert/fit_lbfgs.h"
 #include "scene/convert/fit_placement.h"
 #include "scene/convert/gaussian_fit.h"
-#include "scene/error.h"
-#include "scene/stopwatch.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "methods/fogshop/authoring/draws.h"
-#include "scene/error.h"
-#include "scene/limits.h"
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
 
 namespace airlight::fogshop::authoring {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::fogshop::authoring {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "methods/fogshop/authoring/draws.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace airlight::fogshop::authoring {
 

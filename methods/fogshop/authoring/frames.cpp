@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "methods/fogshop/authoring/gaussian_list.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/load/parts.h"
-#include "scene/read_file.h"
 
 namespace airlight::fogshop::authoring {
 namespace {

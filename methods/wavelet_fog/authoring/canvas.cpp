@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
 #include "scene/convert/fogmap_columns.h"
-#include "scene/error.h"
-#include "scene/limits.h"
 #include "scene/math/elementary.h"
 #include "scene/math/random.h"
 

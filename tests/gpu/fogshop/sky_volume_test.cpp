@@ -4,7 +4,7 @@
 #include "gpu/fogshop/fogshop_gpu.h"
 #include "gpu/program.h"
 #include "methods/fogshop/fogshop.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/fogshop/small_sky.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 
 namespace airlight::gpu::test {
 

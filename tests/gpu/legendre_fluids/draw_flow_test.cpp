@@ -1,11 +1,11 @@
 // A flow that is moved and drawn on the device: nothing comes down between step and picture.
 #include <catch2/catch.hpp>
 
-#include "experiments/flow_pictures.h"
+#include "experiments/application/flow_pictures.h"
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "methods/legendre_fluids/light.h"
-#include "scene/color_image.h"
+#include "scene/film/color_image.h"
 #include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"

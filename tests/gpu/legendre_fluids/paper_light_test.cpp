@@ -5,8 +5,8 @@
 
 #include "gpu/legendre_fluids/legendre_light_gpu.h"
 #include "methods/legendre_fluids/light.h"
+#include "scene/flow/particles.h"
 #include "scene/media/legendre_box.h"
-#include "scene/particles.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 

@@ -7,7 +7,7 @@
 #include "gpu/legendre_fluids/legendre_fluids_gpu.h"
 #include "gpu/legendre_fluids/particles_on_device.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
-#include "scene/flow_particles.h"
+#include "scene/flow/flow_particles.h"
 #include "tests/gpu/device.h"
 
 namespace particles_test {

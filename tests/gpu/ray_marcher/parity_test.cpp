@@ -8,7 +8,7 @@
 
 #include "gpu/program.h"
 #include "reference/deterministic/airlight.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/gpu/ray_marcher/pictures.h"
 
 namespace parity_test {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "gpu/program.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/gpu/shader_folder.h"
 #include "tests/gpu/shadow_planes/pictures.h"

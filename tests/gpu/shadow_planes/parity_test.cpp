@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/gpu/shadow_planes/pictures.h"
 #include "tests/methods/shadow_planes/special_scenes.h"

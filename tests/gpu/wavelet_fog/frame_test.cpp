@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/fogmap.h"
 #include "tests/gpu/wavelet_fog/pictures.h"
 

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/oracle_vectors.h"
 
 namespace compensated_march_test {

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/oracle_vectors.h"
 
 namespace diffusion_system_test {

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/random.h"
 #include "scene/math/spherical_harmonics.h"
 #include "scene/media/gaussian_sum.h"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "experiments/verify/diffusion_solutions.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/oracle_vectors.h"
 
 namespace p1_grid_test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 
 namespace airlight::test {
 

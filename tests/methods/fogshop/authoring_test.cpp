@@ -6,7 +6,7 @@
 #include "methods/fogshop/authoring/emit.h"
 #include "methods/fogshop/authoring/paint.h"
 #include "methods/fogshop/authoring/screen.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/gaussian_sum.h"
 
 namespace authoring_test {

@@ -8,7 +8,7 @@
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/paper_airlight.h"
 #include "reference/deterministic/renderer.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/pictures.h"
 
 namespace domain_test {

@@ -4,7 +4,7 @@
 #include "methods/fogshop/homogeneous_airlight.h"
 #include "methods/fogshop/paper_airlight.h"
 #include "reference/deterministic/renderer.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/methods/fogshop/small_scene.h"
 
 namespace fogshop_test {

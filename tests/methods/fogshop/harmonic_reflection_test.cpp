@@ -8,7 +8,7 @@
 
 #include "methods/fogshop/scattered_reflection.h"
 #include "methods/fogshop/surface_psf.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/sh_product.h"
 #include "scene/math/spherical_harmonics.h"

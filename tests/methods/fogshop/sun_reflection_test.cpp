@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "methods/fogshop/surface_psf.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "tests/methods/fogshop/exact_reflection.h"
 

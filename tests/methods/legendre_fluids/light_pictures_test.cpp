@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "experiments/equality.h"
+#include "experiments/judging/equality.h"
 #include "methods/legendre_fluids/light.h"
 #include "reference/deterministic/renderer.h"
 #include "reference/path_tracer/renderer.h"

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "methods/legendre_fluids/light.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
 namespace paper_light_test {

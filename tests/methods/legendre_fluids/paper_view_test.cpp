@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "methods/legendre_fluids/light.h"
+#include "scene/flow/particles.h"
 #include "scene/math/gauss_legendre.h"
-#include "scene/particles.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
 namespace paper_view_test {

@@ -8,7 +8,7 @@
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "methods/shadow_planes/rule_sum.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/exponential_integral.h"
 #include "tests/methods/shadow_planes/rule_cases.h"
 #include "tests/methods/shadow_planes/vectors.h"

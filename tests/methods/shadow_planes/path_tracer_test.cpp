@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "experiments/equality.h"
+#include "experiments/judging/equality.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "reference/path_tracer/renderer.h"
 #include "tests/pictures.h"

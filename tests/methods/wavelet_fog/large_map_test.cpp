@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "methods/wavelet_fog/wavelet_fog.h"
-#include "scene/grey_image.h"
-#include "scene/stopwatch.h"
+#include "scene/base/stopwatch.h"
+#include "scene/film/grey_image.h"
 #include "tests/pictures.h"
 #include "tests/temporary_folder.h"
 

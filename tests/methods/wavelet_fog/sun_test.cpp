@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "experiments/equality.h"
+#include "experiments/judging/equality.h"
 #include "methods/wavelet_fog/sun_map.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"

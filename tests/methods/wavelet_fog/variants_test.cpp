@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "experiments/equality.h"
+#include "experiments/judging/equality.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/wavelet_fog/polar_table.h"
 #include "methods/wavelet_fog/wavelet_fog.h"

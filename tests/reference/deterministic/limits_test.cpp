@@ -6,7 +6,7 @@
 
 #include "reference/deterministic/airlight.h"
 #include "reference/deterministic/renderer.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace limits_test {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "reference/path_tracer/stopping.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/reference/path_tracer/scenes.h"
 #include "tests/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 
 #include "reference/path_tracer/accumulation.h"
 #include "reference/path_tracer/renderer.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/voxel_grid.h"
 #include "tests/reference/path_tracer/scenes.h"
 #include "tests/temporary_folder.h"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "reference/path_tracer/accumulation.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace range_file_test {

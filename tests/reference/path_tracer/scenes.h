@@ -5,7 +5,7 @@
 #include <string>
 
 #include "reference/path_tracer/single_rays.h"
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 
 namespace airlight::path_tracer::test {
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/random.h"
 
 namespace tally_test {

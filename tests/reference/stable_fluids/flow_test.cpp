@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "reference/stable_fluids/requirements.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
 

@@ -5,7 +5,7 @@
 
 #include "reference/stable_fluids/diffusion.h"
 #include "reference/stable_fluids/pressure.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
 

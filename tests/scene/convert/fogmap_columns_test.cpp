@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/types.h"
 
 namespace fogmap_columns_test {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/base/error.h"
 #include "scene/convert/fit_gauss_newton.h"
 #include "scene/convert/fit_lbfgs.h"
 #include "scene/convert/fit_normal_matrix.h"
 #include "scene/convert/fit_placement.h"
 #include "scene/convert/gaussian_samples.h"
-#include "scene/error.h"
 #include "scene/load/csv_table.h"
 #include "scene/scene.h"
 #include "tests/scene/convert/fitted_grids.h"

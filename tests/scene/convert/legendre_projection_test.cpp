@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "tests/scene/media/legendre_fields.h"

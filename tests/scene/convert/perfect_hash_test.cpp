@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "scene/base/error.h"
 #include "scene/convert/hashed_sequence.h"
 #include "scene/convert/residual.h"
-#include "scene/error.h"
 #include "scene/math/random.h"
 #include "tests/oracle_vectors.h"
 

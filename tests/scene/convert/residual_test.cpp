@@ -5,11 +5,11 @@
 #include <cstring>
 #include <limits>
 
-#include "scene/content_key.h"
+#include "scene/base/content_key.h"
+#include "scene/base/error.h"
 #include "scene/convert/gaussian_samples.h"
 #include "scene/convert/perfect_hash.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
 #include "scene/math/random.h"
 #include "tests/temporary_folder.h"
 

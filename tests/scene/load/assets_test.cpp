@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/data_folder.h"
-#include "scene/error.h"
-#include "scene/read_file.h"
+#include "scene/base/data_folder.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/scene.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"

@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "scene/base/error.h"
 #include "scene/convert/residual_file.h"
-#include "scene/error.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
 

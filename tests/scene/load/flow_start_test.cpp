@@ -2,7 +2,7 @@
 #include <random>
 
 #include "reference/stable_fluids/stable_fluids.h"
-#include "scene/flow.h"
+#include "scene/flow/flow.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // Flow problems: what their files say, and what is refused, with its place.
 #include <sstream>
 
-#include "scene/flow_problem.h"
+#include "scene/flow/flow_problem.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "scene/grey_image.h"
+#include "scene/film/grey_image.h"
 #include "scene/media/spline_map.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"

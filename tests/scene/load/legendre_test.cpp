@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/scene.h"
 
 namespace load_scene_test {

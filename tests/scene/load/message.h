@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/scene.h"
 
 namespace airlight::test {

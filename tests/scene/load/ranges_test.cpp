@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 #include "scene/scene.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/error.h"
-#include "scene/flow_problem.h"
+#include "scene/base/error.h"
+#include "scene/flow/flow_problem.h"
 #include "scene/scene.h"
 
 namespace readme_test {

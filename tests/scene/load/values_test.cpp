@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
 

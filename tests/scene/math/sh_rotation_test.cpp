@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/spherical_harmonics.h"
 
 namespace sh_rotation_test {

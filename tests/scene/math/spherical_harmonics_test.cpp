@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace spherical_harmonics_test {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/legendre_range.h"
 #include "scene/media/legendre_line.h"

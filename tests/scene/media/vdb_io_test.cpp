@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/error.h"
-#include "scene/flow.h"
+#include "scene/base/error.h"
+#include "scene/flow/flow.h"
 #include "scene/media/start_grids.h"
 #include "scene/media/voxel_grid.h"
 #include "tests/scene/media/random_points.h"

@@ -31,9 +31,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/application/json_value.h"
 #include "experiments/cli/program.h"
-#include "experiments/json_value.h"
-#include "scene/content_key.h"
+#include "scene/base/content_key.h"
 
 namespace {
 

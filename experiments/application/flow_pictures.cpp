@@ -1,0 +1,65 @@
+#include "experiments/application/flow_pictures.h"
+
+#include <algorithm>
+
+#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
+#include "scene/math/legendre.h"
+#include "scene/media/legendre_box.h"
+#include "scene/scene.h"
+
+namespace airlight::experiments {
+namespace {
+
+const std::string drawn_there = gpu::LegendreLightGpu().name();
+const auto is_smoke = [](const scene::Medium& m) { return scene::extinguishes(m); };
+
+}  // namespace
+
+FlowPictures::FlowPictures(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings,
+                           double exposure, int threads)
+    : scene_(scene), renderer_(renderer), settings_(settings), exposure_(exposure) {
+  execution_.threads = threads;
+  execution_.layers = {"mean"};
+  if (std::none_of(scene.media.begin(), scene.media.end(), is_smoke))
+    throw Error(scene.name + ": has no medium that extinguishes, expected one that is to be the flow's");
+}
+
+std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::DensityField& field) const {
+  const auto scene = std::make_shared<scene::Scene>(scene_);
+  std::find_if(scene->media.begin(), scene->media.end(), is_smoke)->field = field;
+  return renderer_.prepare(scene, settings_, execution_);
+}
+
+void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
+  scene::Stopwatch watch;
+  // What lies on a device is drawn from there into a picture that was prepared for something: a flow may begin empty.
+  if (const auto there = gpu::legendre::density_on_device(flow);
+      there && !prepared_ && renderer_.name() == drawn_there) {
+    const int n = there->coefficients;
+    prepared_ = prepared_with(std::make_shared<const scene::LegendreBox>(there->box, scene::TensorShape{n, n, n},
+                                                                         Eigen::VectorXd::Unit(n * n * n, 0)));
+  }
+  if (prepared_ && gpu::draw_flow(*prepared_, flow))
+    ++on_device_;
+  else
+    prepared_ = prepared_with(flow.medium());
+  write(png);
+  seconds_ += watch.lap();
+}
+
+void FlowPictures::draw(const scene::DensityField& density, const std::string& png) {
+  scene::Stopwatch watch;
+  prepared_ = prepared_with(density);
+  write(png);
+  seconds_ += watch.lap();
+}
+
+void FlowPictures::write(const std::string& png) const {
+  const scene::Rendering rendering = prepared_->render(scene::view_of(scene_), execution_);
+  scene::write_png(png, rendering.film, "mean", exposure_);
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,58 @@
+#include "experiments/application/interrupt.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <mutex>
+
+#include "scene/base/error.h"
+#include "scene/base/limits.h"
+
+namespace airlight::experiments {
+namespace {
+
+std::atomic<int> signals{0};
+std::atomic<bool> stopped{false};
+std::mutex reason_mutex;
+std::string reason;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+extern "C" void on_signal(int) {
+  if (++signals > 1) _exit(130);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  // Ignored under nohup.
+  struct sigaction hangup {};
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+}
+
+bool interrupted() { return signals.load() > 0 || stopped || scene::time_is_over(); }
+
+void stop_with(const std::string& why) {
+  const std::lock_guard lock(reason_mutex);
+  if (!stopped) reason = why;
+  stopped = true;
+}
+
+std::string stopped_by() { return !reason.empty() || !scene::time_is_over() ? reason : scene::over_time_text(); }
+
+void check_interrupted() {
+  if (stopped) throw Error(reason);
+  if (interrupted()) throw scene::Interrupted("interrupted");
+}
+
+scene::Execution quiet_execution(int threads) {
+  return {threads, [](double) { return !interrupted(); }};
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,59 @@
+#include "experiments/application/renderers.h"
+
+#include "experiments/application/find_component.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
+#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/ray_marcher/ray_marcher_gpu.h"
+#include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
+#include "methods/compensated_ray_marching/compensated_ray_marching.h"
+#include "methods/fogshop/fogshop.h"
+#include "methods/legendre_fluids/light.h"
+#include "methods/shadow_planes/shadow_planes.h"
+#include "methods/wavelet_fog/wavelet_fog.h"
+#include "reference/deterministic/renderer.h"
+#include "reference/path_tracer/renderer.h"
+#include "reference/ray_marcher/ray_marcher.h"
+
+namespace airlight::experiments {
+
+const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
+  static const auto renderers = [] {
+    std::vector<std::unique_ptr<scene::Renderer>> list;
+    list.push_back(deterministic::make_renderer());
+    list.push_back(std::make_unique<path_tracer::PathTracer>());
+    list.push_back(std::make_unique<ray_marcher::RayMarcher>());
+    list.push_back(std::make_unique<gpu::RayMarcherGpu>());
+    list.push_back(std::make_unique<fogshop::Fogshop>());
+    list.push_back(std::make_unique<gpu::FogshopGpu>());
+    list.push_back(std::make_unique<airlight::shadow_planes::ShadowPlanes>());
+    list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
+    list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
+    list.push_back(std::make_unique<gpu::WaveletFogGpu>());
+    list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
+    list.push_back(std::make_unique<gpu::LegendreLightGpu>());
+    list.push_back(std::make_unique<compensated_ray_marching::CompensatedRayMarching>());
+    list.push_back(std::make_unique<gpu::CompensatedRayMarchingGpu>());
+    return list;
+  }();
+  return renderers;
+}
+
+bool is_reference(const scene::Renderer& renderer) {
+  for (const char* name : {"deterministic", "path_tracer", "ray_marcher"})
+    if (renderer.name() == name) return true;
+  return false;
+}
+
+std::vector<std::string> renderer_names() {
+  std::vector<std::string> names;
+  for (const auto& renderer : all_renderers()) names.push_back(renderer->name());
+  return names;
+}
+
+const scene::Renderer& find_renderer(const std::string& name, const std::string& where) {
+  return find_component(all_renderers(), "renderer", name, where);
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,14 @@
+// OpenEXR files with layers of 16-bit floats, for films that must be small.
+#pragma once
+#include <set>
+#include <string>
+
+#include "scene/film/film.h"
+
+namespace airlight::scene {
+
+// As write_exr (film.h), the layers in `halves` as 16-bit floats. Throws Error where such a float does not hold a value
+// exactly.
+void write_exr_with_halves(const std::string& path, const Film&, const std::set<std::string>& halves);
+
+}  // namespace airlight::scene
