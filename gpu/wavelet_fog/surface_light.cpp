@@ -53,8 +53,7 @@ SurfaceLight::SurfaceLight(Context& context, const scene::Scene& scene, const Fi
 
 SurfaceLight::SurfaceLight(Context& context, const scene::Scene& scene, const FirstHits* first_hits,
                            const MaterialTables& tables)
-    : context_(context),
-      first_hits_(first_hits),
+    : first_hits_(first_hits),
       reflects_(lamps_light_surfaces(scene)),
       materials_(context, "materials", tables.materials),
       reflectances_(context, "tables of reflectances", tables.values),

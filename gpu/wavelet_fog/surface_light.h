@@ -36,7 +36,6 @@ class SurfaceLight {
   SurfaceLight(Context&, const scene::Scene&, const FirstHits*, const MaterialTables&);
   void reflect(const scene::Light&, const scene::View&, const Buffer& primitives, const Buffer& lit, bool first);
 
-  Context& context_;
   const FirstHits* first_hits_;
   bool reflects_;
   double magnitude_ = 0;  // greatest coordinate of a surface [m]

@@ -100,7 +100,7 @@ double softened_homogeneous_airlight(const LightFromRay& light, double d_vp, dou
   const auto [along, h] = light;
   const double soft = std::hypot(h, radius);
   // From the closest approach outwards, in pieces that double; the exponent moves by less than 2 in each.
-  const auto outwards = [&](double from, double length, double sign) {
+  const auto outwards = [&, along = along, h = h](double from, double length, double sign) {
     double sum = 0;
     for (double x = from, left = length; left > 0;) {
       const double step = std::min({left, std::max(soft, x) / 2, sign > 0 ? 1 / beta : infinity});

@@ -91,7 +91,8 @@ std::array<LegendreFlow::Acting, 2> LegendreFlow::acting(double dt) const {
 }
 
 void LegendreFlow::move(double dt) {
-  const auto [before, after] = acting(dt);
+  const std::array<Acting, 2> halves = acting(dt);
+  const Acting &before = halves[0], &after = halves[1];
   timed("sources", [&] {
     fade(before.decay);
     add_sources(before.sources);

@@ -312,7 +312,7 @@ Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
     // end are looked into, and the least dark ones: a panel of another light may be the least dark of all.
     Rgb most = p.value;
     bool matters = false;
-    const auto look = [&](double inset) {
+    const auto look = [&, p = p, least_depth = least_depth](double inset) {
       const Rgb ends = integrand(p.chart, p.lo + inset * width).max(integrand(p.chart, p.hi - inset * width));
       result.evaluations += 2;
       most = most.max(width * ends);

@@ -100,7 +100,8 @@ Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, s
     values_[s.name] = s.fallback;
   }
   for (const auto& [name, text] : given) {
-    const auto spec = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
+    const auto spec =
+        std::find_if(specs_.begin(), specs_.end(), [&, &name = name](const auto& s) { return s.name == name; });
     if (spec == specs_.end())
       throw Error(fmt::format("{}: unknown setting '{}', expected one of {}{}", where, printable(name, most),
                               fmt::join(names, ", "), nearest_hint(name, names)));

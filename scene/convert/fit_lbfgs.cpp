@@ -21,9 +21,8 @@ double sigmoid(double q) { return 1 / (1 + std::exp(-q)); }
 
 class Function : public ceres::FirstOrderFunction {
  public:
-  Function(FitObjective<float>& objective, const FitBounds& bounds, const std::vector<Gaussian>& start,
-           const MinimizerOptions& options)
-      : objective_(objective), bounds_(bounds), options_(options), now_(start), from_(start.size()), best_(start) {
+  Function(FitObjective<float>& objective, const FitBounds& bounds, const std::vector<Gaussian>& start)
+      : objective_(objective), bounds_(bounds), now_(start), from_(start.size()), best_(start) {
     scale_ = objective.sum_of_squares() > 0 ? 1 / objective.sum_of_squares() : 1;
     units_.reserve(start.size());
     for (std::size_t i = 0; i < start.size(); ++i) {
@@ -74,7 +73,6 @@ class Function : public ceres::FirstOrderFunction {
  private:
   FitObjective<float>& objective_;
   const FitBounds& bounds_;
-  const MinimizerOptions& options_;
   double scale_;
   mutable std::vector<Gaussian> now_;
   std::vector<Vector5> from_;
@@ -112,7 +110,7 @@ Minimization minimize_lbfgs(FitObjective<float>& objective, const FitBounds& bou
     result.value = objective.value(gaussians);
     return result;
   }
-  auto* const function = new Function(objective, bounds, gaussians, options);  // the problem's
+  auto* const function = new Function(objective, bounds, gaussians);  // the problem's
   ceres::GradientProblem problem(function);
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = ceres::LBFGS;

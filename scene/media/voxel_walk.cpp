@@ -106,7 +106,7 @@ double density_integral(const VoxelGrid& grid, const Ray& ray, Interval t) {
         _mm256_store_pd(at, c.cell);
         _mm256_store_pd(s, shift);
         const Voxel v = border_voxel(grid, int(at[0]), int(at[1]), int(at[2]));
-        const auto value = [&](double t) {
+        const auto value = [&, velocity = velocity](double t) {
           return v.at(s[0] + t * velocity[0], s[1] + t * velocity[1], s[2] + t * velocity[2]);
         };
         integral += 0.5 * length * (value(a) + value(b));
