@@ -1,6 +1,7 @@
 // The oracle vectors of tests/vectors, for implementations that `airlight verify` does not run: those that it does are
 // checked by its own test.
 #pragma once
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -44,6 +45,27 @@ inline const json& vector_of(const std::string& id) {
 inline double number(const json& v) {
   return v.is_string() ? std::strtod(v.get<std::string>().c_str(), nullptr) : v.get<double>();
 }
+
+inline std::vector<double> numbers(const json& list) {
+  std::vector<double> values;
+  for (const json& v : list) values.push_back(number(v));
+  return values;
+}
+
+// Lists in lists, up to three deep: their lengths, and their numbers, the last index fastest.
+struct Tensor {
+  std::array<int, 3> shape{1, 1, 1};
+  std::vector<double> values;
+  explicit Tensor(const json& v) { add(v, 0); }
+  void add(const json& v, std::size_t axis) {
+    if (!v.is_array()) return values.push_back(number(v));
+    shape.at(axis) = int(v.size());
+    for (const json& part : v) add(part, axis + 1);
+  }
+  Eigen::VectorXd array() const {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+  }
+};
 
 inline Vec3 vec(const json& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
 

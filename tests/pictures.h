@@ -1,8 +1,10 @@
 // Pictures of any renderer, and how far two of them are apart.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,26 @@ inline scene::Rendering render(const scene::Renderer& renderer, const scene::Sce
 inline scene::Film picture(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene,
                            const Given& given = {}, int threads = 1) {
   return render(renderer, std::move(scene), given, threads).film;
+}
+
+// By a preparation that goes on from the frame before.
+inline scene::Rendering next_frame(scene::Prepared& prepared, const std::shared_ptr<const scene::Scene>& scene) {
+  if (!prepared.next(scene, {1, {}})) throw std::runtime_error("the next frame must be prepared anew");
+  return prepared.render(view_of(*scene), {1, {}});
+}
+
+inline bool all_finite(const scene::Film& film) {
+  for (const auto& [layer, values] : film.layers)
+    for (const float v : values)
+      if (!std::isfinite(v)) return false;
+  return true;
+}
+
+inline double greatest_difference(const scene::Film& a, const scene::Film& b, const std::string& layer) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.layer(layer).size(); ++i)
+    most = std::max(most, std::abs(double(a.layer(layer)[i]) - b.layer(layer)[i]));
+  return most;
 }
 
 // Root mean square of a - truth over that of the truth.

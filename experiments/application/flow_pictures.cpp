@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
+#include "gpu/legendre_fluids/light.h"
 #include "scene/base/error.h"
 #include "scene/base/stopwatch.h"
 #include "scene/math/legendre.h"
@@ -13,7 +13,7 @@
 namespace airlight::experiments {
 namespace {
 
-const std::string drawn_there = gpu::LegendreLightGpu().name();
+const std::string drawn_there = gpu::legendre_fluids::LegendreLight().name();
 const auto is_smoke = [](const scene::Medium& m) { return scene::extinguishes(m); };
 
 }  // namespace
@@ -36,13 +36,13 @@ std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::Densit
 void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
   scene::Stopwatch watch;
   // What lies on a device is drawn from there into a picture that was prepared for something: a flow may begin empty.
-  if (const auto there = gpu::legendre::density_on_device(flow);
+  if (const auto there = gpu::legendre_fluids::density_on_device(flow);
       there && !prepared_ && renderer_.name() == drawn_there) {
     const int n = there->coefficients;
     prepared_ = prepared_with(std::make_shared<const scene::LegendreBox>(there->box, scene::TensorShape{n, n, n},
                                                                          Eigen::VectorXd::Unit(n * n * n, 0)));
   }
-  if (prepared_ && gpu::draw_flow(*prepared_, flow))
+  if (prepared_ && gpu::legendre_fluids::draw_flow(*prepared_, flow))
     ++on_device_;
   else
     prepared_ = prepared_with(flow.medium());

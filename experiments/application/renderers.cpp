@@ -1,12 +1,12 @@
 #include "experiments/application/renderers.h"
 
 #include "experiments/application/find_component.h"
-#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
-#include "gpu/fogshop/fogshop_gpu.h"
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
-#include "gpu/ray_marcher/ray_marcher_gpu.h"
-#include "gpu/shadow_planes/shadow_planes_gpu.h"
-#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching.h"
+#include "gpu/fogshop/fogshop.h"
+#include "gpu/legendre_fluids/light.h"
+#include "gpu/ray_marcher/ray_marcher.h"
+#include "gpu/shadow_planes/shadow_planes.h"
+#include "gpu/wavelet_fog/wavelet_fog.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/legendre_fluids/light.h"
@@ -24,17 +24,17 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(deterministic::make_renderer());
     list.push_back(std::make_unique<path_tracer::PathTracer>());
     list.push_back(std::make_unique<ray_marcher::RayMarcher>());
-    list.push_back(std::make_unique<gpu::RayMarcherGpu>());
+    list.push_back(std::make_unique<gpu::ray_marcher::RayMarcher>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
-    list.push_back(std::make_unique<gpu::FogshopGpu>());
+    list.push_back(std::make_unique<gpu::fogshop::Fogshop>());
     list.push_back(std::make_unique<airlight::shadow_planes::ShadowPlanes>());
-    list.push_back(std::make_unique<gpu::ShadowPlanesGpu>());
+    list.push_back(std::make_unique<gpu::shadow_planes::ShadowPlanes>());
     list.push_back(std::make_unique<wavelet_fog::WaveletFog>());
-    list.push_back(std::make_unique<gpu::WaveletFogGpu>());
+    list.push_back(std::make_unique<gpu::wavelet_fog::WaveletFog>());
     list.push_back(std::make_unique<legendre_fluids::LegendreLight>());
-    list.push_back(std::make_unique<gpu::LegendreLightGpu>());
+    list.push_back(std::make_unique<gpu::legendre_fluids::LegendreLight>());
     list.push_back(std::make_unique<compensated_ray_marching::CompensatedRayMarching>());
-    list.push_back(std::make_unique<gpu::CompensatedRayMarchingGpu>());
+    list.push_back(std::make_unique<gpu::compensated_ray_marching::CompensatedRayMarching>());
     return list;
   }();
   return renderers;

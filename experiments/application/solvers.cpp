@@ -1,7 +1,7 @@
 #include "experiments/application/solvers.h"
 
 #include "experiments/application/find_component.h"
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "reference/exact_flows/exact_flows.h"
 #include "reference/stable_fluids/stable_fluids.h"
@@ -12,7 +12,7 @@ const std::vector<std::unique_ptr<scene::Solver>>& all_solvers() {
   static const auto solvers = [] {
     std::vector<std::unique_ptr<scene::Solver>> list;
     list.push_back(std::make_unique<legendre_fluids::LegendreFluids>());
-    list.push_back(std::make_unique<gpu::LegendreFluidsGpu>());
+    list.push_back(std::make_unique<gpu::legendre_fluids::LegendreFluids>());
     list.push_back(std::make_unique<stable_fluids::StableFluids>());
     list.push_back(std::make_unique<exact_flows::ExactFlows>());
     return list;

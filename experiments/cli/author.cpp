@@ -5,11 +5,17 @@
 #include "experiments/application/interrupt.h"
 #include "experiments/authoring/fogmap_script.h"
 #include "experiments/authoring/write_scene.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "scene/base/error.h"
 #include "scene/base/file_ending.h"
 
 namespace airlight::experiments::cli {
+namespace {
+
+struct AuthorOptions {
+  std::string script, out;
+};
 
 int author(const AuthorOptions& options) {
   if (scene::file_ending(options.out) != ".toml") throw Error(fmt::format("{}: expected a name in .toml", options.out));
@@ -29,6 +35,27 @@ int author(const AuthorOptions& options) {
   fmt::print("{}: {} Gaussians in {} colour{}\n", options.out, authored.list.all().size(), files.tables.size(),
              files.tables.size() == 1 ? "" : "s");
   return 0;
+}
+
+}  // namespace
+
+void add_author(Commands& commands) {
+  const auto options = std::make_shared<AuthorOptions>();
+  CLI::App* c = add_command(
+      commands.app, "author",
+      "make fog by a script: Gaussians (paint, erase, copy, emit, airbrush), or a map of wavelet fog (noise, stroke, "
+      "blur, ...)");
+  c->add_option("SCRIPT", options->script,
+                "operations, one JSON object a line (methods/fogshop/README.md; maps: methods/wavelet_fog/README.md)");
+  c->add_option("--out,-o", options->out,
+                "scene file to write; its Gaussians go into CSV beside it, its map into PNG or EXR");
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.on(c, [options] {
+    require(options->script, "SCRIPT");
+    require(options->out, "--out");
+    return author(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

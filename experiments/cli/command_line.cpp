@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
+#include "experiments/application/build_info.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest.h"
 
@@ -34,6 +37,45 @@ std::string full_name(const CLI::App& command) {
 
 }  // namespace
 
+Commands::Commands() : app("airlight: fog and smoke in real time, judged against references", "airlight") {
+  app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
+  app.option_defaults()->always_capture_default(false);
+  app.footer("Commands that may use a GPU (render, experiment run, gates, explain, doctor) take --gpu WHICH.");
+  app.allow_extras();
+}
+
+void Commands::add_data(CLI::App* command) {
+  command->add_option("--data", data, "folder of large inputs (default: the variable AIRLIGHT_DATA)");
+}
+
+void Commands::add_gpu(CLI::App* command) {
+  command
+      ->add_option("--gpu", gpu,
+                   "device: its number, a part of its or its vendor's name, surfaceless, none, or auto, the first that "
+                   "works (default: the variable AIRLIGHT_GPU; airlight doctor lists them)")
+      ->type_name("WHICH");
+}
+
+void Commands::add_limit(CLI::App* command) {
+  command
+      ->add_option(
+          "--limit", limits,
+          "memory (2GiB) or time (10min, 90s) that the command may take; more is refused before the work where it can be "
+          "estimated (default: the memory of the machine)")
+      ->type_name("AMOUNT");
+}
+
+void Commands::on(CLI::App* command, std::function<int()> act) {
+  command->final_callback([this, act = std::move(act)] { action = act; });
+}
+
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& about) {
+  CLI::App* command = parent.add_subcommand(name, about);
+  command->allow_extras();
+  command->fallthrough(false);
+  return command;
+}
+
 void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const std::string& doc) {
   command
       ->add_option_function<std::vector<std::string>>(
@@ -52,6 +94,15 @@ void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const s
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void require(const std::string& value, const std::string& what) {
+  if (value.empty()) throw Error(fmt::format("{} is missing; see --help", what));
+}
+
+void check_exposure(double exposure) {
+  if (!(std::abs(exposure) <= 100))
+    throw Error(fmt::format("--exposure {}: expected a number in [-100, 100]", exposure));
 }
 
 std::vector<std::string> command_names(const CLI::App& app) {

@@ -1,15 +1,44 @@
-// How a command line is read, whatever the command: pairs, and words that are none of its options and commands.
+// How a command line is read, whatever the command: options that several commands share, pairs, and words that are none of a command's own.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "experiments/cli/commands.h"
-
 namespace airlight::experiments::cli {
+
+// What all commands share: the line's parser, options that several of them take, and what the chosen command does.
+struct Commands {
+  Commands();
+
+  CLI::App app;
+  std::string data;
+  std::optional<std::string> gpu;
+  std::vector<std::string> limits;
+  std::function<int()> action;  // of the chosen command; returns the exit code
+  bool lists_devices = false;   // the chosen command itself tells of a device that is not there
+
+  void add_data(CLI::App* command);   // --data
+  void add_gpu(CLI::App* command);    // --gpu
+  void add_limit(CLI::App* command);  // --limit
+  void on(CLI::App* command, std::function<int()> act);
+};
+
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& about);
+
+using Pairs = std::map<std::string, std::string>;  // from key=value
 
 // An option key=value, several times; blanks around the "=" do not count. Parsing throws Error for what is no pair.
 void add_pairs(CLI::App* command, const std::string& flag, Pairs&, const std::string& doc);
+
+// Throws Error if an argument or option was not given.
+void require(const std::string& value, const std::string& what);
+
+// Throws Error for an --exposure that is no number in [-100, 100].
+void check_exposure(double exposure);
 
 std::vector<std::string> command_names(const CLI::App&);
 

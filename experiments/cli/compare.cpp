@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "experiments/application/say.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/judging/equality.h"
 #include "experiments/judging/metrics.h"
@@ -13,6 +15,15 @@
 
 namespace airlight::experiments::cli {
 namespace {
+
+struct CompareOptions {
+  std::string image, reference, scene;
+  std::string layer = "mean";
+  std::vector<std::string> metrics;
+  Pairs most;        // metric=bound
+  Pairs overrides;   // of the scene
+  double alpha = 0;  // > 0: tests of equality at this false-alarm rate
+};
 
 double bound(const std::string& metric, const std::string& text) {
   check_metric_name(metric, "--max");
@@ -36,8 +47,6 @@ void warn_of_unknown_noise(const std::string& file, const scene::Film& film) {
   say(fmt::format("{}: warning: has {} samples a pixel and no batches: its noise is unknown, and counts as error", file,
                   samples->second));
 }
-
-}  // namespace
 
 int compare(const CompareOptions& options) {
   std::map<std::string, double> bounds;
@@ -80,6 +89,29 @@ int compare(const CompareOptions& options) {
     if (!e.equal) code = 1;
   }
   return code;
+}
+
+}  // namespace
+
+void add_compare(Commands& commands) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* c = add_command(commands.app, "compare", "errors of an image against a reference");
+  c->add_option("IMAGE", options->image, "OpenEXR file");
+  c->add_option("REFERENCE", options->reference, "OpenEXR file; its batches, if any, say how noisy it is");
+  c->add_option("--layer", options->layer, "default mean");
+  c->add_option("--metric", options->metrics, fmt::format("any of {} (default: all)", fmt::join(metric_names(), ", ")));
+  c->add_option("--scene", options->scene, "scene file: leave out pixels that touch a light's ball");
+  add_pairs(c, "--override", options->overrides, "a value of the scene file, as for the render");
+  add_pairs(c, "--max", options->most, "metric=bound: exit 1 if the error is certainly larger");
+  c->add_option("--equal", options->alpha, "test for equality but for noise at this rate of false alarms, e.g. 1e-4")
+      ->type_name("RATE");
+  commands.on(c, [c, options] {
+    if (c->count("--equal") && !(options->alpha > 0 && options->alpha < 1))
+      throw Error(fmt::format("--equal {}: expected a rate above 0 and below 1", options->alpha));
+    require(options->image, "IMAGE");
+    require(options->reference, "REFERENCE");
+    return compare(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

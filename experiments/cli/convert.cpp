@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
@@ -20,6 +21,20 @@
 
 namespace airlight::experiments::cli {
 namespace {
+
+struct ConvertOptions {
+  std::vector<std::string> files;  // in, out, in, out, ...
+  std::string layer = "mean";
+  double exposure = 0;
+  std::optional<double>
+      depth_scale;               // of a PNG, grey with 16 bits: the layer's first channel, this many metres are white
+  std::string grid = "density";  // of an OpenVDB file
+  int pixels = 64, samples = 2, degree = 1;
+  std::string medium = "0";              // of a scene: its name, or its number
+  std::vector<int> coefficients = {12};  // of a Legendre box: along all axes, or x, y, z
+  int cells = 24;                        // that its projection integrates over, along an axis
+  bool no_lanczos = false, no_limiter = false;
+};
 
 std::string kind_of(const std::string& out) {
   const std::string kind = scene::file_ending(out);
@@ -108,8 +123,6 @@ void convert(const std::string& in, const std::string& out, const ConvertOptions
   scene::write_file_atomically(out, bytes);
 }
 
-}  // namespace
-
 int convert(const ConvertOptions& options) {
   const std::vector<std::string>& files = options.files;
   if (const auto& scale = options.depth_scale; scale && !(*scale > 0 && std::isfinite(*scale)))
@@ -131,6 +144,43 @@ int convert(const ConvertOptions& options) {
     else
       convert(files[i], files[i + 1], options);
   return 0;
+}
+
+}  // namespace
+
+void add_convert(Commands& commands) {
+  const auto options = std::make_shared<ConvertOptions>();
+  CLI::App* c = add_command(commands.app, "convert",
+                            "a layer of OpenEXR files as PNG or PFM, a medium as a fogmap or a Legendre box");
+  c->add_option(
+      "FILES", options->files,
+      "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); or OpenVDB file, and .exr: the map of its "
+      "columns, whose [[medium]] and errors are printed; or OpenVDB file or scene, and .csv: a medium as a Legendre box, likewise; "
+      "more pairs may follow");
+  c->add_option("--layer", options->layer, "default mean");
+  c->add_option("--exposure", options->exposure, "of a PNG, in powers of two");
+  c->add_option("--depth-scale", options->depth_scale,
+                "METRES: the PNG is grey, 16 bits, and so many are white: the depth of a [backdrop] (layer distance)");
+  c->add_option("--grid", options->grid, "of an OpenVDB file (density)");
+  c->add_option("--pixels", options->pixels, "of a map, along its longer side (64)")->check(CLI::Range(1, 8192));
+  c->add_option("--samples", options->samples, "squared: upright rays a pixel (2)")->check(CLI::Range(1, 64));
+  c->add_option("--degree", options->degree, "of a map's splines (1)")->check(CLI::Range(0, 3));
+  c->add_option("--medium", options->medium, "of a scene: name or number (0)");
+  c->add_option("--coefficients", options->coefficients, "of a Legendre box: N, or NX,NY,NZ (12)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1, 32));
+  c->add_option("--cells", options->cells, "along an axis, that its projection integrates over (24)")
+      ->check(CLI::Range(1, 48));
+  c->add_flag("--no-lanczos", options->no_lanczos, "do not damp the waves that a jump leaves");
+  c->add_flag("--no-limiter", options->no_limiter, "do not draw it towards its mean until it is positive");
+  commands.add_limit(c);
+  commands.on(c, [options] {
+    require(options->files.empty() ? "" : options->files.front(), "IN");
+    require(options->files.size() % 2 == 0 ? options->files.back() : "", "OUT");
+    check_exposure(options->exposure);
+    return convert(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

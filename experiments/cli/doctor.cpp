@@ -8,6 +8,7 @@
 #include "experiments/application/probes.h"
 #include "experiments/application/renderers.h"
 #include "experiments/application/studies.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "gpu/context.h"
 #include "gpu/kernel_drivers.h"
@@ -36,8 +37,6 @@ void graphics() {
   }
 }
 
-}  // namespace
-
 int doctor() {
   fmt::print("airlight {} ({})\n", version(), commit());
   fmt::print("  compiler   {}\n", compiler());
@@ -59,6 +58,17 @@ int doctor() {
     fmt::print("  probes     airlight_studies doctor lists them\n");
   }
   return 0;
+}
+
+}  // namespace
+
+void add_doctor(Commands& commands) {
+  CLI::App* c = add_command(commands.app, "doctor", "versions, processor, graphics devices");
+  commands.add_gpu(c);
+  c->final_callback([&commands] {
+    commands.lists_devices = true;
+    commands.action = doctor;
+  });
 }
 
 }  // namespace airlight::experiments::cli

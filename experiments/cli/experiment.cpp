@@ -8,6 +8,7 @@
 #include "experiments/application/interrupt.h"
 #include "experiments/application/progress.h"
 #include "experiments/application/say.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/check.h"
@@ -24,6 +25,18 @@
 
 namespace airlight::experiments::cli {
 namespace {
+
+struct ExperimentOptions {
+  std::string root, profile = "quick", junit, margins_csv;
+  std::string results, cache;  // folders; empty: results and results/cache below root
+  std::vector<std::string> names;
+  bool resume = false;
+  bool gates_only = false;        // experiments without gates are left out
+  bool in_tests = false;          // likewise those without in_tests = true
+  bool margins = false;           // how far each gate is from failing
+  bool fresh_references = false;  // first makes all committed references of these experiments anew
+  int threads = 0;
+};
 
 void check_profile(const ExperimentOptions& options) {
   if (options.profile != "quick" && options.profile != "paper")
@@ -144,8 +157,6 @@ int name_failures(const std::vector<GateResult>& gates) {
   return count(gates).failed ? 1 : 0;
 }
 
-}  // namespace
-
 int list_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const auto root = project_root(options.root);
@@ -161,6 +172,7 @@ int list_experiments(const ExperimentOptions& options) {
   return 0;
 }
 
+// All files, scenes and settings are checked before anything is computed; exit code 1 names gates that failed.
 int run_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const Folders folders = folders_of(options);
@@ -220,8 +232,6 @@ int plot_experiments(const ExperimentOptions& options) {
   return 0;
 }
 
-namespace {
-
 int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& results) {
   check_profile(options);
   const Folders folders = folders_of(options);
@@ -256,8 +266,7 @@ int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& resul
   return name_failures(results);
 }
 
-}  // namespace
-
+// Runs what is not there yet of every experiment that has gates; exit code 1 names those that failed.
 int gates(const ExperimentOptions& options) {
   std::vector<GateResult> results;
   try {
@@ -271,6 +280,74 @@ int gates(const ExperimentOptions& options) {
     if (!options.junit.empty()) write_junit(options.junit, results, line.empty() ? stop.what() : line.c_str());
     throw;
   }
+}
+
+void add_selection(CLI::App* c, ExperimentOptions& options) {
+  c->add_option("NAME", options.names, "experiments: group/name, or a whole group (default: all)");
+  c->add_option("--root", options.root,
+                "folder of the project (default: found above the current folder, else above the program)");
+  c->add_option("--profile", options.profile,
+                "quick: small films, a few runs of each row (default); paper: films and runs for publication");
+}
+
+void add_results(CLI::App* c, ExperimentOptions& options) {
+  c->add_option("--results", options.results,
+                "folder of tables, plots, records and pictures (default: results/ of the project)")
+      ->type_name("FOLDER");
+}
+
+// Of what runs experiments.
+void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
+  add_selection(c, options);
+  add_results(c, options);
+  c->add_option(
+       "--cache", options.cache,
+       "folder of references and simulated smoke, which all runs share (default: results/cache/ of the project)")
+      ->type_name("FOLDER");
+  c->add_option("--threads", options.threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.add_gpu(c);
+}
+
+}  // namespace
+
+void add_experiment(Commands& commands) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  CLI::App* experiment = add_command(commands.app, "experiment", "run the experiments behind the tables and plots");
+  CLI::App* list = add_command(*experiment, "list", "list the experiments with their titles");
+  add_selection(list, *options);
+  commands.on(list, [options] { return list_experiments(*options); });
+  CLI::App* run = add_command(*experiment, "run",
+                              "run experiments and write their tables, plots and pictures; exit 1 if a gate fails");
+  add_run(commands, run, *options);
+  run->add_flag("--resume", options->resume,
+                "continue an interrupted run: keep the rows that this program finished in this results folder");
+  run->add_flag("--fresh-references", options->fresh_references,
+                "first compute the committed references of these experiments anew and replace their films in "
+                "experiments/data/references");
+  commands.on(run, [options] { return run_experiments(*options); });
+  CLI::App* plot = add_command(*experiment, "plot", "draw the plots of finished experiments again from their data");
+  add_selection(plot, *options);
+  add_results(plot, *options);
+  commands.on(plot, [options] { return plot_experiments(*options); });
+}
+
+void add_gates(Commands& commands) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  options->gates_only = true;
+  CLI::App* c =
+      add_command(commands.app, "gates", "check the accuracy bounds (gates) of the experiments; exit 1 if one fails");
+  add_run(commands, c, *options);
+  c->add_option("--junit", options->junit, "also write a JUnit report to this file")->type_name("FILE");
+  c->add_flag("--margins", options->margins,
+              "list how many times worse each figure could be before its gate fails, the loosest first");
+  c->add_option("--margins-csv", options->margins_csv, "write those margins to this CSV file")->type_name("FILE");
+  c->add_flag(
+      "--in-tests", options->in_tests,
+      "only experiments that say in_tests = true, as scripts/test does; without timed runs unless a gate judges a "
+      "time, and without tables");
+  commands.on(c, [options] { return gates(*options); });
 }
 
 }  // namespace airlight::experiments::cli

@@ -2,12 +2,18 @@
 
 #include "experiments/application/progress.h"
 #include "experiments/application/renderers.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "scene/base/error.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments::cli {
 namespace {
+
+struct ExplainOptions {
+  std::string scene, method;
+  Pairs settings, overrides;
+};
 
 std::string range(const scene::SettingSpec& spec) {
   using Type = scene::SettingSpec::Type;
@@ -26,10 +32,8 @@ std::string range(const scene::SettingSpec& spec) {
 }
 
 std::string condition(const scene::SettingSpec& spec) {
-  std::string text;
-  for (const auto& [other, values] : spec.read_where)
-    text += fmt::format("{} {} = {}", text.empty() ? "; read only with" : " and", other, fmt::join(values, " or "));
-  return text;
+  const std::string text = scene::read_condition(spec);
+  return text.empty() ? "" : "; read only with " + text;
 }
 
 void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
@@ -54,8 +58,6 @@ void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::S
     fmt::print("    prepared  {} in {:.3g} s\n", time.name, time.seconds);
 }
 
-}  // namespace
-
 int explain(const ExplainOptions& options) {
   if (!options.method.empty()) find_renderer(options.method, "--method");
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
@@ -75,6 +77,25 @@ int explain(const ExplainOptions& options) {
     }
   }
   return 0;
+}
+
+}  // namespace
+
+void add_explain(Commands& commands) {
+  const auto options = std::make_shared<ExplainOptions>();
+  CLI::App* c =
+      add_command(commands.app, "explain", "what each renderer would compute or leave out in a scene, and why");
+  c->add_option("SCENE", options->scene, "scene file");
+  c->add_option("--method,-m", options->method, "only this one");
+  add_pairs(c, "--set", options->settings, "a setting of the method");
+  add_pairs(c, "--override", options->overrides, "a value of the scene file");
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.add_gpu(c);
+  commands.on(c, [options] {
+    require(options->scene, "SCENE");
+    return explain(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "experiments/application/progress.h"
 #include "experiments/application/renderers.h"
 #include "experiments/application/say.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "experiments/cli/samples.h"
@@ -16,6 +18,14 @@
 
 namespace airlight::experiments::cli {
 namespace {
+
+struct RenderOptions {
+  std::string scene, method, out, png, samples, cache;
+  Pairs settings, overrides;
+  int threads = 0;
+  double exposure = 0;
+  bool distance = false;  // a layer `distance` too
+};
 
 void add_distance(const scene::Scene& scene, scene::Film& film) {
   film.add("distance");
@@ -41,8 +51,6 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   if (const auto warning = metadata.find("warning"); warning != metadata.end())
     say(fmt::format("{}: warning: {}", options.scene, warning->second));
 }
-
-}  // namespace
 
 int render(const RenderOptions& options) {
   const scene::Renderer& renderer = find_renderer(options.method, "--method");
@@ -78,6 +86,37 @@ int render(const RenderOptions& options) {
   if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
   check_interrupted();
   return not_kept ? not_kept->exit_code() : 0;
+}
+
+}  // namespace
+
+void add_render(Commands& commands) {
+  const auto options = std::make_shared<RenderOptions>();
+  CLI::App* c = add_command(commands.app, "render", "render a scene with a method or a reference");
+  c->add_option("SCENE", options->scene, "scene file (scene/README.md)");
+  c->add_option("--method,-m", options->method, fmt::format("one of {}", fmt::join(renderer_names(), ", ")));
+  c->add_option("--out,-o", options->out, "OpenEXR file to write");
+  c->add_option("--png", options->png, "also write an 8-bit preview");
+  c->add_option("--exposure", options->exposure, "of the preview, in powers of two");
+  c->add_flag(
+      "--distance", options->distance,
+      "also write where the rays of pixel centres end, in metres along them, 0 where they do not: layer distance");
+  c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
+  c->add_option("--samples", options->samples, "N, or A..B: a range to be merged (path_tracer)");
+  c->add_option("--cache", options->cache,
+                "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
+  add_pairs(c, "--set", options->settings, "a setting of the method (airlight explain lists them)");
+  add_pairs(c, "--override", options->overrides, "a value of the scene file, e.g. film.width=64");
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.add_gpu(c);
+  commands.on(c, [options] {
+    require(options->scene, "SCENE");
+    require(options->method, "--method");
+    require(options->out, "--out");
+    check_exposure(options->exposure);
+    return render(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "experiments/application/build_info.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "reference/path_tracer/accumulation.h"
@@ -47,6 +48,14 @@ scene::Film render_samples(std::shared_ptr<const scene::Scene> scene, const scen
   return film;
 }
 
+namespace {
+
+struct MergeOptions {
+  std::string scene, out;
+  std::vector<std::string> parts;
+  Pairs overrides;
+};
+
 int merge(const MergeOptions& options) {
   require_output(options.out, ".exr");
   const path_tracer::Accumulation samples = path_tracer::merge_range_files(options.parts);
@@ -73,6 +82,25 @@ int merge(const MergeOptions& options) {
   scene::write_exr(options.out, film);
   path_tracer::write_range_file(options.out + ".samples", samples);
   return 0;
+}
+
+}  // namespace
+
+void add_merge(Commands& commands) {
+  const auto options = std::make_shared<MergeOptions>();
+  CLI::App* c = add_command(commands.app, "merge", "join ranges of samples to one picture");
+  c->add_option("SCENE", options->scene, "scene file that the parts were rendered from");
+  c->add_option("PART", options->parts, "files written by render --samples A..B: OUT.samples");
+  c->add_option("--out,-o", options->out, "OpenEXR file to write");
+  add_pairs(c, "--override", options->overrides, "a value of the scene file, as for the parts");
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.on(c, [options] {
+    require(options->scene, "SCENE");
+    require(options->out, "--out");
+    if (options->parts.empty()) throw Error("PART is missing; see --help");
+    return merge(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

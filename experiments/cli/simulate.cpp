@@ -8,6 +8,7 @@
 #include "experiments/application/renderers.h"
 #include "experiments/application/simulation.h"
 #include "experiments/application/solvers.h"
+#include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/driver/sequences.h"
 #include "scene/base/error.h"
@@ -16,6 +17,16 @@
 namespace airlight::experiments::cli {
 
 namespace {
+
+struct SimulateOptions {
+  std::string problem, method = "stable_fluids", out;
+  Pairs settings, overrides;
+  std::string sequence, profile = "quick";  // in place of a problem and a folder
+  std::string scene, renderer;              // of pictures of each frame; scene empty: none; renderer empty: by method
+  Pairs renderer_settings;
+  double exposure = 0;
+  int threads = 0;
+};
 
 int simulate_sequence(const SimulateOptions& options) {
   if (options.profile != "quick" && options.profile != "paper")
@@ -47,8 +58,6 @@ struct Pictured {
   std::optional<FlowPictures> pictures;
 };
 
-}  // namespace
-
 int simulate(const SimulateOptions& options) {
   if (!options.sequence.empty()) return simulate_sequence(options);
   const scene::Solver& solver = find_solver(options.method, "--method");
@@ -78,6 +87,47 @@ int simulate(const SimulateOptions& options) {
   }
   for (const auto& [name, value] : report.counters) fmt::print("{:32} {:10.6g}\n", name, value);
   return 0;
+}
+
+}  // namespace
+
+void add_simulate(Commands& commands) {
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App* c =
+      add_command(commands.app, "simulate", "solve a flow problem: frames as OpenVDB files, and their history");
+  c->add_option("PROBLEM", options->problem, "file with a [flow]");
+  c->add_option("--method,-m", options->method, "stable_fluids (default)");
+  c->add_option("--out,-o", options->out, "folder; what an earlier run left there is gone on with");
+  add_pairs(c, "--set", options->settings, "a setting of the method");
+  add_pairs(c, "--override", options->overrides, "a value of the problem file");
+  c->add_option(
+      "--sequence", options->sequence,
+      "instead of PROBLEM and --out: one of experiments/sequences.toml, where it is not there; prints its files");
+  c->add_option(
+      "--scene", options->scene,
+      "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
+  c->add_option(
+      "--renderer", options->renderer,
+      "renderer of --scene (default: legendre_fluids for both methods of that name, else ray_marcher); legendre_fluids_gpu draws "
+      "flows of that name where they lie, what is below 0 towards the mean");
+  add_pairs(c, "--renderer-set", options->renderer_settings, "a setting of the renderer");
+  c->add_option("--exposure", options->exposure, "of the pictures, in powers of two");
+  c->add_option("--profile", options->profile, "of that sequence: quick (default) or paper");
+  c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
+  commands.add_limit(c);
+  commands.add_data(c);
+  commands.on(c, [options] {
+    if (options->sequence.empty()) {
+      require(options->problem, "PROBLEM");
+      require(options->out, "--out");
+    } else if (!options->problem.empty() || !options->out.empty()) {
+      throw Error("--sequence has its own problem and folder: expected neither PROBLEM nor --out");
+    }
+    check_exposure(options->exposure);
+    if (!options->sequence.empty() && !options->scene.empty())
+      throw Error("--sequence has no pictures: expected no --scene");
+    return simulate(*options);
+  });
 }
 
 }  // namespace airlight::experiments::cli

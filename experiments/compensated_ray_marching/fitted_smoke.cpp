@@ -64,11 +64,11 @@ double noise(const Vec3& p, std::uint32_t stream) {
 // The curl of three noises, by differences: without divergence, as what a flow carries along.
 Vec3 curl(const Vec3& p) {
   constexpr double h = 1e-3;
-  const auto slope = [&](std::uint32_t of, int along) {
+  const auto gradient = [&](std::uint32_t of, int along) {
     const Vec3 d = h * Vec3::Unit(along);
     return (noise(p + d, of) - noise(p - d, of)) / (2 * h);
   };
-  return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
+  return {gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)};
 }
 
 // n^3 samples of a cube of 1 m of a density, its places displaced by a curl that has risen.

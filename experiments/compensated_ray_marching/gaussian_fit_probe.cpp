@@ -98,6 +98,12 @@ class Flicker {
   double of_density_ = 0, of_error_ = 0;
 };
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0 : sum / double(values.size());
+}
+
 // A frame's residual in a hash with tags and in bricks of 8^3: sizes [bytes] and times [s] to build them from its levels, frame by frame.
 struct Stores {
   std::vector<double> hash_bytes, hash_seconds, brick_bytes, brick_seconds;
@@ -112,12 +118,77 @@ struct Stores {
     brick_seconds.push_back(watch.lap());
     brick_bytes.push_back(double(bricks.bytes()));
   }
+  void tell(Findings& found) const {
+    found.figures.push_back(exactly("hash_kB", 1e-3 * mean_of(hash_bytes)));
+    found.figures.push_back(measured("hash_ms", scaled(hash_seconds, 1e3)));
+    found.figures.push_back(exactly("bricks_kB", 1e-3 * mean_of(brick_bytes)));
+    found.figures.push_back(measured("bricks_ms", scaled(brick_seconds, 1e3)));
+  }
 };
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0 : sum / double(values.size());
+// What is known of the fits, frame by frame; times [s] of the first frame and of later ones.
+struct Fits {
+  std::vector<double> squared, rms, rms_filled, max, filled, evaluations, iterations, teleported, count, first, later;
+  std::vector<double> widths;  // of all Gaussians, in units
+  double at_least = 0, at_greatest = 0;
+
+  void add(const VoxelGrid& grid, const GaussianFit& fit, const scene::FitOptions& options) {
+    squared.push_back(fit.errors.squared_ratio);
+    rms.push_back(fit.errors.rms);
+    rms_filled.push_back(fit.errors.rms_filled);
+    max.push_back(fit.errors.max);
+    filled.push_back(double(std::count_if(grid.values.begin(), grid.values.end(), [](float v) { return v > 0; })) /
+                     double(grid.values.size()));
+    evaluations.push_back(double(fit.evaluations));
+    iterations.push_back(fit.iterations);
+    teleported.push_back(fit.teleported);
+    count.push_back(double(fit.sum.gaussians.size()));
+    const double lo = std::max(options.widths.lo * options.unit, options.least_voxels * grid.voxel_size);
+    const double hi = std::max(options.widths.hi * options.unit, 2 * lo);
+    for (const scene::Gaussian& g : fit.sum.gaussians) {
+      widths.push_back(g.width / options.unit);
+      at_least += g.width < 1.0001 * lo;
+      at_greatest += g.width > 0.9999 * hi;
+    }
+  }
+  void tell(Findings& found) {
+    const auto percent = [&](const char* name, double value) { found.figures.push_back(exactly(name, 100 * value)); };
+    percent("squared_percent", mean_of(squared));
+    percent("relative_l2_percent", std::sqrt(mean_of(squared)));
+    percent("rms_percent", mean_of(rms));
+    percent("rms_filled_percent", mean_of(rms_filled));
+    percent("max_percent", *std::max_element(max.begin(), max.end()));
+    percent("filled_percent", mean_of(filled));
+    found.figures.push_back(exactly("evaluations", mean_of(evaluations)));
+    found.figures.push_back(exactly("iterations", mean_of(iterations)));
+    found.figures.push_back(exactly("teleported", mean_of(teleported)));
+    found.figures.push_back(exactly("gaussians", mean_of(count)));
+    if (!widths.empty()) {
+      percent("at_least_percent", at_least / double(widths.size()));
+      percent("at_greatest_percent", at_greatest / double(widths.size()));
+      std::nth_element(widths.begin(), widths.begin() + std::ptrdiff_t(widths.size() / 2), widths.end());
+      found.figures.push_back(exactly("median_width", widths[widths.size() / 2]));
+    }
+    found.figures.push_back(measured("first_seconds", first));
+  }
+};
+
+scene::FitOptions fit_options(const scene::Settings& s, const scene::Execution& execution) {
+  scene::FitOptions options;
+  options.gaussians = int(s.integer("gaussians"));
+  options.widths.lo = s.real("least_width");
+  options.least_voxels = s.real("least_voxels");
+  options.method = s.choice<scene::FitMethod>("method");
+  options.teleport = s.choice<scene::Teleport>("teleport");
+  options.rounds = int(s.integer("rounds"));
+  options.iterations = int(s.integer("iterations"));
+  options.tolerance = s.real("tolerance");
+  options.resent = s.flag("resent");
+  options.threads = execution.threads;
+  options.check = [&execution] {
+    if (execution.progress && !execution.progress(0)) throw scene::Interrupted("interrupted");
+  };
+  return options;
 }
 
 }  // namespace
@@ -179,89 +250,34 @@ std::vector<std::string> GaussianFitProbe::figures() const {
 
 Findings GaussianFitProbe::run(const ProbeInput& input, const scene::Settings& s,
                                const scene::Execution& execution) const {
-  scene::FitOptions options;
-  options.gaussians = int(s.integer("gaussians"));
-  options.widths.lo = s.real("least_width");
-  options.least_voxels = s.real("least_voxels");
-  options.method = s.choice<scene::FitMethod>("method");
-  options.teleport = s.choice<scene::Teleport>("teleport");
-  options.rounds = int(s.integer("rounds"));
-  options.iterations = int(s.integer("iterations"));
-  options.tolerance = s.real("tolerance");
-  options.resent = s.flag("resent");
-  options.threads = execution.threads;
-  const auto step = [&] {
-    if (execution.progress && !execution.progress(0)) throw scene::Interrupted("interrupted");
-  };
-  options.check = step;
+  scene::FitOptions options = fit_options(s, execution);
+  options.unit = unit_of(input, s);
   const int frames = int(s.integer("frames")), runs = int(s.integer("runs"));
-
-  std::vector<double> squared, rms, rms_filled, max, filled, evaluations, iterations, teleported, count, first, later;
-  std::vector<double> widths;
-  double at_least = 0, at_greatest = 0;
+  Fits fits;
   Flicker flicker;
   Stores stores;
   GaussianFit previous;
-  options.unit = unit_of(input, s);
   for (int frame = 0; frame < frames; ++frame) {
-    step();
+    options.check();
     const VoxelGrid grid = smoke_at(input, s, frame);
     GaussianFit fit;
     for (int run = 0; run < runs; ++run) {
       fit = s.flag("warm") ? scene::next_fit(grid, previous, options) : scene::fit_gaussians(grid, options);
-      (frame == 0 ? first : later).push_back(fit.seconds);
+      (frame == 0 ? fits.first : fits.later).push_back(fit.seconds);
     }
     if (!fit.sum.gaussians.empty()) previous = fit;
-    squared.push_back(fit.errors.squared_ratio);
-    rms.push_back(fit.errors.rms);
-    rms_filled.push_back(fit.errors.rms_filled);
-    max.push_back(fit.errors.max);
-    filled.push_back(double(std::count_if(grid.values.begin(), grid.values.end(), [](float v) { return v > 0; })) /
-                     double(grid.values.size()));
-    evaluations.push_back(double(fit.evaluations));
-    iterations.push_back(fit.iterations);
-    teleported.push_back(fit.teleported);
-    count.push_back(double(fit.sum.gaussians.size()));
-    const double lo = std::max(options.widths.lo * options.unit, options.least_voxels * grid.voxel_size);
-    const double hi = std::max(options.widths.hi * options.unit, 2 * lo);
-    for (const scene::Gaussian& g : fit.sum.gaussians) {
-      widths.push_back(g.width / options.unit);
-      at_least += g.width < 1.0001 * lo;
-      at_greatest += g.width > 0.9999 * hi;
-    }
+    fits.add(grid, fit, options);
     if (frames > 1) flicker.add(grid, fit);
     if (s.flag("stores")) stores.add(grid, fit);
   }
   Findings found;
-  const auto percent = [&](const char* name, double value) { found.figures.push_back(exactly(name, 100 * value)); };
-  percent("squared_percent", mean_of(squared));
-  percent("relative_l2_percent", std::sqrt(mean_of(squared)));
-  percent("rms_percent", mean_of(rms));
-  percent("rms_filled_percent", mean_of(rms_filled));
-  percent("max_percent", *std::max_element(max.begin(), max.end()));
-  percent("filled_percent", mean_of(filled));
-  found.figures.push_back(exactly("evaluations", mean_of(evaluations)));
-  found.figures.push_back(exactly("iterations", mean_of(iterations)));
-  found.figures.push_back(exactly("teleported", mean_of(teleported)));
-  found.figures.push_back(exactly("gaussians", mean_of(count)));
-  if (!widths.empty()) {
-    percent("at_least_percent", at_least / double(widths.size()));
-    percent("at_greatest_percent", at_greatest / double(widths.size()));
-    std::nth_element(widths.begin(), widths.begin() + std::ptrdiff_t(widths.size() / 2), widths.end());
-    found.figures.push_back(exactly("median_width", widths[widths.size() / 2]));
-  }
-  found.figures.push_back(measured("first_seconds", first));
-  if (!later.empty()) {
+  fits.tell(found);
+  if (!fits.later.empty()) {
     found.figures.push_back(exactly("flicker", flicker.ratio()));
-    found.figures.push_back(measured("frame_seconds", later));
+    found.figures.push_back(measured("frame_seconds", fits.later));
   }
-  if (s.flag("stores")) {
-    found.figures.push_back(exactly("hash_kB", 1e-3 * mean_of(stores.hash_bytes)));
-    found.figures.push_back(measured("hash_ms", scaled(stores.hash_seconds, 1e3)));
-    found.figures.push_back(exactly("bricks_kB", 1e-3 * mean_of(stores.brick_bytes)));
-    found.figures.push_back(measured("bricks_ms", scaled(stores.brick_seconds, 1e3)));
-  }
-  set_time(found, later.empty() ? first : later);
+  if (s.flag("stores")) stores.tell(found);
+  set_time(found, fits.later.empty() ? fits.first : fits.later);
   return found;
 }
 

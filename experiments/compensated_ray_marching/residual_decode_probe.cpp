@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "experiments/compensated_ray_marching/fitted_smoke.h"
-#include "gpu/compensated_ray_marching/residual_on_device.h"
+#include "gpu/compensated_ray_marching/residual_store.h"
 #include "scene/base/error.h"
 #include "scene/base/stopwatch.h"
 #include "scene/convert/residual.h"
@@ -17,7 +17,7 @@ namespace airlight::experiments {
 namespace {
 
 using Eigen::Vector3i;
-using gpu::compensated::ResidualOnDevice;
+using gpu::compensated_ray_marching::ResidualOnDevice;
 using Levels = std::vector<std::int8_t>;
 using Points = std::vector<Eigen::Vector4f>;  // in samples; the last is not read
 
@@ -83,7 +83,8 @@ class Decoder {
     std::vector<float> flat(4 * points.size());
     std::memcpy(flat.data(), points.data(), 4 * flat.size());
     const gpu::Buffer buffer(context_, "points", flat);
-    return run(true, int(points.size()), [&](gpu::Program&) { buffer.bind(gpu::compensated::at::residual_points); });
+    return run(true, int(points.size()),
+               [&](gpu::Program&) { buffer.bind(gpu::compensated_ray_marching::at::residual_points); });
   }
 
  private:
@@ -93,7 +94,7 @@ class Decoder {
     definitions.insert({{"LOCAL_SIZE_X", "64"}, {"BETWEEN", between ? "1" : "0"}});
     gpu::Program& program = context_.program("compensated_ray_marching/residual_levels.comp", definitions);
     const gpu::Buffer result(context_, "levels", 4 * std::size_t(count));
-    result.bind(gpu::compensated::at::residual_result);
+    result.bind(gpu::compensated_ray_marching::at::residual_result);
     residual_.bind(program);
     bind(program);
     program.set("count", count);

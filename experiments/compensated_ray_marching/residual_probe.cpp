@@ -118,6 +118,27 @@ Measured measure_nano(const Task& task, NanoGrid::Values values) {
       [&](const Positions& at) { return grid->sum_at(at); });
 }
 
+// Frames in one table; sizes and times are those of one frame among 27. `hash` becomes the table.
+Measured measure_sequence(const Task& task, const scene::HashOptions& options, scene::PerfectHash& hash) {
+  scene::HashedSequence sequence;
+  const double frames = double(task.frames.size());
+  Measured m = measure_levels(
+      task, sequence, [&] { return scene::hashed_sequence(task.size, task.frames, options); },
+      [&](const auto& h) { return double(h.tables[0].bytes_with_tags()) / frames; },
+      [](const auto& h, const Vector3i& p) { return h.value(middle_frame, p); });
+  for (double& seconds : m.build) seconds /= frames;
+  for (std::size_t f = 0; f < task.frames.size(); ++f)
+    for (std::size_t i = 0; i < task.levels.size(); ++i) {
+      const int x = int(i) % task.size[0], y = int(i) / task.size[0] % task.size[1];
+      const Vector3i at(x, y, int(i) / task.size[0] / task.size[1]);
+      if (sequence.value(int(f), at) != task.frames[f][i])
+        throw Error(fmt::format("residual_stores: frame {} of the hash is not the frame at ({})", f,
+                                fmt::join(at.data(), at.data() + 3, ", ")));
+    }
+  hash = std::move(sequence.tables[0]);
+  return m;
+}
+
 Measured measure_store(const Task& task, const scene::Settings& s, scene::PerfectHash& hash) {
   const scene::HashOptions options{s.choice<scene::HashOptions::Offsets>("offsets"), 1};
   const auto hashed = [&](auto bytes, auto level) {
@@ -155,26 +176,8 @@ Measured measure_store(const Task& task, const scene::Settings& s, scene::Perfec
     case Store::hash_domain:
       return hashed([](const auto& h) { return h.bytes_with_domain(); },
                     [](const auto& h, const Vector3i& p) { return h.value_by_domain(p); });
-    case Store::hash_sequence: {
-      // Sizes and times are those of one frame among 27.
-      scene::HashedSequence sequence;
-      const double frames = double(task.frames.size());
-      Measured m = measure_levels(
-          task, sequence, [&] { return scene::hashed_sequence(task.size, task.frames, options); },
-          [&](const auto& h) { return double(h.tables[0].bytes_with_tags()) / frames; },
-          [](const auto& h, const Vector3i& p) { return h.value(middle_frame, p); });
-      for (double& seconds : m.build) seconds /= frames;
-      for (std::size_t f = 0; f < task.frames.size(); ++f)
-        for (std::size_t i = 0; i < task.levels.size(); ++i) {
-          const int x = int(i) % task.size[0], y = int(i) / task.size[0] % task.size[1];
-          const Vector3i at(x, y, int(i) / task.size[0] / task.size[1]);
-          if (sequence.value(int(f), at) != task.frames[f][i])
-            throw Error(fmt::format("residual_stores: frame {} of the hash is not the frame at ({})", f,
-                                    fmt::join(at.data(), at.data() + 3, ", ")));
-        }
-      hash = std::move(sequence.tables[0]);
-      return m;
-    }
+    case Store::hash_sequence:
+      return measure_sequence(task, options, hash);
     case Store::nano_floats:
       return measure_nano(task, NanoGrid::Values::floats);
     case Store::nano_eight_bits:

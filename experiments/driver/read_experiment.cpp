@@ -286,9 +286,27 @@ class Reader {
           cases.back().settings[key] = cases.back().setting;
         }
       }
+      if (cases.size() > 1) leave_out_unread(method, cases);
       for (const MethodCase& c : cases) check_component(reader, c.renderer, c.settings);
       if (in_profile(*table, reader)) experiment_.methods.insert(experiment_.methods.end(), cases.begin(), cases.end());
     }
+  }
+
+  // A row of a sweep goes without the settings that are not read beside its value, where another row reads them: a rule of upsampling in
+  // the row that samples every pixel.
+  void leave_out_unread(const MethodCase& method, std::vector<MethodCase>& cases) const {
+    std::vector<scene::SettingSpec> specs;
+    try {
+      specs = find_component(method.renderer, "").settings();
+    } catch (const Error&) {
+      return;  // check_component says why
+    }
+    std::vector<Pairs> read;
+    for (const MethodCase& c : cases) read.push_back(scene::without_unread(specs, c.settings));
+    for (const auto& [name, value] : method.settings)
+      if (std::any_of(read.begin(), read.end(), [&](const Pairs& row) { return row.count(name) > 0; }))
+        for (std::size_t i = 0; i < cases.size(); ++i)
+          if (read[i].count(name) == 0) cases[i].settings.erase(name);
   }
 
   void plots(const TableReader& top) {

@@ -40,6 +40,43 @@ json pictures(const Outcome& outcome) {
   return groups;
 }
 
+json references(const Outcome& outcome) {
+  json list = json::array();
+  for (const ReferenceInfo& r : outcome.references)
+    list.push_back({{"scene", r.scene},
+                    {"key", r.key},
+                    {"renderer", r.renderer},
+                    {"settings", r.settings},
+                    {"seconds", r.seconds},
+                    {"samples", r.samples},
+                    {"from_cache", r.cached},
+                    {"committed", r.committed},
+                    {"made_by", r.program},
+                    {"kept", r.kept}});
+  return list;
+}
+
+json tables(const Outcome& outcome) {
+  const Experiment& e = outcome.experiment;
+  json list = json::array();
+  list.push_back({{"file", "summary.csv"}, {"title", e.title}});
+  if (e.stages) list.push_back({{"file", "stages.csv"}, {"title", "Stages"}});
+  if (!e.expected.empty()) list.push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
+  if (!e.speed_ups.empty()) list.push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
+  if (e.orders && orders(outcome).size() > 1) list.push_back({{"file", "orders.csv"}, {"title", "Orders"}});
+  return list;
+}
+
+json rows(const Outcome& outcome) {
+  json list = json::array();
+  for (const Row& row : outcome.rows) {
+    list.push_back(to_json(row));
+    list.back().erase("times");                                             // what they show is in the intervals
+    for (const char* drawn : {"map", "columns"}) list.back().erase(drawn);  // with their numbers beside the plot
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plots) {
@@ -70,23 +107,8 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   if (!e.summary.empty()) j["summary"] = summary_text(outcome);
   j["libraries"] = json::object();
   for (const auto& [name, number] : libraries()) j["libraries"][name] = number;
-  j["references"] = json::array();
-  for (const ReferenceInfo& r : outcome.references)
-    j["references"].push_back({{"scene", r.scene},
-                               {"key", r.key},
-                               {"renderer", r.renderer},
-                               {"settings", r.settings},
-                               {"seconds", r.seconds},
-                               {"samples", r.samples},
-                               {"from_cache", r.cached},
-                               {"committed", r.committed},
-                               {"made_by", r.program},
-                               {"kept", r.kept}});
-  j["tables"] = {{{"file", "summary.csv"}, {"title", e.title}}};
-  if (e.stages) j["tables"].push_back({{"file", "stages.csv"}, {"title", "Stages"}});
-  if (!e.expected.empty()) j["tables"].push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
-  if (!e.speed_ups.empty()) j["tables"].push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
-  if (e.orders && orders(outcome).size() > 1) j["tables"].push_back({{"file", "orders.csv"}, {"title", "Orders"}});
+  j["references"] = references(outcome);
+  j["tables"] = tables(outcome);
   j["plots"] = json::array();
   for (const PlotFile& plot : plots) j["plots"].push_back({{"file", plot.file}, {"title", plot.title}});
   j["pictures"] = pictures(outcome);
@@ -94,12 +116,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   for (const GateResult& gate : outcome.gates)
     j["gates"].push_back(
         {{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}, {"skipped", gate.skipped}});
-  j["rows"] = json::array();
-  for (const Row& row : outcome.rows) {
-    j["rows"].push_back(to_json(row));
-    j["rows"].back().erase("times");                                             // what they show is in the intervals
-    for (const char* drawn : {"map", "columns"}) j["rows"].back().erase(drawn);  // with their numbers beside the plot
-  }
+  j["rows"] = rows(outcome);
   return j.dump(1) + "\n";
 }
 

@@ -60,7 +60,7 @@ void refuse(const scene::Scene& scene, const fogshop::Options& o) {
   const fogshop::Fog fog = fogshop::make_fog(scene.media);
   if (fog.sum.gaussians.empty() || !fog.grey() || !fog.one_albedo())
     throw Error(scene.name + ": kernel_rate counts one channel of Gaussians: expected grey fog of Gaussians");
-  if (o.noise_scale > 0 || o.downsample > 1 || o.sky_volume ||
+  if (o.noise_scale > 0 || o.downsample > 1 || o.sky_volume() ||
       (o.variant == fogshop::Options::Variant::slices && !o.map))
     throw Error("kernel_rate measures variant = paper, and S with light maps, without noise, sky volume or downsample");
 }

@@ -134,6 +134,31 @@ struct SumOfSquares {
   std::size_t count = 0;
 };
 
+constexpr int side = 8;  // of a block, in pixels
+
+// Values of a channel in the block that begins at (x0, y0), but for pixels that are left out.
+std::vector<std::size_t> block(const scene::Film& film, int x0, int y0, std::size_t channel,
+                               const std::vector<unsigned char>& left_out) {
+  std::vector<std::size_t> index;
+  for (int y = y0; y < std::min(film.height, y0 + side); ++y)
+    for (int x = x0; x < std::min(film.width, x0 + side); ++x) {
+      const std::size_t pixel = std::size_t(y) * std::size_t(film.width) + std::size_t(x);
+      if (left_out.empty() || !left_out[pixel]) index.push_back(3 * pixel + channel);
+    }
+  return index;
+}
+
+// Chi-square over the blocks of a channel; the least probable of all channels counts.
+void judge_scatter(const SumOfSquares& all, const SumOfSquares& known, double alpha, Equality& e) {
+  const double above = chi_square_above(all.sum, double(all.count));
+  const double below = known.count ? chi_square_below(known.sum, double(known.count)) : 1;
+  const double probability = std::min(1.0, 2 * std::min(above, below));  // both tails
+  if (probability > e.chi_square_probability) return;
+  e.chi_square_probability = probability;
+  e.chi_square = below < above ? known.sum : all.sum;
+  e.too_alike = below < above && probability < alpha / 9;
+}
+
 }  // namespace
 
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
@@ -145,7 +170,6 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
   if (first.batches.empty() && second.batches.empty())
     throw Error("both images are exact: compare them by metrics, not by tests of noise");
 
-  constexpr int side = 8;
   Equality e;
   std::vector<std::size_t> everything;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -153,12 +177,7 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
     Skewness skewness(std::max(first.batches.size(), second.batches.size()));
     for (int y0 = 0; y0 < a.height; y0 += side)
       for (int x0 = 0; x0 < a.width; x0 += side) {
-        std::vector<std::size_t> index;
-        for (int y = y0; y < std::min(a.height, y0 + side); ++y)
-          for (int x = x0; x < std::min(a.width, x0 + side); ++x) {
-            const std::size_t pixel = std::size_t(y) * std::size_t(a.width) + std::size_t(x);
-            if (left_out.empty() || !left_out[pixel]) index.push_back(3 * pixel + c);
-          }
+        const std::vector<std::size_t> index = block(a, x0, y0, c, left_out);
         if (index.empty()) continue;
         everything.insert(everything.end(), index.begin(), index.end());
         const Mean of_first = mean_over(first, index), of_second = mean_over(second, index);
@@ -176,14 +195,7 @@ Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::st
     if (all.count == 0) continue;
     e.blocks_in_range = skewness.of_blocks(e.block_skewness) && e.blocks_in_range;
     e.image_in_range = skewness.of_image(e.image_skewness) && e.image_in_range;
-    const double above = chi_square_above(all.sum, double(all.count));
-    const double below = known.count ? chi_square_below(known.sum, double(known.count)) : 1;
-    const double probability = std::min(1.0, 2 * std::min(above, below));  // both tails
-    if (probability <= e.chi_square_probability) {
-      e.chi_square_probability = probability;
-      e.chi_square = below < above ? known.sum : all.sum;
-      e.too_alike = below < above && probability < alpha / 9;
-    }
+    judge_scatter(all, known, alpha, e);
   }
   if (everything.empty()) throw Error("every pixel is left out: nothing to compare");
   const Mean ma = mean_over(first, everything), mb = mean_over(second, everything);

@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
+#include "gpu/legendre_fluids/light.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "methods/legendre_fluids/light.h"
 #include "scene/base/error.h"
@@ -83,6 +83,19 @@ double seconds_of_systems(const std::vector<scene::StageTime>& times) {
   return sum;
 }
 
+Findings findings_of(Clock& clock, std::size_t pixels, std::size_t particles) {
+  Findings found;
+  found.figures.push_back(measured("ms_frame", clock.all["frame"]));
+  for (const std::string& stage : stages) found.figures.push_back(measured("ms_" + stage, clock.all[stage]));
+  found.figures.push_back(measured("ms_systems", clock.all["systems"]));
+  std::vector<double> seconds = clock.all["frame"], rate;
+  for (double& x : seconds) rate.push_back(1e3 / x), x *= 1e-3;
+  found.figures.push_back(measured("frames_per_second", rate));
+  found.counters = {{"pixels", double(pixels)}, {"particles", double(particles)}};
+  set_time(found, seconds);
+  return found;
+}
+
 Findings frames_of(const scene::Solver& solver, const scene::Renderer& renderer, const scene::Settings& s,
                    scene::Execution execution) {
   const int n = int(s.integer("n"));
@@ -127,7 +140,7 @@ Findings frames_of(const scene::Solver& solver, const scene::Renderer& renderer,
     scene->media[0].field = rides ? scene::DensityField(unit) : flow->medium();
     finish(*scene);
     const auto picture = renderer.prepare(scene, of_renderer, execution);
-    const bool there = gpu::draw_flow(*picture, *flow);
+    const bool there = gpu::legendre_fluids::draw_flow(*picture, *flow);
     if (rides && !there) throw Error("the picture does not take the flow's density");
     now.lap("prepare");
     const scene::Rendering rendering = picture->render(view_of(*scene), execution);
@@ -137,16 +150,7 @@ Findings frames_of(const scene::Solver& solver, const scene::Renderer& renderer,
                                  (seconds_of_systems(picture->prepare_times()) + seconds_of_systems(rendering.times)));
     if (frame > 0) clock.end_frame();
   }
-  Findings found;
-  found.figures.push_back(measured("ms_frame", clock.all["frame"]));
-  for (const std::string& stage : stages) found.figures.push_back(measured("ms_" + stage, clock.all[stage]));
-  found.figures.push_back(measured("ms_systems", clock.all["systems"]));
-  std::vector<double> seconds = clock.all["frame"], rate;
-  for (double& x : seconds) rate.push_back(1e3 / x), x *= 1e-3;
-  found.figures.push_back(measured("frames_per_second", rate));
-  found.counters = {{"pixels", double(drawn)}, {"particles", double(flakes.positions.size())}};
-  set_time(found, seconds);
-  return found;
+  return findings_of(clock, drawn, flakes.positions.size());
 }
 
 }  // namespace
@@ -181,7 +185,7 @@ Findings LegendreFrame::run(const ProbeInput&, const scene::Settings& s, const s
 
 Findings LegendreFrameGpu::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
   gpu::Context::get();  // throws Unavailable where there is none
-  return frames_of(gpu::LegendreFluidsGpu(), gpu::LegendreLightGpu(), s, execution);
+  return frames_of(gpu::legendre_fluids::LegendreFluids(), gpu::legendre_fluids::LegendreLight(), s, execution);
 }
 
 }  // namespace airlight::experiments

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "experiments/shadow_planes/light_on_ray.h"
-#include "gpu/shadow_planes/evaluator_on_device.h"
+#include "gpu/shadow_planes/evaluator.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments::shadow_planes {
@@ -162,8 +162,8 @@ Timed errors_and_times(gpu::Context& context, const Evaluator& e, int cases, int
   constexpr std::size_t at_once = 1 << 18;  // enough to keep a device busy
   const auto parts = random_parts(cases);
   const bool polynomial = e.form == Evaluator::Form::polynomial;
-  const gpu::planes::DeviceEvaluator evaluator{{}, polynomial, e.terms, polynomial ? 3 : stretch_of(e.terms)};
-  std::vector<gpu::planes::EvaluatorCase> input;
+  const gpu::shadow_planes::DeviceEvaluator evaluator{{}, polynomial, e.terms, polynomial ? 3 : stretch_of(e.terms)};
+  std::vector<gpu::shadow_planes::EvaluatorCase> input;
   while (input.size() < at_once)
     for (const auto& on : parts)
       input.push_back({float(on.extinction), float(on.h), float(on.begin - on.T), float(on.length)});

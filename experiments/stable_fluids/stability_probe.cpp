@@ -119,10 +119,7 @@ std::vector<std::string> FlowStability::figures() const {
 }
 
 Findings FlowStability::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
-  const Stirred flow(s, {{"scheme", s.text("scheme")},
-                         {"interpolation", s.text("interpolation")},
-                         {"limiter", s.text("limiter")},
-                         {"trace", s.text("trace")}});
+  const Stirred flow(s, s.given(StableFluids().settings()));
   FigureMap map{"growth of the energy",
                 {"CFL [cells a step]", decades(-1, 2, int(s.integer("cfl_per_decade")))},
                 {"viscosity [m^2/s]", decades(-6, 6, int(s.integer("viscosity_per_decade")))},

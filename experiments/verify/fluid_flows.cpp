@@ -15,7 +15,9 @@ using scene::FlowProblem;
 std::unique_ptr<scene::Flow> start(const FlowProblem& problem, std::map<std::string, std::string> settings) {
   const StableFluids solver;
   settings.try_emplace("precision", "double");
-  return solver.start(std::make_shared<const FlowProblem>(problem), scene::Settings(solver.settings(), settings), {});
+  const std::vector<scene::SettingSpec> specs = solver.settings();
+  return solver.start(std::make_shared<const FlowProblem>(problem),
+                      scene::Settings(specs, scene::without_unread(specs, settings)), {});
 }
 
 // Columns scheme, order of the trace, n, steps, energy ratio, error over the norm at first.

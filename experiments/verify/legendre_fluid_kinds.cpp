@@ -124,19 +124,19 @@ Check read_legendre_evaluate(const Value& v) {
     const Value point = v["points"][i];
     const Components at = position(point["x"].vector());
     const int d = space->dimensions();
-    Array value(d), slope(d * d), slope_of_r(d), expected(d * d);
+    Array value(d), gradient(d * d), gradient_of_r(d), expected(d * d);
     for (int a = 0; a < d; ++a) {
       value[a] = space->sampled(u, a, at)[0];
-      slope_of_r[a] = space->scalar_sampled_slope(r, a, at)[0];
+      gradient_of_r[a] = space->scalar_sampled_gradient(r, a, at)[0];
       const Vec3 row = point["grad_u"][std::size_t(a)].vector();
       for (int b = 0; b < d; ++b) {
-        slope[a * d + b] = space->sampled_slope(u, a, b, at)[0];
+        gradient[a * d + b] = space->sampled_gradient(u, a, b, at)[0];
         expected[a * d + b] = row[b];
       }
     }
     out.arrays(fmt::format("u, point {}", i), point["u"].vector().head(d), value);
-    out.arrays(fmt::format("grad u, point {}", i), expected, slope);
-    out.arrays(fmt::format("grad r, point {}", i), point["grad_r"].vector().head(d), slope_of_r);
+    out.arrays(fmt::format("grad u, point {}", i), expected, gradient);
+    out.arrays(fmt::format("grad r, point {}", i), point["grad_r"].vector().head(d), gradient_of_r);
     out.number(point, "r", space->scalar_sampled(r, at)[0]);
   }
   return out.done();
@@ -227,12 +227,12 @@ Check read_legendre_energy_identity(const Value& v) {
   out.number(v, "w_grad_r_integral", -to_mass * moved[0]);
   out.number(v, "w_projected_energy", energy(*space, flat));
   out.zero("w_projected_grad_u_dot_u", space->inner(u, space->advected(space->at_points(flat), u)));
-  double slopes = 0;
+  double gradient_energy = 0;
   const Components nodes{space->nodes(), space->nodes(), space->nodes()};
   for (int a = 0; a < space->dimensions(); ++a)
     for (int b = 0; b < space->dimensions(); ++b)
-      slopes += space->integral(space->sampled_slope(u, a, b, nodes).cwiseAbs2());
-  out.number(v, "gradient_energy_u", slopes);
+      gradient_energy += space->integral(space->sampled_gradient(u, a, b, nodes).cwiseAbs2());
+  out.number(v, "gradient_energy_u", gradient_energy);
   return out.done();
 }
 

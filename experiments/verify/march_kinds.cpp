@@ -54,6 +54,50 @@ RaySample interpolated(const scene::GaussianSum& smoke, const std::vector<double
   return sum < 1e-10 ? RaySample{0, 0} : RaySample{sum, std::max(0.0, weighted / sum)};
 }
 
+// Densities in thousandths of ten: residuals of four decimals are then integers, which single precision keeps.
+constexpr double unit = 1e4;
+
+std::shared_ptr<scene::VoxelGrid> residual_of(const Value& values) {
+  const int voxels = int(values.size());
+  auto grid = std::make_shared<scene::VoxelGrid>();
+  grid->size = Eigen::Vector3i::Constant(voxels);
+  grid->voxel_size = 1.0 / voxels;
+  grid->translation = Vec3::Constant(0.5 / voxels);
+  grid->clamp_border = true;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    for (std::size_t j = 0; j < values.size(); ++j)
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double integer = unit * values[i][j][k].number_in(-100, 100);
+        if (std::abs(integer - std::round(integer)) > 1e-8) values[i][j][k].complain("a decimal of four places");
+        grid->values.push_back(float(std::round(integer)));
+      }
+  return grid;
+}
+
+// The integral that the march tends to, over the first `length` of a ray. `sources`: of each Gaussian, towards the eye.
+RayIntegral march_integral(const crm::MarchedSmoke& smoke, const std::vector<double>& sources, const Ray& ray,
+                           double length) {
+  std::vector<double> ends = crossings(smoke.gaussians, ray, 0, length);
+  // A residual has kinks where the ray crosses the planes through voxels' centres, and those of the box.
+  const int voxels = smoke.residual ? smoke.residual->size[0] : 0;
+  for (int a = 0; a < 3 && voxels > 0; ++a)
+    for (int i = -1; i <= voxels; ++i) {
+      const double plane = std::clamp((i + 0.5) / voxels, 0.0, 1.0);
+      const double at = (plane - ray.origin[a]) / ray.direction[a];
+      if (at > 0 && at < length) ends.push_back(at);
+    }
+  std::sort(ends.begin(), ends.end());
+  return integrate_ray(
+      [&](double at) {
+        const Point3 x = ray.at(at);
+        RaySample s = interpolated(smoke.gaussians, sources, x);
+        if (s.extinction > 0 && smoke.residual) s.extinction += scene::density(*smoke.residual, x);
+        s.extinction = smoke.extinction[0] * std::max(0.0, s.extinction);
+        return s;
+      },
+      ends, 1e-13);
+}
+
 }  // namespace
 
 Check read_march_single_scattering(const Value& v) {
@@ -118,30 +162,11 @@ Check read_march_compensated(const Value& v) {
   const Value in = v["input"], expected = v["expected"];
   crm::MarchedSmoke smoke;
   smoke.gaussians = gaussians_of(in);
-  // Densities in thousandths of ten: residuals of four decimals are then integers, which single precision keeps.
-  constexpr double unit = 1e4;
   smoke.extinction = Rgb::Constant(in["sigma_t"].number() / unit);
   for (scene::Gaussian& g : smoke.gaussians.gaussians) g.amplitude *= unit;
   const Value sources = in["source_sh_propagation"];
   for (std::size_t i = 0; i < sources.size(); ++i) smoke.source.push_back(grey_harmonics(sources[i]));
-  int voxels = 0;
-  if (in.has("residual")) {
-    const Value values = in["residual"]["values_x_y_z"];
-    voxels = int(values.size());
-    auto grid = std::make_shared<scene::VoxelGrid>();
-    grid->size = Eigen::Vector3i::Constant(voxels);
-    grid->voxel_size = 1.0 / voxels;
-    grid->translation = Vec3::Constant(0.5 / voxels);
-    grid->clamp_border = true;
-    for (std::size_t k = 0; k < values.size(); ++k)
-      for (std::size_t j = 0; j < values.size(); ++j)
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          const double integer = unit * values[i][j][k].number_in(-100, 100);
-          if (std::abs(integer - std::round(integer)) > 1e-8) values[i][j][k].complain("a decimal of four places");
-          grid->values.push_back(float(std::round(integer)));
-        }
-    smoke.residual = grid;
-  }
+  if (in.has("residual")) smoke.residual = residual_of(in["residual"]["values_x_y_z"]);
   const std::vector<Ray> rays = rays_of(in["rays"]);
   const crm::Slices slices{in["slice_axis"].vector().normalized(), in["slice_thickness"].number_in(1e-6, 1e6),
                            in["slices"].integer_in(1, 1 << 20)};
@@ -162,24 +187,7 @@ Check read_march_compensated(const Value& v) {
               for (const std::vector<Rgb>& one : smoke.source)
                 towards.push_back(scene::evaluate_sh(one, -ray.direction)[0]);
               const double length = slices.count * slices.thickness / std::abs(ray.direction.dot(slices.axis));
-              std::vector<double> ends = crossings(smoke.gaussians, ray, 0, length);
-              // A residual has kinks where the ray crosses the planes through voxels' centres, and those of the box.
-              for (int a = 0; a < 3 && voxels > 0; ++a)
-                for (int i = -1; i <= voxels; ++i) {
-                  const double plane = std::clamp((i + 0.5) / voxels, 0.0, 1.0);
-                  const double at = (plane - ray.origin[a]) / ray.direction[a];
-                  if (at > 0 && at < length) ends.push_back(at);
-                }
-              std::sort(ends.begin(), ends.end());
-              const RayIntegral exact = integrate_ray(
-                  [&](double at) {
-                    const Point3 x = ray.at(at);
-                    RaySample s = interpolated(smoke.gaussians, towards, x);
-                    if (s.extinction > 0 && smoke.residual) s.extinction += scene::density(*smoke.residual, x);
-                    s.extinction = smoke.extinction[0] * std::max(0.0, s.extinction);
-                    return s;
-                  },
-                  ends, 1e-13);
+              const RayIntegral exact = march_integral(smoke, towards, ray, length);
               got[0].push_back(std::exp(-exact.depth));
               got[1].push_back(exact.radiance + background * got[0].back());
               const crm::SliceWeight weights[]{crm::SliceWeight::exact, crm::SliceWeight::printed,

@@ -9,10 +9,10 @@
 #include "scene/math/sh_product.h"
 #include "scene/math/spherical_harmonics.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
-using compensated_ray_marching::Transmittance;
+using airlight::compensated_ray_marching::Transmittance;
 
 struct TermData {
   int i, j;
@@ -43,7 +43,7 @@ std::vector<TermData> terms_of(int order) {
 }
 
 // Of directions in place of bands: what each adds to a coefficient.
-std::vector<TermData> terms_of(int order, const std::vector<compensated_ray_marching::Ordinate>& directions) {
+std::vector<TermData> terms_of(int order, const std::vector<airlight::compensated_ray_marching::Ordinate>& directions) {
   const int bands = order * order, count = int(directions.size());
   std::vector<TermData> all;
   for (int b = 0; b < bands; ++b) all.push_back({bands + b * count, bands + (b + 1) * count, 0});
@@ -56,19 +56,22 @@ std::vector<TermData> terms_of(int order, const std::vector<compensated_ray_marc
 
 std::string exact(double value) { return fmt::format("{:.17g}{}LF", value, std::floor(value) == value ? ".0" : ""); }
 
-}  // namespace
+// Values of all tables in a row, and definitions that say where each begins.
+struct Tables {
+  std::vector<double> values;
+  Definitions definitions;
 
-double about_axis_factor(int l) { return std::sqrt(4 * pi / (2 * l + 1)); }
+  void number(const char* name, std::size_t value) { definitions[name] = std::to_string(value); }
+  void begin(const char* name) { number(name, values.size()); }
+  void add(const char* name, const std::vector<double>& list) {
+    begin(name);
+    values.insert(values.end(), list.begin(), list.end());
+  }
+};
 
-CentreTables::CentreTables(Context& context, int order, Transmittance kind, double cutoff, bool objects)
-    : order_(order) {
-  std::vector<double> all;
-  const auto number = [&](const char* name, std::size_t value) { definitions_[name] = std::to_string(value); };
-  const auto begin = [&](const char* name) { number(name, all.size()); };
+// Factors of recurrences for spherical harmonics: scene/math/spherical_harmonics.cpp.
+void add_harmonics(int order, Tables& t) {
   const auto size = std::size_t(order);
-  number("SH_ORDER", size);
-  number("BANDS", size * size);
-  // scene/math/spherical_harmonics.cpp
   std::vector<double> up(size * size, 0.0), back = up, first;
   double diagonal = 1 / (4 * pi);
   for (int m = 0; m <= order; ++m) {
@@ -81,59 +84,81 @@ CentreTables::CentreTables(Context& context, int order, Transmittance kind, doub
       if (l > m + 1) back[at] = std::sqrt((2.0 * l + 1) * (l - 1.0 - m) * (l - 1.0 + m) / ((2.0 * l - 3) * span));
     }
   }
-  begin("UP_AT");
-  all.insert(all.end(), up.begin(), up.end());
-  begin("BACK_AT");
-  all.insert(all.end(), back.begin(), back.end());
-  begin("FIRST_AT");
-  all.insert(all.end(), first.begin(), first.end());
-  begin("DEPTH_AT");
-  using compensated_ray_marching::DepthTable;
-  const DepthTable depths(order, DepthTable::Spacing::even, compensated_ray_marching::depth_samples, cutoff);
+  t.add("UP_AT", up);
+  t.add("BACK_AT", back);
+  t.add("FIRST_AT", first);
+}
+
+// Depths of a Gaussian about the axis to its centre.
+void add_depths(int order, double cutoff, Tables& t) {
+  using airlight::compensated_ray_marching::DepthTable;
+  const auto size = std::size_t(order);
+  t.begin("DEPTH_AT");
+  const DepthTable depths(order, DepthTable::Spacing::even, airlight::compensated_ray_marching::depth_samples, cutoff);
   for (std::size_t i = 0; i < depths.samples().size(); ++i)
-    all.push_back(depths.samples()[i] * about_axis_factor(int(i % size)));
-  number("DEPTH_LAST", depths.samples().size() / size - 1);
+    t.values.push_back(depths.samples()[i] * about_axis_factor(int(i % size)));
+  t.number("DEPTH_LAST", depths.samples().size() / size - 1);
+}
 
-  number("EXPONENTIAL_LINEAR", std::size_t(Transmittance::paper_linear));
-  number("EXPONENTIAL_SQUARED", std::size_t(Transmittance::paper_squared));
-  number("EXPONENTIAL", std::size_t(kind));
+void add_exponential(int order, Transmittance kind, Tables& t) {
+  t.number("EXPONENTIAL_LINEAR", std::size_t(Transmittance::paper_linear));
+  t.number("EXPONENTIAL_SQUARED", std::size_t(Transmittance::paper_squared));
+  t.number("EXPONENTIAL", std::size_t(kind));
   const bool linear = kind == Transmittance::paper_linear || kind == Transmittance::paper_squared;
-  definitions_["THRESHOLD"] =
-      exact(linear ? compensated_ray_marching::squaring_threshold : compensated_ray_marching::series_threshold);
-  begin("LOG_A_AT");
+  t.definitions["THRESHOLD"] = exact(linear ? airlight::compensated_ray_marching::squaring_threshold
+                                            : airlight::compensated_ray_marching::series_threshold);
   if (linear) {
-    const auto& exponential = compensated_ray_marching::linear_exponential(order);
-    all.insert(all.end(), exponential.log_constants().begin(), exponential.log_constants().end());
-    begin("LOG_B_AT");
-    all.insert(all.end(), exponential.log_slopes().begin(), exponential.log_slopes().end());
-    number("LINEAR_LAST", exponential.log_constants().size() - 1);
-    definitions_["LINEAR_LONGEST"] = exact(exponential.longest());
+    const auto& exponential = airlight::compensated_ray_marching::linear_exponential(order);
+    t.add("LOG_A_AT", exponential.log_constants());
+    t.add("LOG_B_AT", exponential.log_slopes());
+    t.number("LINEAR_LAST", exponential.log_constants().size() - 1);
+    t.definitions["LINEAR_LONGEST"] = exact(exponential.longest());
   } else {
-    number("LOG_B_AT", all.size());
-    number("LINEAR_LAST", 1);
-    definitions_["LINEAR_LONGEST"] = "1.0LF";
+    t.begin("LOG_A_AT");
+    t.begin("LOG_B_AT");
+    t.number("LINEAR_LAST", 1);
+    t.definitions["LINEAR_LONGEST"] = "1.0LF";
   }
+}
 
-  definitions_["LEAST_SINE"] = exact(std::sin(compensated_ray_marching::least_hidden));
+// Shadows of spheres by the angle that these fill.
+void add_shadows(int order, Transmittance kind, bool objects, Tables& t) {
+  t.definitions["LEAST_SINE"] = exact(std::sin(airlight::compensated_ray_marching::least_hidden));
   std::vector<std::vector<double>> shadows;
-  if (objects) shadows = compensated_ray_marching::shadow_table(order, kind).samples();
+  if (objects) shadows = airlight::compensated_ray_marching::shadow_table(order, kind).samples();
   const std::size_t last = std::max<std::size_t>(shadows.size(), 2) - 1;
-  begin("SHADOW_AT");
+  t.begin("SHADOW_AT");
   for (const auto& zonal : shadows)
-    for (std::size_t l = 0; l < size; ++l) all.push_back(zonal[l] * about_axis_factor(int(l)));
-  begin("SINES_AT");
-  for (std::size_t i = 0; i < shadows.size(); ++i) all.push_back(std::sin(0.5 * pi * double(i) / double(last)));
-  begin("COSINES_AT");
-  for (std::size_t i = 0; i < shadows.size(); ++i) all.push_back(std::cos(0.5 * pi * double(i) / double(last)));
-  number("SHADOW_LAST", last);
-  definitions_["SHADOWS_PER_ANGLE"] = exact(double(last) / (0.5 * pi));
+    for (std::size_t l = 0; l < std::size_t(order); ++l) t.values.push_back(zonal[l] * about_axis_factor(int(l)));
+  t.begin("SINES_AT");
+  for (std::size_t i = 0; i < shadows.size(); ++i) t.values.push_back(std::sin(0.5 * pi * double(i) / double(last)));
+  t.begin("COSINES_AT");
+  for (std::size_t i = 0; i < shadows.size(); ++i) t.values.push_back(std::cos(0.5 * pi * double(i) / double(last)));
+  t.number("SHADOW_LAST", last);
+  t.definitions["SHADOWS_PER_ANGLE"] = exact(double(last) / (0.5 * pi));
+}
 
-  tables_ = std::make_unique<Buffer>(context, "tables of sources", all);
-  std::vector<compensated_ray_marching::Ordinate> directions;
-  if (kind == Transmittance::directional) directions = compensated_ray_marching::transmittance_directions();
-  number("PARTS", directions.empty() ? size * size : directions.size());
+}  // namespace
+
+double about_axis_factor(int l) { return std::sqrt(4 * pi / (2 * l + 1)); }
+
+CentreTables::CentreTables(Context& context, int order, Transmittance kind, double cutoff, bool objects)
+    : order_(order) {
+  const auto bands = std::size_t(order * order);
+  Tables t;
+  t.number("SH_ORDER", std::size_t(order));
+  t.number("BANDS", bands);
+  add_harmonics(order, t);
+  add_depths(order, cutoff, t);
+  add_exponential(order, kind, t);
+  add_shadows(order, kind, objects, t);
+  tables_ = std::make_unique<Buffer>(context, "tables of sources", t.values);
+  std::vector<airlight::compensated_ray_marching::Ordinate> directions;
+  if (kind == Transmittance::directional) directions = airlight::compensated_ray_marching::transmittance_directions();
+  t.number("PARTS", directions.empty() ? bands : directions.size());
   terms_ = std::make_unique<Buffer>(context, "terms of products",
                                     directions.empty() ? terms_of(order) : terms_of(order, directions));
+  definitions_ = std::move(t.definitions);
 }
 
 void CentreTables::bind(Program& p) const {
@@ -143,4 +168,4 @@ void CentreTables::bind(Program& p) const {
 
 void CentreTables::bind_terms() const { terms_->bind(at::terms); }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

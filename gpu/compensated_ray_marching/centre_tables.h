@@ -1,14 +1,14 @@
 // What shaders read of the processor's tables for sources at the centres, in double precision: centre_tables.glsl, triple_product.glsl.
 #pragma once
-#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/compensated_ray_marching/interface.h"
 #include "methods/compensated_ray_marching/source_radiance.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 class CentreTables {
  public:
   // Shadows of objects only where there are any. Of `directional` products are of what is known by direction.
-  CentreTables(Context&, int order, compensated_ray_marching::Transmittance, double cutoff, bool objects);
+  CentreTables(Context&, int order, airlight::compensated_ray_marching::Transmittance, double cutoff, bool objects);
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&) const;  // centre_tables.glsl
   void bind_terms() const;    // triple_product.glsl
@@ -22,4 +22,4 @@ class CentreTables {
 // sqrt(4 pi / (2l+1)): a zonal coefficient times it and y_lm(axis) is a coefficient of the function about the axis.
 double about_axis_factor(int l);
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -1,4 +1,4 @@
-// Radiance to moments, and J_ss plus what they scatter: an iteration's result, what it missed, and the differences to the last.
+// Radiance to moments, and J_ss plus what they scatter: an iteration's result, its residual, and the differences to the last.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/smoke_state.glsl"
 #include "compensated_ray_marching/scatterer.glsl"
@@ -8,7 +8,7 @@ layout(std430, binding = AT_SINGLE) readonly buffer Single { float single_source
 layout(std430, binding = AT_SOURCE) readonly buffer Source { float source[]; };
 layout(std430, binding = AT_RESULT) buffer Result { float result[]; };
 layout(std430, binding = AT_STEPS) writeonly buffer Steps { float steps[]; };            // [slot][light of the solve][band][cell]
-// Of band 0: [at, missed, moved, misses by slot][light of the solve][cell].
+// Of band 0: [at, residual, moved, residual steps by slot][light of the solve][cell].
 layout(std430, binding = AT_MEANS) buffer Means { float means[]; };
 layout(std430, binding = AT_BALANCE) readonly buffer Balance { float balance[]; };       // [channel][cell]
 uniform int directions, cells;
@@ -31,11 +31,11 @@ void main() {
     result[at] = now;
   }
   int plane = lights * cells, mean = l * cells + cell;
-  float at = source[first * cells + cell], missed = result[first * cells + cell] - at;
+  float at = source[first * cells + cell], residual = result[first * cells + cell] - at;
   if (iteration > 1) {
     means[2 * plane + mean] = at - means[mean];
-    means[(3 + slot) * plane + mean] = missed - means[plane + mean];
+    means[(3 + slot) * plane + mean] = residual - means[plane + mean];
   }
   means[mean] = at;
-  means[plane + mean] = missed;
+  means[plane + mean] = residual;
 }

@@ -33,7 +33,7 @@ void main() {
     done = iteration;
     return;
   }
-  // gram shares = what missed has of each; the greatest diagonal first, and what is left of the others' combinations is left out.
+  // gram shares = what the residual has of each; the greatest diagonal first, and what is left of the others' combinations is left out.
   bool gone[KEPT];
   int order[KEPT];
   double most = 0;

@@ -39,7 +39,7 @@ double normalised(int to, int from, double factor) {
 
 void main() {
   int z = int(gl_WorkGroupID.z), system = first_system + z;
-  int right = vector_at(z, RIGHT), solution = vector_at(z, SOLUTION), missed = vector_at(z, MISSED), slope = vector_at(z, SLOPE),
+  int right = vector_at(z, RIGHT), solution = vector_at(z, SOLUTION), residual = vector_at(z, RESIDUAL), gradient = vector_at(z, GRADIENT),
       direction = vector_at(z, DIRECTION), along = vector_at(z, ALONG);
   if (stage == STAGE_SPREAD) {  // the solution of the solve's first system, to all
     int first = vector_at(0, SOLUTION);
@@ -47,29 +47,29 @@ void main() {
       for (int i = lane; i < gaussian_count; i += lanes) vectors[solution + i] = vectors[first + i];
     return;
   }
-  if (stage == STAGE_MISS) {  // `along` is the matrix times the start
-    for (int i = lane; i < gaussian_count; i += lanes) vectors[missed + i] = vectors[right + i] - vectors[along + i];
+  if (stage == STAGE_RESIDUAL) {  // `along` is the matrix times the start
+    for (int i = lane; i < gaussian_count; i += lanes) vectors[residual + i] = vectors[right + i] - vectors[along + i];
     return;
   }
   if (states[system].done != 0) return;
   State now = states[system];
 #if LSQR
   if (stage == STAGE_STEP) {
-    now.beta = normalised(missed, along, now.alpha);
+    now.beta = normalised(residual, along, now.alpha);
     if (lane == 0) states[system].beta = now.beta;
     return;
   }
   double share;  // of the direction before
-  if (stage == STAGE_BEGIN) {  // the slope is the transposed matrix times what the start misses, not of length 1
+  if (stage == STAGE_BEGIN) {  // the gradient is the transposed matrix times the start's residual, not of length 1
     now.whole = sqrt(square_of(along));
-    now.left = normalised(missed, missed, 0);
-    now.alpha = now.left > 0 ? normalised(slope, slope, 0) / now.left : 0;
+    now.left = normalised(residual, residual, 0);
+    now.alpha = now.left > 0 ? normalised(gradient, gradient, 0) / now.left : 0;
     now.diagonal = now.alpha;
     now.square = now.alpha * now.left;
     now.iterations = 0;
     share = 0;
   } else {
-    now.alpha = normalised(slope, along, now.beta);
+    now.alpha = normalised(gradient, along, now.beta);
     double length_ = sqrt(now.diagonal * now.diagonal + now.beta * now.beta);
     double cosine = now.diagonal / length_, sine = now.beta / length_, step_ = cosine * now.left / length_;
     for (int i = lane; i < gaussian_count; i += lanes) vectors[solution + i] += step_ * vectors[direction + i];
@@ -87,15 +87,15 @@ void main() {
       double step_ = now.square / length_;
       for (int i = lane; i < gaussian_count; i += lanes) {
         vectors[solution + i] += step_ * vectors[direction + i];
-        vectors[missed + i] -= step_ * vectors[along + i];
+        vectors[residual + i] -= step_ * vectors[along + i];
       }
     } else if (lane == 0) {
       states[system].done = 1;
     }
     return;
   }
-  // The slope is new: of the first iteration, where `along` is the transposed matrix times the right side, or of the next.
-  double next = square_of(slope), share = 0;
+  // The gradient is new: of the first iteration, where `along` is the transposed matrix times the right side, or of the next.
+  double next = square_of(gradient), share = 0;
   if (stage == STAGE_BEGIN) {
     now.whole = sqrt(square_of(along));
     now.iterations = 0;
@@ -108,7 +108,7 @@ void main() {
   if (!(now.whole > 0)) now.whole = 1;
   double negative = 0;
   for (int i = lane; i < gaussian_count; i += lanes) {
-    vectors[direction + i] = vectors[slope + i] + (share == 0 ? 0 : share * vectors[direction + i]);
+    vectors[direction + i] = vectors[gradient + i] + (share == 0 ? 0 : share * vectors[direction + i]);
     if (vectors[solution + i] < 0) negative += 1;
   }
   now.negative = int(total(negative));

@@ -2,7 +2,7 @@
 #pragma once
 #include "scene/math/types.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 struct GaussianData {
   float center[3], width, amplitude, unused[3] = {0, 0, 0};
@@ -11,4 +11,4 @@ inline GaussianData gaussian_data(const Vec3& center, double width, double ampli
   return {{float(center[0]), float(center[1]), float(center[2])}, float(width), float(amplitude)};
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

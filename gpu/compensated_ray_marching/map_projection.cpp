@@ -7,7 +7,7 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
 constexpr int projection_lanes = 64;  // invocations of a work group
@@ -100,4 +100,4 @@ std::vector<Rgb> MapProjection::of(const scene::EnvironmentMap& map, const Buffe
   return project_environment(about_pole, order_);
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -1,10 +1,10 @@
 // Projection of a lat-long map on spherical harmonics, on the device: project_environment of scene/light/environment.h, for the texels that lie
 // there. With the map's pole as axis the sums separate: Fourier sums of the rows, then sums over rows.
 #pragma once
-#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/compensated_ray_marching/interface.h"
 #include "scene/light/environment.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 class MapProjection {
  public:
@@ -24,4 +24,4 @@ class MapProjection {
   std::unique_ptr<Buffer> circle_, row_weights_, fourier_, projected_;
 };
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -1,5 +1,5 @@
 // Sums over all cells, weighted with the squared extinction, of products of an iteration's differences: a part for each work group.
-// 0: missed^2, 1: result^2, 2: moved^2, then by slot: the newest difference of what was missed with each, and missed with each.
+// 0: residual^2, 1: result^2, 2: moved^2, then by slot: the newest difference of residuals with each, and the residual with each.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/smoke_state.glsl"
 #include "compensated_ray_marching/scatterer.glsl"
@@ -23,7 +23,7 @@ void main() {
       for (int i = int(gl_GlobalInvocationID.x); i < plane; i += stride) {
         int l = i / cells, cell = i % cells;
         double extinct = double(densities[cell]);
-        float a = means[plane + i], b = a;  // missed
+        float a = means[plane + i], b = a;  // the residual
         if (s == 1) a = b = result[(first_light + l) * BANDS * cells + cell];
         if (s == 2) a = b = means[2 * plane + i];
         if (s > 2) b = means[(3 + other) * plane + i];

@@ -1,4 +1,4 @@
-// Levels of a residual on the device: scene/convert/residual_bricks.h and perfect_hash.h, decoded; residual_on_device.h is the host's side.
+// Levels of a residual on the device: scene/convert/residual_bricks.h and perfect_hash.h, decoded; residual_store.h is the host's side.
 //   int residual_level(ivec3 sample)     the level of a sample, 0 outside; bit for bit the processor's
 //   float residual_between(vec3 sample)  trilinear between levels, 0 beyond one voxel outside [levels]; the same of all kinds
 // A hash takes two dependent reads for a level, sixteen for what lies between; bricks take two and five.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
 // Cells of a work group: of Gaussians, which it chooses, a cube; of voxels a row, whose rays go the same way.
@@ -17,15 +17,16 @@ Program& columns_program(Context& context, Definitions definitions) {
 
 }  // namespace
 
-void set_grid(Program& p, const compensated_ray_marching::NodeGrid& grid, const Point3& middle) {
+void set_grid(Program& p, const airlight::compensated_ray_marching::NodeGrid& grid, const Point3& middle) {
   const auto& size = grid.cells.size;
   p.set("corner", Vec3(grid.corner - middle));
   p.set("cell_edge", grid.cells.cell[0]);
   p.set("cells_along", Vec3(size[0], size[1], size[2]));
 }
 
-SmokeColumns::SmokeColumns(Context& context, const scene::Scene& scene, const compensated_ray_marching::LitGrid& grid,
-                           const SmokeDensity& density, const Point3& middle)
+SmokeColumns::SmokeColumns(Context& context, const scene::Scene& scene,
+                           const airlight::compensated_ray_marching::LitGrid& grid, const SmokeDensity& density,
+                           const Point3& middle)
     : context_(context),
       scene_(scene),
       grid_(grid),
@@ -40,7 +41,8 @@ SmokeColumns::SmokeColumns(Context& context, const scene::Scene& scene, const co
     hidden_ = std::make_unique<Buffer>(context, "hidden nodes", 4 * ((grid.nodes().size() + 31) / 32));
 }
 
-bool SmokeColumns::aim(const compensated_ray_marching::IncomingLight& light, const scene::Execution& execution) {
+bool SmokeColumns::aim(const airlight::compensated_ray_marching::IncomingLight& light,
+                       const scene::Execution& execution) {
   const std::size_t fixed = light.fixed(), lights = light.directions().size() - fixed, nodes = grid_.nodes().size();
   bool moved = !values_ || lights != lights_;
   if (!values_ || lights > towards_.size()) {
@@ -90,4 +92,4 @@ std::vector<std::uint32_t> SmokeColumns::hidden_from(const Vec3& to_light, const
   return hidden;
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -4,20 +4,20 @@
 #include <memory>
 #include <vector>
 
-#include "gpu/compensated_ray_marching/smoke_density.h"
+#include "gpu/compensated_ray_marching/marched_smoke.h"
 #include "methods/compensated_ray_marching/lit_grid.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 class SmokeColumns {
  public:
   // All of these outlive this; `middle`: that of the density. No columns before aim(). Throws Unavailable where the device has no room.
-  SmokeColumns(Context&, const scene::Scene&, const compensated_ray_marching::LitGrid&, const SmokeDensity&,
+  SmokeColumns(Context&, const scene::Scene&, const airlight::compensated_ray_marching::LitGrid&, const SmokeDensity&,
                const Point3& middle);
 
   // Where light comes from, now. The processor looks which nodes surfaces hide from a directional light that moved: a bit of each goes up.
   // Whether any moved, came or went.
-  bool aim(const compensated_ray_marching::IncomingLight&, const scene::Execution&);
+  bool aim(const airlight::compensated_ray_marching::IncomingLight&, const scene::Execution&);
 
   const Buffer& values() const { return *values_; }  // [direction][node, m]; 1e37: blocked
   const Buffer& nodes() const { return *nodes_; }    // their cells
@@ -29,7 +29,7 @@ class SmokeColumns {
 
   Context& context_;
   const scene::Scene& scene_;
-  const compensated_ray_marching::LitGrid& grid_;
+  const airlight::compensated_ray_marching::LitGrid& grid_;
   const SmokeDensity& density_;
   Point3 middle_;
   Program& program_;
@@ -39,6 +39,6 @@ class SmokeColumns {
 };
 
 // The uniforms corner, cell_edge, cells_along: of the nodes, relative to `middle`.
-void set_grid(Program&, const compensated_ray_marching::NodeGrid&, const Point3& middle);
+void set_grid(Program&, const airlight::compensated_ray_marching::NodeGrid&, const Point3& middle);
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -5,17 +5,18 @@
 
 #include "gpu/compensated_ray_marching/gaussian_data.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
-using compensated::ResidualOnDevice;
+using compensated_ray_marching::ResidualOnDevice;
 
 constexpr int voxels_of_group = 4;       // along each side of a block
 constexpr double nothing_in_voxels = 6;  // widths: methods/compensated_ray_marching/smoke_volume.cpp
 
 }  // namespace
 
-SmokeVolume::SmokeVolume(Context& context, const compensated_ray_marching::SmokeField& smoke) : smoke_(smoke) {
+SmokeVolume::SmokeVolume(Context& context, const airlight::compensated_ray_marching::SmokeField& smoke)
+    : smoke_(smoke) {
   const scene::VoxelGrid& grid = *smoke.voxels();
   std::vector<GaussianData> data;
   const auto add = [&](const std::vector<scene::Gaussian>& gaussians) {
@@ -28,7 +29,7 @@ SmokeVolume::SmokeVolume(Context& context, const compensated_ray_marching::Smoke
   gaussians_ = std::make_unique<Buffer>(context, "gaussians in voxels", data);
   values_ = std::make_unique<Buffer>(context, "density and source at voxels", 16 * std::size_t(grid.size.prod()));
   Definitions definitions{{"RESIDUAL", "0"}, {"LOCAL_SIZE_Z", std::to_string(voxels_of_group)}};
-  if (const compensated_ray_marching::StoredResidual* residual = smoke.residual()) {
+  if (const airlight::compensated_ray_marching::StoredResidual* residual = smoke.residual()) {
     if (const scene::PerfectHash* hash = residual->hash())
       residual_ =
           std::make_unique<ResidualOnDevice>(context, residual->size(), *hash, ResidualOnDevice::Membership::domain);
@@ -58,4 +59,4 @@ void SmokeVolume::find(const Buffer& sources) const {
   p.dispatch(grid.size[0], grid.size[1], grid.size[2]);
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -2,16 +2,16 @@
 #pragma once
 #include <memory>
 
-#include "gpu/compensated_ray_marching/residual_on_device.h"
-#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/compensated_ray_marching/interface.h"
+#include "gpu/compensated_ray_marching/residual_store.h"
 #include "methods/compensated_ray_marching/marched_smoke.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 class SmokeVolume {
  public:
   // Of smoke with voxels, its residual as bricks or hash; it outlives this.
-  SmokeVolume(Context&, const compensated_ray_marching::SmokeField&);
+  SmokeVolume(Context&, const airlight::compensated_ray_marching::SmokeField&);
 
   // sources: of each centre towards the camera, as CentreSourcesOnDevice has them.
   void find(const Buffer& sources) const;
@@ -19,11 +19,11 @@ class SmokeVolume {
   const Buffer& values() const { return *values_; }
 
  private:
-  const compensated_ray_marching::SmokeField& smoke_;
-  std::unique_ptr<compensated::ResidualOnDevice> residual_;  // null: there is none
+  const airlight::compensated_ray_marching::SmokeField& smoke_;
+  std::unique_ptr<compensated_ray_marching::ResidualOnDevice> residual_;  // null: there is none
   std::unique_ptr<Buffer> gaussians_, values_;
   int count_ = 0;
   Program* program_ = nullptr;
 };
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -4,12 +4,12 @@
 
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
 constexpr int direction_lanes = 64;  // invocations of a work group
 
-std::vector<float> towards(const std::vector<compensated_ray_marching::Ordinate>& directions) {
+std::vector<float> towards(const std::vector<airlight::compensated_ray_marching::Ordinate>& directions) {
   std::vector<float> values;
   for (const auto& d : directions)
     for (const double v : {d.direction[0], d.direction[1], d.direction[2], 0.0}) values.push_back(float(v));
@@ -19,7 +19,7 @@ std::vector<float> towards(const std::vector<compensated_ray_marching::Ordinate>
 }  // namespace
 
 SurfacesByDirections::SurfacesByDirections(Context& context, const SmokeDensity* density, const Point3& middle,
-                                           const std::vector<compensated_ray_marching::Ordinate>& directions)
+                                           const std::vector<airlight::compensated_ray_marching::Ordinate>& directions)
     : density_(density),
       middle_(middle),
       directions_(int(directions.size())),
@@ -56,4 +56,4 @@ void SurfacesByDirections::light(const scene::View& view, const SurfacesOnDevice
   p.dispatch(direction_lanes * view.width, view.height);
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -2,7 +2,7 @@
 
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 namespace {}  // namespace
 
 Surroundings::Surroundings(Context& context, const scene::Scene& scene) : context_(context) {
@@ -22,11 +22,12 @@ void Surroundings::become(const scene::Scene& scene) {
   if (!environments_->become(scene)) set_environments(scene);
 }
 
-void Surroundings::set_lamps(const scene::Scene& scene, const compensated_ray_marching::IncomingLight& incoming) {
+void Surroundings::set_lamps(const scene::Scene& scene,
+                             const airlight::compensated_ray_marching::IncomingLight& incoming) {
   if (!surfaces_) {
     lamps_ = scene;
     lamps_.lights = {scene::DirectionalLight{}};  // its programs are wanted even when no direction has light yet
-    surfaces_ = std::make_unique<fogmaps::SurfaceLight>(context_, lamps_, first_hits_.get());
+    surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, lamps_, first_hits_.get());
   }
   lamps_.lights.clear();
   for (std::size_t k = 0; k < incoming.directions().size(); ++k)
@@ -59,9 +60,9 @@ void Surroundings::look_behind(const scene::View& view, Frame& frame) const {
 
 void Surroundings::light_surfaces(const scene::View& view, Frame& frame,
                                   const std::function<void(const scene::Light&)>& dim) const {
-  Buffer& lit = of_pixels(frame, "lit", view, sizeof(fogmaps::LitData));
+  Buffer& lit = of_pixels(frame, "lit", view, sizeof(wavelet_fog::LitData));
   if (lamps_.lights.empty()) lit.clear();
   surfaces_->render(lamps_, view, &of_pixels(frame, "primitives", view, 4), lit, dim);
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

@@ -3,14 +3,14 @@
 #include <memory>
 #include <vector>
 
-#include "gpu/compensated_ray_marching/smoke_interface.h"
+#include "gpu/compensated_ray_marching/interface.h"
 #include "gpu/environment_lights.h"
 #include "gpu/frame.h"
 #include "gpu/raster/backdrops.h"
 #include "gpu/wavelet_fog/surface_light.h"
 #include "methods/compensated_ray_marching/incoming_light.h"
 
-namespace airlight::gpu::smoke {
+namespace airlight::gpu::compensated_ray_marching {
 
 class Surroundings {
  public:
@@ -18,7 +18,7 @@ class Surroundings {
   // Other lights of the same scene.
   void become(const scene::Scene&);
   // Surfaces are lit from the directions that smoke is lit from, one after the other; where they are not, light_surfaces is not called.
-  void set_lamps(const scene::Scene&, const compensated_ray_marching::IncomingLight&);
+  void set_lamps(const scene::Scene&, const airlight::compensated_ray_marching::IncomingLight&);
 
   const EnvironmentLights& environments() const { return *environments_; }
   const FirstHits* surfaces() const { return first_hits_.get(); }  // null: there are none
@@ -40,7 +40,7 @@ class Surroundings {
   std::unique_ptr<EnvironmentLights> environments_;
   std::unique_ptr<FirstHits> first_hits_;
   std::unique_ptr<Backdrops> backdrops_;
-  std::unique_ptr<fogmaps::SurfaceLight> surfaces_;
+  std::unique_ptr<wavelet_fog::SurfaceLight> surfaces_;
   scene::Scene lamps_;            // the surfaces, lit from directions
   std::vector<Program*> behind_;  // for each environment
 };
@@ -50,4 +50,4 @@ inline Buffer& of_pixels(Frame& frame, const char* name, const scene::View& view
   return frame.buffers.get(name, bytes * std::size_t(view.width) * std::size_t(view.height));
 }
 
-}  // namespace airlight::gpu::smoke
+}  // namespace airlight::gpu::compensated_ray_marching

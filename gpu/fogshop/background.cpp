@@ -3,7 +3,7 @@
 #include "gpu/fogshop/interface.h"
 #include "gpu/view_uniforms.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 
 Background::Background(Context& context, const scene::Scene& scene, const FogOnDevice& fog) : lights_(context, scene) {
   for (int i = 0; i < lights_.count(); ++i) {
@@ -30,4 +30,4 @@ void Background::draw(const FogOnDevice& fog, const scene::View& view, const Buf
   }
 }
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

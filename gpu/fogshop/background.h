@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "gpu/environment_lights.h"
-#include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/fog.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 
 class Background {
  public:
@@ -23,4 +23,4 @@ class Background {
   std::vector<Program*> programs_;  // one each
 };
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

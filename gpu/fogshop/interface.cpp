@@ -7,7 +7,7 @@
 #include "gpu/interface.h"
 #include "methods/fogshop/surface_psf.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 namespace {
 
 const std::vector<Binding> bindings = {{"GAUSSIANS", at::gaussians},
@@ -54,9 +54,9 @@ std::string listed(const Values& values) {
 }  // namespace
 
 std::map<std::string, std::string> dawson_definitions() {
-  return {{"DAWSON_END", fmt::format("{:.9e}", fogshop::DawsonFit::end)},
-          {"DAWSON_NUMERATOR", listed(fogshop::DawsonFit::numerator)},
-          {"DAWSON_DENOMINATOR", listed(fogshop::DawsonFit::denominator)}};
+  return {{"DAWSON_END", fmt::format("{:.9e}", airlight::fogshop::DawsonFit::end)},
+          {"DAWSON_NUMERATOR", listed(airlight::fogshop::DawsonFit::numerator)},
+          {"DAWSON_DENOMINATOR", listed(airlight::fogshop::DawsonFit::denominator)}};
 }
 
 Program& program(Context& context, const std::string& file, std::map<std::string, std::string> definitions) {
@@ -67,4 +67,4 @@ Program& program(Context& context, const std::string& file, std::map<std::string
   return made;
 }
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

@@ -6,7 +6,7 @@
 
 #include "gpu/program.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree) and 5 (what lights see),
 // gpu/common 9 (values of an environment). What no shader has at the same time shares a number. `lights` is a uniform block.
@@ -77,4 +77,4 @@ std::map<std::string, std::string> dawson_definitions();
 // compiler of the host.
 Program& program(Context&, const std::string& file, std::map<std::string, std::string> definitions);
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

@@ -1,4 +1,4 @@
-// What the passes of variant S hand on, by ray of a strip of tiles (gpu/fogshop/airlight.cpp, which defines the sizes): a field of all
+// What the passes of variant S hand on, by ray of a strip of tiles (gpu/fogshop/airlight_pass.cpp, which defines the sizes): a field of all
 // rays, then the next, so that neighbours read together. No pass holds an array, however many slices and lights there are.
 layout(std430, binding = AT_RAY_VALUES) buffer RayValues { float ray_value[]; };
 uniform int ray_count;  // of the strip

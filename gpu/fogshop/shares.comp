@@ -14,7 +14,7 @@ uniform int boxes;
 #define EACH_BLOCK(DO) DO(0) DO(1) DO(2) DO(3)
 #define EACH_OF_EIGHT(b, DO) \
   DO(8 * b) DO(8 * b + 1) DO(8 * b + 2) DO(8 * b + 3) DO(8 * b + 4) DO(8 * b + 5) DO(8 * b + 6) DO(8 * b + 7)
-const int nodes_each = 32;  // as gpu/fogshop/airlight.cpp
+const int nodes_each = 32;  // as gpu/fogshop/airlight_pass.cpp
 
 void main() {
   ivec2 pixel = pixel_of_strip();

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/fog.h"
 #include "gpu/fogshop/interface.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 namespace {
 
 // Pairs of beam and Gaussian in one dispatch, all nodes together: a fraction of a second on a GPU.
@@ -20,7 +20,7 @@ struct BeamData {
   float unused_too;
 };
 
-std::vector<BeamData> beam_data(const std::vector<fogshop::SkyBeam>& beams) {
+std::vector<BeamData> beam_data(const std::vector<airlight::fogshop::SkyBeam>& beams) {
   std::vector<BeamData> data;
   for (const auto& [w, weight] : beams)
     data.push_back(
@@ -28,19 +28,20 @@ std::vector<BeamData> beam_data(const std::vector<fogshop::SkyBeam>& beams) {
   return data;
 }
 
-double node_count(const fogshop::SkyGrid& grid) { return (grid.last.cast<double>() + 1).prod(); }
+double node_count(const airlight::fogshop::SkyGrid& grid) { return (grid.last.cast<double>() + 1).prod(); }
 
 }  // namespace
 
 SkyVolumeOnDevice::SkyVolumeOnDevice(Context& context, FogOnDevice& fog, const scene::Scene& scene,
-                                     const fogshop::Model& model, const scene::Execution& execution)
+                                     const airlight::fogshop::Model& model, const scene::Execution& execution)
     : grid_(model.gaussians, model.options.sky_cells),
       nodes_(context, "sky volume", std::size_t(node_count(grid_)) * 12) {
   const Use use_context(context);
-  const std::vector<fogshop::SkyBeam> beams = fogshop::sky_beams(scene, model.options.sky_directions);
+  const std::vector<airlight::fogshop::SkyBeam> beams =
+      airlight::fogshop::sky_beams(scene, model.options.sky_directions);
   const Buffer beam_buffer(context, "beams of the environment", beam_data(beams));
   // Once for the surfaces, by the tree that the host has of them.
-  std::optional<fogshop::OpenBeams> open;
+  std::optional<airlight::fogshop::OpenBeams> open;
   if (scene.geometry) open.emplace(*scene.geometry, grid_, beams, execution);
   const Buffer open_buffer(context, "open beams", open ? open->bits : std::vector<std::uint32_t>());
   Program& p = fog.program(
@@ -72,4 +73,4 @@ void SkyVolumeOnDevice::use(Program& p) const {
   nodes_.bind(at::sky_volume);
 }
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

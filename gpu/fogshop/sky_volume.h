@@ -4,7 +4,7 @@
 #include "gpu/program.h"
 #include "methods/fogshop/model.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 
 class FogOnDevice;
 
@@ -12,14 +12,15 @@ class SkyVolumeOnDevice {
  public:
   // Computes the nodes, 12 bytes each, by as many dispatches as keep each of them short. Requires a Gaussian. Throws
   // Unavailable where the device has no storage block of that size.
-  SkyVolumeOnDevice(Context&, FogOnDevice&, const scene::Scene&, const fogshop::Model&, const scene::Execution&);
+  SkyVolumeOnDevice(Context&, FogOnDevice&, const scene::Scene&, const airlight::fogshop::Model&,
+                    const scene::Execution&);
 
   // For a program that includes fogshop/sky_volume.glsl: its uniforms, and the nodes at binding 7.
   void use(Program&) const;
 
  private:
-  fogshop::SkyGrid grid_;
+  airlight::fogshop::SkyGrid grid_;
   Buffer nodes_;
 };
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

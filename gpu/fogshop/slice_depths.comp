@@ -9,7 +9,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "fogshop/noise.glsl"
 
 #define EACH_OF_EIGHT(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
-const int slices_each = 8;  // as gpu/fogshop/airlight.cpp
+const int slices_each = 8;  // as gpu/fogshop/airlight_pass.cpp
 
 void main() {
   ivec2 pixel = pixel_of_strip();

@@ -5,8 +5,8 @@
 #include "scene/math/sh_product.h"
 #include "scene/math/sh_rotation.h"
 
-namespace airlight::gpu::fog {
-SurfaceTables::SurfaceTables(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
+namespace airlight::gpu::fogshop {
+SurfaceTables::SurfaceTables(const scene::Scene& scene, const airlight::fogshop::SurfaceLighting& lighting) {
   add_materials(scene, lighting);
   if (lighting.points && lighting.points->sun()) add_sun(*lighting.points->sun());
   if (lighting.reflectances) add_harmonics(lighting);
@@ -27,7 +27,7 @@ int SurfaceTables::add(const std::vector<Rgb>& table) {
   return place;
 }
 
-void SurfaceTables::add_materials(const scene::Scene& scene, const fogshop::SurfaceLighting& lighting) {
+void SurfaceTables::add_materials(const scene::Scene& scene, const airlight::fogshop::SurfaceLighting& lighting) {
   MaterialTables direct(scene);
   materials = std::move(direct.materials);
   values = std::move(direct.values);
@@ -38,7 +38,7 @@ void SurfaceTables::add_materials(const scene::Scene& scene, const fogshop::Surf
     }
 }
 
-void SurfaceTables::add_sun(const fogshop::SunReflection& sun) {
+void SurfaceTables::add_sun(const airlight::fogshop::SunReflection& sun) {
   uniforms["sun_at"] = add(sun.lambert().values());
   for (const auto& lobe : sun.lobes()) {
     const int place = add(lobe.along.values());
@@ -50,9 +50,9 @@ void SurfaceTables::add_sun(const fogshop::SunReflection& sun) {
   }
 }
 
-void SurfaceTables::add_harmonics(const fogshop::SurfaceLighting& lighting) {
+void SurfaceTables::add_harmonics(const airlight::fogshop::SurfaceLighting& lighting) {
   const int order = lighting.reflectances->order(), size = order * order;
-  uniforms["cosine_at"] = add(fogshop::clamped_cosine(order));
+  uniforms["cosine_at"] = add(airlight::fogshop::clamped_cosine(order));
   const scene::ShQuarterTurn& turn = scene::sh_quarter_turn(order);
   uniforms["turn_at"] = add(std::vector<double>(turn.first.begin(), turn.first.end()));
   for (std::size_t k = 0; k < turn.column.size(); ++k) add(std::vector<double>{double(turn.column[k]), turn.value[k]});
@@ -74,10 +74,10 @@ void SurfaceTables::add_harmonics(const fogshop::SurfaceLighting& lighting) {
 }
 
 // Places are floats, whole up to 2^24: fewer fit into a tree.
-void SurfaceTables::add_depth_tree(const fogshop::DepthTree& tree) {
+void SurfaceTables::add_depth_tree(const airlight::fogshop::DepthTree& tree) {
   uniforms["tree_children_at"] = add(std::vector<double>(tree.children().begin(), tree.children().end()));
   std::vector<double> cells;
-  for (const fogshop::DepthCell& cell : tree.cells()) {
+  for (const airlight::fogshop::DepthCell& cell : tree.cells()) {
     cells.insert(cells.end(), cell.polynomial.coefficients.begin(), cell.polynomial.coefficients.end());
     cells.insert(cells.end(), {double(cell.begin), double(cell.end)});
   }
@@ -86,7 +86,7 @@ void SurfaceTables::add_depth_tree(const fogshop::DepthTree& tree) {
   iterations += 200;  // levels and coefficients
 }
 
-void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, int order) {
+void SurfaceTables::add_transfer(const airlight::fogshop::RadianceTransfer& visibility, int order) {
   for (const std::vector<float>& of_surface : visibility.coefficients())
     transfer.insert(transfer.end(), of_surface.begin(), of_surface.end());
   uniforms["reflected_at"] = visibility.reflections().empty() ? -1 : int(transfer.size());
@@ -114,4 +114,4 @@ void SurfaceTables::add_transfer(const fogshop::RadianceTransfer& visibility, in
   iterations += 2.0 * order * order + double(all.size() / 3);
 }
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

@@ -7,10 +7,10 @@
 #include "gpu/material_tables.h"
 #include "methods/fogshop/surface_lighting.h"
 
-namespace airlight::gpu::fog {
+namespace airlight::gpu::fogshop {
 
 struct SurfaceTables {
-  SurfaceTables(const scene::Scene&, const fogshop::SurfaceLighting&);
+  SurfaceTables(const scene::Scene&, const airlight::fogshop::SurfaceLighting&);
 
   std::vector<MaterialData> materials;  // by surface, their places in harmonics too
   std::vector<float> values;
@@ -24,11 +24,11 @@ struct SurfaceTables {
  private:
   int add(const std::vector<double>&);
   int add(const std::vector<Rgb>&);
-  void add_materials(const scene::Scene&, const fogshop::SurfaceLighting&);
-  void add_sun(const fogshop::SunReflection&);
-  void add_harmonics(const fogshop::SurfaceLighting&);
-  void add_depth_tree(const fogshop::DepthTree&);
-  void add_transfer(const fogshop::RadianceTransfer&, int order);
+  void add_materials(const scene::Scene&, const airlight::fogshop::SurfaceLighting&);
+  void add_sun(const airlight::fogshop::SunReflection&);
+  void add_harmonics(const airlight::fogshop::SurfaceLighting&);
+  void add_depth_tree(const airlight::fogshop::DepthTree&);
+  void add_transfer(const airlight::fogshop::RadianceTransfer&, int order);
 };
 
-}  // namespace airlight::gpu::fog
+}  // namespace airlight::gpu::fogshop

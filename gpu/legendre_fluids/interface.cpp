@@ -2,7 +2,7 @@
 
 #include "gpu/interface.h"
 
-namespace airlight::gpu::legendre {
+namespace airlight::gpu::legendre_fluids {
 namespace {
 
 const std::vector<Binding> bindings = {{"START", at::start},
@@ -54,4 +54,4 @@ Program& program(Context& context, const std::string& file, int x, int y, Defini
   return context.program("legendre_fluids/" + file + ".comp", definitions);
 }
 
-}  // namespace airlight::gpu::legendre
+}  // namespace airlight::gpu::legendre_fluids

@@ -7,7 +7,7 @@
 
 #include "gpu/program.h"
 
-namespace airlight::gpu::legendre {
+namespace airlight::gpu::legendre_fluids {
 
 // Name of an entry of a uniform array.
 inline std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
@@ -63,4 +63,4 @@ using Definitions = std::map<std::string, std::string>;
 // A program of this folder: `file` without folder and .comp, a work group of x times y invocations.
 Program& program(Context&, const std::string& file, int x, int y, Definitions definitions);
 
-}  // namespace airlight::gpu::legendre
+}  // namespace airlight::gpu::legendre_fluids

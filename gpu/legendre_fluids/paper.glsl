@@ -1,6 +1,6 @@
 // Light of one medium as linear systems for Legendre coefficients: methods/legendre_fluids/light_system.h without matrices, in double
 // precision. A system is a work group's, its numbers lie in `work`. UNKNOWNS = N.x N.y N.z coefficients, products are taken at M.x M.y M.z
-// points; where tables and parts of `work` begin are definitions of paper_systems.cpp.
+// points; where tables and parts of `work` begin are definitions of paper_light.cpp.
 layout(local_size_x = LOCAL_SIZE_X) in;
 layout(std430, binding = AT_TABLES) readonly buffer Tables { double tables[]; };
 layout(std430, binding = AT_POINTS) buffer Points { double density[]; };  // there; after it what scatters of it, where that is a field

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace airlight::gpu::legendre {
+namespace airlight::gpu::legendre_fluids {
 namespace {
 
 using Eigen::MatrixXd;
@@ -92,4 +92,4 @@ Array take_field(const ConfinedSpace& space, int component, const float* from) {
   return c;
 }
 
-}  // namespace airlight::gpu::legendre
+}  // namespace airlight::gpu::legendre_fluids

@@ -7,12 +7,12 @@
 #include "gpu/legendre_fluids/interface.h"
 #include "methods/legendre_fluids/confined_space.h"
 
-namespace airlight::gpu::legendre {
+namespace airlight::gpu::legendre_fluids {
 
 constexpr int most_coefficients = 16;  // of an axis
 
-using legendre_fluids::Array;
-using legendre_fluids::ConfinedSpace;
+using airlight::legendre_fluids::Array;
+using airlight::legendre_fluids::ConfinedSpace;
 
 class Tables {
  public:
@@ -36,4 +36,4 @@ class Tables {
 void put_field(const ConfinedSpace&, int component, const Array&, std::vector<float>& at_end);
 Array take_field(const ConfinedSpace&, int component, const float* from);
 
-}  // namespace airlight::gpu::legendre
+}  // namespace airlight::gpu::legendre_fluids

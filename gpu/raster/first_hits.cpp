@@ -16,6 +16,12 @@ constexpr int most_leaves(int nodes) { return (nodes + 1) / 2 + nodes / 16 + 1; 
 
 }  // namespace
 
+void FirstHits::bind(scene::SettingBinder& b, Way& way) {
+  b.choice("first_hits", way, {{"tree", Way::tree}, {"raster", Way::raster}},
+           "what ends camera rays; raster: by the rasteriser, faster on some devices, "
+           "to 1/256 pixel at silhouettes");
+}
+
 FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls, Way way)
     : context_(context), surfaces_(context, scene, with_balls), tree_(context, scene) {
   if (way == Way::raster) {

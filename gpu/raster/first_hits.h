@@ -18,6 +18,7 @@ namespace airlight::gpu {
 class FirstHits {
  public:
   enum class Way { tree, raster };
+  static void bind(scene::SettingBinder&, Way&);  // the setting first_hits
 
   // Throws Unavailable if the surfaces pass the device's limits, or for a raster pass if its vertex shaders read no
   // storage buffers.

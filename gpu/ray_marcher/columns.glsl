@@ -103,7 +103,7 @@ float local_density(int k, vec3 p) {
 }
 
 // reference/ray_marcher/depth.h: is the first step deep, and the column of such a ray. Beyond 20 optical depths, 2e-9 of
-// the light, steps are as they come: device_plan.cpp bounds their number.
+// the light, steps are as they come: plan.cpp bounds their number.
 bool starts_deep(int k, vec3 o, vec3 d, vec2 t) {
   float h = (t.y - t.x) / steps_of(t.y - t.x), least = deepest_shadow_step;
   return layers[k].most_varied * layers[k].thickest * h > least &&

@@ -5,7 +5,7 @@
 #include "gpu/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 namespace {
 
 const std::vector<Binding> bindings = {{"LAYERS", at::layers},
@@ -47,4 +47,4 @@ Program& program(Context& context, const std::string& file, std::map<std::string
   return made;
 }
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

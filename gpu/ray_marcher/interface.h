@@ -5,7 +5,7 @@
 
 #include "gpu/program.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9 (values of an
 // environment). What no shader has at the same time shares a number. `layers` is a uniform block.
@@ -37,4 +37,4 @@ enum Binding {
 // the compiler of the host.
 Program& program(Context&, const std::string& file, std::map<std::string, std::string> definitions);
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

@@ -5,7 +5,7 @@
 #include "gpu/ray_marcher/interface.h"
 #include "scene/renderer.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 namespace {
 
 constexpr int software_budget = 3000, hardware_budget = 100000;  // iterations of loops, about
@@ -57,4 +57,4 @@ bool Rounds::unfinished(const Download& download) const {
   return false;
 }
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

@@ -10,7 +10,7 @@
 #include "gpu/frame.h"
 #include "gpu/program.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 
 class Rounds {
  public:
@@ -45,4 +45,4 @@ class Rounds {
   std::vector<Band> bands_;  // of this frame
 };
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

@@ -9,11 +9,11 @@
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 namespace {
 
-using ray_marcher::Frame;
-using ray_marcher::Layer;
+using airlight::ray_marcher::Frame;
+using airlight::ray_marcher::Layer;
 
 Float3 float3(const Vec3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 Float3 float3(const float v[3]) { return {v[0], v[1], v[2]}; }
@@ -27,13 +27,13 @@ std::array<Float4, 3> frame_data(const Frame& frame, const Point3& middle) {
   return rows;
 }
 
-std::size_t samples(const ray_marcher::GridField& grid) {
+std::size_t samples(const airlight::ray_marcher::GridField& grid) {
   return std::size_t(grid.size[0]) * grid.size[1] * grid.size[2];
 }
 
 }  // namespace
 
-Point3 middle_of(const ray_marcher::Plan& plan) {
+Point3 middle_of(const airlight::ray_marcher::Plan& plan) {
   Box box;
   for (const Layer& layer : plan.layers) {
     const Box own = bounding_box(*layer.medium), varied = layer.varies ? support(layer.medium->field) : own;
@@ -50,7 +50,7 @@ Point3 middle_of(const ray_marcher::Plan& plan) {
   return box.empty() ? plan.scene->camera.position : box.center();
 }
 
-std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& middle, bool textures) {
+std::vector<LayerData> layer_data(const airlight::ray_marcher::Plan& plan, const Point3& middle, bool textures) {
   std::vector<LayerData> data;
   std::size_t gaussians = 0, values = 0, bricks = 0, grids = 0;
   for (const Layer& layer : plan.layers) {
@@ -63,11 +63,11 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
     d.half_size = float3(layer.shape.half);
     d.shape = int(layer.shape.kind);
     d.shape_frame = frame_data(layer.shape_frame, middle);
-    const ray_marcher::PhaseShape phase = ray_marcher::phase_shape(layer.medium->phase);
+    const airlight::ray_marcher::PhaseShape phase = airlight::ray_marcher::phase_shape(layer.medium->phase);
     d.phase = int(phase.kind);
     d.g = phase.g;
     const auto set_grid = [&] {
-      const ray_marcher::GridField& grid = *layer.grid;
+      const airlight::ray_marcher::GridField& grid = *layer.grid;
       d.field = 1;
       d.field_frame = frame_data(grid.frame, middle);
       d.lo = float3(grid.lo), d.hi = float3(grid.hi);
@@ -80,7 +80,7 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
         layer.medium->field, [](const scene::Homogeneous&) {},
         [&](const scene::GaussianSum&) {
           if (!layer.varies) return;
-          const ray_marcher::GaussianField& field = *layer.gaussians;
+          const airlight::ray_marcher::GaussianField& field = *layer.gaussians;
           d.field = 2;
           d.field_frame = frame_data(field.frame, middle);
           d.lo = float3(field.lo), d.hi = float3(field.hi);
@@ -98,11 +98,11 @@ std::vector<LayerData> layer_data(const ray_marcher::Plan& plan, const Point3& m
   return data;
 }
 
-std::vector<GaussianData> gaussian_data(const ray_marcher::Plan& plan) {
+std::vector<GaussianData> gaussian_data(const airlight::ray_marcher::Plan& plan) {
   std::vector<GaussianData> data;
   for (const Layer& layer : plan.layers) {
     if (!layer.gaussians) continue;
-    const ray_marcher::GaussianField& f = *layer.gaussians;
+    const airlight::ray_marcher::GaussianField& f = *layer.gaussians;
     for (std::size_t i = 0; i < f.count; ++i) {
       const float reach = f.reach[i] * f.inverse_width[i];
       data.push_back({{f.x[i], f.y[i], f.z[i]}, f.inverse_width[i], f.amplitude[i], reach * reach, {0, 0}});
@@ -111,21 +111,21 @@ std::vector<GaussianData> gaussian_data(const ray_marcher::Plan& plan) {
   return data;
 }
 
-std::vector<float> brick_data(const ray_marcher::Plan& plan) {
+std::vector<float> brick_data(const airlight::ray_marcher::Plan& plan) {
   std::vector<float> data;
   for (const Layer& layer : plan.layers)
     if (layer.grid) data.insert(data.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
   return data;
 }
 
-void grid_slice(const ray_marcher::GridField& grid, int z, std::vector<float>& values) {
+void grid_slice(const airlight::ray_marcher::GridField& grid, int z, std::vector<float>& values) {
   // The CPU keeps each sample with its neighbour along z; here only the samples.
   values.resize(std::size_t(grid.size[0]) * grid.size[1]);
   const float* pair = grid.pairs.data() + 2 * values.size() * std::size_t(z);
   for (float& value : values) value = *pair, pair += 2;
 }
 
-std::vector<float> grid_data(const ray_marcher::Plan& plan) {
+std::vector<float> grid_data(const airlight::ray_marcher::Plan& plan) {
   std::vector<float> data, slice;
   for (const Layer& layer : plan.layers)
     for (int z = 0; layer.grid && z < layer.grid->size[2]; ++z) {
@@ -135,7 +135,7 @@ std::vector<float> grid_data(const ray_marcher::Plan& plan) {
   return data;
 }
 
-std::vector<SolidData> solid_data(const ray_marcher::Plan& plan, const Point3& middle) {
+std::vector<SolidData> solid_data(const airlight::ray_marcher::Plan& plan, const Point3& middle) {
   std::vector<SolidData> data;
   for (const scene::Surface& surface : plan.scene->surfaces) {
     if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape))
@@ -149,19 +149,19 @@ std::vector<SolidData> solid_data(const ray_marcher::Plan& plan, const Point3& m
   return data;
 }
 
-std::vector<LightData> light_data(const ray_marcher::Plan& plan, const Point3& middle) {
+std::vector<LightData> light_data(const airlight::ray_marcher::Plan& plan, const Point3& middle) {
   std::vector<LightData> data;
   // Point and spot lights first: only they may have marches of their own.
   std::vector<scene::Light> lights = plan.lights;
   std::stable_partition(lights.begin(), lights.end(), [](const scene::Light& light) { return bool(ball(light)); });
   for (const scene::Light& light : lights) {
-    const ray_marcher::LightShape shape = ray_marcher::light_shape(light);
+    const airlight::ray_marcher::LightShape shape = airlight::ray_marcher::light_shape(light);
     const Vec3 position(shape.position[0], shape.position[1], shape.position[2]),
         axis(shape.axis[0], shape.axis[1], shape.axis[2]);
     data.push_back({float3(Vec3(position - middle)), int(shape.kind), float3(axis), float(shape.cos_inner),
-                    float3(Vec3(ray_marcher::light_colour(light))), float(shape.cos_outer)});
+                    float3(Vec3(airlight::ray_marcher::light_colour(light))), float(shape.cos_outer)});
   }
   return data;
 }
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

@@ -8,7 +8,7 @@
 
 #include "reference/ray_marcher/plan.h"
 
-namespace airlight::gpu::marcher {
+namespace airlight::gpu::ray_marcher {
 
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
@@ -58,17 +58,17 @@ struct SolidData {
 };
 
 // Centre of the finite regions and supports; of the camera if there are none.
-Point3 middle_of(const ray_marcher::Plan&);
+Point3 middle_of(const airlight::ray_marcher::Plan&);
 
 // With `textures` a grid's `first` is the number of its texture, else the place of its values.
-std::vector<LayerData> layer_data(const ray_marcher::Plan&, const Point3& middle, bool textures);
+std::vector<LayerData> layer_data(const airlight::ray_marcher::Plan&, const Point3& middle, bool textures);
 // Values of all layers, one list after the other.
-std::vector<GaussianData> gaussian_data(const ray_marcher::Plan&);
-std::vector<float> brick_data(const ray_marcher::Plan&);
-std::vector<float> grid_data(const ray_marcher::Plan&);
+std::vector<GaussianData> gaussian_data(const airlight::ray_marcher::Plan&);
+std::vector<float> brick_data(const airlight::ray_marcher::Plan&);
+std::vector<float> grid_data(const airlight::ray_marcher::Plan&);
 // Slice z of one grid, x fastest: padded samples.
-void grid_slice(const ray_marcher::GridField&, int z, std::vector<float>& values);
-std::vector<SolidData> solid_data(const ray_marcher::Plan&, const Point3& middle);
-std::vector<LightData> light_data(const ray_marcher::Plan&, const Point3& middle);
+void grid_slice(const airlight::ray_marcher::GridField&, int z, std::vector<float>& values);
+std::vector<SolidData> solid_data(const airlight::ray_marcher::Plan&, const Point3& middle);
+std::vector<LightData> light_data(const airlight::ray_marcher::Plan&, const Point3& middle);
 
-}  // namespace airlight::gpu::marcher
+}  // namespace airlight::gpu::ray_marcher

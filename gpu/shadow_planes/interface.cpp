@@ -6,9 +6,9 @@
 #include "methods/shadow_planes/edge_fan.h"
 #include "methods/shadow_planes/phase_form.h"
 
-namespace airlight::gpu::planes {
+namespace airlight::gpu::shadow_planes {
 
-using shadow_planes::EdgeFan;
+using airlight::shadow_planes::EdgeFan;
 
 std::map<std::string, std::string> shared_definitions() {
   std::map<std::string, std::string> definitions = {{"EDGES_PER_GROUP", std::to_string(edges_per_group)},
@@ -25,7 +25,7 @@ std::map<std::string, std::string> shared_definitions() {
   number("REGION_BOX", RegionKind::box);
   number("REGION_SPHERE", RegionKind::sphere);
   number("REGION_SLAB", RegionKind::slab);
-  using Phase = shadow_planes::PhaseForm::Kind;
+  using Phase = airlight::shadow_planes::PhaseForm::Kind;
   number("PHASE_ISOTROPIC", Phase::isotropic);
   number("PHASE_RAYLEIGH", Phase::rayleigh);
   number("PHASE_HAZY", Phase::hazy);
@@ -89,4 +89,4 @@ Program& program(Context& context, const std::string& file, int x, int y,
   return made;
 }
 
-}  // namespace airlight::gpu::planes
+}  // namespace airlight::gpu::shadow_planes

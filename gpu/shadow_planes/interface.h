@@ -6,7 +6,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 
-namespace airlight::gpu::planes {
+namespace airlight::gpu::shadow_planes {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials). What no
 // shader has at the same time shares a number; the largest has 12.
@@ -96,4 +96,4 @@ std::map<std::string, std::string> shared_definitions();
 Program& program(Context&, const std::string& file, int x, int y = 1,
                  std::map<std::string, std::string> definitions = {});
 
-}  // namespace airlight::gpu::planes
+}  // namespace airlight::gpu::shadow_planes

@@ -7,9 +7,9 @@
 #include "gpu/view_uniforms.h"
 #include "methods/shadow_planes/paper_stages.h"
 
-namespace airlight::gpu::planes {
+namespace airlight::gpu::shadow_planes {
 
-using shadow_planes::Options;
+using airlight::shadow_planes::Options;
 
 LitPicture::LitPicture(Frame& frame, const scene::View& v, bool hits, bool crossings, int dispatches)
     : view(v),
@@ -95,7 +95,7 @@ void PlaneShading::add(LitPicture& picture, int index, int term, const Edges& li
   airlight_terms_.bind(p, index, term);
   if (values) {
     values->bind(p);
-    p.set("media_end", shadow_planes::all_end(scene_->media));
+    p.set("media_end", airlight::shadow_planes::all_end(scene_->media));
   }
   if (lists.edges) {
     lists.edges->bind();
@@ -147,4 +147,4 @@ void PlaneShading::compose(const LitPicture& picture, Frame& frame, const std::o
   p.dispatch(picture.view.width, picture.view.height);
 }
 
-}  // namespace airlight::gpu::planes
+}  // namespace airlight::gpu::shadow_planes

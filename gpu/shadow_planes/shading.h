@@ -5,11 +5,11 @@
 
 #include "gpu/frame.h"
 #include "gpu/raster/surfaces_on_device.h"
-#include "gpu/shadow_planes/airlight_terms_on_device.h"
-#include "gpu/shadow_planes/fan_on_device.h"
-#include "gpu/shadow_planes/vertex_values.h"
+#include "gpu/shadow_planes/airlight_term.h"
+#include "gpu/shadow_planes/edge_fan.h"
+#include "gpu/shadow_planes/vertex_airlight.h"
 
-namespace airlight::gpu::planes {
+namespace airlight::gpu::shadow_planes {
 
 // What lights leave in a picture, in a frame's buffers.
 struct LitPicture {
@@ -27,7 +27,7 @@ class PlaneShading {
  public:
   // Uploads materials. `surfaces` is null where there are none, nor balls of lights; all must live on. The pointer may
   // come to point to the same scene with other lights.
-  PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const shadow_planes::Options&,
+  PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const airlight::shadow_planes::Options&,
                const AirlightTermsOnDevice&, const SurfacesOnDevice* surfaces);
 
   // Of one light, the edges whose planes rays may cross: null where nothing casts a shadow.
@@ -53,7 +53,7 @@ class PlaneShading {
 
   Context& context_;
   const std::shared_ptr<const scene::Scene>& scene_;
-  shadow_planes::Options options_;
+  airlight::shadow_planes::Options options_;
   const AirlightTermsOnDevice& airlight_terms_;
   const SurfacesOnDevice* surfaces_;
   bool spheres_;  // among surfaces
@@ -63,4 +63,4 @@ class PlaneShading {
   mutable std::map<std::array<int, 5>, Program*> programs_;
 };
 
-}  // namespace airlight::gpu::planes
+}  // namespace airlight::gpu::shadow_planes

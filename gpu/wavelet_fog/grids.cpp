@@ -7,7 +7,7 @@
 
 #include "scene/base/error.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 namespace {
 
 using scene::IndexRange;
@@ -128,4 +128,4 @@ std::vector<double> Grids::download(int grid) const {
   return values;
 }
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

@@ -9,9 +9,9 @@
 #include "gpu/wavelet_fog/interface.h"
 #include "methods/wavelet_fog/decomposition.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 
-using wavelet_fog::Taps;
+using airlight::wavelet_fog::Taps;
 
 class Grids {
  public:
@@ -65,4 +65,4 @@ class Grids {
   std::unique_ptr<Buffer> table_, values_;
 };
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

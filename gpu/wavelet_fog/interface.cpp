@@ -7,11 +7,11 @@
 #include "methods/wavelet_fog/leveled_fog.h"
 #include "scene/base/error.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 namespace {
 
 Definitions shared_definitions() {
-  Definitions definitions{{"UPRIGHT", fmt::format("{:e}LF", wavelet_fog::upright)}};
+  Definitions definitions{{"UPRIGHT", fmt::format("{:e}LF", airlight::wavelet_fog::upright)}};
   const auto number = [&](const char* name, auto kind) { definitions[name] = std::to_string(int(kind)); };
   number("REGION_UNBOUNDED", RegionKind::unbounded);
   number("REGION_BOX", RegionKind::box);
@@ -25,7 +25,7 @@ Definitions shared_definitions() {
   number("PHASE_HENYEY_GREENSTEIN", scene::PhaseFunction(scene::HenyeyGreenstein()).index());
   number("PHASE_HAZY", scene::PhaseFunction(scene::Hazy()).index());
   number("PHASE_MURKY", scene::PhaseFunction(scene::Murky()).index());
-  using Variant = wavelet_fog::Options::Variant;
+  using Variant = airlight::wavelet_fog::Options::Variant;
   number("VARIANT_PAPER", Variant::paper);
   number("VARIANT_TELE", Variant::tele);
   number("VARIANT_BOUND", Variant::bound);
@@ -97,4 +97,4 @@ Program& program(Context& context, const std::string& file, int x, int y, Defini
   return made;
 }
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

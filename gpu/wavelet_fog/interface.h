@@ -6,7 +6,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. What no shader has at the
 // same time shares a number: no stage needs more than 8.
@@ -78,4 +78,4 @@ std::string listed(const std::vector<double>&);
 // above otherwise than the compiler of the host.
 Program& program(Context&, const std::string& file, int x, int y = 1, Definitions definitions = {});
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

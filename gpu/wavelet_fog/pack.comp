@@ -1,4 +1,4 @@
-// A medium's map and its empty cells into the buffers that hold those of several media (sun_on_device.h).
+// A medium's map and its empty cells into the buffers that hold those of several media (sun_scattering.h).
 layout(local_size_x = LOCAL_SIZE_X) in;
 layout(std430, binding = AT_VALUES) readonly buffer Values { float values[]; };
 layout(std430, binding = AT_EMPTINESS) readonly buffer Emptiness { uint emptiness[]; };

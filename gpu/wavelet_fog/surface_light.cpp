@@ -10,7 +10,7 @@
 #include "scene/base/error.h"
 #include "scene/light/scattered_lights.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 namespace {
 
 constexpr int most_nodes =
@@ -114,4 +114,4 @@ void SurfaceLight::render(const scene::Scene& scene, const scene::View& view, co
   }
 }
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

@@ -10,7 +10,7 @@
 #include "gpu/raster/first_hits.h"
 #include "gpu/wavelet_fog/interface.h"
 
-namespace airlight::gpu::fogmaps {
+namespace airlight::gpu::wavelet_fog {
 
 // Does anything end rays: surfaces, or balls of lights; does a lamp light surfaces.
 bool something_ends_rays(const scene::Scene&);
@@ -45,4 +45,4 @@ class SurfaceLight {
   std::vector<Program*> backgrounds_;  // by environment
 };
 
-}  // namespace airlight::gpu::fogmaps
+}  // namespace airlight::gpu::wavelet_fog

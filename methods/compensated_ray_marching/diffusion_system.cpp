@@ -95,21 +95,21 @@ struct Matrix {
   Eigen::VectorXd transposed(const Eigen::VectorXd& y) const { return rows.transpose() * scale.cwiseProduct(y); }
 };
 
-// `missed`: what the start leaves of the right side. `whole`: what a residual is relative to.
-LeastSquares conjugate_gradients(const Matrix& a, Eigen::VectorXd missed, LeastSquares result, int iterations,
+// `residual`: of the start. `whole`: what the result's residual is relative to.
+LeastSquares conjugate_gradients(const Matrix& a, Eigen::VectorXd residual, LeastSquares result, int iterations,
                                  double tolerance, double whole) {
-  Eigen::VectorXd slope = a.transposed(missed), direction = slope;
-  double square = slope.squaredNorm();
+  Eigen::VectorXd gradient = a.transposed(residual), direction = gradient;
+  double square = gradient.squaredNorm();
   while (result.iterations < iterations && std::sqrt(square) > tolerance * whole) {
     const Eigen::VectorXd along = a.times(direction);
     const double length = along.squaredNorm();
     if (!(length > 0)) break;
     const double step = square / length;
     result.x += step * direction;
-    missed -= step * along;
-    slope = a.transposed(missed);
-    const double next = slope.squaredNorm();
-    direction = slope + next / square * direction;
+    residual -= step * along;
+    gradient = a.transposed(residual);
+    const double next = gradient.squaredNorm();
+    direction = gradient + next / square * direction;
     square = next;
     ++result.iterations;
   }
@@ -125,14 +125,14 @@ double taken_length(Eigen::VectorXd& y) {
 }
 
 // A V = U B with B lower bidiagonal (diagonal alpha, below it beta); its rotations to an upper one give x step by step.
-LeastSquares lsqr(const Matrix& a, Eigen::VectorXd missed, LeastSquares result, int iterations, double tolerance,
+LeastSquares lsqr(const Matrix& a, Eigen::VectorXd residual, LeastSquares result, int iterations, double tolerance,
                   double whole) {
-  Eigen::VectorXd& u = missed;
+  Eigen::VectorXd& u = residual;
   double left = taken_length(u);
   Eigen::VectorXd v = a.transposed(u);
-  double alpha = taken_length(v), diagonal = alpha, slope = alpha * left;
+  double alpha = taken_length(v), diagonal = alpha, gradient = alpha * left;
   Eigen::VectorXd direction = v;
-  while (result.iterations < iterations && slope > tolerance * whole) {
+  while (result.iterations < iterations && gradient > tolerance * whole) {
     u = a.times(v) - alpha * u;
     const double beta = taken_length(u);
     v = a.transposed(u) - beta * v;
@@ -142,10 +142,10 @@ LeastSquares lsqr(const Matrix& a, Eigen::VectorXd missed, LeastSquares result, 
     direction = v - sine * alpha / length * direction;
     left *= sine;
     diagonal = -cosine * alpha;
-    slope = left * alpha * std::abs(cosine);
+    gradient = left * alpha * std::abs(cosine);
     ++result.iterations;
   }
-  result.residual = slope / whole;
+  result.residual = gradient / whole;
   return result;
 }
 

@@ -66,8 +66,7 @@ class DiscreteOrdinates {
   double deepest_cell() const;
 
  private:
-  struct Group;  // directions that cross planes of one axis fastest, on one side
-  void sweep(const Group&, const Moments& source, double inflow, Moments& radiance) const;
+  class GroupSweep;  // of the directions that cross planes of one axis fastest, on one side
 
   OrdinateGrid grid_;
   Eigen::ArrayXd extinction_;

@@ -40,59 +40,86 @@ Eigen::ArrayXXd phase_in_bands(const std::vector<double>& moments, const Eigen::
   return sum / (4 * pi);
 }
 
-}  // namespace
-
-LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const Options& options,
-                 const IncomingLight& light, const scene::Execution& execution)
-    : scene_(scene), medium_(medium), options_(options), phase_(phase_moments(medium.phase, options.grid.levels)) {
-  scene::Stopwatch watch;
-  const Box box = smoke_box(medium);
-  const bool sharp = has_hard_edges(medium) && light.directions().size() > light.fixed();
-  const double deepest_cell = options.grid.deepest_cell * (sharp ? share_of_sharp_light : 1);
-  for (int cells = options.grid.cells;;) {
-    grid_ = node_grid(box, cells);
-    densities_ = mean_densities(medium, grid_, execution.threads);
-    deepest_ = medium.sigma_t.maxCoeff() * densities_.maxCoeff() * grid_.cells.cell[0];
-    if (deepest_ <= deepest_cell) break;
-    const int needed = int(std::ceil(cells * deepest_ / deepest_cell));
-    if (cells >= most_cells)
-      throw scene::NotSupported(
-          fmt::format("compensated_ray_marching: cells of the smoke's {} are {:.3g} deep: light would leak through; "
-                      "settings.deepest_cell = {} allows {:.3g}",
-                      cells, deepest_, options.grid.deepest_cell, deepest_cell),
-          "cells deeper than deepest_cell");
-    cells = std::min(std::max(cells + 1, needed), most_cells);
-  }
-  nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities_, least_share * densities_.maxCoeff());
-  beyond_ = beyond_edges(medium, grid_);
-  times_.push_back({"nodes", watch.lap()});
-  fixed_ = light.fixed();
-  add_depths(light, 0, execution);
-  times_.push_back({"depths", watch.lap()});
-
-  const Rgb &sigma_t = medium.sigma_t, &albedo = medium.albedo;
-  double most = 0;  // of multiple scattering, as a share of the light
-  if (options.grid.multiple == Options::Grid::Multiple::none) {
-    single_only_ = "not asked for";
-    return;
-  }
+OrdinateOptions ordinate_options(const Options& options) {
   OrdinateOptions ordinates;
   ordinates.levels = options.grid.ordinate_levels;
   ordinates.azimuths = options.grid.azimuths;
   ordinates.order = options.order;
   ordinates.tolerance = options.tolerance;
   ordinates.iterations = options.iterations;
+  return ordinates;
+}
+
+// What a direction's light of radiance 1 adds to each coefficient, but for albedo and its power; a row for each direction.
+Eigen::MatrixXd scattered_by_direction(const std::vector<Vec3>& toward, int order, const std::vector<double>& moments) {
+  const Eigen::Index bands = order * order;
+  Eigen::MatrixXd scatters(Eigen::Index(toward.size()), bands);
+  for (std::size_t k = 0; k < toward.size(); ++k) {
+    const std::vector<double> harmonics = scene::evaluate_sh(order, -toward[k]);
+    for (Eigen::Index b = 0; b < bands; ++b)
+      scatters(Eigen::Index(k), b) = harmonics[std::size_t(b)] * moments[std::size_t(std::sqrt(double(b)))];
+  }
+  return scatters;
+}
+
+}  // namespace
+
+LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const Options& options,
+                 const IncomingLight& light, const scene::Execution& execution)
+    : scene_(scene), medium_(medium), options_(options), phase_(phase_moments(medium.phase, options.grid.levels)) {
+  scene::Stopwatch watch;
+  find_nodes(light, execution);
+  times_.push_back({"nodes", watch.lap()});
+  fixed_ = light.fixed();
+  add_depths(light, 0, execution);
+  times_.push_back({"depths", watch.lap()});
+
+  if (options.grid.multiple == Options::Grid::Multiple::none) {
+    single_only_ = "not asked for";
+    return;
+  }
+  const OrdinateOptions ordinates = ordinate_options(options);
   const double deepest = look_around(light, ordinates, execution);
   times_.back().seconds += watch.lap();
-  for (int c = 0; c < 3; ++c) most = std::max(most, -albedo[c] * std::expm1(-sigma_t[c] * deepest));
+  double most = 0;  // of multiple scattering, as a share of the light
+  for (int c = 0; c < 3; ++c) most = std::max(most, -medium.albedo[c] * std::expm1(-medium.sigma_t[c] * deepest));
   if (most < options.tolerance) {
     single_only_ = fmt::format("at most {:.2g} of the light is scattered again", most);
     return;
   }
-  const std::vector<double> moments(phase_moments(medium.phase, options.order));
   if (options.grid.multiple == Options::Grid::Multiple::ordinates && has_hard_edges(medium))
     find_balance(ordinates, execution);
   if (scene.geometry) find_open_ways(ordinates, execution);
+  find_channels(ordinates);
+}
+
+// Cells as small as the smoke's depth asks for, and the nodes of those with smoke.
+void LitGrid::find_nodes(const IncomingLight& light, const scene::Execution& execution) {
+  const Box box = smoke_box(medium_);
+  const bool sharp = has_hard_edges(medium_) && light.directions().size() > light.fixed();
+  const double deepest_cell = options_.grid.deepest_cell * (sharp ? share_of_sharp_light : 1);
+  for (int cells = options_.grid.cells;;) {
+    grid_ = node_grid(box, cells);
+    densities_ = mean_densities(medium_, grid_, execution.threads);
+    deepest_ = medium_.sigma_t.maxCoeff() * densities_.maxCoeff() * grid_.cells.cell[0];
+    if (deepest_ <= deepest_cell) break;
+    const int needed = int(std::ceil(cells * deepest_ / deepest_cell));
+    if (cells >= most_cells)
+      throw scene::NotSupported(
+          fmt::format("compensated_ray_marching: cells of the smoke's {} are {:.3g} deep: light would leak through; "
+                      "settings.deepest_cell = {} allows {:.3g}",
+                      cells, deepest_, options_.grid.deepest_cell, deepest_cell),
+          "cells deeper than deepest_cell");
+    cells = std::min(std::max(cells + 1, needed), most_cells);
+  }
+  nodes_ = compensated_ray_marching::nodes_with_smoke(grid_, densities_, least_share * densities_.maxCoeff());
+  beyond_ = beyond_edges(medium_, grid_);
+}
+
+// Channels that have extinction and albedo in common are solved together.
+void LitGrid::find_channels(const OrdinateOptions& ordinates) {
+  const Rgb &sigma_t = medium_.sigma_t, &albedo = medium_.albedo;
+  const std::vector<double> moments(phase_moments(medium_.phase, options_.order));
   for (int c = 0; c < 3; ++c) {
     const auto alike = [&](const Channels& group) {
       return sigma_t[group.which[0]] == sigma_t[c] && albedo[group.which[0]] == albedo[c];
@@ -100,11 +127,11 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
     const auto known = std::find_if(channels_.begin(), channels_.end(), alike);
     if (known != channels_.end())
       known->which.push_back(c);
-    else if (options.grid.multiple == Options::Grid::Multiple::p1)
+    else if (options_.grid.multiple == Options::Grid::Multiple::p1)
       channels_.push_back({{c},
                            {},
-                           P1Grid(grid_.cells, sigma_t[c] * densities_, albedo[c], mean_cosine(medium.phase),
-                                  {options.tolerance, options.iterations}),
+                           P1Grid(grid_.cells, sigma_t[c] * densities_, albedo[c], mean_cosine(medium_.phase),
+                                  {options_.tolerance, options_.iterations}),
                            {}});
     else {
       channels_.push_back(
@@ -256,19 +283,30 @@ void LitGrid::light(const IncomingLight& light, const scene::Execution& executio
   if (single_only_.empty() && !light.dark()) scatter_again(light, execution);
 }
 
+// J_ss of a group's lights at all nodes; `scatters`: scattered_by_direction.
+Moments LitGrid::scatter_once(const Channels& group, std::size_t lights, const Eigen::MatrixXd& scatters,
+                              const scene::Execution& execution) const {
+  const Eigen::Index bands = scatters.cols();
+  const double albedo = medium_.albedo[group.which[0]];
+  Eigen::MatrixXd of_direction(scatters.rows(), Eigen::Index(lights) * bands);
+  for (std::size_t l = 0; l < lights; ++l)
+    of_direction.middleCols(Eigen::Index(l) * bands, bands) =
+        (albedo * power_.col(group.which[l])).matrix().asDiagonal() * scatters;
+  Moments source = Moments::Zero(grid_.cells.nodes(), of_direction.cols());
+  in_runs(execution, [&](std::size_t first, std::size_t count) {
+    const Eigen::MatrixXd single =
+        scene::product(left(first, count, medium_.sigma_t[group.which[0]]).matrix(), of_direction);
+    for (std::size_t i = 0; i < count; ++i) source.row(nodes_[first + i]) = single.row(Eigen::Index(i));
+  });
+  return source;
+}
+
 void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& execution) {
   scene::Stopwatch watch;
   const int order = options_.order;
   const Eigen::Index bands = order * order;
   const std::vector<double> moments = phase_moments(medium_.phase, order);
-  // What a direction's light of radiance 1 adds to each coefficient, but for albedo and its power.
-  Eigen::MatrixXd scatters(Eigen::Index(toward_.size()), bands);
-  for (std::size_t k = 0; k < toward_.size(); ++k) {
-    const std::vector<double> harmonics = scene::evaluate_sh(order, -toward_[k]);
-    for (Eigen::Index b = 0; b < bands; ++b)
-      scatters(Eigen::Index(k), b) = harmonics[std::size_t(b)] * moments[std::size_t(std::sqrt(double(b)))];
-  }
-
+  const Eigen::MatrixXd scatters = scattered_by_direction(toward_, order, moments);
   again_.assign(nodes_.size(), std::vector<Rgb>(std::size_t(bands), Rgb::Zero()));
   tbb::task_arena arena(scene::threads_for(execution.threads));
   std::atomic<bool> stopped{false};
@@ -276,17 +314,7 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
   for (Channels& group : channels_) {
     // Of light without colour one channel stands for all.
     const std::size_t lights = light.grey() ? 1 : group.which.size();
-    const double albedo = medium_.albedo[group.which[0]];
-    Eigen::MatrixXd of_direction(scatters.rows(), Eigen::Index(lights) * bands);
-    for (std::size_t l = 0; l < lights; ++l)
-      of_direction.middleCols(Eigen::Index(l) * bands, bands) =
-          (albedo * power_.col(group.which[l])).matrix().asDiagonal() * scatters;
-    Moments source = Moments::Zero(grid_.cells.nodes(), of_direction.cols());
-    in_runs(execution, [&](std::size_t first, std::size_t count) {
-      const Eigen::MatrixXd single =
-          scene::product(left(first, count, medium_.sigma_t[group.which[0]]).matrix(), of_direction);
-      for (std::size_t i = 0; i < count; ++i) source.row(nodes_[first + i]) = single.row(Eigen::Index(i));
-    });
+    const Moments source = scatter_once(group, lights, scatters, execution);
     single_seconds += watch.lap();
     const bool known = group.before && group.before->cols() == source.cols();
     const Moments* before = known ? &*group.before : nullptr;
@@ -306,7 +334,7 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
       for (std::size_t l = 0; l < group.which.size(); ++l)
         for (Eigen::Index b = 0; b < bands; ++b)
           again_[i][std::size_t(b)][group.which[l]] =
-              albedo * moments[std::size_t(std::sqrt(double(b)))] *
+              medium_.albedo[group.which[0]] * moments[std::size_t(std::sqrt(double(b)))] *
               solution.radiance(nodes_[i], Eigen::Index(lights == 1 ? 0 : l) * bands + b);
     }
     iterations_ += solution.iterations;

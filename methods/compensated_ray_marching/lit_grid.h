@@ -59,6 +59,8 @@ class LitGrid {
     std::optional<P1Grid> diffusion;  // one of the two
     std::optional<Moments> before;    // where to start from: a source, or radiance
   };
+  void find_nodes(const IncomingLight&, const scene::Execution&);
+  void find_channels(const OrdinateOptions&);
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
   double look_around(const IncomingLight&, const OrdinateOptions&, const scene::Execution&);
   void find_balance(const OrdinateOptions&, const scene::Execution&);
@@ -68,6 +70,8 @@ class LitGrid {
   void in_columns(const scene::Execution&, const OfColumns&) const;
   Eigen::ArrayXXd left(std::size_t first, std::size_t count, double sigma_t) const;
   void in_runs(const scene::Execution&, const std::function<void(std::size_t, std::size_t)>&) const;
+  Moments scatter_once(const Channels&, std::size_t lights, const Eigen::MatrixXd& scatters,
+                       const scene::Execution&) const;
   void scatter_again(const IncomingLight&, const scene::Execution&);
 
   const scene::Scene& scene_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
 #include "scene/base/error.h"
@@ -48,91 +49,121 @@ std::vector<std::string> unsupported_medium(const scene::Scene& scene, std::size
 
 }  // namespace
 
-std::vector<scene::SettingSpec> option_settings() {
-  using namespace scene;
-  return {
-      choice_setting("variant", "grid", {"grid", "paper"},
-                     "where source radiance is known: at the nodes of a grid, of any medium with an end; at the "
-                     "centres of Gaussians, as published"),
-      integer_setting("order", "4", 1, 6, "bands of spherical harmonics of source radiance"),
-      choice_setting(
-          "multiple", "auto", {"auto", "none", "ordinates", "p1", "as_printed", "corrected"},
-          "multiple scattering: by discrete ordinates or diffusion (grid); by the diffusion system as printed or "
-          "corrected (paper); auto is ordinates, as_printed"),
-      integer_setting("slices", "256", 1, 65536, "slices along the longest side of the smoke"),
-      choice_setting("slice_weight", "auto", {"auto", "printed", "paper", "exact"},
-                     "how much of a slice's light is seen: depth without the slope of the ray, depth, 1 - exp(-depth); "
-                     "auto is exact, paper"),
-      flag_setting("residual", true, "with what the Gaussians leave of fitted smoke; false: the Gaussians alone"),
-      choice_setting("residual_store", "auto", {"auto", "grid", "bricks", "hash"},
-                     "of paper, where it is looked up: a float a sample, bricks of 8 bits, a perfect hash of 8 bits; "
-                     "auto is grid, on a device, which has no grid, bricks")
-          .where("variant", {"paper"}),
-      real_setting("tolerance", "2e-4", 1e-12, 1, "of multiple scattering, relative"),
-      integer_setting("iterations", "200", 1, 100000, "of multiple scattering, at most"),
-      integer_setting("levels", "8", 2, 32,
-                      "of grid: L x 2L directions that light is gathered from, bands of the environment")
-          .where("variant", {"grid"}),
-      integer_setting("cells", "32", 1, 96, "of grid: cells along the longest side of the smoke")
-          .where("variant", {"grid"}),
-      real_setting("deepest_cell", "1.5", 0.01, 1e9,
-                   "of grid: optical depth; where cells are deeper they are made smaller")
-          .where("variant", {"grid"}),
-      integer_setting(
-          "ordinate_levels", "0", 0, 16,
-          "of ordinates: levels on either side of the horizontal; 0: as many as the order needs, half of it")
-          .where("variant", {"grid"})
-          .where("multiple", {"auto", "ordinates"}),
-      integer_setting("azimuths", "0", 0, 64,
-                      "of ordinates: directions on a level; 0: as many as the order needs, twice of it")
-          .where("variant", {"grid"})
-          .where("multiple", {"auto", "ordinates"}),
-      choice_setting("transmittance", "hyb", {"ol", "hyb", "series", "directional"},
-                     "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions")
-          .where("variant", {"paper"}),
-      choice_setting("solver", "cg", {"cg", "cg_scaled", "lsqr", "lsqr_scaled"},
-                     "of paper's diffusion system: conjugate gradients on the normal equations, or LSQR; scaled: of "
-                     "rows of length 1")
-          .where("variant", {"paper"}),
-      integer_setting("mesh_spheres", "32", 0, 1000,
-                      "of paper: spheres that stand for a mesh which casts shadows; 0: meshes cast none")
-          .where("variant", {"paper"}),
-  };
+namespace {
+
+// Options as they are given, where `auto` or 0 leaves a choice to the others.
+struct Given {
+  enum class Multiple { automatic, none, ordinates, p1, as_printed, corrected };
+  Multiple multiple = Multiple::automatic;
+  std::optional<SliceWeight> weight;
+  int ordinate_levels = 0, azimuths = 0;
+  Options options;
+};
+
+void bind_grid(scene::SettingBinder& b, Given& given) {
+  Options::Grid& grid = given.options.grid;
+  b.integer("levels", grid.levels, 2, 32,
+            "of grid: L x 2L directions that light is gathered from, bands of the environment")
+      .where("variant", {"grid"});
+  b.integer("cells", grid.cells, 1, 96, "of grid: cells along the longest side of the smoke")
+      .where("variant", {"grid"});
+  b.real("deepest_cell", grid.deepest_cell, 0.01, 1e9,
+         "of grid: optical depth; where cells are deeper they are made smaller")
+      .where("variant", {"grid"});
+  b.integer("ordinate_levels", given.ordinate_levels, 0, 16,
+            "of ordinates: levels on either side of the horizontal; 0: as many as the order needs, half of it")
+      .where("variant", {"grid"})
+      .where("multiple", {"auto", "ordinates"});
+  b.integer("azimuths", given.azimuths, 0, 64,
+            "of ordinates: directions on a level; 0: as many as the order needs, twice of it")
+      .where("variant", {"grid"})
+      .where("multiple", {"auto", "ordinates"});
 }
 
+void bind_paper(scene::SettingBinder& b, Options::Paper& paper) {
+  using Solver = LeastSquaresSolver;
+  b.choice("transmittance", paper.transmittance,
+           {{"ol", Transmittance::paper_linear},
+            {"hyb", Transmittance::paper_squared},
+            {"series", Transmittance::series},
+            {"directional", Transmittance::directional}},
+           "of paper: exponential of depths in harmonics; directional: exact depths in fixed directions")
+      .where("variant", {"paper"});
+  b.choice("solver", paper.solver,
+           {{"cg", Solver::cg},
+            {"cg_scaled", Solver::cg_scaled},
+            {"lsqr", Solver::lsqr},
+            {"lsqr_scaled", Solver::lsqr_scaled}},
+           "of paper's diffusion system: conjugate gradients on the normal equations, or LSQR; scaled: of "
+           "rows of length 1")
+      .where("variant", {"paper"});
+  b.integer("mesh_spheres", paper.mesh_spheres, 0, 1000,
+            "of paper: spheres that stand for a mesh which casts shadows; 0: meshes cast none")
+      .where("variant", {"paper"});
+}
+
+void bind(scene::SettingBinder& b, Given& given) {
+  using Variant = Options::Variant;
+  using Multiple = Given::Multiple;
+  Options& o = given.options;
+  b.choice("variant", o.variant, {{"grid", Variant::grid}, {"paper", Variant::paper}},
+           "where source radiance is known: at the nodes of a grid, of any medium with an end; at the "
+           "centres of Gaussians, as published");
+  b.integer("order", o.order, 1, 6, "bands of spherical harmonics of source radiance");
+  b.choice("multiple", given.multiple,
+           {{"auto", Multiple::automatic},
+            {"none", Multiple::none},
+            {"ordinates", Multiple::ordinates},
+            {"p1", Multiple::p1},
+            {"as_printed", Multiple::as_printed},
+            {"corrected", Multiple::corrected}},
+           "multiple scattering: by discrete ordinates or diffusion (grid); by the diffusion system as printed or "
+           "corrected (paper); auto is ordinates, as_printed");
+  b.integer("slices", o.slices, 1, 65536, "slices along the longest side of the smoke");
+  b.choice("slice_weight", given.weight,
+           {{"auto", std::nullopt},
+            {"printed", SliceWeight::printed},
+            {"paper", SliceWeight::paper},
+            {"exact", SliceWeight::exact}},
+           "how much of a slice's light is seen: depth without the slope of the ray, depth, 1 - exp(-depth); "
+           "auto is exact, paper");
+  b.flag("residual", o.residual, "with what the Gaussians leave of fitted smoke; false: the Gaussians alone");
+  b.choice("residual_store", o.paper.store,
+           {{"auto", ResidualStore::automatic},
+            {"grid", ResidualStore::grid},
+            {"bricks", ResidualStore::bricks},
+            {"hash", ResidualStore::hash}},
+           "of paper, where it is looked up: a float a sample, bricks of 8 bits, a perfect hash of 8 bits; "
+           "auto is grid, on a device, which has no grid, bricks")
+      .where("variant", {"paper"});
+  b.real("tolerance", o.tolerance, 1e-12, 1, "of multiple scattering, relative");
+  b.integer("iterations", o.iterations, 1, 100000, "of multiple scattering, at most");
+  bind_grid(b, given);
+  bind_paper(b, o.paper);
+}
+
+}  // namespace
+
+std::vector<scene::SettingSpec> option_settings() { return scene::list_settings(bind); }
+
 Options read_options(const scene::Settings& settings) {
-  Options o;
-  o.variant = settings.choice<Options::Variant>("variant");
+  using Multiple = Given::Multiple;
+  const Given given = scene::read_settings(bind, settings);
+  Options o = given.options;
   const bool paper = o.variant == Options::Variant::paper;
-  o.order = int(settings.integer("order"));
-  const std::string &multiple = settings.text("multiple"), &weight = settings.text("slice_weight");
-  o.grid.multiple = multiple == "none" ? Options::Grid::Multiple::none
-                    : multiple == "p1" ? Options::Grid::Multiple::p1
-                                       : Options::Grid::Multiple::ordinates;
-  o.paper.multiple = multiple == "none"        ? Options::Paper::Multiple::none
-                     : multiple == "corrected" ? Options::Paper::Multiple::corrected
-                                               : Options::Paper::Multiple::as_printed;
-  o.weight = weight == "printed"                                ? SliceWeight::printed
-             : weight == "paper" || (weight == "auto" && paper) ? SliceWeight::paper
-                                                                : SliceWeight::exact;
-  o.slices = int(settings.integer("slices"));
-  o.residual = settings.flag("residual");
-  o.tolerance = settings.real("tolerance");
-  o.iterations = int(settings.integer("iterations"));
-  o.grid.levels = int(settings.integer("levels"));
-  o.grid.cells = int(settings.integer("cells"));
-  o.grid.deepest_cell = settings.real("deepest_cell");
-  const long long levels = settings.integer("ordinate_levels"), azimuths = settings.integer("azimuths");
-  o.grid.ordinate_levels = levels > 0 ? int(levels) : std::max(2, (o.order + 1) / 2);
-  o.grid.azimuths = azimuths > 0 ? int(azimuths) : std::max(8, 2 * o.order);
-  o.paper.transmittance = settings.choice<Transmittance>("transmittance");
-  o.paper.store = settings.choice<ResidualStore>("residual_store");
-  o.paper.solver = settings.choice<LeastSquaresSolver>("solver");
-  o.paper.mesh_spheres = int(settings.integer("mesh_spheres"));
-  const bool of_grid = multiple == "ordinates" || multiple == "p1",
-             of_paper = multiple == "as_printed" || multiple == "corrected";
+  o.grid.multiple = given.multiple == Multiple::none ? Options::Grid::Multiple::none
+                    : given.multiple == Multiple::p1 ? Options::Grid::Multiple::p1
+                                                     : Options::Grid::Multiple::ordinates;
+  o.paper.multiple = given.multiple == Multiple::none        ? Options::Paper::Multiple::none
+                     : given.multiple == Multiple::corrected ? Options::Paper::Multiple::corrected
+                                                             : Options::Paper::Multiple::as_printed;
+  o.weight = given.weight.value_or(paper ? SliceWeight::paper : SliceWeight::exact);
+  o.grid.ordinate_levels = given.ordinate_levels > 0 ? given.ordinate_levels : std::max(2, (o.order + 1) / 2);
+  o.grid.azimuths = given.azimuths > 0 ? given.azimuths : std::max(8, 2 * o.order);
+  const bool of_grid = given.multiple == Multiple::ordinates || given.multiple == Multiple::p1,
+             of_paper = given.multiple == Multiple::as_printed || given.multiple == Multiple::corrected;
   if (paper ? of_grid : of_paper)
-    throw Error("multiple = " + multiple + " is not for variant = " + settings.text("variant"));
+    throw Error("multiple = " + settings.text("multiple") + " is not for variant = " + settings.text("variant"));
   return o;
 }
 

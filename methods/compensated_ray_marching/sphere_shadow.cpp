@@ -13,7 +13,7 @@ namespace airlight::compensated_ray_marching {
 namespace {
 
 constexpr int most_steps = 60;          // of Levenberg and Marquardt's
-constexpr double difference = 1e-5;     // of coefficients, for slopes
+constexpr double difference = 1e-5;     // of coefficients, for derivatives
 constexpr double small_enough = 1e-12;  // of what a step gains, relative
 
 double legendre(int l, double x) { return std::legendre(unsigned(l), std::abs(x)) * (x < 0 && l % 2 ? -1 : 1); }
@@ -31,21 +31,21 @@ Eigen::VectorXd zonal_of(const Harmonics& f, int order) {
 // Least squares of exponential(f) = visible, f no longer than `longest` without its mean, from f on (Levenberg 1944, Marquardt 1963).
 double fit(const HarmonicExponential& exponential, const Eigen::VectorXd& visible, double longest, Eigen::VectorXd& f) {
   const auto n = f.size();
-  const auto missed = [&](const Eigen::VectorXd& at) {
+  const auto residual = [&](const Eigen::VectorXd& at) {
     return Eigen::VectorXd(zonal_of(exponential(about_z(at)), int(n)) - visible);
   };
-  Eigen::VectorXd now = missed(f);
+  Eigen::VectorXd now = residual(f);
   double damping = 1e-3;
   for (int step = 0; step < most_steps && now.norm() > 1e-13; ++step) {
-    Eigen::MatrixXd slopes(n, n);
+    Eigen::MatrixXd jacobian(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
       Eigen::VectorXd up = f, down = f;
       up[i] += difference;
       down[i] -= difference;
-      slopes.col(i) = (missed(up) - missed(down)) / (2 * difference);
+      jacobian.col(i) = (residual(up) - residual(down)) / (2 * difference);
     }
-    const Eigen::MatrixXd normal = scene::product(slopes.transpose(), slopes);
-    const Eigen::VectorXd right = -slopes.transpose() * now;
+    const Eigen::MatrixXd normal = scene::product(jacobian.transpose(), jacobian);
+    const Eigen::VectorXd right = -jacobian.transpose() * now;
     bool better = false;
     double gain = 0;
     for (; !better && damping < 1e12; damping *= better ? 0.1 : 8) {
@@ -53,7 +53,7 @@ double fit(const HarmonicExponential& exponential, const Eigen::VectorXd& visibl
       damped.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
       Eigen::VectorXd next = f + scene::solve_definite(damped, right);
       if (const double length = next.tail(n - 1).norm(); length > longest) next.tail(n - 1) *= longest / length;
-      const Eigen::VectorXd then = missed(next);
+      const Eigen::VectorXd then = residual(next);
       better = then.allFinite() && then.squaredNorm() < now.squaredNorm();
       if (!better) continue;
       gain = now.squaredNorm() - then.squaredNorm();

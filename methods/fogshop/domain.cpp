@@ -81,7 +81,7 @@ std::string doubt_of(const scene::Scene& scene, const Fog& fog, const Options& o
                         std::any_of(scene.lights.begin(), scene.lights.end(),
                                     [](const scene::Light& light) { return scene::ball(light).has_value(); });
   const bool walled_in = fog.sum.constant > 0 && options.environment_distance == infinity;
-  const bool by_one_depth = !options.sky_volume && !walled_in && scene::has_environment(scene);
+  const bool by_one_depth = !options.sky_volume() && !walled_in && scene::has_environment(scene);
   if (fog.sum.gaussians.empty() || !(by_paper || by_one_depth)) return "";
   std::vector<std::string> doubts;
   const double depth = greatest_depth(scene, fog), widths = nearest_light(scene, fog);

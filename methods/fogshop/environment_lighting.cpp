@@ -68,7 +68,7 @@ void environment_pass(const scene::Scene& scene, const Model& model, const Envir
     for (int x = 0; x < view.width; ++x) {
       const std::size_t i = std::size_t(y) * view.width + x;
       const bool open = distance[i] == infinity;
-      if (!open && !(lighting && model.options.environment_everywhere)) continue;
+      if (!open && !(lighting && model.options.everywhere())) continue;
       const Vec3 direction = camera_ray(view.camera, x + 0.5, y + 0.5, view.width, view.height).direction;
       const Rgb seen = (-depth[i] * model.fog.extinction_ratio).exp() * background(scene, direction);
       const Rgb scattered = lighting ? lighting->airlight(model.fog, depth[i], direction) : Rgb(Rgb::Zero());

@@ -29,6 +29,10 @@ class PreparedFogshop final : public scene::Prepared {
   scene::Rendering render(const View&, const Execution&) const override;
 
  private:
+  AirlightImage find_airlight(const View&, const ViewModel&, const std::vector<double>& distance, const Execution&,
+                              scene::Rendering&) const;
+  void count(double rays, double evaluations, std::map<std::string, double>& counters) const;
+
   std::shared_ptr<const Scene> scene_;
   Model model_;
   Plan plan_;
@@ -72,6 +76,42 @@ PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Optio
   }
 }
 
+// The airlight, and what the medium lets through, into layers of a film.
+void write_layers(const AirlightImage& image, const Fog& fog, std::vector<float>& airlight,
+                  std::vector<float>& transmittance) {
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    const Rgb visible = (-image.depth[i] * fog.extinction_ratio).exp();
+    for (int c = 0; c < 3; ++c) {
+      airlight[3 * i + c] = float(image.airlight[i][c]);
+      transmittance[3 * i + c] = fog.extinction_ratio[c] > 0 ? float(visible[c]) : 1.0f;
+    }
+  }
+}
+
+// Of every pixel, or by those of a low resolution.
+AirlightImage PreparedFogshop::find_airlight(const View& view, const ViewModel& view_model,
+                                             const std::vector<double>& distance, const Execution& execution,
+                                             scene::Rendering& result) const {
+  const Needs& needs = plan_.needs;
+  const std::vector<double> ends = needs.environment ? up_to_environment(model_.options, distance) : distance;
+  AirlightImage image = needs.low_resolution
+                            ? low_resolution_airlight(*scene_, model_, view_model, view, ends, needs.distances,
+                                                      execution, result.times, result.counters)
+                            : airlight_pass(model_, view_model, view, ends, execution);
+  result.counters["gaussians_crossed"] = image.crossed;
+  result.counters["gaussians_in_tiles"] = image.candidates;
+  return image;
+}
+
+void PreparedFogshop::count(double rays, double evaluations, std::map<std::string, double>& counters) const {
+  counters["rays"] = rays;
+  counters["erf_evaluations"] = evaluations;
+  counters["erf_evaluations_prepare"] = model_.evaluations;
+  counters["gaussians"] = model_.gaussians.count;
+  counters["gaussians_dropped"] = model_.dropped;
+  if (lighting_.depths) counters["average_depth_cells"] = double(lighting_.depths->cells().size());
+}
+
 scene::Rendering PreparedFogshop::render(const View& view, const Execution& execution) const {
   require_own_camera(*scene_, view);
   const std::string objection = unsupported_view(*scene_, model_.fog, model_.options, view.camera);
@@ -99,23 +139,10 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   // Step 6: airlight and T(v,p).
   std::vector<double> depth(pixels, 0.0);
   if (needs.airlight) {
-    const std::vector<double> ends =
-        needs.environment ? up_to_environment(model_.options, hits.distance) : hits.distance;
-    const AirlightImage image = needs.low_resolution
-                                    ? low_resolution_airlight(*scene_, model_, view_model, view, ends, needs.distances,
-                                                              execution, result.times, result.counters)
-                                    : airlight_pass(model_, view_model, view, ends, execution);
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const Rgb visible = (-image.depth[i] * model_.fog.extinction_ratio).exp();
-      for (int c = 0; c < 3; ++c) {
-        airlight[3 * i + c] = float(image.airlight[i][c]);
-        transmittance[3 * i + c] = model_.fog.extinction_ratio[c] > 0 ? float(visible[c]) : 1.0f;
-      }
-    }
+    const AirlightImage image = find_airlight(view, view_model, hits.distance, execution, result);
+    write_layers(image, model_.fog, airlight, transmittance);
     depth = image.depth;
     evaluations += image.evaluations;
-    result.counters["gaussians_crossed"] = image.crossed;
-    result.counters["gaussians_in_tiles"] = image.candidates;
     const double seconds = watch.lap();
     if (!needs.low_resolution) result.times.push_back({"airlight", seconds});
   } else {
@@ -138,12 +165,7 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
     if (!std::isnan(hits.seen[i])) surface[i] = transmittance[i] * hits.seen[i];
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = airlight[i] + surface[i];
   if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop: " + plan_.doubt;
-  result.counters["rays"] = double(pixels);
-  result.counters["erf_evaluations"] = evaluations;
-  result.counters["erf_evaluations_prepare"] = model_.evaluations;
-  result.counters["gaussians"] = model_.gaussians.count;
-  result.counters["gaussians_dropped"] = model_.dropped;
-  if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());
+  count(double(pixels), evaluations, result.counters);
   return result;
 }
 
@@ -162,9 +184,9 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
     if (const std::string why = scene::unknown_light<scene::PointLight, scene::EnvironmentLight>(scene.lights, i);
         !why.empty())
       reasons.push_back(why);
-  if (options.sky_volume && reasons.empty() && make_fog(scene.media).sum.constant > 0)
+  if (options.sky_volume() && reasons.empty() && make_fog(scene.media).sum.constant > 0)
     reasons.push_back("environment_airlight = volume is for Gaussians alone, and the medium has a constant");
-  if (options.sky_volume && options.noise_scale > 0 && options.variant == Options::Variant::paper)
+  if (options.sky_volume() && options.noise_scale > 0 && options.variant == Options::Variant::paper)
     reasons.push_back("variant = paper bends depths by noise and not places: environment_airlight = volume needs S");
   if (options.table && options.source_radius > 0)
     reasons.push_back("the table of F has no softened form: homogeneous = table needs source_radius = 0");

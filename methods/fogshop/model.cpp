@@ -9,99 +9,104 @@
 
 namespace airlight::fogshop {
 
-std::vector<scene::SettingSpec> setting_specs() {
-  return {
-      scene::choice_setting("variant", "S", {"paper", "S"},
-                            "paper: Zhou et al. 2007; S: slices with exact depths at their edges"),
-      scene::integer_setting("K", "24", 1, 4096, "slices of S; multiples of 8 fill whole vectors"),
-      scene::choice_setting("edges", "S3", {"plain", "S3"},
-                            "where S cuts: by length and lights, or by the Gaussians too"),
-      scene::flag_setting("extrapolate", true, "S from K/2 and K slices (error K^-4 instead of K^-2); K even"),
-      scene::choice_setting("light_depth", "map", {"map", "exact"},
-                            "depths from the lights in S: by maps, or by exact sums"),
-      scene::integer_setting("map_directions", "64", 2, 2048, "a light map has this number squared of directions"),
-      scene::integer_setting("map_edges", "48", 1, 4096, "distances per direction of a light map"),
-      scene::choice_setting("homogeneous", "exact", {"exact", "table"},
-                            "F in the paper variant: closed form, or a table of 256^2"),
-      scene::choice_setting("erf", "precise", {"precise", "erf10", "paper"},
-                            "error function, to 1e-12, 4e-6, or 2e-4 as printed"),
-      scene::choice_setting("cull", "depth", {"depth", "paper"}, "radius of a Gaussian: by lost depth, or by Eq. 30"),
-      scene::real_setting("eps_T", "1e-4", 1e-15, 1,
-                          "depth that culling costs per Gaussian at most, relative to the deepest below 1"),
-      scene::choice_setting(
-          "reflectance", "direct", {"direct", "npsf", "npsfT", "sun"},
-          "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
-          "Sun et al.'s integrals"),
-      scene::flag_setting("prt", false,
-                          "surfaces shadow scattered light, and that of environments, on meshes: precomputed transfer"),
-      scene::integer_setting("prt_rays", "256", 16, 65536, "directions per vertex of the precomputed transfer"),
-      scene::real_setting("prt_reach", "1e300", 0, 1e300,
-                          "distance [m] up to which surfaces shadow in the precomputed transfer"),
-      scene::integer_setting("prt_bounces", "0", 0, 16,
-                             "times that surfaces reflect light onto one another in the precomputed transfer"),
-      scene::integer_setting("sh_order", "6", 1, 12, "bands of the NPSF and of the environment"),
-      scene::choice_setting(
-          "environment_psf", "ball", {"npsf", "npsfT", "ball"},
-          "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth"),
-      scene::choice_setting(
-          "environment_airlight", "psf", {"psf", "everywhere", "volume"},
-          "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
-          "grid of what arrives unscattered"),
-      scene::integer_setting("sky_cells", "24", 1, 256, "cells of that grid along its longest side"),
-      scene::integer_setting("sky_directions", "64", 1, 65536, "directions from which light arrives at its nodes"),
-      scene::real_setting("environment_distance", "inf", 0, infinity,
-                          "D [m]: how far the constant medium reaches to the environment"),
-      scene::choice_setting("average_depth", "tree", {"tree", "exact"},
-                            "Eq. 26 on surfaces: by polynomials in cells, to eps_T, or by sums over all Gaussians"),
-      scene::choice_setting("downsample", "1", {"1", "2", "4"},
-                            "airlight for one ray per so many pixels to each side, section 5.4"),
-      scene::choice_setting(
-          "upsample", "recompute", {"bilinear", "paper", "recompute"},
-          "then at edges of the distance: nothing special, the most alike neighbour, or full resolution"),
-      scene::real_setting("noise_scale", "0", 0, 4,
-                          "how far noise bends rays, in radii of the Gaussian, section 5.5; 0: no noise"),
-      scene::real_setting("noise_frequency", "1", 1e-12, 1e12, "cells of the noise per metre; it repeats after 32"),
-      scene::integer_setting("noise_seed", "0", 0, 4294967295.0, "of the noise's gradients"),
-      scene::real_setting("noise_phase", "0", -1e6, 1e6, "shift of the noise along all axes, in cells"),
-      scene::real_setting("source_radius", "0", 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)"),
-  };
+namespace {
+
+void bind_surfaces(scene::SettingBinder& b, Options& o) {
+  using Reflectance = Options::Reflectance;
+  b.choice("reflectance", o.reflectance,
+           {{"direct", Reflectance::direct},
+            {"npsf", Reflectance::npsf},
+            {"npsfT", Reflectance::npsf_by_depth},
+            {"sun", Reflectance::sun}},
+           "of surfaces: unscattered light alone; scattered too, by the printed NPSF, by that of the depth, or by "
+           "Sun et al.'s integrals");
+  b.flag("prt", o.prt, "surfaces shadow scattered light, and that of environments, on meshes: precomputed transfer");
+  b.integer("prt_rays", o.prt_rays, 16, 65536, "directions per vertex of the precomputed transfer")
+      .where("prt", {"true"});
+  b.real("prt_reach", o.prt_reach, 0, 1e300, "distance [m] up to which surfaces shadow in the precomputed transfer")
+      .where("prt", {"true"});
+  b.integer("prt_bounces", o.prt_bounces, 0, 16,
+            "times that surfaces reflect light onto one another in the precomputed transfer")
+      .where("prt", {"true"});
 }
 
-Options read_options(const scene::Settings& settings) {
-  Options o;
-  o.variant = settings.choice<Options::Variant>("variant");
-  o.slices = int(settings.integer("K"));
-  o.extrapolate = settings.flag("extrapolate");
-  o.boxes = settings.text("edges") == "S3";
-  o.map = settings.text("light_depth") == "map";
-  o.map_directions = int(settings.integer("map_directions"));
-  o.map_edges = int(settings.integer("map_edges"));
-  o.table = settings.text("homogeneous") == "table";
-  o.erf = settings.choice<Erf>("erf");
-  o.cull = settings.choice<Cull>("cull");
-  o.depth_threshold = settings.real("eps_T");
-  o.source_radius = settings.real("source_radius");
-  o.reflectance = settings.choice<Options::Reflectance>("reflectance");
-  o.sh_order = int(settings.integer("sh_order"));
-  o.environment_psf = settings.choice<Psf>("environment_psf");
-  o.environment_everywhere = settings.text("environment_airlight") == "everywhere";
-  o.sky_volume = settings.text("environment_airlight") == "volume";
-  o.sky_cells = int(settings.integer("sky_cells"));
-  o.sky_directions = int(settings.integer("sky_directions"));
-  o.depth_tree = settings.text("average_depth") == "tree";
-  o.environment_distance = settings.real("environment_distance");
-  o.noise_scale = settings.real("noise_scale");
-  o.noise_frequency = settings.real("noise_frequency");
-  o.noise_seed = std::uint32_t(settings.integer("noise_seed"));
-  o.noise_phase = settings.real("noise_phase");
-  o.downsample = std::stoi(settings.text("downsample"));
-  o.upsample = settings.choice<Options::Upsample>("upsample");
-  o.prt = settings.flag("prt");
-  o.prt_rays = int(settings.integer("prt_rays"));
-  o.prt_reach = settings.real("prt_reach");
-  o.prt_bounces = int(settings.integer("prt_bounces"));
-  return o;
+void bind_environment(scene::SettingBinder& b, Options& o) {
+  using Airlight = Options::EnvironmentAirlight;
+  b.choice("environment_psf", o.environment_psf,
+           {{"npsf", Psf::npsf}, {"npsfT", Psf::npsf_by_depth}, {"ball", Psf::ball}},
+           "spreads environment light: printed NPSF, that of the depth, or that of a ball of the depth")
+      .where("environment_airlight", {"psf", "everywhere"})
+      .or_where("reflectance", {"npsf", "npsfT", "sun"});
+  b.choice(
+      "environment_airlight", o.environment_airlight,
+      {{"psf", Airlight::psf}, {"everywhere", Airlight::everywhere}, {"volume", Airlight::volume}},
+      "light of the environment in the air: by Eq. 28 where no surface is, before surfaces too, or by slices and a "
+      "grid of what arrives unscattered");
+  b.integer("sky_cells", o.sky_cells, 1, 256, "cells of that grid along its longest side")
+      .where("environment_airlight", {"volume"});
+  b.integer("sky_directions", o.sky_directions, 1, 65536, "directions from which light arrives at its nodes")
+      .where("environment_airlight", {"volume"});
+  b.real("environment_distance", o.environment_distance, 0, infinity,
+         "D [m]: how far the constant medium reaches to the environment");
+  b.choice("average_depth", o.depth_tree, {{"tree", true}, {"exact", false}},
+           "Eq. 26 on surfaces: by polynomials in cells, to eps_T, or by sums over all Gaussians");
 }
+
+void bind(scene::SettingBinder& b, Options& o) {
+  using Variant = Options::Variant;
+  using Upsample = Options::Upsample;
+  b.choice("variant", o.variant, {{"paper", Variant::paper}, {"S", Variant::slices}},
+           "paper: Zhou et al. 2007; S: slices with exact depths at their edges");
+  b.integer("K", o.slices, 1, 4096, "slices of S; multiples of 8 fill whole vectors")
+      .where("variant", {"S"})
+      .or_where("environment_airlight", {"volume"});
+  b.choice("edges", o.boxes, {{"plain", false}, {"S3", true}},
+           "where S cuts: by length and lights, or by the Gaussians too")
+      .where("variant", {"S"});
+  b.flag("extrapolate", o.extrapolate, "S from K/2 and K slices (error K^-4 instead of K^-2); K even")
+      .where("variant", {"S"});
+  b.choice("light_depth", o.map, {{"map", true}, {"exact", false}},
+           "depths from the lights in S: by maps, or by exact sums")
+      .where("variant", {"S"});
+  b.integer("map_directions", o.map_directions, 2, 2048, "a light map has this number squared of directions")
+      .where("variant", {"S"})
+      .where("light_depth", {"map"});
+  b.integer("map_edges", o.map_edges, 1, 4096, "distances per direction of a light map")
+      .where("variant", {"S"})
+      .where("light_depth", {"map"});
+  b.choice("homogeneous", o.table, {{"exact", false}, {"table", true}},
+           "F in the paper variant: closed form, or a table of 256^2")
+      .where("variant", {"paper"});
+  b.choice("erf", o.erf, {{"precise", Erf::precise}, {"erf10", Erf::erf10}, {"paper", Erf::paper}},
+           "error function, to 1e-12, 4e-6, or 2e-4 as printed");
+  b.choice("cull", o.cull, {{"depth", Cull::depth}, {"paper", Cull::paper}},
+           "radius of a Gaussian: by lost depth, or by Eq. 30");
+  b.real("eps_T", o.depth_threshold, 1e-15, 1,
+         "depth that culling costs per Gaussian at most, relative to the deepest below 1");
+  bind_surfaces(b, o);
+  b.integer("sh_order", o.sh_order, 1, 12, "bands of the NPSF and of the environment");
+  bind_environment(b, o);
+  b.choice("downsample", o.downsample, {{"1", 1}, {"2", 2}, {"4", 4}},
+           "airlight for one ray per so many pixels to each side, section 5.4");
+  b.choice("upsample", o.upsample,
+           {{"bilinear", Upsample::bilinear}, {"paper", Upsample::paper}, {"recompute", Upsample::recompute}},
+           "then at edges of the distance: nothing special, the most alike neighbour, or full resolution")
+      .where("downsample", {"2", "4"});
+  b.real("noise_scale", o.noise_scale, 0, 4,
+         "how far noise bends rays, in radii of the Gaussian, section 5.5; 0: no noise");
+  b.real("noise_frequency", o.noise_frequency, 1e-12, 1e12, "cells of the noise per metre; it repeats after 32")
+      .where("noise_scale", {"> 0"});
+  b.integer("noise_seed", o.noise_seed, 0, 4294967295.0, "of the noise's gradients").where("noise_scale", {"> 0"});
+  b.real("noise_phase", o.noise_phase, -1e6, 1e6, "shift of the noise along all axes, in cells")
+      .where("noise_scale", {"> 0"});
+  b.real("source_radius", o.source_radius, 0, 1e300, "r_s [m]: 1/d^2 becomes 1/(d^2 + r_s^2)");
+}
+
+}  // namespace
+
+std::vector<scene::SettingSpec> setting_specs() { return scene::list_settings(bind); }
+
+Options read_options(const scene::Settings& settings) { return scene::read_settings(bind, settings); }
 
 namespace {
 

@@ -32,10 +32,13 @@ struct Options {
   // without harmonics.
   enum class Reflectance { direct, npsf, npsf_by_depth, sun };
   Reflectance reflectance = Reflectance::direct;
-  int sh_order = 6;                     // bands of the NPSF and of the environment
-  Psf environment_psf = Psf::ball;      // what spreads light of an environment
-  bool environment_everywhere = false;  // Eq. 28 where a surface ends the ray, too
-  bool sky_volume = false;              // airlight of the environment by SkyVolume instead of Eq. 28
+  int sh_order = 6;                 // bands of the NPSF and of the environment
+  Psf environment_psf = Psf::ball;  // what spreads light of an environment
+  // Airlight of the environment: Eq. 28 where no surface ends the ray, or everywhere; or by SkyVolume.
+  enum class EnvironmentAirlight { psf, everywhere, volume };
+  EnvironmentAirlight environment_airlight = EnvironmentAirlight::psf;
+  bool everywhere() const { return environment_airlight == EnvironmentAirlight::everywhere; }
+  bool sky_volume() const { return environment_airlight == EnvironmentAirlight::volume; }
   int sky_cells = 24;
   int sky_directions = 64;
   bool depth_tree = true;                  // Eq. 26 by a DepthTree

@@ -64,30 +64,52 @@ std::string reflected_by(const Options& o) {
                            o.reflectance == Reflectance::npsf ? "printed NPSF" : "NPSF of each depth");
 }
 
-}  // namespace
+// Goes through the stages, and notes what they need.
+struct Planner {
+  Planner(const scene::Scene& of_scene, const Model& of_model)
+      : scene(of_scene),
+        model(of_model),
+        o(model.options),
+        paper(model.paper()),
+        surfaces(!scene.surfaces.empty()),
+        lit(model.scattered_lights() > 0),
+        shone(!model.lights.empty()),
+        gaussians(model.gaussians.count > 0),
+        constant(model.fog.sum.constant > 0),
+        doubt(doubt_of(scene, model.fog, o)) {
+    // An endless constant lets no light through from infinitely far away.
+    const bool walled_in = constant && o.environment_distance == infinity;
+    no_lights = {!lit, shone ? "the albedo is 0 where point lights shine" : "no point light shines"};
+    no_gaussians = {!gaussians, "no Gaussian reaches the threshold"};
+    no_surfaces = {!surfaces, "there are no surfaces"};
+    no_medium = {!gaussians && !constant, "there is no medium"};
+    dark = {!model.environment || walled_in, model.environment
+                                                 ? "the constant medium has no end: none of its light arrives"
+                                                 : "no environment light shines"};
+    black = {(model.fog.albedo == 0).all(), "the albedo is 0"};
+    direct = {o.reflectance == Options::Reflectance::direct, "reflectance = direct"};
+    needs.airlight = !no_medium.holds;
+  }
+  void add_distances_and_medium();
+  void add_depths_of_lights();
+  void add_airlight();
+  void add_surfaces();
+  void add_environment();
+  void add_environment_on_surfaces();
 
-Plan make_plan(const scene::Scene& scene, const Model& model) {
-  const Options& o = model.options;
-  const bool paper = model.paper(), surfaces = !scene.surfaces.empty();
-  const bool lit = model.scattered_lights() > 0, shone = !model.lights.empty(), gaussians = model.gaussians.count > 0,
-             constant = model.fog.sum.constant > 0;
-  const List::WhyNot no_lights{!lit, shone ? "the albedo is 0 where point lights shine" : "no point light shines"},
-      no_gaussians{!gaussians, "no Gaussian reaches the threshold"};
-  const List::WhyNot no_surfaces{!surfaces, "there are no surfaces"};
-  const List::WhyNot no_medium{!gaussians && !constant, "there is no medium"};
-  // An endless constant lets no light through from infinitely far away.
-  const bool walled_in = constant && o.environment_distance == infinity;
-  const List::WhyNot dark{
-      !model.environment || walled_in,
-      model.environment ? "the constant medium has no end: none of its light arrives" : "no environment light shines"};
-  const List::WhyNot black{(model.fog.albedo == 0).all(), "the albedo is 0"};
-  const List::WhyNot direct{o.reflectance == Options::Reflectance::direct, "reflectance = direct"};
+  const scene::Scene& scene;
+  const Model& model;
+  const Options& o;
+  const bool paper, surfaces, lit, shone, gaussians, constant;
+  const std::string doubt;
+  List::WhyNot no_lights, no_gaussians, no_surfaces, no_medium, dark, black, direct;
   List stage;
   Needs needs{};
-  needs.airlight = !no_medium.holds;
-  const bool backdrops = !scene.backdrops.empty();
+};
+
+void Planner::add_distances_and_medium() {
   needs.distances = stage("distances",
-                          {{!surfaces && !has_ball(scene) && !backdrops,
+                          {{!surfaces && !has_ball(scene) && scene.backdrops.empty(),
                             "no surface, no light with a radius, no backdrop: rays are infinite"}},
                           fmt::format("{} surfaces, balls of lights and {} backdrops end rays", scene.surfaces.size(),
                                       scene.backdrops.size()));
@@ -98,6 +120,9 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
         paper       ? (o.table ? "Eq. 17 with the table of F" : "Eq. 17 in closed form")
         : gaussians ? "inside the slices, in closed form beyond them"
                     : "in closed form");
+}
+
+void Planner::add_depths_of_lights() {
   const std::string lights = fmt::format("{} point light{}", model.lights.size(), model.lights.size() == 1 ? "" : "s");
   if (paper)
     needs.center_depths =
@@ -116,11 +141,13 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
               fmt::format("{0}^2 directions x {1} distances for {2}, error {3:.2g} % (estimated)", o.map_directions,
                           o.map_edges, lights, 100 * model.map_error));
   if (o.table) needs.f_table = stage("table of F", {{!(paper && lit && constant), "nothing reads it"}}, "asked for");
+}
+
+void Planner::add_airlight() {
   stage("airlight of Gaussians", {no_gaussians, no_lights},
         paper ? "Eqs. 8 to 17" : fmt::format("{} slices{}", o.slices, o.extrapolate ? ", extrapolated from half" : ""));
   stage("colour", {{model.fog.grey(), "the extinction is grey: one channel for all"}},
         "depths once, exponentials per channel");
-  const std::string doubt = doubt_of(scene, model.fog, o);
   if (!doubt.empty()) stage("doubt", {}, doubt);
   needs.low_resolution = stage("low resolution", {no_medium, {o.downsample == 1, "downsample = 1"}},
                                low_resolution_by(o, needs.distances));
@@ -128,6 +155,9 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
         "one per Gaussian: it scales what scatters, not what extinguishes");
   stage("noise", {{!(o.noise_scale > 0), "noise_scale = 0"}, no_gaussians},
         fmt::format("rays bent by up to {:g} radii", o.noise_scale));
+}
+
+void Planner::add_surfaces() {
   needs.surfaces = stage("surfaces", {{!surfaces, "there are none"}, {!shone && dark.holds, "no light reaches them"}},
                          "direct light through the medium, Eq. 29");
   stage("ambient in-scatter",
@@ -145,8 +175,11 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
              {vertices == 0, "there are no meshes, and other shapes have no vertices"}},
             fmt::format("{} rays from each of {:.0f} vertices, {} bands, light reflected {} times between surfaces",
                         o.prt_rays, vertices, o.sh_order, o.prt_bounces));
+}
+
+void Planner::add_environment() {
   needs.environment = stage("background", {dark}, "the environment through the medium, Eq. 29, where no surface is");
-  needs.sky_volume = needs.environment && gaussians && o.sky_volume && !black.holds;
+  needs.sky_volume = needs.environment && gaussians && o.sky_volume() && !black.holds;
   const bool by_psf = needs.environment && needs.airlight && !needs.sky_volume && !black.holds;
   stage(
       "shadows of surfaces in the medium",
@@ -156,17 +189,20 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
   needs.environment_harmonics =
       stage("harmonics of the environment", {dark, {!by_psf && !surfaces, "nothing reads them"}},
             fmt::format("{} bands", o.sh_order));
-  const std::string psf = psf_name(o.environment_psf);
   needs.environment_airlight =
       stage("airlight of the environment", {dark, no_medium, black},
             needs.sky_volume ? fmt::format("{} slices, a grid of {} cells along its longest side, {} directions",
                                            o.slices, o.sky_cells, o.sky_directions)
-                             : fmt::format("Eq. 28, {}, {}", psf,
-                                           o.environment_everywhere ? "before surfaces too" : "where no surface is"));
-  const bool sky_on_surfaces = stage("environment on surfaces", {no_surfaces, dark},
-                                     no_medium.holds    ? "no medium is in the way"
-                                     : !needs.scattered ? "Eq. 27 without what is scattered"
-                                                        : fmt::format("Eqs. 26 and 27, {}", psf));
+                             : fmt::format("Eq. 28, {}, {}", psf_name(o.environment_psf),
+                                           o.everywhere() ? "before surfaces too" : "where no surface is"));
+}
+
+void Planner::add_environment_on_surfaces() {
+  const bool sky_on_surfaces =
+      stage("environment on surfaces", {no_surfaces, dark},
+            no_medium.holds    ? "no medium is in the way"
+            : !needs.scattered ? "Eq. 27 without what is scattered"
+                               : fmt::format("Eqs. 26 and 27, {}", psf_name(o.environment_psf)));
   needs.depth_tree =
       stage("tree of average depths",
             {{!sky_on_surfaces || !gaussians, "nothing reads it"},
@@ -175,7 +211,19 @@ Plan make_plan(const scene::Scene& scene, const Model& model) {
              {o.depth_threshold < finest, fmt::format("eps_T is below {}: sums over all Gaussians", finest)}},
             fmt::format("Eq. 26 by polynomials in cells around the surfaces, to {:.2g}", model.threshold));
   needs.reflectances = sky_on_surfaces || (needs.point_harmonics && o.reflectance != Options::Reflectance::sun);
-  return {needs, std::move(stage.stages), doubt};
+}
+
+}  // namespace
+
+Plan make_plan(const scene::Scene& scene, const Model& model) {
+  Planner plan(scene, model);
+  plan.add_distances_and_medium();
+  plan.add_depths_of_lights();
+  plan.add_airlight();
+  plan.add_surfaces();
+  plan.add_environment();
+  plan.add_environment_on_surfaces();
+  return {plan.needs, std::move(plan.stage.stages), plan.doubt};
 }
 
 std::string unsupported_view(const scene::Scene& scene, const Fog& fog, const Options& options,

@@ -100,17 +100,17 @@ void add_density(const ConfinedSpace& space, const Array& density, const Cells& 
 }
 
 // Enstrophy, and the greatest |div u| [1/s].
-void add_slopes(const Fluid& fluid, scene::Totals& t) {
+void add_gradients(const Fluid& fluid, scene::Totals& t) {
   const ConfinedSpace& space = fluid.space();
   const int d = space.dimensions();
   const Components points{space.nodes(), space.nodes(), space.nodes()};
   // d u_a / d x_b [1/s]
-  const auto slope = [&](int a, int b) -> Array {
-    return space.half()[a] / space.half()[b] * fluid.sampled_slope(a, b, points);
+  const auto gradient = [&](int a, int b) -> Array {
+    return space.half()[a] / space.half()[b] * fluid.sampled_gradient(a, b, points);
   };
-  Array divergence = slope(0, 0), squares = (slope(1, 0) - slope(0, 1)).cwiseAbs2();
-  for (int a = 1; a < d; ++a) divergence += slope(a, a);
-  if (d == 3) squares += (slope(2, 1) - slope(1, 2)).cwiseAbs2() + (slope(0, 2) - slope(2, 0)).cwiseAbs2();
+  Array divergence = gradient(0, 0), squares = (gradient(1, 0) - gradient(0, 1)).cwiseAbs2();
+  for (int a = 1; a < d; ++a) divergence += gradient(a, a);
+  if (d == 3) squares += (gradient(2, 1) - gradient(1, 2)).cwiseAbs2() + (gradient(0, 2) - gradient(2, 0)).cwiseAbs2();
   t.enstrophy = 0.5 * space.integral(squares);
   t.divergence = divergence.cwiseAbs().maxCoeff();
 }
@@ -126,7 +126,7 @@ scene::Totals totals_of(const Fluid& fluid, const Array& density, const Cells& c
     const Array u = cells.box.half[a] * fluid.sampled(a, cells.positions());
     t.greatest_speed = std::max(t.greatest_speed, u.cwiseAbs().maxCoeff());
   }
-  add_slopes(fluid, t);
+  add_gradients(fluid, t);
   t.divergence = t.greatest_speed > 0 ? t.divergence * cells.size / t.greatest_speed : 0;
   return t;
 }

@@ -86,13 +86,13 @@ Array ConfinedFluid::sampled(int component, const Components& positions) const {
   return confined() ? Array(values + wind) : wind;
 }
 
-Array ConfinedFluid::sampled_slope(int component, int axis, const Components& positions) const {
-  Array slopes = space_.sampled_slope(velocity, component, axis, positions);
-  if (!wind_) return slopes;
-  // Of a wind that is at most linear a difference is its slope.
+Array ConfinedFluid::sampled_gradient(int component, int axis, const Components& positions) const {
+  Array gradient = space_.sampled_gradient(velocity, component, axis, positions);
+  if (!wind_) return gradient;
+  // Of a wind that is at most linear a difference is its gradient.
   const Vec3 step = Vec3::Unit(axis);
-  const double slope = 0.5 * (wind_->velocity(step) - wind_->velocity(-step))[component];
-  return slopes.array() + slope;
+  const double of_wind = 0.5 * (wind_->velocity(step) - wind_->velocity(-step))[component];
+  return gradient.array() + of_wind;
 }
 
 double ConfinedFluid::at(int component, const Vec3& x) const {

@@ -40,7 +40,7 @@ class ConfinedFluid : public Fluid {
   bool halves() const override { return true; }
   Components at_points() const override;
   Array sampled(int component, const Components& positions) const override;
-  Array sampled_slope(int component, int axis, const Components& positions) const override;
+  Array sampled_gradient(int component, int axis, const Components& positions) const override;
   double at(int component, const Vec3& x) const override;
   Array at(int component, const std::vector<Vec3>& x) const override;
   std::map<std::string, double> counters() const override;

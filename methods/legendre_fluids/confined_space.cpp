@@ -43,9 +43,9 @@ ConfinedSpace::ConfinedSpace(int dimensions, int n, const Vec3& half)
     inverse_ = product(wall_modes_ * wall_rates_.asDiagonal(), wall_modes_.transpose());
     pressure_modes_.bottomRightCorner(n - 1, n - 1) = wall_modes_;
     // The constant is a mode to the last bit, so that diffusion keeps the mass.
-    const MatrixXd slope = scene::legendre_derivative(n);
+    const MatrixXd derivative = scene::legendre_derivative(n);
     const scene::SymmetricModes free =
-        scene::symmetric_modes(product(slope.transpose(), slope).bottomRightCorner(n - 1, n - 1));
+        scene::symmetric_modes(product(derivative.transpose(), derivative).bottomRightCorner(n - 1, n - 1));
     free_modes_.bottomRightCorner(n - 1, n - 1) = free.vectors;
     free_rates_.tail(n - 1) = free.values;
   }

@@ -90,14 +90,14 @@ class ConfinedSpace {
 
   // On a lattice of points of the reference box, one list of positions per axis, [x][y][z].
   Array sampled(const Array& u, int component, const Components& positions) const;
-  // Slope of it along an axis, over half sizes.
-  Array sampled_slope(const Array& u, int component, int axis, const Components& positions) const;
+  // Its gradient along an axis, over half sizes.
+  Array sampled_gradient(const Array& u, int component, int axis, const Components& positions) const;
   Array scalar_sampled(const Array& r, const Components& positions) const;
-  Array scalar_sampled_slope(const Array& r, int axis, const Components& positions) const;
+  Array scalar_sampled_gradient(const Array& r, int axis, const Components& positions) const;
 
  private:
   Array transformed(const Array&, TensorShape, const std::array<const Eigen::MatrixXd*, 3>&) const;
-  Array sampled(const Array& c, int component, int slope_axis, const Components& positions) const;
+  Array sampled(const Array& c, int component, int gradient_axis, const Components& positions) const;
   Array diffused_part(const Array&, int component, double amount, Diffusion) const;
 
   int d_, n_;

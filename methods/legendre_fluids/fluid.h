@@ -43,10 +43,10 @@ class Fluid {
   // What is left of a quantity that decays, of the product of rate and time.
   virtual double faded(double amount) const { return std::exp(-amount); }
 
-  // Half sizes per second at the Gauss points of the space; on a lattice of other points; its slope along an axis.
+  // Half sizes per second at the Gauss points of the space; on a lattice of other points; its gradient along an axis.
   virtual Components at_points() const = 0;
   virtual Array sampled(int component, const Components& positions) const = 0;
-  virtual Array sampled_slope(int component, int axis, const Components& positions) const = 0;
+  virtual Array sampled_gradient(int component, int axis, const Components& positions) const = 0;
   virtual double at(int component, const Vec3& x) const = 0;
   virtual Array at(int component, const std::vector<Vec3>& x) const;  // one by one by default
 

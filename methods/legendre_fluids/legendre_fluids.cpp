@@ -18,13 +18,39 @@ using scene::Side;
 
 namespace {
 
-enum class Variant { galerkin, paper, paper_repaired };
+using Variant = FlowOptions::Variant;
 
 constexpr double most_steps = 1e8;   // of a frame
 constexpr double most_dense = 1000;  // coefficients of a field where systems are dense
 
+void bind_flow(scene::SettingBinder& b, FlowOptions& o) {
+  b.choice("variant", o.variant,
+           {{"galerkin", Variant::galerkin}, {"paper", Variant::paper}, {"paper_repaired", Variant::paper_repaired}},
+           "galerkin: no flow through walls, energy kept; paper: equations 13 to 21, without walls; "
+           "paper_repaired: the same, confined after each advection");
+  b.integer("n", o.n, 1, 64, "coefficients along each axis");
+  b.real("dt", o.dt, 0, 1e9,
+         "longest step [s]; 0: a frame. Steps divide a frame evenly; galerkin divides its advection further");
+  b.choice("truncation", o.truncation, {{"chebyshev", Truncation::chebyshev}, {"l2", Truncation::l2}},
+           "T of the paper's variants")
+      .where("variant", {"paper", "paper_repaired"});
+  b.choice("mixing", o.mixing, {{"densities", Mixing::densities}, {"albedo", Mixing::albedo}},
+           "of two densities move both, or their sum and the first one's share (the paper's albedo)");
+  b.real("filter_velocity", o.confined.filter_velocity, 0, 1e9,
+         "rate of exp(-rate (k/(n-1))^order t) for coefficient k of an axis [1/s]")
+      .where("variant", {"galerkin"});
+  b.real("filter_carried", o.confined.filter_carried, 0, 1e9, "the same of density and temperature [1/s]")
+      .where("variant", {"galerkin"});
+  b.real("filter_order", o.confined.filter_order, 1, 64, "of both")
+      .where("variant", {"galerkin"})
+      .where("filter_velocity", {"> 0"})
+      .or_where("variant", {"galerkin"})
+      .where("filter_carried", {"> 0"});
+  b.integer("cells", o.cells, 1, 1024, "along the longest axis, of frames and media that are grids");
+}
+
 double steps_in_frame(const FlowProblem& problem, const Settings& settings) {
-  const double frame = 1 / problem.frame_rate, longest = settings.real("dt");
+  const double frame = 1 / problem.frame_rate, longest = read_flow_options(settings).dt;
   return longest > 0 ? std::max(1.0, std::ceil(frame / longest * (1 - 1e-9))) : 1;
 }
 
@@ -125,13 +151,12 @@ void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reas
 // What the paper's variants do not have.
 void object_to_paper(const FlowProblem& problem, const Settings& settings, std::vector<std::string>& reasons) {
   const std::string& variant = settings.text("variant");
+  const FlowOptions o = read_flow_options(settings);
   if (has_open_sides(problem)) reasons.push_back(variant + " with open sides: its operators know no inflow");
   if (const auto* wind = std::get_if<scene::Wind>(&problem.velocity); wind && !wind->gust.isZero(0))
     reasons.push_back(variant + " with a gust");
-  for (const char* filter : {"filter_velocity", "filter_carried"})
-    if (settings.real(filter) > 0) reasons.push_back(variant + " with " + filter + ": a setting of galerkin");
-  const double coefficients = std::pow(double(settings.integer("n")), problem.dimensions);
-  if (settings.choice<Variant>("variant") == Variant::paper && coefficients > most_dense)
+  const double coefficients = std::pow(double(o.n), problem.dimensions);
+  if (o.variant == Variant::paper && coefficients > most_dense)
     reasons.push_back(
         fmt::format("paper with {:.0f} coefficients of a field: it solves dense systems of at most {:.0f}",
                     coefficients, most_dense));
@@ -139,40 +164,16 @@ void object_to_paper(const FlowProblem& problem, const Settings& settings, std::
 
 }  // namespace
 
-ConfinedOptions confined_options(const Settings& settings) {
-  ConfinedOptions options;
-  options.filter_velocity = settings.real("filter_velocity");
-  options.filter_carried = settings.real("filter_carried");
-  options.filter_order = settings.real("filter_order");
-  return options;
-}
+FlowOptions read_flow_options(const Settings& settings) { return scene::read_settings(bind_flow, settings); }
 
 std::string LegendreFluids::about() const {
   return "Gupta and Narasimhan 2007: velocity and density in n Legendre coefficients along each axis of a box";
 }
 
-std::vector<scene::SettingSpec> LegendreFluids::settings() const {
-  return {
-      scene::choice_setting("variant", "galerkin", {"galerkin", "paper", "paper_repaired"},
-                            "galerkin: no flow through walls, energy kept; paper: equations 13 to 21, without walls; "
-                            "paper_repaired: the same, confined after each advection"),
-      scene::integer_setting("n", "8", 1, 64, "coefficients along each axis"),
-      scene::real_setting(
-          "dt", "0", 0, 1e9,
-          "longest step [s]; 0: a frame. Steps divide a frame evenly; galerkin divides its advection further"),
-      scene::choice_setting("truncation", "chebyshev", {"chebyshev", "l2"}, "T of the paper's variants")
-          .where("variant", {"paper", "paper_repaired"}),
-      scene::choice_setting("mixing", "densities", {"densities", "albedo"},
-                            "of two densities move both, or their sum and the first one's share (the paper's albedo)"),
-      scene::real_setting("filter_velocity", "0", 0, 1e9,
-                          "rate of exp(-rate (k/(n-1))^order t) for coefficient k of an axis [1/s]"),
-      scene::real_setting("filter_carried", "0", 0, 1e9, "the same of density and temperature [1/s]"),
-      scene::real_setting("filter_order", "8", 1, 64, "of both"),
-      scene::integer_setting("cells", "64", 1, 1024, "along the longest axis, of frames and media that are grids"),
-  };
-}
+std::vector<scene::SettingSpec> LegendreFluids::settings() const { return scene::list_settings(bind_flow); }
 
 std::vector<std::string> LegendreFluids::supports(const FlowProblem& problem, const Settings& settings) const {
+  const FlowOptions o = read_flow_options(settings);
   std::vector<std::string> reasons;
   object_to_sides(problem, reasons);
   if (!problem.obstacles.empty()) reasons.push_back("obstacles: polynomials of the whole box know none");
@@ -182,12 +183,12 @@ std::vector<std::string> LegendreFluids::supports(const FlowProblem& problem, co
       reasons.push_back("sources that hold a value, expected rates");
       break;
     }
-  if (settings.choice<Mixing>("mixing") == Mixing::albedo) object_to_albedo(problem, reasons);
-  if (settings.choice<Variant>("variant") != Variant::galerkin) object_to_paper(problem, settings, reasons);
-  if (is_given(problem) && settings.integer("n") < 2) reasons.push_back("n = 1 where air comes in, expected 2 or more");
+  if (o.mixing == Mixing::albedo) object_to_albedo(problem, reasons);
+  if (o.variant != Variant::galerkin) object_to_paper(problem, settings, reasons);
+  if (is_given(problem) && o.n < 2) reasons.push_back("n = 1 where air comes in, expected 2 or more");
   if (const double steps = steps_in_frame(problem, settings); steps > most_steps)
-    reasons.push_back(fmt::format("dt = {:g} makes {:.3g} steps of a frame, expected at most {:g}", settings.real("dt"),
-                                  steps, most_steps));
+    reasons.push_back(
+        fmt::format("dt = {:g} makes {:.3g} steps of a frame, expected at most {:g}", o.dt, steps, most_steps));
   return reasons;
 }
 
@@ -198,17 +199,16 @@ int LegendreFluids::steps_per_frame(const FlowProblem& problem, const Settings& 
 std::unique_ptr<scene::Flow> LegendreFluids::start_supported(std::shared_ptr<const FlowProblem> problem,
                                                              const Settings& settings, const scene::Execution&) const {
   const ReferenceBox box(*problem);
-  const int n = int(settings.integer("n")), cells = int(settings.integer("cells"));
+  const FlowOptions o = read_flow_options(settings);
   const Material material{problem->viscosity, problem->diffusivity, !problem->velocity_stays};
   std::unique_ptr<Fluid> fluid;
-  if (settings.choice<Variant>("variant") == Variant::galerkin)
-    fluid = std::make_unique<ConfinedFluid>(box.dimensions, n, box.half, material, confined_options(settings),
+  if (o.variant == Variant::galerkin)
+    fluid = std::make_unique<ConfinedFluid>(box.dimensions, o.n, box.half, material, o.confined,
                                             wind_through(problem, box));
   else
-    fluid =
-        std::make_unique<PaperFluid>(box.dimensions, n, box.half, material, settings.choice<Truncation>("truncation"),
-                                     settings.choice<Variant>("variant") == Variant::paper_repaired);
-  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), cells, settings.choice<Mixing>("mixing"));
+    fluid = std::make_unique<PaperFluid>(box.dimensions, o.n, box.half, material, o.truncation,
+                                         o.variant == Variant::paper_repaired);
+  return std::make_unique<LegendreFlow>(std::move(problem), std::move(fluid), o.cells, o.mixing);
 }
 
 }  // namespace airlight::legendre_fluids

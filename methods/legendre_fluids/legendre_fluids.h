@@ -2,14 +2,25 @@
 // Participating Media" (SCA 2007), section 5. A box of n coefficients along each axis, in two or three dimensions.
 #pragma once
 #include "methods/legendre_fluids/confined_fluid.h"
+#include "methods/legendre_fluids/legendre_flow.h"
+#include "methods/legendre_fluids/paper_operators.h"
 #include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 
 // Whether anything goes through the sides of the box.
 bool air_comes_in(const scene::FlowProblem&);
-// Those of the variant galerkin.
-ConfinedOptions confined_options(const scene::Settings&);
+
+struct FlowOptions {
+  enum class Variant { galerkin, paper, paper_repaired } variant = Variant::galerkin;
+  int n = 8;
+  double dt = 0;  // [s], the longest step; 0: a frame
+  Truncation truncation = Truncation::chebyshev;
+  Mixing mixing = Mixing::densities;
+  ConfinedOptions confined;  // of galerkin
+  int cells = 64;
+};
+FlowOptions read_flow_options(const scene::Settings&);
 
 class LegendreFluids : public scene::Solver {
  public:

@@ -1,6 +1,7 @@
 #include "methods/legendre_fluids/light_options.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "methods/legendre_fluids/paper_picture.h"
 #include "scene/light/background.h"
@@ -14,55 +15,53 @@ constexpr int least_gmres = 5;  // coefficients along an axis from which on GMRE
 
 bool scatters(const scene::Scene& scene) { return scene::why_nothing_scatters(scene).empty(); }
 
-}  // namespace
+// Options as they are given: without a value the solver follows from the others.
+struct GivenLight {
+  LightOptions options;
+  std::optional<bool> dense;
+};
 
-std::vector<scene::SettingSpec> light_settings() {
-  using namespace scene;
-  return {
-      choice_setting(
-          "variant", "ray", {"ray", "paper"},
-          "ray: exact optical depths, Gauss points on panels of every camera ray; paper: equations 22 to 24, "
-          "one medium seen by an orthographic camera"),
-      integer_setting("points", "8", 2, 16, "of ray: Gauss points of a panel").where("variant", {"ray"}),
-      real_setting("tolerance", "1e-5", 1e-13, 0.1, "of ray: of a light's share of a pixel, relative")
-          .where("variant", {"ray"}),
-      integer_setting("shadow_steps", "64", 1, 65536,
-                      "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
-                      "finds shadows wider than that")
-          .where("variant", {"ray"}),
-      integer_setting("environment_directions", "256", 1, 65536, "of ray: directions that stand for each environment")
-          .where("variant", {"ray"}),
-      integer_setting("n", "6", 1, LegendreBox::most, "of paper: coefficients of an intensity along each axis")
-          .where("variant", {"paper"}),
-      choice_setting("closure", "least_squares", {"least_squares", "upwind"},
-                     "of paper, where light comes in: rows of a system of least squares; weak upwind inflow")
-          .where("variant", {"paper"}),
-      real_setting("boundary_weight", "3", 1e-6, 1e6, "of least_squares: weight of the rows of inflow")
-          .where("variant", {"paper"})
-          .where("closure", {"least_squares"}),
-      choice_setting("truncation", "l2", {"l2", "chebyshev"}, "of paper: T of its equations 22 and 23")
-          .where("variant", {"paper"}),
-      choice_setting("solver", "auto", {"auto", "dense", "gmres"},
-                     "of paper: auto is gmres with upwind and n of 5 or more, else dense, of at most 12^3 unknowns")
-          .where("variant", {"paper"}),
-  };
+void bind_light(scene::SettingBinder& b, GivenLight& given) {
+  using Variant = LightOptions::Variant;
+  LightOptions& o = given.options;
+  b.choice("variant", o.variant, {{"ray", Variant::ray}, {"paper", Variant::paper}},
+           "ray: exact optical depths, Gauss points on panels of every camera ray; paper: equations 22 to 24, "
+           "one medium seen by an orthographic camera");
+  b.integer("points", o.ray.points, 2, 16, "of ray: Gauss points of a panel").where("variant", {"ray"});
+  b.real("tolerance", o.ray.tolerance, 1e-13, 0.1, "of ray: of a light's share of a pixel, relative")
+      .where("variant", {"ray"});
+  b.integer("shadow_steps", o.ray.shadow_steps, 1, 65536,
+            "of ray: shadow rays over the media on a camera ray, where surfaces may stand before a light; "
+            "finds shadows wider than that")
+      .where("variant", {"ray"});
+  b.integer("environment_directions", o.ray.environment_directions, 1, 65536,
+            "of ray: directions that stand for each environment")
+      .where("variant", {"ray"});
+  b.integer("n", o.paper.n, 1, scene::LegendreBox::most, "of paper: coefficients of an intensity along each axis")
+      .where("variant", {"paper"});
+  b.choice("closure", o.paper.solver.closure, {{"least_squares", Closure::least_squares}, {"upwind", Closure::upwind}},
+           "of paper, where light comes in: rows of a system of least squares; weak upwind inflow")
+      .where("variant", {"paper"});
+  b.real("boundary_weight", o.paper.solver.weight, 1e-6, 1e6, "of least_squares: weight of the rows of inflow")
+      .where("variant", {"paper"})
+      .where("closure", {"least_squares"});
+  b.choice("truncation", o.paper.truncation, {{"l2", LightTruncation::l2}, {"chebyshev", LightTruncation::chebyshev}},
+           "of paper: T of its equations 22 and 23")
+      .where("variant", {"paper"});
+  b.choice("solver", given.dense, {{"auto", std::nullopt}, {"dense", true}, {"gmres", false}},
+           "of paper: auto is gmres with upwind and n of 5 or more, else dense, of at most 12^3 unknowns")
+      .where("variant", {"paper"});
 }
 
+}  // namespace
+
+std::vector<scene::SettingSpec> light_settings() { return scene::list_settings(bind_light); }
+
 LightOptions read_light_options(const scene::Settings& settings) {
-  LightOptions o;
-  o.variant = settings.choice<LightOptions::Variant>("variant");
-  o.ray.points = int(settings.integer("points"));
-  o.ray.tolerance = settings.real("tolerance");
-  o.ray.shadow_steps = int(settings.integer("shadow_steps"));
-  o.ray.environment_directions = int(settings.integer("environment_directions"));
-  o.paper.n = int(settings.integer("n"));
-  o.paper.truncation = settings.choice<LightTruncation>("truncation");
+  const GivenLight given = scene::read_settings(bind_light, settings);
+  LightOptions o = given.options;
   LightSolver& solver = o.paper.solver;
-  solver.closure = settings.choice<Closure>("closure");
-  solver.weight = settings.real("boundary_weight");
-  const std::string& how = settings.text("solver");
-  solver.dense =
-      how == "dense" || (how == "auto" && (solver.closure == Closure::least_squares || o.paper.n < least_gmres));
+  solver.dense = given.dense.value_or(solver.closure == Closure::least_squares || o.paper.n < least_gmres);
   return o;
 }
 

@@ -13,10 +13,10 @@
 namespace airlight::legendre_fluids {
 
 struct RayOptions {
-  int points = 8;                   // of a panel
-  double tolerance = 1e-5;          // relative, of a light's share of the radiance
-  int shadow_steps = 64;            // shadow rays over the media on a ray, where surfaces may stand before a light
-  int environment_directions = 64;  // that stand for each environment
+  int points = 8;                    // of a panel
+  double tolerance = 1e-5;           // relative, of a light's share of the radiance
+  int shadow_steps = 64;             // shadow rays over the media on a ray, where surfaces may stand before a light
+  int environment_directions = 256;  // that stand for each environment
 };
 
 // What rays read, and what a thread needs for them.

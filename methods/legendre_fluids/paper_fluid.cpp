@@ -138,8 +138,8 @@ Components PaperFluid::at_points() const {
 Array PaperFluid::sampled(int component, const Components& positions) const {
   return space_.scalar_sampled(part(component), positions);
 }
-Array PaperFluid::sampled_slope(int component, int axis, const Components& positions) const {
-  return space_.scalar_sampled_slope(part(component), axis, positions);
+Array PaperFluid::sampled_gradient(int component, int axis, const Components& positions) const {
+  return space_.scalar_sampled_gradient(part(component), axis, positions);
 }
 double PaperFluid::at(int component, const Vec3& x) const { return value_at(space_, part(component), -1, x); }
 

@@ -26,7 +26,7 @@ class PaperFluid : public Fluid {
   double faded(double amount) const override { return 1 / (1 + amount); }  // equation 21
   Components at_points() const override;
   Array sampled(int component, const Components& positions) const override;
-  Array sampled_slope(int component, int axis, const Components& positions) const override;
+  Array sampled_gradient(int component, int axis, const Components& positions) const override;
   double at(int component, const Vec3& x) const override;
   std::map<std::string, double> counters() const override;
 

@@ -82,11 +82,11 @@ Array PaperAdvection::exponential(const Array& c, double dt) const {
 PaperLaplacian::PaperLaplacian(int dimensions, int n, const Vec3& half)
     : d_(dimensions), n_(n), half_(half), shape_{n, n, d_ == 3 ? n : 1}, derivative_(scene::legendre_derivative(n)) {}
 
-Array PaperLaplacian::slope(int axis, const Array& c) const { return along_axis(axis, derivative_, c, shape_); }
+Array PaperLaplacian::gradient(int axis, const Array& c) const { return along_axis(axis, derivative_, c, shape_); }
 
 Array PaperLaplacian::operator()(const Array& c) const {
   Array sum = Array::Zero(c.size());
-  for (int a = 0; a < d_; ++a) sum += slope(a, slope(a, c)) / (half_[a] * half_[a]);
+  for (int a = 0; a < d_; ++a) sum += gradient(a, gradient(a, c)) / (half_[a] * half_[a]);
   return sum;
 }
 
@@ -108,11 +108,11 @@ const scene::LeastNormFactors& PaperLaplacian::decomposition() const {
 }
 
 Components PaperLaplacian::projected(const Components& u) const {
-  Array divergence = slope(0, u[0]);
-  for (int a = 1; a < d_; ++a) divergence += slope(a, u[a]);
+  Array divergence = gradient(0, u[0]);
+  for (int a = 1; a < d_; ++a) divergence += gradient(a, u[a]);
   const Array q = decomposition().solve(divergence);
   Components result;
-  for (int a = 0; a < d_; ++a) result[a] = u[a] - slope(a, q) / (half_[a] * half_[a]);
+  for (int a = 0; a < d_; ++a) result[a] = u[a] - gradient(a, q) / (half_[a] * half_[a]);
   return result;
 }
 

@@ -35,8 +35,8 @@ class PaperAdvection {
 class PaperLaplacian {
  public:
   PaperLaplacian(int dimensions, int n, const Vec3& half);
-  Array slope(int axis, const Array& c) const;  // D_axis c
-  Array operator()(const Array& c) const;       // D^2 c [1/m^2]
+  Array gradient(int axis, const Array& c) const;  // D_axis c
+  Array operator()(const Array& c) const;          // D^2 c [1/m^2]
   // The solution of (1 - amount D^2) x = c, amount = viscosity dt [m^2]: D^2 is nilpotent, so the series ends. No walls: it amplifies.
   Array diffused(const Array& c, double amount) const;
   // U - D Q with D^2 Q = div U in the sense of least squares, Q of least norm. The first call decomposes a dense matrix of n^d rows.

@@ -52,22 +52,23 @@ Array ConfinedSpace::scalar_from_function(const std::function<double(const Vec3&
   return transformed(values, fine_shape, {&fine.analysis, &fine.analysis, &fine.analysis});
 }
 
-Array ConfinedSpace::sampled(const Array& c, int component, int slope_axis, const Components& positions) const {
+Array ConfinedSpace::sampled(const Array& c, int component, int gradient_axis, const Components& positions) const {
   std::array<MatrixXd, 3> matrix;
   for (int a = 0; a < d_; ++a) {
     if (a == component)
-      matrix[a] = a == slope_axis ? MatrixXd(scene::legendre_values(n_, positions[a]).rightCols(n_ - 1))
-                                  : product(scene::legendre_values(n_ + 1, positions[a]), phi_);
+      matrix[a] = a == gradient_axis ? MatrixXd(scene::legendre_values(n_, positions[a]).rightCols(n_ - 1))
+                                     : product(scene::legendre_values(n_ + 1, positions[a]), phi_);
     else
-      matrix[a] = a == slope_axis ? scene::legendre_slopes(n_, positions[a]) : scene::legendre_values(n_, positions[a]);
+      matrix[a] =
+          a == gradient_axis ? scene::legendre_slopes(n_, positions[a]) : scene::legendre_values(n_, positions[a]);
   }
   return transformed(c, shape(component), {&matrix[0], &matrix[1], &matrix[2]});
 }
 
 Array ConfinedSpace::sampled(const Array& u, int a, const Components& positions) const {
-  return sampled_slope(u, a, -1, positions);
+  return sampled_gradient(u, a, -1, positions);
 }
-Array ConfinedSpace::sampled_slope(const Array& u, int a, int axis, const Components& positions) const {
+Array ConfinedSpace::sampled_gradient(const Array& u, int a, int axis, const Components& positions) const {
   if (n_ > 1) return sampled(component(u, a), a, axis, positions);
   Eigen::Index count = 1;
   for (int b = 0; b < d_; ++b) count *= positions[b].size();
@@ -76,7 +77,7 @@ Array ConfinedSpace::sampled_slope(const Array& u, int a, int axis, const Compon
 Array ConfinedSpace::scalar_sampled(const Array& r, const Components& positions) const {
   return sampled(r, -1, -1, positions);
 }
-Array ConfinedSpace::scalar_sampled_slope(const Array& r, int axis, const Components& positions) const {
+Array ConfinedSpace::scalar_sampled_gradient(const Array& r, int axis, const Components& positions) const {
   return sampled(r, -1, axis, positions);
 }
 

@@ -6,59 +6,61 @@
 
 namespace airlight::shadow_planes {
 
-std::vector<scene::SettingSpec> setting_specs() {
-  return {
-      scene::choice_setting("evaluator", "rule", {"rule", "polynomial"},
-                            "of a lit part of a ray: a mapped Gauss-Legendre rule, or the paper's polynomial in theta"),
-      scene::integer_setting("nodes", "64", 1, 1024, "of the rule"),
-      scene::integer_setting("stretch", "6", 1, 16, "m of the rule's map"),
-      scene::integer_setting("degree", "4", 0, 60, "of the polynomial"),
-      scene::flag_setting("annex", false,
-                          "the polynomial with the coefficients that the annex prints, errors included"),
-      scene::choice_setting("shadows", "counted", {"none", "counted", "signed_sum", "stencil"},
-                            "none; by counting surfaces along the ray; as a signed sum over shadow planes, wrong where "
-                            "shadows overlap; by the paper's order of planes and stencil"),
-      scene::integer_setting("edge_split", "1", 1, 4096, "pieces of every silhouette edge, for the stencil's order"),
-      scene::choice_setting(
-          "evaluation", "pixels", {"pixels", "vertices"},
-          "of a lit ray's airlight: for every pixel; or at the vertices of meshes, shadow planes and media, "
-          "linear between them, as the paper has it (other surfaces have no vertices: by pixel)"),
-      scene::integer_setting(
-          "plane_levels", "16", 1, 4096,
-          "evaluation = vertices: strips of a shadow plane away from the light, in geometric progression"),
-      scene::integer_setting(
-          "boundary_cells", "16", 1, 1024,
-          "evaluation = vertices, bounded = paper: cells along a side of the six faces of a medium's "
-          "boundary; entries are sorted by its triangles"),
-      scene::choice_setting(
-          "bounded", "exact", {"exact", "paper"},
-          "media in regions: exact; or as the paper has it, light through a mean length R of the medium, "
-          "media that do not tint one another"),
-      scene::flag_setting("frame_buffer", false,
-                          "the stencil's sums in a frame buffer of 8 bits that ends at radiance 1"),
-      scene::flag_setting("printed_phases", false, "hazy and murky as printed, with means of 2 and 83/33"),
-      scene::flag_setting("ambient", false, "adds the scene's ambient_in_scatter"),
-  };
+namespace {
+
+void bind(scene::SettingBinder& b, Options& o) {
+  using Evaluator = Options::Evaluator;
+  using Shadows = Options::Shadows;
+  using Evaluation = Options::Evaluation;
+  using Bounded = Options::Bounded;
+  b.choice("evaluator", o.evaluator, {{"rule", Evaluator::rule}, {"polynomial", Evaluator::polynomial}},
+           "of a lit part of a ray: a mapped Gauss-Legendre rule, or the paper's polynomial in theta");
+  b.integer("nodes", o.nodes, 1, 1024, "of the rule").where("evaluator", {"rule"});
+  b.integer("stretch", o.stretch, 1, 16, "m of the rule's map").where("evaluator", {"rule"});
+  b.integer("degree", o.degree, 0, 60, "of the polynomial")
+      .where("evaluator", {"polynomial"})
+      .where("annex", {"false"});
+  b.flag("annex", o.annex, "the polynomial with the coefficients that the annex prints, errors included")
+      .where("evaluator", {"polynomial"});
+  b.choice("shadows", o.shadows,
+           {{"none", Shadows::none},
+            {"counted", Shadows::counted},
+            {"signed_sum", Shadows::signed_sum},
+            {"stencil", Shadows::stencil}},
+           "none; by counting surfaces along the ray; as a signed sum over shadow planes, wrong where "
+           "shadows overlap; by the paper's order of planes and stencil");
+  b.integer("edge_split", o.edge_split, 1, 4096, "pieces of every silhouette edge, for the stencil's order")
+      .where("shadows", {"stencil"});
+  b.choice("evaluation", o.evaluation, {{"pixels", Evaluation::pixels}, {"vertices", Evaluation::vertices}},
+           "of a lit ray's airlight: for every pixel; or at the vertices of meshes, shadow planes and media, "
+           "linear between them, as the paper has it (other surfaces have no vertices: by pixel)");
+  b.integer("plane_levels", o.plane_levels, 1, 4096,
+            "evaluation = vertices: strips of a shadow plane away from the light, in geometric progression")
+      .where("evaluation", {"vertices"})
+      .where("shadows", {"stencil"});
+  // The stencil sorts entries into a medium by its triangles even where no vertex is evaluated.
+  b.integer("boundary_cells", o.boundary_cells, 1, 1024,
+            "evaluation = vertices, bounded = paper: cells along a side of the six faces of a medium's "
+            "boundary; entries are sorted by its triangles")
+      .where("bounded", {"paper"})
+      .where("shadows", {"stencil"})
+      .or_where("bounded", {"paper"})
+      .where("evaluation", {"vertices"});
+  b.choice("bounded", o.bounded, {{"exact", Bounded::exact}, {"paper", Bounded::paper}},
+           "media in regions: exact; or as the paper has it, light through a mean length R of the medium, "
+           "media that do not tint one another");
+  b.flag("frame_buffer", o.frame_buffer, "the stencil's sums in a frame buffer of 8 bits that ends at radiance 1")
+      .where("shadows", {"stencil"})
+      .or_where("evaluation", {"vertices"});
+  b.flag("printed_phases", o.printed_phases, "hazy and murky as printed, with means of 2 and 83/33");
+  b.flag("ambient", o.ambient, "adds the scene's ambient_in_scatter");
 }
 
-Options read_options(const scene::Settings& settings) {
-  Options o;
-  o.evaluator = settings.choice<Options::Evaluator>("evaluator");
-  o.nodes = int(settings.integer("nodes"));
-  o.stretch = int(settings.integer("stretch"));
-  o.degree = int(settings.integer("degree"));
-  o.annex = settings.flag("annex");
-  o.shadows = settings.choice<Options::Shadows>("shadows");
-  o.edge_split = int(settings.integer("edge_split"));
-  o.evaluation = settings.choice<Options::Evaluation>("evaluation");
-  o.plane_levels = int(settings.integer("plane_levels"));
-  o.boundary_cells = int(settings.integer("boundary_cells"));
-  o.bounded = settings.choice<Options::Bounded>("bounded");
-  o.frame_buffer = settings.flag("frame_buffer");
-  o.printed_phases = settings.flag("printed_phases");
-  o.ambient = settings.flag("ambient");
-  return o;
-}
+}  // namespace
+
+std::vector<scene::SettingSpec> setting_specs(const Options& defaults) { return scene::list_settings(bind, defaults); }
+
+Options read_options(const scene::Settings& settings) { return scene::read_settings(bind, settings); }
 
 std::string silhouettes_found(std::size_t edges, std::size_t lights) {
   return fmt::format("{} edges for {} light{}, found again where lights move", edges, lights, lights == 1 ? "" : "s");
@@ -84,12 +86,6 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
         std::any_of(scene.media.begin(), scene.media.end(), around_camera))
       reasons.push_back(fmt::format("light {} is at the camera inside a medium: its airlight is infinite", i));
   const bool paper = options.bounded == Options::Bounded::paper;
-  if (options.evaluator == Options::Evaluator::rule && options.annex)
-    reasons.push_back("annex = true is of the polynomial, expected evaluator = polynomial");
-  if (options.frame_buffer && options.shadows != Options::Shadows::stencil &&
-      options.evaluation != Options::Evaluation::vertices)
-    reasons.push_back(
-        "frame_buffer = true is of the paper's stages, expected shadows = stencil or evaluation = vertices");
   if (options.evaluator == Options::Evaluator::polynomial) {
     const bool whole = scene.media.size() == 1 && std::holds_alternative<scene::Unbounded>(scene.media.front().region);
     if (!scene.media.empty() && !whole && !paper)

@@ -34,7 +34,7 @@ struct Options {
   bool printed_phases = false;  // hazy and murky with means 2 and 83/33
   bool ambient = false;         // the scene's ambient_in_scatter
 };
-std::vector<scene::SettingSpec> setting_specs();
+std::vector<scene::SettingSpec> setting_specs(const Options& defaults = {});
 Options read_options(const scene::Settings&);
 // For `explain`: how many edges of how many lights, and when they are found.
 std::string silhouettes_found(std::size_t edges, std::size_t lights);

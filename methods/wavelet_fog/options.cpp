@@ -8,69 +8,75 @@
 
 namespace airlight::wavelet_fog {
 
-std::vector<scene::SettingSpec> setting_specs() {
-  using namespace scene;
-  return {
-      choice_setting(
-          "variant", "skip", {"paper", "tele", "direct", "skip", "bound", "polar", "pre"},
-          "paper: approximation and details, summed (section 4.3); tele: the same, one grid at a time; direct: the map; skip: the map, empty blocks passed at once; bound: coarse where the "
-          "tolerance allows; polar: integrals from the eye, tabulated once per frame; pre: approximation and wavelets, "
-          "summed (before section 4.3's deconstruction)"),
-      choice_setting(
-          "coarse", "wavelet", {"wavelet", "clamped", "restricted"},
-          "coarse grids: analysis of Haar, CDF 2.2 or 3.3 by the map's degree; its values below 0 taken as 0; p/2"),
-      integer_setting("levels", "3", 0, 20, "of the decomposition, of paper, pre, tele and bound"),
-      real_setting("mu", "0.6", 0, 1, "detail m of paper, pre and tele counts up to |OP| mu^m from the eye"),
-      real_setting("tolerance", "0.03", 0, 1e9, "of bound: greatest error of a ray's optical depth"),
-      integer_setting("angles", "512", 8, 65536,
-                      "of polar, over the directions in the view; twice as many where it looks straight up or down"),
-      real_setting("radial_step", "0.5", 1e-3, 1e3, "of polar, cells between entries along a ray"),
-      real_setting(
-          "termination", "0", 0, 0.999,
-          "transmittance below which a ray ends; not with paper and pre, whose details may be negative; 0: never"),
-      integer_setting("degree", "-1", -1, 3,
-                      "of the splines that the pixels are coefficients of, in place of the scene's; -1: that"),
-      real_setting(
-          "keep", "1", 0, 1,
-          "share of the wavelet coefficients of `levels` levels, the greatest, that the map is made of; 1: all"),
-      real_setting("fade", "0", 0, 1e9,
-                   "m; the paper's: density falls by e over this vertical distance from the eye; 0: not at all"),
-      integer_setting(
-          "table", "0", 0, 64,
-          "of direct, pre and paper: R of the paper's tables of path integrals over whole cells, which have "
-          "4 R places on a cell's perimeter; 0: exact"),
-      choice_setting("lookup", "nearest", {"nearest", "bilinear"}, "in these tables"),
-      flag_setting("sun", false,
-                   "single scattering of directional lights in the fog, with its shadows and those of surfaces"),
-      real_setting("sun_step", "0.5", 0.01, 100, "of sun, cells between the entries of its map of columns"),
-      integer_setting("sun_points", "3", 1, 10, "of sun: Gauss points in a cell, at least its degree + 1"),
-      integer_setting("shadow_steps", "64", 1, 65536,
-                      "of sun: shadow rays over the fog on a ray, at least, and sun_points in each cell; finds shadows "
-                      "wider than that"),
-  };
+namespace {
+
+void bind(scene::SettingBinder& b, Options& o) {
+  using V = Options::Variant;
+  b.choice(
+      "variant", o.variant,
+      {{"paper", V::paper},
+       {"tele", V::tele},
+       {"direct", V::direct},
+       {"skip", V::skip},
+       {"bound", V::bound},
+       {"polar", V::polar},
+       {"pre", V::pre}},
+      "paper: approximation and details, summed (section 4.3); tele: the same, one grid at a time; direct: the map; skip: the map, empty blocks passed at once; bound: coarse where the "
+      "tolerance allows; polar: integrals from the eye, tabulated once per frame; pre: approximation and wavelets, "
+      "summed (before section 4.3's deconstruction)");
+  const std::vector<std::string> with_levels = {"paper", "pre", "tele", "bound"};
+  b.choice("coarse", o.coarse,
+           {{"wavelet", Coarse::wavelet}, {"clamped", Coarse::clamped}, {"restricted", Coarse::restricted}},
+           "coarse grids: analysis of Haar, CDF 2.2 or 3.3 by the map's degree; its values below 0 taken as 0; p/2")
+      .where("variant", with_levels);
+  b.integer("levels", o.levels, 0, 20, "of the decomposition, of paper, pre, tele and bound")
+      .where("variant", with_levels)
+      .or_where("keep", {"< 1"});
+  b.real("mu", o.mu, 0, 1, "detail m of paper, pre and tele counts up to |OP| mu^m from the eye")
+      .where("variant", {"paper", "pre", "tele"});
+  b.real("tolerance", o.tolerance, 0, 1e9, "of bound: greatest error of a ray's optical depth")
+      .where("variant", {"bound"});
+  b.integer("angles", o.angles, 8, 65536,
+            "of polar, over the directions in the view; twice as many where it looks straight up or down")
+      .where("variant", {"polar"});
+  b.real("radial_step", o.radial_step, 1e-3, 1e3, "of polar, cells between entries along a ray")
+      .where("variant", {"polar"});
+  b.real("termination", o.termination, 0, 0.999,
+         "transmittance below which a ray ends; not with paper and pre, whose details may be negative; 0: never")
+      .where("variant", {"skip", "bound", "polar"})
+      .or_where("variant", {"tele", "direct"})
+      .where("sun", {"true"});
+  b.integer("degree", o.degree, -1, 3,
+            "of the splines that the pixels are coefficients of, in place of the scene's; -1: that");
+  b.real("keep", o.keep, 0, 1,
+         "share of the wavelet coefficients of `levels` levels, the greatest, that the map is made of; 1: all");
+  b.real("fade", o.fade, 0, 1e9,
+         "m; the paper's: density falls by e over this vertical distance from the eye; 0: not at all");
+  const std::vector<std::string> with_tables = {"direct", "pre", "paper"};
+  b.integer("table", o.table, 0, 64,
+            "of direct, pre and paper: R of the paper's tables of path integrals over whole cells, which have "
+            "4 R places on a cell's perimeter; 0: exact")
+      .where("variant", with_tables);
+  b.choice("lookup", o.lookup, {{"nearest", PathTable::Lookup::nearest}, {"bilinear", PathTable::Lookup::bilinear}},
+           "in these tables")
+      .where("table", {"> 0"})
+      .where("variant", with_tables);
+  b.flag("sun", o.sun, "single scattering of directional lights in the fog, with its shadows and those of surfaces");
+  b.real("sun_step", o.sun_step, 0.01, 100, "of sun, cells between the entries of its map of columns")
+      .where("sun", {"true"});
+  b.integer("sun_points", o.sun_points, 1, 10, "of sun: Gauss points in a cell, at least its degree + 1")
+      .where("sun", {"true"});
+  b.integer("shadow_steps", o.shadow_steps, 1, 65536,
+            "of sun: shadow rays over the fog on a ray, at least, and sun_points in each cell; finds shadows "
+            "wider than that")
+      .where("sun", {"true"});
 }
 
-Options read_options(const scene::Settings& settings) {
-  Options o;
-  o.variant = settings.choice<Options::Variant>("variant");
-  o.coarse = settings.choice<Coarse>("coarse");
-  o.levels = int(settings.integer("levels"));
-  o.mu = settings.real("mu");
-  o.tolerance = settings.real("tolerance");
-  o.angles = int(settings.integer("angles"));
-  o.radial_step = settings.real("radial_step");
-  o.termination = settings.real("termination");
-  o.degree = int(settings.integer("degree"));
-  o.keep = settings.real("keep");
-  o.fade = settings.real("fade");
-  o.table = int(settings.integer("table"));
-  o.lookup = settings.choice<PathTable::Lookup>("lookup");
-  o.sun = settings.flag("sun");
-  o.sun_step = settings.real("sun_step");
-  o.sun_points = int(settings.integer("sun_points"));
-  o.shadow_steps = int(settings.integer("shadow_steps"));
-  return o;
-}
+}  // namespace
+
+std::vector<scene::SettingSpec> setting_specs() { return scene::list_settings(bind); }
+
+Options read_options(const scene::Settings& settings) { return scene::read_settings(bind, settings); }
 
 bool uses_levels(Options::Variant variant) {
   using V = Options::Variant;
@@ -87,19 +93,6 @@ const char* family_of_degree(int degree) {
 }
 
 namespace {
-
-// Against a choice of settings, whatever the scene.
-void add_reasons_of_settings(const Options& o, std::vector<std::string>& reasons) {
-  using V = Options::Variant;
-  if (is_signed(o.variant) && o.termination > 0)
-    reasons.push_back(
-        fmt::format("termination with variant = {}: its details may be negative, a later cell may take depth away",
-                    o.variant == V::pre ? "pre" : "paper"));
-  if (o.variant == V::pre && o.coarse != Coarse::wavelet)
-    reasons.push_back("variant = pre reads wavelets: expected coarse = wavelet");
-  if (o.table > 0 && o.variant != V::direct && !is_signed(o.variant))
-    reasons.push_back("table is for variant = direct, pre or paper");
-}
 
 // Against the layer of the sun.
 void add_reasons_of_sun(const scene::Scene& scene, const Options& o, std::vector<std::string>& reasons) {
@@ -146,7 +139,8 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
           fmt::format("{} has degree 3, for which there is no wavelet: expected coarse = restricted, keep = 1",
                       scene::label(scene.media, i)));
   }
-  add_reasons_of_settings(o, reasons);
+  if (o.variant == Options::Variant::pre && o.coarse != Coarse::wavelet)
+    reasons.push_back("variant = pre reads wavelets: expected coarse = wavelet");
   const bool polar = o.variant == Options::Variant::polar;
   if (polar && scene.camera.kind != scene::Camera::Kind::perspective)
     reasons.push_back("variant = polar is for perspective cameras: it tabulates integrals from the eye");

@@ -62,6 +62,21 @@ std::vector<double> cut(const std::vector<Feature>& features, Interval range) {
   return cuts;
 }
 
+// The view ray through the media.
+struct ViewPaths {
+  Paths paths;
+  std::vector<Feature> features;
+  Interval range;  // hull of the scattering media
+  bool fine = false;
+};
+
+// The view ray in pieces to integrate over, for all lights.
+struct Pieces {
+  std::vector<LightPlane> planes;  // never moved: charts point to them
+  std::vector<Chart> charts;
+  std::vector<Panel> panels;
+};
+
 }  // namespace
 
 struct AirlightIntegrator::Impl {
@@ -97,6 +112,10 @@ struct AirlightIntegrator::Impl {
     }
     return sum;
   }
+
+  ViewPaths view_paths(const Ray& ray, double t_end) const;
+  // False where the ray passes a light through scattering density.
+  bool add_pieces(const Ray& ray, const ViewPaths& view, Pieces& pieces) const;
 };
 
 namespace {
@@ -213,6 +232,72 @@ std::vector<Feature> features_for(const LightPlane& plane, const scene::Light& l
   return features;
 }
 
+// First estimates. A panel over which the depth changes by many e-folds might show the rule only zeros: it is halved
+// until it does not, if what it can hold at all, by its ends and nodes, matters.
+class FirstEstimates {
+ public:
+  // steepest: e-folds that the rule resolves.
+  FirstEstimates(Integrand& integrand, const scene::QuadratureOptions& options, double steepest)
+      : integrand_(integrand), options_(options), steepest_(steepest), per_panel_(2 * options.rule->half - 1) {}
+
+  void add(Panel p) {
+    integrand_.reset();
+    scene::estimate_panel(integrand_, *options_.rule, p);
+    evaluations += per_panel_;
+    total_ += p.value;
+    clearest_ = std::min(clearest_, integrand_.clearest);
+    if (integrand_.greatest - integrand_.least > steepest_ && p.hi - p.lo > 1e-15)
+      steep_.push_back({p, integrand_.clearest});
+    else
+      panels.push_back(p);
+  }
+
+  void halve_steep() {
+    while (!steep_.empty()) {
+      const auto [p, least_depth] = steep_.back();
+      steep_.pop_back();
+      const bool wanted = matters(p, least_depth);
+      if (wanted && evaluations + 2 * per_panel_ <= options_.max_evaluations) {
+        const double middle = p.lo + 0.5 * (p.hi - p.lo);
+        total_ -= p.value;
+        add({p.lo, middle, p.chart});
+        add({middle, p.hi, p.chart});
+      } else {
+        spent = spent || wanted;
+        panels.push_back(p);
+      }
+    }
+  }
+
+  std::vector<Panel> panels;  // none of them steep, or not worth halving
+  long evaluations = 0;
+  bool spent = false;  // evaluations ran out before panels that matter were halved
+
+ private:
+  // What it can hold at all, by its ends and nodes. While all nodes so far fell into the dark, panels with a bright
+  // end are looked into, and the least dark ones: a panel of another light may be the least dark of all.
+  bool matters(const Panel& p, double least_depth) {
+    const double width = p.hi - p.lo;
+    Rgb most = p.value;
+    const auto look = [&](double inset) {
+      const Rgb ends = integrand_(p.chart, p.lo + inset * width).max(integrand_(p.chart, p.hi - inset * width));
+      evaluations += 2;
+      most = most.max(width * ends);
+      return (total_ > 0).any() ? (most > 1e-4 * options_.relative_tolerance * total_).any()
+                                : (most > 0).any() || least_depth < clearest_ + 300;
+    };
+    return look(1e-9) || look(1e-15);  // extinctions from 1e10 on: 1e-9 of a panel is dark too
+  }
+
+  Integrand& integrand_;
+  const scene::QuadratureOptions& options_;
+  const double steepest_;
+  const long per_panel_;
+  std::vector<std::pair<Panel, double>> steep_;  // with the least depth seen in it
+  Rgb total_ = Rgb::Zero();
+  double clearest_ = infinity;
+};
+
 }  // namespace
 
 AirlightIntegrator::AirlightIntegrator(const Scene& scene, const Accuracy& accuracy)
@@ -226,115 +311,70 @@ Rgb AirlightIntegrator::light_depth(const Point3& x, int light) const {
   return impl_->depth({x, in.to_light}, {0, in.distance});
 }
 
-Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
-  const Impl& impl = *impl_;
-  const Scene& scene = impl.scene;
-  Airlight result;
-
-  Paths paths(scene.media.size());
-  std::vector<Feature> view_features;
-  Interval range;  // hull of the scattering media
-  bool fine = false;
+ViewPaths AirlightIntegrator::Impl::view_paths(const Ray& ray, double t_end) const {
+  ViewPaths view;
+  view.paths.resize(scene.media.size());
   for (std::size_t m = 0; m < scene.media.size(); ++m) {
-    const auto& table = impl.tables[m];
-    paths[m] = density_along_ray(scene.media[m], table ? &*table : nullptr, ray, t_end, impl.cull(m));
-    if (!paths[m]) continue;
-    paths[m]->add_features(view_features);
-    fine |= paths[m]->fine();
+    auto& path = view.paths[m];
+    path = density_along_ray(scene.media[m], tables[m] ? &*tables[m] : nullptr, ray, t_end, cull(m));
+    if (!path) continue;
+    path->add_features(view.features);
+    view.fine |= path->fine();
     if (!scatters(scene.media[m])) continue;
-    range = {std::min(range.lo, paths[m]->extent().lo), std::max(range.hi, paths[m]->extent().hi)};
+    view.range = {std::min(view.range.lo, path->extent().lo), std::max(view.range.hi, path->extent().hi)};
   }
-  if (range.empty()) return result;
+  return view;
+}
 
-  std::vector<LightPlane> planes;
-  planes.reserve(scene.lights.size());
-  std::vector<Chart> charts;
-  std::vector<Panel> panels;
+bool AirlightIntegrator::Impl::add_pieces(const Ray& ray, const ViewPaths& view, Pieces& pieces) const {
+  pieces.planes.reserve(scene.lights.size());
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const scene::Light& light = scene.lights[l];
     if (!scene::is_delta(light)) continue;
-    const LightPlane& plane = planes.emplace_back(light_plane(ray, light));
-    std::vector<Feature> features = view_features;
+    const LightPlane& plane = pieces.planes.emplace_back(light_plane(ray, light));
+    std::vector<Feature> features = view.features;
     std::vector<double> kinks;
     for (std::size_t m = 0; m < scene.media.size(); ++m) {
       const Medium& medium = scene.media[m];
       if (!(medium.sigma_t.maxCoeff() > 0)) continue;
       add_medium(plane, medium, kinks);
-      if (impl.tables[m])
-        add_gaussian_shadows(plane, *impl.tables[m], medium.sigma_t.maxCoeff(), impl.cull(m), features);
+      if (tables[m]) add_gaussian_shadows(plane, *tables[m], medium.sigma_t.maxCoeff(), cull(m), features);
     }
-    if (meets_light(scene, paths, plane)) {
-      // int dx/x^2 through the light: there is no finite answer.
-      result.radiance = result.error = Rgb::Constant(infinity);
-      result.converged = false;
-      return result;
-    }
-    const std::vector<Interval> lit = impl.shadows ? impl.shadows->lit(plane, range) : std::vector<Interval>{range};
-    add_panels(scene, paths, plane, int(l), features_for(plane, light, std::move(features), kinks, range), lit, charts,
-               panels);
+    if (meets_light(scene, view.paths, plane)) return false;
+    const std::vector<Interval> lit = shadows ? shadows->lit(plane, view.range) : std::vector<Interval>{view.range};
+    add_panels(scene, view.paths, plane, int(l), features_for(plane, light, std::move(features), kinks, view.range),
+               lit, pieces.charts, pieces.panels);
   }
+  return true;
+}
 
+Airlight AirlightIntegrator::operator()(const Ray& ray, double t_end) const {
+  Airlight result;
+  const ViewPaths view = impl_->view_paths(ray, t_end);
+  if (view.range.empty()) return result;
+  Pieces pieces;
+  if (!impl_->add_pieces(ray, view, pieces)) {
+    // int dx/x^2 through the light: there is no finite answer.
+    result.radiance = result.error = Rgb::Constant(infinity);
+    result.converged = false;
+    return result;
+  }
   const std::function<Rgb(const Ray&, double)> light_path = [&](const Ray& path, double distance) {
-    return impl.depth(path, {0, distance});
+    return impl_->depth(path, {0, distance});
   };
-  Integrand integrand{scene, paths, charts, light_path, ray};
+  Integrand integrand{impl_->scene, view.paths, pieces.charts, light_path, ray};
   scene::QuadratureOptions options;
-  options.relative_tolerance = impl.accuracy.relative_tolerance;
-  options.max_evaluations = impl.accuracy.max_evaluations;
-  options.rule = fine ? &scene::kronrod7() : &scene::kronrod15();
-  const double steepest = fine ? 6 : 12;  // e-folds that the rule resolves
-  const long per_panel = 2 * options.rule->half - 1;
-
-  // First estimates. A panel over which the depth changes by many e-folds might show the rule only zeros: it is halved
-  // until it does not, if what it can hold at all, by its ends and nodes, matters.
-  std::vector<Panel> estimated;
-  std::vector<std::pair<Panel, double>> steep;  // with the least depth seen in it
-  Rgb total = Rgb::Zero();
-  double clearest = infinity;
-  const auto estimate = [&](Panel p) {
-    integrand.reset();
-    scene::estimate_panel(integrand, *options.rule, p);
-    result.evaluations += per_panel;
-    total += p.value;
-    clearest = std::min(clearest, integrand.clearest);
-    if (integrand.greatest - integrand.least > steepest && p.hi - p.lo > 1e-15)
-      steep.push_back({p, integrand.clearest});
-    else
-      estimated.push_back(p);
-  };
-  for (const Panel& p : panels) estimate(p);
-  bool spent = false;
-  while (!steep.empty()) {
-    const auto [p, least_depth] = steep.back();
-    steep.pop_back();
-    const double width = p.hi - p.lo, middle = p.lo + 0.5 * width;
-    // What it can hold at all, by its ends and nodes. While all nodes so far fell into the dark, panels with a bright
-    // end are looked into, and the least dark ones: a panel of another light may be the least dark of all.
-    Rgb most = p.value;
-    bool matters = false;
-    const auto look = [&, p = p, least_depth = least_depth](double inset) {
-      const Rgb ends = integrand(p.chart, p.lo + inset * width).max(integrand(p.chart, p.hi - inset * width));
-      result.evaluations += 2;
-      most = most.max(width * ends);
-      matters = (total > 0).any() ? (most > 1e-4 * impl.accuracy.relative_tolerance * total).any()
-                                  : (most > 0).any() || least_depth < clearest + 300;
-    };
-    look(1e-9);
-    if (!matters) look(1e-15);  // extinctions from 1e10 on: 1e-9 of a panel is dark too
-    if (matters && result.evaluations + 2 * per_panel <= options.max_evaluations) {
-      total -= p.value;
-      estimate({p.lo, middle, p.chart});
-      estimate({middle, p.hi, p.chart});
-    } else {
-      spent = spent || matters;
-      estimated.push_back(p);
-    }
-  }
-  const scene::Integral integral = scene::refine_panels(integrand, estimated, options, result.evaluations);
+  options.relative_tolerance = impl_->accuracy.relative_tolerance;
+  options.max_evaluations = impl_->accuracy.max_evaluations;
+  options.rule = view.fine ? &scene::kronrod7() : &scene::kronrod15();
+  FirstEstimates first(integrand, options, view.fine ? 6 : 12);
+  for (const Panel& p : pieces.panels) first.add(p);
+  first.halve_steep();
+  const scene::Integral integral = scene::refine_panels(integrand, first.panels, options, first.evaluations);
   result.radiance = integral.value;
   result.error = integral.error;
   result.evaluations = integral.evaluations;
-  result.converged = integral.converged && !spent;
+  result.converged = integral.converged && !first.spent;
   return result;
 }
 

@@ -188,13 +188,13 @@ class ExactFlow : public scene::Flow {
   // By central differences, whose own error is some 1e-9 of it.
   Vec3 curl(const Point3& x) const {
     const double step = 1e-4 * cell_;
-    const auto slope = [&](int component, int axis) {
+    const auto gradient = [&](int component, int axis) {
       Point3 low = x, high = x;
       low[axis] -= step, high[axis] += step;
       return (velocity(high)[component] - velocity(low)[component]) / (2 * step);
     };
-    if (p_->dimensions == 2) return {0, 0, slope(1, 0) - slope(0, 1)};
-    return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
+    if (p_->dimensions == 2) return {0, 0, gradient(1, 0) - gradient(0, 1)};
+    return {gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)};
   }
 
   std::shared_ptr<const FlowProblem> p_;

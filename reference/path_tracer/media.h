@@ -35,6 +35,7 @@ struct Collision {
   double density;
 };
 
+constexpr std::size_t most_media = 64;
 constexpr int most_attempts = 128;  // of a flight
 
 class Media {
@@ -46,8 +47,8 @@ class Media {
   bool homogeneous() const { return homogeneous_; }  // all of them: flights cost next to nothing
   bool grey() const { return grey_; }                // extinction is the same in all channels, in every medium
 
-  // The first collision before tmax under the extinction of channel `hero`, by delta tracking; nothing if there is
-  // none. Other attempts, below `most_attempts`, are independent flights. `some` < 1: given that there is a collision,
+  // The first collision before tmax under the extinction of channel `hero`, by delta tracking (delta_tracking.cpp);
+  // nothing if there is none. Other attempts, below `most_attempts`, are independent flights. `some` < 1: given that there is a collision,
   // null ones counted, which has this probability.
   std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
                                int attempt, double some, Counters&) const;

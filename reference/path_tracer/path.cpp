@@ -1,206 +1,209 @@
 #include "reference/path_tracer/path.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "reference/path_tracer/sampling.h"
-#include "reference/path_tracer/surface_sampling.h"
 #include "reference/path_tracer/walk.h"
+#include "scene/base/error.h"
 
 namespace airlight::path_tracer {
-
-Rgb Walk::scatter_value(const Vertex& v, const Vec3& out) const {
-  if (v.hit) {
-    const double cosine = v.hit->normal.dot(out);
-    if (!(cosine > 0)) return Rgb::Zero();
-    return scene::brdf(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, out) * cosine;
-  }
-  const double c = std::clamp(v.w.dot(out), -1.0, 1.0);
-  return Rgb::Constant(scene::phase_value(media_.tracked()[v.medium].medium->phase, c));
-}
-
-double Walk::scatter_pdf(const Vertex& v, const Vec3& out) const {
-  if (v.hit) return pdf_reflection(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, out);
-  return scene::phase_value(media_.tracked()[v.medium].medium->phase, std::clamp(v.w.dot(out), -1.0, 1.0));
-}
-
-// Density, over solid angle and distance, with which the connection from the start of a ray would make its point at t,
-// the choice of the light included. The ray's own direction was drawn with direction_pdf_.
-double Walk::connection_pdf(int light, const Ray& ray, Interval hull, double t) const {
-  const Point3 center = scene::ball(lights_.light(light))->center;
-  const Equiangular angles(ray, center, hull);
-  if (!angles.usable()) return 0;
-  if (vertex_ == 0) return lights_.probability_for_ray(light, ray, hull) * angles.pdf(t);
-  const double sine = std::min(1.0, angles.h / (center - ray.origin).norm());
-  const double toward = 1 / (2 * pi * pi * sine);
-  return lights_.probability_for_connection(light, ray.origin) * 0.5 * (direction_pdf_ + toward) * angles.pdf(t);
-}
-
-bool Walk::survive(double u) {
-  const Options& o = world_.options();
-  if (m_ + s_ < o.roulette_order) return true;
-  const double q = std::min(o.roulette_cap, throughput_.maxCoeff() / scale_);
-  if (q >= 1) return true;
-  if (!(u < q)) return false;
-  throughput_ /= q;
-  return true;
-}
-
-// Next-event estimation at a vertex: one light. `analog_pdf[c]`, for a vertex in a medium, is the density over solid
-// angle and distance with which channel c's walk made this vertex out of the one before (used where lights are
-// connected).
-void Walk::gather(const Vertex& v, const Rgb& analog_pdf) {
-  if (!lights_.any()) return;
-  const RandomBlock numbers = block(Purpose::light);
-  const Pick pick = lights_.pick(v.x, numbers.coarse(3));
-  if (pick.light < 0) return;
-  if (scene::is_delta(lights_.light(pick.light)))
-    gather_delta(v, pick, analog_pdf);
-  else
-    gather_environment(v, pick, numbers.fine(0), numbers.coarse(2));
-}
-
-void Walk::gather_delta(const Vertex& v, const Pick& pick, const Rgb& analog_pdf) {
-  const scene::Incident in = scene::incident(lights_.light(pick.light), v.x);
-  if (!(in.irradiance.maxCoeff() > 0)) return;
-  const Rgb value = scatter_value(v, in.to_light);
-  if (!(value.maxCoeff() > 0)) return;
-  double weight = 1 / pick.probability;
-  if (!v.hit && lights_.connected(pick.light)) {
-    // Both densities relative to the mean of the channels before the segment that led here; throughput_ already stands
-    // on the mean after it, analog_pdf's.
-    const double analog = pick.probability * analog_pdf.mean();
-    const double t = (v.x - ray_.origin).dot(ray_.direction);
-    --vertex_;  // the connection would have started at the vertex before
-    const double connection = connection_pdf(pick.light, ray_, hull_, t);
-    ++vertex_;
-    weight *= analog / (analog + connection);
-  }
-  const Ray shadow{origin(v, in.to_light), in.to_light};
-  if (!world_.visible(shadow, in.distance, pick.light)) return;
-  const Rgb radiance = throughput_ * value * in.irradiance * transmittance(shadow, in.distance, 0) * weight;
-  if (v.hit && world_.options().paths == Options::Paths::scattered_to_surface) return;
-  sample_.add(m_, s_ + (v.hit != nullptr), radiance);
-}
-
-void Walk::gather_environment(const Vertex& v, const Pick& pick, double u1, double u2) {
-  const auto& environment = std::get<scene::EnvironmentLight>(lights_.light(pick.light));
-  const Vec3 out = scene::sample_environment(environment, u1, u2);
-  const Rgb value = scatter_value(v, out);
-  if (!(value.maxCoeff() > 0)) return;
-  const auto [radiance, density] = scene::evaluate_environment(environment, out);
-  const double pdf = pick.probability * density;
-  if (!(pdf > 0) || (radiance == 0).all()) return;
-  const Ray shadow{origin(v, out), out};
-  if (!world_.visible(shadow, infinity, -1)) return;
-  const Rgb T = transmittance(shadow, infinity, 0);
-  const double walk = scatter_pdf(v, out);
-  sample_.add(m_, s_ + (v.hit != nullptr), throughput_ * value * radiance * T / (pdf + walk));
-}
-
-// Light of one point or spot light scattered once on a ray, at one point drawn with equal angles; `reflections` on the
-// way, that at the start of the ray included. `gain` is of the walk's own collisions on it.
-void Walk::connect(const Ray& ray, Interval hull, const Rgb& throughput, const Pick& pick, double direction_pdf,
-                   const Rgb& gain, bool from_camera, int reflections, double u) {
-  const scene::Light& light = lights_.light(pick.light);
-  const Point3 center = scene::ball(light)->center;
-  const Equiangular angles(ray, center, hull);
-  if (!angles.usable()) return;
-  const double t = angles.sample(u);
-  const Point3 y = ray.at(t);
-  double extinction_there = 0;
-  std::array<double, 64> densities;
-  const auto& tracked = media_.tracked();
-  for (std::size_t i = 0; i < tracked.size(); ++i) {
-    densities[i] = scene::density(*tracked[i].medium, y);
-    extinction_there += densities[i];
-  }
-  if (!(extinction_there > 0)) return;
-
-  const double distance = std::sqrt(angles.squared_distance(t));
-  const Vec3 to_light = (center - y) / (center - y).norm();
-  const Rgb intensity = scene::intensity_towards(light, -to_light);
-  if (!(intensity.maxCoeff() > 0)) return;
-  const Ray shadow{y, to_light};
-  if (!world_.visible(shadow, distance, pick.light)) return;
-
-  ++counters_.connections;
-  const Rgb T = transmittance(ray, t, 1);
-  const Rgb light_T = transmittance(shadow, distance, 2);
-  const double pdf = pick.probability * direction_pdf * angles.pdf(t);
-  // The other way to the same point: the walk's own collision there, with next-event estimation.
-  const double pick_there = lights_.probability(pick.light, y);
-  const double walk_pdf = from_camera ? 1.0 : direction_pdf_;
-  const double c = std::clamp(ray.direction.dot(to_light), -1.0, 1.0);
-  Rgb sum = Rgb::Zero();
-  for (std::size_t i = 0; i < tracked.size(); ++i) {
-    if (!(densities[i] > 0)) continue;
-    const scene::Medium& medium = *tracked[i].medium;
-    const Rgb extinction = medium.sigma_t * densities[i];
-    const double analog =
-        pick_there * walk_pdf * (exact() ? (density_ * extinction * T * gain).mean() : (density_ * extinction).mean());
-    sum += extinction * medium.albedo * (scene::phase_value(medium.phase, c) / (pdf + analog));
-  }
-  sample_.add(m_ + 1, reflections, throughput * T * light_T * sum * intensity / angles.squared_distance(t));
-}
-
-// The connection from a vertex: a direction half by phase function or reflection, half with density 1/(2 pi^2 sin
-// theta) about the direction to the light, which with equal angles on the ray bounds the contribution.
-void Walk::connect_from(const Vertex& v) {
-  const RandomBlock numbers = block(Purpose::connection);
-  const RandomBlock choice = block(Purpose::connection, 1);
-  const Pick pick = lights_.pick_for_connection(v.x, choice.coarse(0));
-  if (pick.light < 0) return;
-  const Vec3 offset = scene::ball(lights_.light(pick.light))->center - v.x;
-  const double length = offset.norm();
-  if (!(length > 0)) return;
-  const Vec3 axis = offset / length;
-  Vec3 out;
-  if (choice.coarse(1) < 0.5) {
-    if (v.hit)
-      out = sample_reflection(world_.scene().surfaces[v.hit->surface].material, v.hit->normal, -v.w, choice.coarse(3),
-                              numbers.fine(0), choice.coarse(2));
-    else
-      out = turned(v.w, scene::sample_phase_cosine(media_.tracked()[v.medium].medium->phase, numbers.fine(0)),
-                   choice.coarse(2));
-  } else {
-    const elementary::SinCos theta = elementary::sincos_turns(0.5 * numbers.fine(0));
-    out = turned(axis, theta.cos, theta.sin, choice.coarse(2));
-  }
-  const Rgb value = scatter_value(v, out);
-  if (!(value.maxCoeff() > 0)) return;
-  const Ray ray{origin(v, out), out};
-  ++counters_.rays;
-  const scene::RayEnd end = scene::ray_end(world_.scene(), ray);
-  const Interval hull = media_.hull(ray, end.t);
-  if (hull.empty()) return;
-  const double sine = (offset - offset.dot(out) * out).norm() / length;
-  direction_pdf_ = scatter_pdf(v, out);
-  const double direction_pdf = 0.5 * (direction_pdf_ + 1 / (2 * pi * pi * std::min(1.0, sine)));
-  connect(ray, hull, throughput_ * value, pick, direction_pdf, flight_on(ray, end, hull).gain, false,
-          s_ + (v.hit != nullptr), numbers.fine(1));
-}
-
-// The walk left the scene along ray_: environments, weighted against their own sampling at the vertex before.
-void Walk::escape(const Ray& ray) {
-  if (lights_.environments().empty() || vertex_ == 0) return;
-  for (const int i : lights_.environments()) {
-    const auto& environment = std::get<scene::EnvironmentLight>(lights_.light(i));
-    const auto [radiance, density] = scene::evaluate_environment(environment, ray.direction);
-    if ((radiance == 0).all()) continue;
-    const double pdf = lights_.probability(i, ray.origin) * density;
-    sample_.add(m_, s_, throughput_ * radiance * (direction_pdf_ / (direction_pdf_ + pdf)));
-  }
-}
 
 void trace(const World& world, const CameraRay& camera, const SampleRandom& random, PathSample& sample,
            Counters& counters) {
   ++counters.paths;
-  Walk walk(world, random, sample, counters);
+  const Walk walk(world, random, sample, counters);
   if (world.options().only_lit_surfaces())
     walk.run_to_surface(camera);
   else
     walk.run(camera);
+}
+
+// The path from the eye.
+void Walk::run(const CameraRay& camera) const {
+  Path path;
+  path.segment = &camera.segment;
+  const RandomBlock first = block(path, Purpose::camera, 1);
+  if (!media_.grey()) path.hero = std::min(2, int(3 * first.coarse(0)));
+  if (!camera.segment.end.hit && options_.paths == Options::Paths::all) sample_.add(0, 0, camera.background);
+  if (lights_.any_connected() && !camera.segment.hull.empty() && may_scatter(path))
+    connect_from_eye(path, first.coarse(1));
+  follow(path, std::nullopt);
+}
+
+// The main loop. A branch of a path begins with its collision.
+void Walk::follow(Path& path, std::optional<Collision> collision) const {
+  Segment next;
+  for (;; collision.reset()) {
+    // Free flight: to a collision, or else to the end of the segment.
+    if (!collision) {
+      ++counters_.rays;
+      collision = fly(path);
+      if (path.segment->flight.forced) {
+        split(path, collision);
+        if (!collision && !path.segment->end.hit) return;
+      } else if (!collision && !attenuate(path)) {
+        return;
+      }
+    }
+
+    // Event: in a medium, or on a surface.
+    Vertex v;
+    if (!(collision ? collide(path, *collision, v) : meet_surface(path, v))) return;
+
+    // Next-event estimation.
+    next_event(path, v);
+
+    // Roulette.
+    const RandomBlock random = block(path, Purpose::scatter);
+    if (!survive(path, random.coarse(3))) return;
+
+    // Connection: a second ray, on which light of a close lamp is scattered.
+    if (lights_.any_connected() && may_scatter(path, v.hit != nullptr)) connect_from(path, v);
+
+    // Phase function or reflection: the direction in which the path goes on.
+    const Vec3 out = draw_direction(path, v, random);
+    if (!(path.throughput.maxCoeff() > 0)) return;
+    aim(path, {origin(v, out), out}, next);
+  }
+}
+
+// The next segment, from the path's vertex, and how it is passed. Most scenes force the camera's flight alone.
+void Walk::aim(Path& path, const Ray& ray, Segment& next) const {
+  next.ray = ray;
+  next.end = scene::ray_end(world_.scene(), ray);
+  next.hull = media_.hull(ray, next.end.t);
+  if (world_.boost() > 1 || options_.only_lit_surfaces()) next.flight = flight_on(path, ray, next.end, next.hull);
+  path.segment = &next;
+}
+
+// Only what has not scattered yet splits, so that the branches of a path are no more than its reflections.
+Flight Walk::flight_on(const Path& path, const Ray& ray, const scene::RayEnd& end, Interval hull) const {
+  const bool always = options_.only_lit_surfaces(), thin = world_.boost() > 1 && !(path.scatterings > 0 && end.hit);
+  if (!(always || thin) || hull.empty() || !may_scatter(path) || !options_.forced || !exact()) return {};
+  return force(media_, ray, end.t, always ? infinity : world_.boost(), counters_);
+}
+
+// The collision on the segment, by delta tracking (Media::fly); as often as a forced flight says.
+std::optional<Collision> Walk::fly(const Path& path) const {
+  const auto& [ray, end, hull, flight] = *path.segment;
+  if (hull.empty()) return {};
+  const double chance = flight.chance[path.hero];
+  if (chance < 1 && !(block(path, Purpose::camera, 2).fine(0) < chance)) return {};
+  std::optional<Collision> collision;
+  for (int k = 0; k < flight.tries && !collision; ++k)
+    collision = media_.fly(ray, end.t, path.hero, random_, path.dimension(), k, flight.some[path.hero], counters_);
+  return collision;
+}
+
+// After an analog flight to the segment's end: its transmittance is in the chance to arrive, but for what the channels
+// differ by. False where no channel gets through.
+bool Walk::attenuate(Path& path) const {
+  if (path.segment->hull.empty() || media_.grey()) return true;
+  const Rgb T = media_.transmittance(path.segment->ray, path.segment->end.t, counters_);
+  const Rgb arriving = path.density * T;  // unnormalised
+  if (!(arriving.mean() > 0)) return false;
+  path.throughput *= T / arriving.mean();
+  path.density = arriving / arriving.mean();
+  return true;
+}
+
+// After a forced flight the path goes on both from the collision and, with the exact transmittance, from the segment's
+// end. Before a surface that takes a branch, which is followed to its end here; else the path leaves the scene now and
+// goes on from the collision.
+void Walk::split(Path& path, std::optional<Collision>& collision) const {
+  const Rgb& T = path.segment->flight.transmittance;
+  if (path.segment->end.hit) {
+    if (collision) {
+      Path scattered = path;
+      scattered.branch = 1 + path.vertex % 15;
+      follow(scattered, collision);
+      collision.reset();
+    }
+    path.throughput *= T;
+  } else if (path.vertex > 0) {  // the camera's background was added before
+    escape(path, path.throughput * T);
+  }
+}
+
+// Goes on to the vertex at which the segment ends.
+Vertex Walk::next_vertex(Path& path, const Point3& x) const {
+  if (++path.vertex >> Path::branch_shift)
+    throw Error("path_tracer: a path has 2^24 vertices; set max_order, or absorb light somewhere");
+  Vertex v;
+  v.x = x;
+  v.w = path.segment->ray.direction;
+  return v;
+}
+
+// Absorption and scattering at a collision; false where the path ends there.
+bool Walk::collide(Path& path, const Collision& collision, Vertex& v) const {
+  const bool grey = media_.grey();
+  const Segment& segment = *path.segment;
+  const scene::Medium& medium = this->medium(collision.medium);
+  // How the segment changes the densities of the channels; the transmittance is needed where they differ, and for
+  // weights.
+  const bool need_T = !grey || (exact() && lights_.any_connected());
+  const Rgb T = need_T ? media_.transmittance(segment.ray, collision.t, counters_) : Rgb(Rgb::Ones());
+  const Rgb factor = T * medium.sigma_t * collision.density;
+  const Rgb arriving = path.density * factor * segment.flight.gain;  // unnormalised
+  const double mean = arriving.mean();
+  if (!(mean > 0)) return false;  // underflow: optical depths beyond 700
+  const double forced = grey ? 1 / segment.flight.gain[0] : (path.density * factor).mean() / mean;
+  path.forced *= forced;
+  if (grey) {
+    path.throughput *= forced;
+  } else {
+    path.throughput *= factor / mean;
+    path.density = arriving / mean;
+  }
+  if (!may_scatter(path)) {
+    sample_.truncated += path.throughput * medium.albedo;
+    return false;
+  }
+  v = next_vertex(path, segment.ray.at(collision.t));
+  v.medium = collision.medium;
+  v.analog_pdf = path.direction_pdf * arriving;
+  path.throughput *= medium.albedo;
+  ++path.scatterings;
+  return path.throughput.maxCoeff() > 0;
+}
+
+// What is at the end of the segment: a surface, or nothing, where the path leaves the scene.
+bool Walk::meet_surface(Path& path, Vertex& v) const {
+  const scene::RayEnd& end = path.segment->end;
+  if (ends_unseen(path)) return false;
+  if (!end.hit) {
+    escape(path, path.throughput);
+    return false;
+  }
+  if (!may_go_on(path)) return false;
+  v = next_vertex(path, end.hit->position);
+  v.hit = &*end.hit;
+  return true;
+}
+
+bool Walk::survive(Path& path, double u) const {
+  if (path.scatterings + path.reflections < options_.roulette_order) return true;
+  const double q = std::min(options_.roulette_cap, path.throughput.maxCoeff() / path.forced);
+  if (q >= 1) return true;
+  if (!(u < q)) return false;
+  path.throughput /= q;
+  return true;
+}
+
+// The throughput is zero where a reflection's lobe reaches below the surface.
+Vec3 Walk::draw_direction(Path& path, const Vertex& v, const RandomBlock& random) const {
+  if (!v.hit) {
+    const scene::PhaseFunction& phase = medium(v.medium).phase;
+    const double c = scene::sample_phase_cosine(phase, random.fine(0));
+    path.direction_pdf = scene::phase_value(phase, c);
+    return turned(v.w, c, random.coarse(2));
+  }
+  const Vec3 out = sample_scatter(v, block(path, Purpose::scatter, 1).coarse(0), random.fine(0), random.coarse(2));
+  path.direction_pdf = scatter_pdf(v, out);
+  path.throughput *= path.direction_pdf > 0 ? Rgb(scatter_value(v, out) / path.direction_pdf) : Rgb(Rgb::Zero());
+  ++path.reflections;
+  return out;
 }
 
 }  // namespace airlight::path_tracer

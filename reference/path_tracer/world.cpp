@@ -28,21 +28,21 @@ bool World::visible(const Ray& ray, double tmax, int except) const {
 }
 
 CameraRay prepare_camera_ray(const World& world, const Ray& ray, Counters& counters) {
-  CameraRay camera{ray, scene::camera_end(world.scene(), ray), {}, Rgb::Zero(), {}};
-  camera.hull = world.media().hull(ray, camera.end.t);
+  CameraRay camera{{ray, scene::camera_end(world.scene(), ray), {}, {}}, Rgb::Zero()};
+  auto& [_, end, hull, flight] = camera.segment;
+  hull = world.media().hull(ray, end.t);
   const Options& options = world.options();
-  const bool sees = camera.end.seen || (camera.end.t == infinity && !world.lights().environments().empty());
+  const bool sees = end.seen || (end.t == infinity && !world.lights().environments().empty());
   // Measured: worth it under an environment, whose background is then free of noise and no longer makes up for
   // collisions that did not happen, and where flights cost next to nothing. Else, and before a surface, which takes a
   // path more, only in media that hardly any path would meet.
-  const bool worth = camera.end.hit ? world.boost() > 1 : sees || world.media().homogeneous() || world.boost() > 1;
+  const bool worth = end.hit ? world.boost() > 1 : sees || world.media().homogeneous() || world.boost() > 1;
   const bool forces = options.forced && options.column_transmittance && options.max_order != 0 && worth;
-  if (!camera.hull.empty() && forces)
-    camera.flight = force(world.media(), ray, camera.end.t, camera.end.hit ? world.boost() : infinity, counters);
+  if (!hull.empty() && forces) flight = force(world.media(), ray, end.t, end.hit ? world.boost() : infinity, counters);
   if (sees) {
-    const bool known = camera.hull.empty() || camera.flight.forced;
-    const Rgb T = known ? camera.flight.transmittance : world.media().transmittance(ray, camera.end.t, counters);
-    camera.background = background(world.scene(), camera.end, ray.direction) * T;
+    const bool known = hull.empty() || flight.forced;
+    const Rgb T = known ? flight.transmittance : world.media().transmittance(ray, end.t, counters);
+    camera.background = background(world.scene(), end, ray.direction) * T;
   }
   return camera;
 }

@@ -34,13 +34,18 @@ class World {
   double boost_ = 1;
 };
 
-// What is the same for every path along one camera ray: computed once for a pixel's centre.
-struct CameraRay {
+// A part of a path between two of its vertices: from the start of a ray to what it meets.
+struct Segment {
   Ray ray;
   scene::RayEnd end;
-  Interval hull;   // where media are
+  Interval hull;  // where media are
+  Flight flight;  // how collisions on it are drawn
+};
+
+// What is the same for every path along one camera ray: computed once for a pixel's centre.
+struct CameraRay {
+  Segment segment;
   Rgb background;  // radiance seen through the medium, where no surface ends the ray
-  Flight flight;
 };
 CameraRay prepare_camera_ray(const World&, const Ray&, Counters&);
 

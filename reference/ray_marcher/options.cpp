@@ -38,48 +38,41 @@ double stated_error(const scene::Scene& scene) {
   return std::max(divided ? 0.04 : 0.015, y * y / 20);
 }
 
-std::vector<scene::SettingSpec> option_specs() {
-  return {
-      scene::integer_setting("steps", "64", 1, 1 << 17,
-                             "steps per camera ray, shared among the parts of it that lie in media"),
-      scene::integer_setting("shadow_steps", "32", 1, 1 << 17, "steps per shadow ray in each medium that varies"),
-      scene::real_setting(
-          "step", "0", 0, 1e6,
-          "step length on camera rays in voxels of the finest grid (metres without a grid), 0.001 to 1e6; "
-          "0: use steps"),
-      scene::real_setting("shadow_step", "0", 0, 1e6,
-                          "step length on shadow rays, same unit and range; 0: use shadow_steps"),
-      scene::choice_setting(
-          "spacing", "graded", {"graded", "uniform"},
-          "graded: steps shrink near point and spot lights and grow along unbounded media; uniform: equal "
-          "steps"),
-      scene::choice_setting("shadow", "march", {"march", "exact"}, "optical depth of shadow rays: by steps, or exact"),
-      scene::integer_setting("environment_directions", "256", 1, 1 << 16,
-                             "directions that stand for each environment light"),
-      scene::real_setting("early_exit", "0", 0, 1,
-                          "a camera ray ends where its transmittance falls below this; 0: never"),
-      scene::real_setting("horizon", "16", 1, 700,
-                          "optical depth of unbounded medium at which an endless camera ray is cut"),
-      scene::flag_setting("empty_space_skipping", true,
-                          "leave out steps where a grid is zero; the image stays the same"),
-      scene::choice_setting("kernel", "auto", {"auto", "scalar"},
-                            "auto: vector kernels in float, scalar: plain loops in double, for checks"),
-  };
+namespace {
+
+void bind(scene::SettingBinder& b, Options& o) {
+  b.integer("steps", o.steps, 1, 1 << 17, "steps per camera ray, shared among the parts of it that lie in media")
+      .where("step", {"0"});
+  b.integer("shadow_steps", o.shadow_steps, 1, 1 << 17, "steps per shadow ray in each medium that varies")
+      .where("shadow", {"march"})
+      .where("shadow_step", {"0"});
+  b.real("step", o.step, 0, 1e6,
+         "step length on camera rays in voxels of the finest grid (metres without a grid), 0.001 to 1e6; "
+         "0: use steps");
+  b.real("shadow_step", o.shadow_step, 0, 1e6, "step length on shadow rays, same unit and range; 0: use shadow_steps")
+      .where("shadow", {"march"});
+  b.choice("spacing", o.graded, {{"graded", true}, {"uniform", false}},
+           "graded: steps shrink near point and spot lights and grow along unbounded media; uniform: equal "
+           "steps");
+  b.choice("shadow", o.exact_shadow, {{"march", false}, {"exact", true}},
+           "optical depth of shadow rays: by steps, or exact");
+  b.integer("environment_directions", o.environment_directions, 1, 1 << 16,
+            "directions that stand for each environment light");
+  b.real("early_exit", o.early_exit, 0, 1, "a camera ray ends where its transmittance falls below this; 0: never");
+  b.real("horizon", o.horizon, 1, 700, "optical depth of unbounded medium at which an endless camera ray is cut");
+  b.flag("empty_space_skipping", o.skip_empty, "leave out steps where a grid is zero; the image stays the same");
+  b.choice("kernel", o.simd, {{"auto", true}, {"scalar", false}},
+           "auto: vector kernels in float, scalar: plain loops in double, for checks");
 }
 
+}  // namespace
+
+std::vector<scene::SettingSpec> option_specs() { return scene::list_settings(bind); }
+
 Options read_options(const scene::Settings& settings, double unit) {
-  Options o;
-  o.steps = int(settings.integer("steps"));
-  o.shadow_steps = int(settings.integer("shadow_steps"));
-  o.step = settings.real("step") * unit;
-  o.shadow_step = settings.real("shadow_step") * unit;
-  o.graded = settings.text("spacing") == "graded";
-  o.exact_shadow = settings.text("shadow") == "exact";
-  o.simd = settings.text("kernel") == "auto";
-  o.skip_empty = settings.flag("empty_space_skipping");
-  o.environment_directions = int(settings.integer("environment_directions"));
-  o.early_exit = settings.real("early_exit");
-  o.horizon = settings.real("horizon");
+  Options o = scene::read_settings(bind, settings);
+  o.step *= unit;
+  o.shadow_step *= unit;
   return o;
 }
 

@@ -59,14 +59,14 @@ template <class Real>
 std::array<Real, 3> vorticity(const Velocity<Real>& u, const Lattice& l, int i, int j, int k) {
   // Difference along b of component a, centred: the component's mean over the cell's two faces, a cell before and after.
   const Real share = Real(0.25 / l.h);
-  const auto slope = [&](int a, int b) {
+  const auto gradient = [&](int a, int b) {
     if (a >= l.dimensions || b >= l.dimensions) return Real(0);
     const Field<Real>& f = u[a];
     const Real* at = f.row(j, k) + i;
     const std::ptrdiff_t along = f.stride[a], across = f.stride[b];
     return share * (at[across] + at[along + across] - at[-across] - at[along - across]);
   };
-  return {slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)};
+  return {gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)};
 }
 
 template <class Real>

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -71,7 +72,105 @@ void check(const SettingSpec& spec, const std::string& text, const std::string& 
   }
 }
 
+double number(const std::string& text) {
+  double value = 0;
+  parse_number(text, value);
+  return value;
+}
+
+bool is_bound(const std::string& value) { return value.starts_with("> ") || value.starts_with("< "); }
+
+// Whether the text of a setting is one of the values that a condition names.
+bool is_among(const SettingSpec& spec, const std::string& text, const std::vector<std::string>& values) {
+  using Type = SettingSpec::Type;
+  const bool is_number = spec.type == Type::integer || spec.type == Type::real;
+  return std::any_of(values.begin(), values.end(), [&](const std::string& value) {
+    if (!is_number) return text == value;
+    if (!is_bound(value)) return number(text) == number(value);
+    const double bound = number(value.substr(2));
+    return value[0] == '>' ? number(text) > bound : number(text) < bound;
+  });
+}
+
+std::string condition_text(const std::string& other, const std::vector<std::string>& values) {
+  return fmt::format("{} {}{}", other, is_bound(values.front()) ? "" : "= ", fmt::join(values, " or "));
+}
+
+const SettingSpec& find_spec(const std::vector<SettingSpec>& specs, const std::string& name) {
+  const auto found = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.name == name; });
+  if (found == specs.end()) throw std::logic_error("undeclared setting " + name);
+  return *found;
+}
+
+// Beside these values, given ones or else defaults: the conditions that do not hold, as they are and as each alternative expects them.
+// Nothing where the setting is read.
+struct Unread {
+  std::vector<std::string> found, expected;
+};
+Unread why_unread(const std::vector<SettingSpec>& specs, const SettingSpec& spec,
+                  const std::map<std::string, std::string>& given) {
+  Unread result;
+  const auto add = [](std::vector<std::string>& list, std::string text) {
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(std::move(text));
+  };
+  for (const SettingSpec::Others& alternative : spec.read_where) {
+    std::vector<std::string> expected;
+    for (const auto& [name, values] : alternative) {
+      const SettingSpec& other = find_spec(specs, name);
+      const auto value = given.find(name);
+      const std::string& text = value == given.end() ? other.fallback : value->second;
+      if (is_among(other, text, values)) continue;
+      add(result.found, name + " = " + text);
+      expected.push_back(condition_text(name, values));
+    }
+    if (expected.empty()) return {};
+    add(result.expected, fmt::format("{}", fmt::join(expected, " and ")));
+  }
+  return result;
+}
+
+// As the shortest text that reads back as the same number: 1e-4, not 1e-04.
+std::string text_of(double value) {
+  std::array<char, 32> room;
+  std::string text(room.data(), std::to_chars(room.data(), room.data() + room.size(), value).ptr);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  const std::string sign = text[e + 1] == '-' ? "-" : "";
+  return text.substr(0, e + 1) + sign + text.substr(text.find_first_not_of("+-0", e + 1));
+}
+
 }  // namespace
+
+std::string read_condition(const SettingSpec& spec) {
+  std::vector<std::string> alternatives;
+  for (const SettingSpec::Others& alternative : spec.read_where) {
+    std::vector<std::string> all;
+    for (const auto& [other, values] : alternative) all.push_back(condition_text(other, values));
+    alternatives.push_back(fmt::format("{}", fmt::join(all, " and ")));
+  }
+  return fmt::format("{}", fmt::join(alternatives, ", or "));
+}
+
+std::map<std::string, std::string> without_unread(const std::vector<SettingSpec>& specs,
+                                                  std::map<std::string, std::string> given) {
+  const std::map<std::string, std::string> all = given;
+  for (const SettingSpec& spec : specs)
+    if (!why_unread(specs, spec, all).found.empty()) given.erase(spec.name);
+  return given;
+}
+
+SettingSpec& SettingBinder::real(const std::string& name, double& variable, double least, double greatest,
+                                 std::string doc) {
+  specs.push_back(real_setting(name, text_of(variable), least, greatest, std::move(doc)));
+  if (values_) variable = values_->real(name);
+  return specs.back();
+}
+
+SettingSpec& SettingBinder::flag(const std::string& name, bool& variable, std::string doc) {
+  specs.push_back(flag_setting(name, variable, std::move(doc)));
+  if (values_) variable = values_->flag(name);
+  return specs.back();
+}
 
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string start = word.substr(0, most);
@@ -109,17 +208,12 @@ Settings::Settings(std::vector<SettingSpec> specs, const std::map<std::string, s
     values_[name] = text;
   }
   for (const auto& [name, text] : given)
-    for (const auto& [other, values] : spec(name).read_where)
-      if (std::find(values.begin(), values.end(), values_.at(other)) == values.end())
-        throw Error(fmt::format("{}: {} = {} is not read with {} = {}, expected {} = {}", where, name, text, other,
-                                values_.at(other), other, fmt::join(values, " or ")));
+    if (const Unread why = why_unread(specs_, spec(name), given); !why.found.empty())
+      throw Error(fmt::format("{}: {} = {} is not read with {}, expected {}", where, name, text,
+                              fmt::join(why.found, " and "), fmt::join(why.expected, ", or ")));
 }
 
-const SettingSpec& Settings::spec(const std::string& name) const {
-  const auto found = std::find_if(specs_.begin(), specs_.end(), [&](const auto& s) { return s.name == name; });
-  if (found == specs_.end()) throw std::logic_error("undeclared setting " + name);
-  return *found;
-}
+const SettingSpec& Settings::spec(const std::string& name) const { return find_spec(specs_, name); }
 
 long long Settings::integer(const std::string& name) const {
   long long value = 0;
@@ -127,11 +221,7 @@ long long Settings::integer(const std::string& name) const {
   return value;
 }
 
-double Settings::real(const std::string& name) const {
-  double value = 0;
-  parse_number(values_.at(spec(name).name), value);
-  return value;
-}
+double Settings::real(const std::string& name) const { return number(text(name)); }
 
 bool Settings::flag(const std::string& name) const { return values_.at(spec(name).name) == "true"; }
 

@@ -1,7 +1,10 @@
 // Settings of a renderer: declared once, checked once, printed into every result.
 #pragma once
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace airlight::scene {
@@ -15,14 +18,25 @@ struct SettingSpec {
   double least = 0;      // inclusive range of integer and real
   double greatest = 1e300;
   std::vector<std::string> choices = {};  // of a choice
-  // The setting is read only where each of these others has one of the values; everywhere where this is empty.
-  std::map<std::string, std::vector<std::string>> read_where = {};
+  // Values of other settings beside which this one is read, by their names. For a number also a bound: "> 0", "< 1".
+  using Others = std::map<std::string, std::vector<std::string>>;
+  // Alternatives: the setting is read where each of the others in one of them has one of its values; always where there are none.
+  std::vector<Others> read_where = {};
 
-  SettingSpec where(std::string other, std::vector<std::string> values) && {
-    read_where.emplace(std::move(other), std::move(values));
-    return std::move(*this);
+  // Adds to the last alternative.
+  SettingSpec& where(std::string other, std::vector<std::string> values) {
+    if (read_where.empty()) read_where.emplace_back();
+    read_where.back().emplace(std::move(other), std::move(values));
+    return *this;
+  }
+  // Begins another alternative.
+  SettingSpec& or_where(std::string other, std::vector<std::string> values) {
+    read_where.emplace_back();
+    return where(std::move(other), std::move(values));
   }
 };
+// The condition under which a setting is read: "variant = S and prt = true, or K > 8"; empty: always.
+std::string read_condition(const SettingSpec&);
 
 // `fallback` as text keeps the spelling that canonical() prints.
 inline SettingSpec integer_setting(std::string name, std::string fallback, double least, double greatest,
@@ -53,7 +67,7 @@ class Settings {
   double real(const std::string& name) const;
   bool flag(const std::string& name) const;
   const std::string& text(const std::string& name) const;
-  // Of a choice: the enumerator with the place of its text among the choices.
+  // Of a choice of a probe: the enumerator with the place of its text among the choices.
   template <class Enum>
   Enum choice(const std::string& name) const {
     return Enum(place_of_choice(name));
@@ -71,6 +85,64 @@ class Settings {
   std::vector<SettingSpec> specs_;
   std::map<std::string, std::string> given_, values_;
 };
+
+// Without the settings that nothing reads beside the others.
+std::map<std::string, std::string> without_unread(const std::vector<SettingSpec>&,
+                                                  std::map<std::string, std::string> given);
+
+// Settings bound to the variables of a structure. One function lists both, and is used to declare the settings and to read them:
+//   void bind(SettingBinder& b, Options& o) { b.integer("levels", o.levels, 0, 20, "of the decomposition"); }
+// Defaults are what the variables hold before: member initialisers.
+class SettingBinder {
+ public:
+  explicit SettingBinder(const Settings* values) : values_(values) {}  // null: only lists
+
+  template <class Integer>
+  SettingSpec& integer(const std::string& name, Integer& variable, double least, double greatest, std::string doc) {
+    specs.push_back(integer_setting(name, std::to_string(variable), least, greatest, std::move(doc)));
+    if (values_) variable = Integer(values_->integer(name));
+    return specs.back();
+  }
+  SettingSpec& real(const std::string& name, double& variable, double least, double greatest, std::string doc);
+  SettingSpec& flag(const std::string& name, bool& variable, std::string doc);
+  template <class Value>
+  SettingSpec& choice(const std::string& name, Value& variable,
+                      const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices,
+                      std::string doc) {
+    std::string fallback;
+    std::vector<std::string> texts;
+    for (const auto& [text, value] : choices) {
+      texts.push_back(text);
+      if (value == variable) fallback = text;
+    }
+    if (fallback.empty()) throw std::logic_error("no choice of " + name + " is its default");
+    for (const auto& [text, value] : choices)
+      if (values_ && values_->text(name) == text) variable = value;
+    specs.push_back(choice_setting(name, fallback, std::move(texts), std::move(doc)));
+    return specs.back();
+  }
+
+  std::vector<SettingSpec> specs;
+
+ private:
+  const Settings* values_;
+};
+
+template <class Options>
+std::vector<SettingSpec> list_settings(void (*bind)(SettingBinder&, Options&),
+                                       std::type_identity_t<Options> defaults = {}) {
+  SettingBinder binder(nullptr);
+  bind(binder, defaults);
+  return std::move(binder.specs);
+}
+
+template <class Options>
+Options read_settings(void (*bind)(SettingBinder&, Options&), const Settings& values) {
+  Options options{};
+  SettingBinder binder(&values);
+  bind(binder, options);
+  return options;
+}
 
 // A candidate that begins with `word`, else the one with the smallest edit distance; empty if there are none.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);

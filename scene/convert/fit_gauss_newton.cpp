@@ -75,6 +75,38 @@ class Step {
   std::vector<Eigen::LLT<Matrix5>> own_;
 };
 
+// Half the gradient's opposite, among the free variables. Held are variables at a bound that the gradient pushes them against.
+VectorXd right_side(const std::vector<Gaussian>& gaussians, const VectorXd& gradient, const FitBounds& bounds,
+                    bool weights_only, std::vector<char>& held) {
+  VectorXd b = -0.5 * gradient;
+  for (std::size_t i = 0; i < gaussians.size(); ++i)
+    for (int v = 0; v < 5; ++v) {
+      const std::size_t at = 5 * i + std::size_t(v);
+      const double x = variable(gaussians[i], v), slope = gradient[Index(at)];
+      held[at] = (weights_only && v < 4) || (x <= bounds.lo(v) && slope > 0) || (x >= bounds.hi(v) && slope < 0);
+      if (held[at]) b[Index(at)] = 0;
+    }
+  return b;
+}
+
+void take(const VectorXd& step, const FitBounds& bounds, const std::vector<Gaussian>& from, std::vector<Gaussian>& to) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    to[i] = from[i];
+    for (int v = 0; v < 5; ++v) variable(to[i], v) += step[Index(5 * i) + v];
+    clamp_to(bounds, to[i]);
+  }
+}
+
+// By how much the quadratic model says that the objective falls on the way.
+double foretold(const NormalMatrix& matrix, const VectorXd& gradient, const std::vector<Gaussian>& from,
+                const std::vector<Gaussian>& to) {
+  VectorXd taken(gradient.size()), product(gradient.size());
+  for (std::size_t i = 0; i < from.size(); ++i)
+    for (int v = 0; v < 5; ++v) taken[Index(5 * i) + v] = variable(to[i], v) - variable(from[i], v);
+  matrix.multiply(taken, product);
+  return -gradient.dot(taken) - taken.dot(product);
+}
+
 }  // namespace
 
 Minimization minimize_gauss_newton(FitObjective<float>& objective, const FitBounds& bounds,
@@ -91,34 +123,18 @@ Minimization minimize_gauss_newton(FitObjective<float>& objective, const FitBoun
   std::vector<Gaussian> trial(n);
   for (; result.iterations < options.iterations; ++result.iterations) {
     if (options.check) options.check();
-    VectorXd b = -0.5 * gradient;
-    for (std::size_t i = 0; i < n; ++i)
-      for (int v = 0; v < 5; ++v) {
-        const std::size_t at = 5 * i + std::size_t(v);
-        const double x = variable(gaussians[i], v), slope = gradient[Index(at)];
-        held[at] = (weights_only && v < 4) || (x <= bounds.lo(v) && slope > 0) || (x >= bounds.hi(v) && slope < 0);
-        if (held[at]) b[Index(at)] = 0;
-      }
+    const VectorXd b = right_side(gaussians, gradient, bounds, weights_only, held);
     const double before = result.value;
     arena.execute([&] {
       const NormalMatrix matrix(gaussians);
       // A step that does not lower the objective is tried shorter.
       for (int attempt = 0; attempt < 6; ++attempt) {
-        const VectorXd step = Step(matrix, held, damping).solve(b);
-        for (std::size_t i = 0; i < n; ++i) {
-          trial[i] = gaussians[i];
-          for (int v = 0; v < 5; ++v) variable(trial[i], v) += step[Index(5 * i) + v];
-          clamp_to(bounds, trial[i]);
-        }
+        take(Step(matrix, held, damping).solve(b), bounds, gaussians, trial);
         const double value = objective.value(trial, trial_gradient.data());
         if (value < result.value) {
-          // What the quadratic model foretold, to judge the damping by (Nielsen's rule).
-          VectorXd taken(step.size()), product(step.size());
-          for (std::size_t i = 0; i < n; ++i)
-            for (int v = 0; v < 5; ++v) taken[Index(5 * i) + v] = variable(trial[i], v) - variable(gaussians[i], v);
-          matrix.multiply(taken, product);
-          const double foretold = -gradient.dot(taken) - taken.dot(product);
-          const double quality = std::clamp((result.value - value) / std::max(foretold, 1e-300), 0.0, 1.0);
+          // Nielsen's rule judges the damping by what the quadratic model foretold.
+          const double expected = foretold(matrix, gradient, gaussians, trial);
+          const double quality = std::clamp((result.value - value) / std::max(expected, 1e-300), 0.0, 1.0);
           result.value = value;
           gaussians.swap(trial);
           gradient.swap(trial_gradient);

@@ -20,25 +20,8 @@ void add_start(ContentHash& hash, const std::vector<Blob>& blobs, const std::opt
   if (grid) add(hash, *grid);
 }
 
-}  // namespace
-
-// Every structure is taken apart into all its members: one that is added later does not compile before this file says what it
-// means for the hash.
-std::string content_hash(const FlowProblem& problem) {
-  const auto& [name, file, dimensions, box, sides, viscosity, diffusivity, decay, gravity, weight, expansion,
-               confinement, velocity, velocity_stays, density, temperature, blobs, wave, densities, density_grid,
-               temperature_grid, velocity_grid, sources, obstacles, pushes, particles, duration, frame_rate, known] =
-      problem;
-  ContentHash hash;
-  hash.tag("airlight flow 1");
-  hash.all(dimensions, box);
-  for (const auto& axis : sides)
-    for (const auto& [kind, moves, regularized, carried, warmth, of] : axis) {  // of: below
-      hash.tag(side_name(kind));
-      hash.all(moves, int(regularized), carried, warmth);
-    }
-  hash.all(viscosity, diffusivity, decay, weight, expansion, confinement, density, temperature, duration, frame_rate,
-           gravity, int(velocity.index()));
+// The flow's velocity at the start.
+void add_velocity(ContentHash& hash, const decltype(FlowProblem::velocity)& velocity) {
   match(
       velocity, [](const AtRest&) {},
       [&](const TaylorGreen& start) {
@@ -58,6 +41,38 @@ std::string content_hash(const FlowProblem& problem) {
         hash.add(mean);
         if (!gust.isZero(0)) hash.all(gust, frequency);
       });
+}
+
+// All but `of`, which content_hash adds.
+void add_sources(ContentHash& hash, const std::vector<Source>& sources) {
+  hash.tag("sources");
+  for (const auto& [region, time, density_rate, temperature_rate, held, held_warmth, held_velocity, of] : sources) {
+    add(hash, region);
+    hash.all(time.lo, time.hi, density_rate, temperature_rate, held.value_or(-1), held_warmth.value_or(infinity),
+             Vec3(held_velocity.value_or(Vec3::Constant(infinity))));
+  }
+}
+
+}  // namespace
+
+// Every structure is taken apart into all its members: one that is added later does not compile before this file says what it
+// means for the hash.
+std::string content_hash(const FlowProblem& problem) {
+  const auto& [name, file, dimensions, box, sides, viscosity, diffusivity, decay, gravity, weight, expansion,
+               confinement, velocity, velocity_stays, density, temperature, blobs, wave, densities, density_grid,
+               temperature_grid, velocity_grid, sources, obstacles, pushes, particles, duration, frame_rate, known] =
+      problem;
+  ContentHash hash;
+  hash.tag("airlight flow 1");
+  hash.all(dimensions, box);
+  for (const auto& axis : sides)
+    for (const auto& [kind, moves, regularized, carried, warmth, of] : axis) {  // of: below
+      hash.tag(side_name(kind));
+      hash.all(moves, int(regularized), carried, warmth);
+    }
+  hash.all(viscosity, diffusivity, decay, weight, expansion, confinement, density, temperature, duration, frame_rate,
+           gravity, int(velocity.index()));
+  add_velocity(hash, velocity);
   hash.add(int(velocity_stays));
   add_start(hash, blobs, wave, density_grid);
   if (temperature_grid) {
@@ -68,12 +83,7 @@ std::string content_hash(const FlowProblem& problem) {
     hash.tag("velocity grid");
     for (const VoxelGrid& component : *velocity_grid) add(hash, component);
   }
-  hash.tag("sources");
-  for (const auto& [region, time, density_rate, temperature_rate, held, held_warmth, held_velocity, of] : sources) {
-    add(hash, region);
-    hash.all(time.lo, time.hi, density_rate, temperature_rate, held.value_or(-1), held_warmth.value_or(infinity),
-             Vec3(held_velocity.value_or(Vec3::Constant(infinity))));
-  }
+  add_sources(hash, sources);
   hash.tag("obstacles");
   for (const Surface& surface : obstacles) add(hash, surface);
   hash.tag("forces");

@@ -47,6 +47,26 @@ double sum_at(const float* p, std::ptrdiff_t row, std::ptrdiff_t slice, __m256d 
   return _mm_cvtsd_f64(value) + _mm_cvtsd_f64(_mm_unpackhi_pd(value, value));
 }
 
+// The part of a ray in one voxel.
+struct Crossing {
+  __m256d cell;
+  double enter, leave;
+  std::ptrdiff_t index;
+  bool inner;  // all eight samples are the grid's own
+};
+
+// Sum of the density at ray parameters a and b in a voxel at the border, some of whose samples are not the grid's.
+double sum_at_border(const VoxelGrid& grid, __m256d cell, __m256d shift, const Vec3& velocity, double a, double b) {
+  alignas(32) double at[4], s[4];
+  _mm256_store_pd(at, cell);
+  _mm256_store_pd(s, shift);
+  const Voxel v = border_voxel(grid, int(at[0]), int(at[1]), int(at[2]));
+  const auto value = [&](double t) {
+    return v.at(s[0] + t * velocity[0], s[1] + t * velocity[1], s[2] + t * velocity[2]);
+  };
+  return value(a) + value(b);
+}
+
 }  // namespace
 
 double density_integral(const VoxelGrid& grid, const Ray& ray, Interval t) {
@@ -65,12 +85,6 @@ double density_integral(const VoxelGrid& grid, const Ray& ray, Interval t) {
 
   // Voxels are found some way ahead of being read, so that their samples have time to arrive from the outer caches:
   // a ray across a large grid waits for little else.
-  struct Crossing {
-    __m256d cell;
-    double enter, leave;
-    std::ptrdiff_t index;
-    bool inner;
-  };
   constexpr int most = 24;
   Crossing crossings[most];
   const float* values = grid.values.data();
@@ -99,18 +113,10 @@ double density_integral(const VoxelGrid& grid, const Ray& ray, Interval t) {
       const double length = c.leave - c.enter;
       const double a = c.enter + gauss * length, b = c.leave - gauss * length;
       const __m256d shift = _mm256_sub_pd(origin, c.cell);
-      if (c.inner) {
+      if (c.inner)
         integral += 0.5 * length * sum_at(values + c.index, row, slice, shift, direction, a, b);
-      } else {
-        alignas(32) double at[4], s[4];
-        _mm256_store_pd(at, c.cell);
-        _mm256_store_pd(s, shift);
-        const Voxel v = border_voxel(grid, int(at[0]), int(at[1]), int(at[2]));
-        const auto value = [&, velocity = velocity](double t) {
-          return v.at(s[0] + t * velocity[0], s[1] + t * velocity[1], s[2] + t * velocity[2]);
-        };
-        integral += 0.5 * length * (value(a) + value(b));
-      }
+      else
+        integral += 0.5 * length * sum_at_border(grid, c.cell, shift, velocity, a, b);
     }
   }
   return integral;

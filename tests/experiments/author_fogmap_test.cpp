@@ -10,6 +10,7 @@
 #include "scene/media/fogmap.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace author_fogmap_test {
 
@@ -34,12 +35,7 @@ double sum(const DrawnFogmap& drawn) {
 }
 
 std::string refusal(const TemporaryFolder& folder, const std::string& operations) {
-  try {
-    run(folder, operations);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { run(folder, operations); });
 }
 
 const std::string stroke =

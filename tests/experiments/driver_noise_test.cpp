@@ -6,10 +6,12 @@
 #include "experiments/driver/run.h"
 #include "scene/renderer.h"
 #include "tests/experiments/small_project.h"
+#include "tests/texts.h"
 
 namespace driver_noise_test {
 
 using namespace airlight::experiments;
+using airlight::test::replaced;
 
 namespace {
 
@@ -73,12 +75,6 @@ const Measure& found(const Row& row, const std::string& metric) {
   for (const Measure& m : row.measures)
     if (m.name == metric) return m;
   throw std::runtime_error("no " + metric);
-}
-
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  const std::size_t at = text.find(old);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old.size(), by);
 }
 
 }  // namespace

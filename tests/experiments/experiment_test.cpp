@@ -4,11 +4,13 @@
 
 #include "scene/base/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace experiment_test {
 
 using namespace airlight::experiments;
 using airlight::TemporaryFolder;
+using airlight::test::replaced;
 using Catch::Contains;
 
 namespace {
@@ -44,18 +46,7 @@ std::string failure(const std::string& text, const std::string& profile = "quick
   const TemporaryFolder folder;
   folder.write("experiments/README.md", "");
   folder.write("experiments/g/e.toml", text);
-  try {
-    read_experiment(folder.path(), "g/e", profile);
-  } catch (const airlight::Error& error) {
-    return error.what();
-  }
-  return "no failure";
-}
-
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  const std::size_t at = text.find(old);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old.size(), by);
+  return airlight::test::message_of([&] { read_experiment(folder.path(), "g/e", profile); }, "no failure");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "scene/convert/residual_file.h"
 #include "scene/load/parts.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace fit_sequence_test {
 
@@ -167,15 +168,7 @@ TEST_CASE("a fit that no scene could read is refused before it begins", "[fit_se
 TEST_CASE("what a fit cannot go on with is told", "[fit_sequence]") {
   const Smoke smoke({0, 1});
   run(smoke.sequence);
-  const auto what = [](const FitSequence& s) {
-    try {
-      run(s);
-    } catch (const Error& error) {
-      CHECK(std::string(error.what()).find('\n') == std::string::npos);
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto what = [](const FitSequence& s) { return test::message_of([&] { run(s); }); };
   FitSequence other = smoke.sequence;
   SECTION("other options") {
     other.options.gaussians = 31;

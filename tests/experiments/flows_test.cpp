@@ -8,11 +8,13 @@
 #include "experiments/judging/flow_metrics.h"
 #include "scene/base/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace flows_test {
 
 using namespace airlight;
 using namespace airlight::experiments;
+using airlight::test::replaced;
 using Catch::Contains;
 
 namespace {
@@ -68,20 +70,9 @@ struct Project : TemporaryFolder {
   }
   std::string result(const char* name) const { return read_bytes((path() / "results/g/e" / name).string()); }
   std::string complaint() const {
-    try {
-      run();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "none";
+    return test::message_of([&] { run(); });
   }
 };
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
 
 double figure(const Row& row, const std::string& name) {
   const auto found = quantity(row, name);

@@ -57,8 +57,7 @@ TEST_CASE("every store of a residual holds it and says how large it is", "[resid
   CHECK(kB["nano_floats"] > kB["nano_eight_bits"]);
 }
 
-TEST_CASE("look-ups in a residual on the device are the processor's", "[residual][gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("look-ups in a residual on the device are the processor's", "[residual][gpu]") {
   const ResidualDecode probe;
   std::map<std::string, double> kB;
   for (const char* const store : {"bricks", "hash_tags", "hash_domain"}) {

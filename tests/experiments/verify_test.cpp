@@ -10,6 +10,7 @@
 #include "scene/base/error.h"
 #include "scene/math/types.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace verify_test {
 
@@ -31,15 +32,9 @@ struct TemporaryFile {
 std::string complaint(const std::string& text) {
   const TemporaryFile file(text);
   std::ostringstream out;
-  try {
-    verify({file.path}, "", VerifyProfile::quick, out);
-  } catch (const Error& e) {
-    CHECK(e.exit_code() == 2);
-    CHECK(std::string(e.what()).find(file.path) != std::string::npos);
-    CHECK(std::string(e.what()).find('\n') == std::string::npos);
-    return e.what();
-  }
-  return "no complaint";
+  const std::string says = test::message_of([&] { verify({file.path}, "", VerifyProfile::quick, out); }, file.path);
+  CHECK_THAT(says, Catch::Contains(file.path));
+  return says;
 }
 
 std::string fogshop_file(const std::string& entry) {

@@ -48,13 +48,11 @@ std::vector<std::string> names(const scene::Rendering& rendering) {
 
 }  // namespace
 
-TEST_CASE("a warm frame allocates nothing, waits once and brings down what is wanted", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
-  const Use use(*context);
+DEVICE_TEST_CASE("a warm frame allocates nothing, waits once and brings down what is wanted", "[gpu]") {
+  const Use use(context);
   const test::ShaderFolder shaders(numbering);
-  Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
-  Frame frame(*context);
+  Program program(context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
+  Frame frame(context);
 
   scene::Rendering all = draw(frame, program, {});
   CHECK(all.counters["allocations"] >= 3);  // two layers, the mapped buffer
@@ -90,17 +88,15 @@ TEST_CASE("a warm frame allocates nothing, waits once and brings down what is wa
   CHECK(frame.download.values<float>("two").empty());
 }
 
-TEST_CASE("a frame's buffers follow their size and hold poison where asked", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
-  const Use use(*context);
-  FrameBuffers buffers(*context);
-  const long before = context->traffic().allocations;
+DEVICE_TEST_CASE("a frame's buffers follow their size and hold poison where asked", "[gpu]") {
+  const Use use(context);
+  FrameBuffers buffers(context);
+  const long before = context.traffic().allocations;
   Buffer* first = &buffers.get("a", 64);
   CHECK(&buffers.get("a", 64) == first);
-  CHECK(context->traffic().allocations - before == 1);
+  CHECK(context.traffic().allocations - before == 1);
   CHECK(buffers.get("a", 128).bytes() == 128);
-  CHECK(context->traffic().allocations - before == 2);
+  CHECK(context.traffic().allocations - before == 2);
   buffers.poison();
   for (const float value : buffers.get("a", 128).download<float>()) CHECK(std::isnan(value));
   buffers.get("a", 128).clear();

@@ -35,15 +35,14 @@ void main() {
 
 }  // namespace
 
-TEST_CASE("every place is tried, and the one chosen works", "[gpu]") {
-  if (!test::device()) return;
+DEVICE_TEST_CASE("every place is tried, and the one chosen works", "[gpu]") {
   int working = 0;
   for (const Attempt& a : Context::try_everything()) {
     CHECK(a.failure.empty() != a.renderer.empty());
     working += a.failure.empty();
   }
   CHECK(working > 0);
-  const Context& context = Context::get();
+  CHECK(&context == &Context::get());
   CHECK(context.limits().storage_block >= std::size_t(1) << 24);
   CHECK(context.limits().groups[0] >= 65535);
   CHECK(context.description().find(context.renderer()) == 0);
@@ -106,21 +105,18 @@ TEST_CASE("a context that lacks something is known by it", "[gpu-choice]") {
   CHECK(load_gl(driver({}), gl) == "has OpenGL 4.3, expected 4.5");
 }
 
-TEST_CASE("the device cannot be changed once it is in use", "[gpu]") {
-  if (!test::device()) return;
+DEVICE_TEST_CASE("the device cannot be changed once it is in use", "[gpu]") {
   CHECK_THROWS_WITH(Context::choose_device("surfaceless"), Catch::Contains("in use already"));
   CHECK_THROWS_WITH(Context::choose_device(""), Catch::Contains("no name of a device"));
 }
 
-TEST_CASE("a program runs over a buffer, and only within it", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("a program runs over a buffer, and only within it", "[gpu]") {
   const ShaderFolder shaders(doubling);
-  const Use use(*context);
+  const Use use(context);
   std::vector<float> values(1000);
   for (int i = 0; i < 1000; ++i) values[i] = float(i);
-  Buffer buffer(*context, "values", values);
-  Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
+  Buffer buffer(context, "values", values);
+  Program program(context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
   program.set("count", 990);  // the rest is a guard zone; 1000 is no multiple of 64 either
   program.set("factor", 2.0);
   buffer.bind(0);
@@ -132,20 +128,18 @@ TEST_CASE("a program runs over a buffer, and only within it", "[gpu]") {
   for (int i = 0; i < 1000; ++i) CHECK(after[i] == (i < 990 ? 2.0f : 1.0f) * float(i));
 }
 
-TEST_CASE("a shader's error names its file and line", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("a shader's error names its file and line", "[gpu]") {
   const ShaderFolder shaders("layout(local_size_x = 1) in;\n#include \"part.glsl\"\nvoid main() { wrong(); }\n");
   shaders.folder().write("part.glsl", "float right() { return 1; }\nfloat broken() { return nothing; }\n");
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {}), Catch::Contains("gpu/part.glsl:2:"));
+  CHECK_THROWS_WITH(Program(context, "test.comp", {}), Catch::Contains("gpu/part.glsl:2:"));
   shaders.folder().write("part.glsl", "float right() { return 1; }\n");
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {}), Catch::Contains("gpu/test.comp:3:"));
+  CHECK_THROWS_WITH(Program(context, "test.comp", {}), Catch::Contains("gpu/test.comp:3:"));
   shaders.folder().write("part.glsl", "#include \"missing.glsl\"\n");
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {}),
+  CHECK_THROWS_WITH(Program(context, "test.comp", {}),
                     Catch::Contains("gpu/part.glsl:1: no shader") && Catch::Contains("missing.glsl"));
   // The context survives all of it.
   shaders.folder().write("test.comp", doubling);
-  CHECK_NOTHROW(Program(*context, "test.comp", {}));
+  CHECK_NOTHROW(Program(context, "test.comp", {}));
 }
 
 TEST_CASE("errors of units in the last place are a whole number of them", "[gpu]") {
@@ -169,29 +163,25 @@ TEST_CASE("messages of compilers are translated", "[gpu]") {
   CHECK(with_file_names("link error 7:x", source) == "link error 7:x");
 }
 
-TEST_CASE("misuse of the GPU is an error", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
-  const Use use(*context);
+DEVICE_TEST_CASE("misuse of the GPU is an error", "[gpu]") {
+  const Use use(context);
   const ShaderFolder shaders(doubling);
-  Program program(*context, "test.comp", {});
+  Program program(context, "test.comp", {});
   CHECK_THROWS_WITH(program.set("no_such_uniform", 1), Catch::Contains("no uniform 'no_such_uniform'"));
-  context->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 9999, 0);
-  CHECK_THROWS_WITH(context->check("this"), Catch::Contains("this failed on " + context->renderer()));
-  CHECK_NOTHROW(context->check("once only"));
-  const std::string too_many = std::to_string(2 * context->limits().invocations);
-  CHECK_THROWS_AS(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}), Unavailable);
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {{"LOCAL_SIZE_X", too_many}}),
+  context.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 9999, 0);
+  CHECK_THROWS_WITH(context.check("this"), Catch::Contains("this failed on " + context.renderer()));
+  CHECK_NOTHROW(context.check("once only"));
+  const std::string too_many = std::to_string(2 * context.limits().invocations);
+  CHECK_THROWS_AS(Program(context, "test.comp", {{"LOCAL_SIZE_X", too_many}}), Unavailable);
+  CHECK_THROWS_WITH(Program(context, "test.comp", {{"LOCAL_SIZE_X", too_many}}),
                     Catch::Contains(too_many + " invocations") && Catch::Contains("offers at most"));
-  CHECK_THROWS_AS(program.dispatch(1, context->limits().groups[1] + 1), Error);
-  CHECK_THROWS_WITH(Buffer(*context, "giant", context->limits().storage_block + 1),
+  CHECK_THROWS_AS(program.dispatch(1, context.limits().groups[1] + 1), Error);
+  CHECK_THROWS_WITH(Buffer(context, "giant", context.limits().storage_block + 1),
                     Catch::Contains("'giant' needs") && Catch::Contains("offers at most"));
-  CHECK_THROWS_AS(Buffer(*context, "giant", context->limits().storage_block + 1), Unavailable);
+  CHECK_THROWS_AS(Buffer(context, "giant", context.limits().storage_block + 1), Unavailable);
 }
 
-TEST_CASE("more storage blocks than the device has are refused in one line", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("more storage blocks than the device has are refused in one line", "[gpu]") {
   const auto with_blocks = [](int count) {
     std::string text = "layout(local_size_x = 1) in;\n", body;
     for (int i = 0; i < count; ++i) {
@@ -200,30 +190,28 @@ TEST_CASE("more storage blocks than the device has are refused in one line", "[g
     }
     return text + "void main() { " + body + "}\n";
   };
-  const int most = context->limits().storage_blocks;
+  const int most = context.limits().storage_blocks;
   {
     const ShaderFolder shaders(with_blocks(most));
-    CHECK_NOTHROW(Program(*context, "test.comp", {}));
+    CHECK_NOTHROW(Program(context, "test.comp", {}));
   }
   const ShaderFolder shaders(with_blocks(most + 1));
-  CHECK_THROWS_AS(Program(*context, "test.comp", {}), Unavailable);
-  CHECK_THROWS_WITH(Program(*context, "test.comp", {}),
+  CHECK_THROWS_AS(Program(context, "test.comp", {}), Unavailable);
+  CHECK_THROWS_WITH(Program(context, "test.comp", {}),
                     Catch::Contains(fmt::format("{} storage blocks", most + 1)) && !Catch::Contains("\n"));
-  CHECK_NOTHROW(context->check("nothing is left of it"));
+  CHECK_NOTHROW(context.check("nothing is left of it"));
 }
 
-TEST_CASE("stages are timed by the device", "[gpu]") {
-  Context* context = test::device();
-  if (!context) return;
-  const Use use(*context);
+DEVICE_TEST_CASE("stages are timed by the device", "[gpu]") {
+  const Use use(context);
   const ShaderFolder shaders(doubling);
-  const Buffer buffer(*context, "values", std::vector<float>(1 << 20, 1.0f));
-  Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
+  const Buffer buffer(context, "values", std::vector<float>(1 << 20, 1.0f));
+  Program program(context, "test.comp", {{"LOCAL_SIZE_X", "64"}});
   program.set("count", 1 << 20);
   program.set("factor", 1.0);
   buffer.bind(0);
   program.dispatch(1 << 20);
-  StageTimer timer(*context);
+  StageTimer timer(context);
   program.dispatch(1 << 20);
   timer.stage("one");
   timer.stage("nothing");

@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching.h"
+#include "gpu/fogshop/fogshop.h"
 #include "gpu/frame.h"
-#include "gpu/ray_marcher/ray_marcher_gpu.h"
-#include "gpu/shadow_planes/shadow_planes_gpu.h"
-#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
+#include "gpu/ray_marcher/ray_marcher.h"
+#include "gpu/shadow_planes/shadow_planes.h"
+#include "gpu/wavelet_fog/wavelet_fog.h"
 #include "tests/gpu/device.h"
 #include "tests/pictures.h"
 
@@ -32,13 +32,12 @@ double sum(const std::vector<scene::StageTime>& times) {
 
 }  // namespace
 
-TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][slow][thorough]") {
-  if (!gpu::test::device()) return;
-  const gpu::FogshopGpu fogshop;
-  const gpu::ShadowPlanesGpu planes;
-  const gpu::RayMarcherGpu marcher;
-  const gpu::WaveletFogGpu fogmaps;
-  const gpu::CompensatedRayMarchingGpu smoke;
+DEVICE_TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][slow][thorough]") {
+  const gpu::fogshop::Fogshop fogshop;
+  const gpu::shadow_planes::ShadowPlanes planes;
+  const gpu::ray_marcher::RayMarcher marcher;
+  const gpu::wavelet_fog::WaveletFog fogmaps;
+  const gpu::compensated_ray_marching::CompensatedRayMarching smoke;
   const Given printed{
       {"evaluator", "polynomial"}, {"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}};
   const std::vector<Case> cases{

@@ -298,8 +298,8 @@ TEST_CASE("table of what methods leave out", "[.left_out_table]") {
 
 TEST_CASE("methods leave out what the table says a scene does not need", "[left_out]") { check_all(false); }
 
-TEST_CASE("methods on the device leave out what the table says a scene does not need", "[left_out][gpu][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("methods on the device leave out what the table says a scene does not need",
+                 "[left_out][gpu][thorough]") {
   check_all(true);
 }
 

@@ -71,8 +71,9 @@ FIT = "scene/convert/gaussian_fit.cpp", "scene/convert/fitted_sequence_test.cpp"
 PLACEMENT = "scene/convert/fit_placement.cpp", "scene/convert/gaussian_fit_test.cpp"
 RESIDUAL = "scene/convert/residual.cpp", "scene/convert/residual_test.cpp"
 PROJECTION = "scene/convert/legendre_projection.cpp", "scene/convert/legendre_projection_test.cpp"
-PRODUCTS = "scene/math/sh_product.cpp", "methods/compensated_ray_marching/harmonics_test.cpp"
+PRODUCTS = "scene/math/sh_product.cpp", "experiments/verify_test.cpp"
 ORDINATES = "methods/compensated_ray_marching/discrete_ordinates.cpp", "methods/compensated_ray_marching/discrete_ordinates_test.cpp"
+ORDINATE_SWEEP = "methods/compensated_ray_marching/ordinate_sweep.cpp", "methods/compensated_ray_marching/discrete_ordinates_test.cpp"
 WAVELETS = "methods/wavelet_fog/filters.cpp", "methods/wavelet_fog/decomposition_test.cpp"
 LEVELS = "methods/wavelet_fog/levels.cpp", "methods/wavelet_fog/decomposition_test.cpp"
 BLOCKS = "methods/wavelet_fog/blocks.cpp", "methods/wavelet_fog/decomposition_test.cpp"
@@ -323,18 +324,18 @@ MUTANTS = [
     bug("moments of half a part of the way", PATHS, "+= share * piece", "+= half * piece",
         "wavelet fog: tables know factors of the height that are straight along a cell"),
     # Discrete ordinates, harmonics, fits, residuals, projection
-    bug("a whole cell before the first node", ORDINATES, "        if (first) {\n          depth = 0.5 * way.step * extinct;", "        if (first) {\n          depth = way.step * extinct;",
+    bug("a whole cell before the first node", ORDINATE_SWEEP, "w.depth = 0.5 * way.step * extinct;", "w.depth = way.step * extinct;",
         "discrete ordinates: slabs"),
     bug("all bands scatter as the mean does", ORDINATES, "phase_[std::size_t(std::sqrt(double(c % bands)))]", "phase_[0]", "discrete ordinates: slabs"),
-    bug("thin cells with a wrong series", ORDINATES, "t * (0.5 - t * (1. / 3 - t * (1. / 8", "t * (0.5 - t * (1. / 2 - t * (1. / 8",
+    bug("thin cells with a wrong series", ORDINATE_SWEEP, "t * (0.5 - t * (1. / 3 - t * (1. / 8", "t * (0.5 - t * (1. / 2 - t * (1. / 8",
         "discrete ordinates: thin smoke in light that grows along a line"),
     bug("the error as if nothing scattered again", ORDINATES, " / std::max(least, 1e-6)", "", "discrete ordinates: the error that is reported bounds that of slow convergence"),
-    bug("sources beyond a face are those before it", ORDINATES, "(1.5 * here - 0.5 * down)", "here",
+    bug("sources beyond a face are those before it", ORDINATE_SWEEP, "(1.5 * here - 0.5 * down)", "here",
         "discrete ordinates: thin smoke in light that grows along a line"),
     bug("products of two equal indices are even", PRODUCTS, "product[i] += value * (h[i] * f[k] + h[k] * f[i]);\n      product[k]",
-        "product[i] += value * (2 * h[i] * f[k]);\n      product[k]", "harmonics of the publication: its zonal functions, products, depths"),
-    bug("products without the highest bands", PRODUCTS, "c.l > a.l + b.l", "c.l >= a.l + b.l", "harmonics of the publication: its zonal functions, products, depths"),
-    bug("products by too few nodes", PRODUCTS, "(3 * order) / 2 + 1", "order", "harmonics of the publication: its zonal functions, products, depths"),
+        "product[i] += value * (2 * h[i] * f[k]);\n      product[k]", "deterministic vectors verify at their stated tolerance"),
+    bug("products without the highest bands", PRODUCTS, "c.l > a.l + b.l", "c.l >= a.l + b.l", "deterministic vectors verify at their stated tolerance"),
+    bug("products by too few nodes", PRODUCTS, "(3 * order) / 2 + 1", "order", "deterministic vectors verify at their stated tolerance"),
     bug("a warm start in densities of the smoke", FIT, "g.amplitude / greatest_}", "g.amplitude}",
         "the next frame begins with the Gaussians of the frame before, whatever its greatest density"),
     bug("deletion by the square of the width", FIT, "std::pow(gaussians_[i].width, 3)", "std::pow(gaussians_[i].width, 2)",

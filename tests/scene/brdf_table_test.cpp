@@ -13,6 +13,7 @@
 #include "scene/math/random.h"
 #include "scene/scene.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace brdf_table_test {
 
@@ -28,12 +29,7 @@ std::vector<Rgb> constant(int thetas, int phis, double value) {
 }
 
 std::string message(int thetas, int phis, const std::vector<Rgb>& values) {
-  try {
-    BrdfTable(thetas, phis, values);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { BrdfTable(thetas, phis, values); });
 }
 
 bool says(const std::string& what, const std::vector<std::string>& parts) {
@@ -208,12 +204,7 @@ TEST_CASE("scenes with a tabulated material", "[load]") {
   CHECK(same.hash == scene.hash);
   CHECK(other.hash != scene.hash);
   const auto what = [&](const std::string& material) -> std::string {
-    try {
-      load(material);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return test::message_of([&] { load(material); });
   };
   says(what("{ type = 'tabulated' }"), {"s.toml:7:", "file"});
   says(what("{ type = 'tabulated', file = 'none.brdf' }"), {"s.toml:7:", "none.brdf"});

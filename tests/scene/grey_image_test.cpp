@@ -9,6 +9,7 @@
 #include "scene/base/error.h"
 #include "scene/film/film.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace grey_image_test {
 
@@ -33,12 +34,7 @@ std::string png(std::uint32_t format, const std::vector<png_byte>& bytes) {
 }
 
 std::string refusal(const std::string& path, const std::string& channel = "", std::size_t most = 1000) {
-  try {
-    read_grey_image(path, channel, most);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { read_grey_image(path, channel, most); });
 }
 
 }  // namespace

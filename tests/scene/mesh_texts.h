@@ -11,6 +11,7 @@
 #include "scene/base/error.h"
 #include "scene/geometry/mesh_io.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace airlight::test {
 
@@ -70,26 +71,14 @@ inline std::string binary_ply_cube(bool big_endian) {
   return bytes;
 }
 
-inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
-
 // What read_mesh says about a file of this name and content.
 inline std::string message_for(const std::string& name, const std::string& content) {
   static const TemporaryFolder folder;  // one for all: making them takes longer than reading
   const std::string path = folder.file(name);
   write_bytes(path, content);
-  try {
-    scene::read_mesh(path);
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    CHECK(text.rfind(path, 0) == 0);
-    CHECK(text.find('\n') == std::string::npos);
-    return text.substr(path.size());
-  }
-  return "no error";
+  const std::string text = message_of([&] { scene::read_mesh(path); }, path + "no error");
+  CHECK(text.rfind(path, 0) == 0);
+  return text.substr(path.size());
 }
 
 }  // namespace airlight::test

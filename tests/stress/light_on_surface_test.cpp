@@ -1,9 +1,9 @@
 // A light exactly on a surface: it lights the side that the normal faces, in every renderer (scene/light/light_on_surface.h).
 #include <Eigen/Geometry>
 
-#include "gpu/fogshop/fogshop_gpu.h"
-#include "gpu/ray_marcher/ray_marcher_gpu.h"
-#include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/fogshop/fogshop.h"
+#include "gpu/ray_marcher/ray_marcher.h"
+#include "gpu/shadow_planes/shadow_planes.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "tests/gpu/device.h"
@@ -107,10 +107,10 @@ TEST_CASE("light on a surface: all renderers light the side of the normal", "[st
           Approx(mean_of(fogshop::Fogshop(), grey_before, "mean")).epsilon(1e-3));
     CHECK(mean_of(*truth, grey, "surface") == Approx(lit).epsilon(1e-2).margin(1e-6));
     if (!gpu::test::device()) continue;
-    CHECK(mean_of(gpu::FogshopGpu(), grey, "mean") ==
-          Approx(mean_of(gpu::FogshopGpu(), grey_before, "mean")).epsilon(1e-3));
-    CHECK(airlight_of(gpu::RayMarcherGpu(), on, steps) == Approx(expected).epsilon(5e-3));
-    CHECK(airlight_of(gpu::ShadowPlanesGpu(), on) == Approx(expected).epsilon(1e-3));
+    CHECK(mean_of(gpu::fogshop::Fogshop(), grey, "mean") ==
+          Approx(mean_of(gpu::fogshop::Fogshop(), grey_before, "mean")).epsilon(1e-3));
+    CHECK(airlight_of(gpu::ray_marcher::RayMarcher(), on, steps) == Approx(expected).epsilon(5e-3));
+    CHECK(airlight_of(gpu::shadow_planes::ShadowPlanes(), on) == Approx(expected).epsilon(1e-3));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "scene/base/error.h"
+#include "tests/pictures.h"
 #include "tests/reference/path_tracer/scenes.h"
 
 namespace airlight::stress {
@@ -24,6 +25,7 @@ using path_tracer::test::medium;
 using path_tracer::test::ray_of;
 using path_tracer::test::scene_of;
 using path_tracer::test::white;
+using test::all_finite;
 
 inline constexpr int comparisons = 200;
 inline const double limit = path_tracer::test::threshold(1e-3, comparisons);
@@ -58,13 +60,6 @@ inline scene::Film picture(const std::string& name, std::shared_ptr<const scene:
                            const Given& given = {}) {
   const auto renderer = renderer_named(name);
   return renderer->prepare(std::move(scene), scene::Settings(renderer->settings(), given), {})->render(view, {}).film;
-}
-
-inline bool all_finite(const scene::Film& film) {
-  for (const auto& [name, values] : film.layers)
-    for (const float v : values)
-      if (!std::isfinite(v)) return false;
-  return true;
 }
 
 // A small picture from `position` towards `target`.

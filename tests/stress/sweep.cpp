@@ -13,11 +13,13 @@
 #include "scene/base/error.h"
 #include "scene/film/film.h"
 #include "scene/scene.h"
+#include "tests/pictures.h"
 
 namespace airlight::stress {
 namespace {
 
 using scene::Film;
+using test::all_finite;
 
 // How far apart two pictures of one renderer may be, relative to the brightest pixel: its arithmetic. And from the
 // truth: what its page says of it.
@@ -132,13 +134,6 @@ std::string difference(const Film& film, const Film& expected, double ratio, con
   if (noisy && sum > 1e-36 && !(std::abs(found - sum) < 0.5 * sum))
     return fmt::format("a sum of {:.3g} where {:.3g} is expected", found, sum);
   return "";
-}
-
-bool all_finite(const Film& film) {
-  for (const auto& [name, values] : film.layers)
-    for (const float v : values)
-      if (!std::isfinite(v)) return false;
-  return true;
 }
 
 // The truth, of one scattering or of all, kept: many cases begin at one scene.

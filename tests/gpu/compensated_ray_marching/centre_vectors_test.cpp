@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/compensated_ray_marching/centre_sources_on_device.h"
+#include "gpu/compensated_ray_marching/centre_sources.h"
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
@@ -20,17 +20,12 @@ using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
 using gpu::Buffer;
-using gpu::smoke::CentreTables;
-using gpu::smoke::Definitions;
+using gpu::compensated_ray_marching::CentreTables;
+using gpu::compensated_ray_marching::Definitions;
 
 namespace {
 
 std::vector<json> of_kind(const std::string& kind) { return vectors_of("compensated_ray_marching", kind); }
-std::vector<double> numbers(const json& list) {
-  std::vector<double> values;
-  for (const json& v : list) values.push_back(number(v));
-  return values;
-}
 void check_close(const std::vector<double>& got, const std::vector<double>& expected, const json& v) {
   REQUIRE(got.size() == expected.size());
   for (std::size_t i = 0; i < got.size(); ++i) {
@@ -93,7 +88,7 @@ class Steps {
     centres_ = std::make_unique<Buffer>(context, "centres", values);
     nothing_ = std::make_unique<Buffer>(context, "no spheres", 4);
     Definitions definitions = tables_.definitions();
-    using namespace gpu::smoke;
+    using namespace gpu::compensated_ray_marching;
     for (const auto& [name, at] : {std::pair("CENTRE_TABLES", at::centre_tables),
                                    {"CENTRES", at::centres},
                                    {"SPHERES", at::spheres},
@@ -110,7 +105,7 @@ class Steps {
     return first(run(0, both));
   }
   std::vector<double> about(std::vector<double> zonal, const Vec3& axis) {
-    for (std::size_t l = 0; l < zonal.size(); ++l) zonal[l] *= gpu::smoke::about_axis_factor(int(l));
+    for (std::size_t l = 0; l < zonal.size(); ++l) zonal[l] *= gpu::compensated_ray_marching::about_axis_factor(int(l));
     program_->set_double("axis", axis);
     return first(run(1, zonal));
   }
@@ -135,8 +130,8 @@ class Steps {
     const Buffer in(context_, "given", given), result(context_, "result", 8 * 2 * bands_);
     tables_.bind(*program_);
     tables_.bind_terms();
-    centres_->bind(gpu::smoke::at::centres);
-    nothing_->bind(gpu::smoke::at::spheres);
+    centres_->bind(gpu::compensated_ray_marching::at::centres);
+    nothing_->bind(gpu::compensated_ray_marching::at::spheres);
     in.bind(4);
     result.bind(1);
     program_->set("what", what);
@@ -153,12 +148,11 @@ class Steps {
 
 }  // namespace
 
-TEST_CASE("products and rotations of harmonics on the device are the oracle's", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("products and rotations of harmonics on the device are the oracle's",
+                 "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(steps);
-  Steps on_device(*context, 4, Transmittance::series, 3, {}, true);
+  Steps on_device(context, 4, Transmittance::series, 3, {}, true);
   for (const json& v : of_kind("sh_triple_product"))
     check_close(on_device.product(numbers(v.at("input").at("f")), numbers(v.at("input").at("g"))),
                 numbers(v.at("expected")), v);
@@ -175,7 +169,7 @@ TEST_CASE("products and rotations of harmonics on the device are the oracle's", 
   for (const json& v : of_kind("sh_triple_counts")) {
     const json& orders = v.at("input").at("orders");
     for (std::size_t i = 0; i < orders.size(); ++i)
-      CHECK(Steps(*context, int(number(orders[i])), Transmittance::series, 3, {}).terms_of_products() ==
+      CHECK(Steps(context, int(number(orders[i])), Transmittance::series, 3, {}).terms_of_products() ==
             number(v.at("expected").at("nonzero")[i]));
   }
   // An object hides light from outside of it alone: angles beyond pi/2 are those of Gaussians, which are tabulated by distance here.
@@ -189,10 +183,8 @@ TEST_CASE("products and rotations of harmonics on the device are the oracle's", 
   CHECK(angles == 3);
 }
 
-TEST_CASE("depths of Gaussians in harmonics on the device are the oracle's", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("depths of Gaussians in harmonics on the device are the oracle's", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(steps);
   for (const json& v : of_kind("rbf_zh_optical_depth")) {
     const json& in = v.at("input");
@@ -200,7 +192,7 @@ TEST_CASE("depths of Gaussians in harmonics on the device are the oracle's", "[g
                  cut = in.at("cut").is_null() ? infinity : number(in.at("cut"));
     const int order = in.at("order");
     const Vec3 axis = Vec3(1, -2, 2) / 3;
-    Steps on_device(*context, order, Transmittance::series, cut, {{d * radius * axis, radius, 1}});
+    Steps on_device(context, order, Transmittance::series, cut, {{d * radius * axis, radius, 1}});
     std::vector<double> depth = on_device.passed(Point3::Zero(), 1).minus_depth, expected = numbers(v.at("expected"));
     for (double& value : depth) value = -value;
     CAPTURE(v.at("id").get<std::string>());
@@ -217,11 +209,9 @@ TEST_CASE("depths of Gaussians in harmonics on the device are the oracle's", "[g
   }
 }
 
-TEST_CASE("exponentials in harmonics on the device go as near the oracle as the processor's",
-          "[gpu][compensated_ray_marching][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("exponentials in harmonics on the device go as near the oracle as the processor's",
+                 "[gpu][compensated_ray_marching][thorough]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(steps);
   for (const json& v : of_kind("sh_exponential")) {
     const json &in = v.at("input"), &expected = v.at("expected");
@@ -241,7 +231,7 @@ TEST_CASE("exponentials in harmonics on the device go as near the oracle as the 
                    ? squared_exponential(f, linear_exponential(4), squaring_threshold)
                    : series_exponential(f);
       };
-      Steps::Passed got = Steps(*context, 4, kind, 3, smoke).passed(Point3::Zero(), sigma_t);
+      Steps::Passed got = Steps(context, 4, kind, 3, smoke).passed(Point3::Zero(), sigma_t);
       for (double& value : got.minus_depth) value *= sigma_t;
       const std::vector<double> depth = numbers(expected.at("minus_depth_vector"));
       CAPTURE(v.at("id").get<std::string>(), int(kind), distance(of(depth), oracle));
@@ -255,11 +245,9 @@ TEST_CASE("exponentials in harmonics on the device go as near the oracle as the 
 }
 
 // What the device scatters of a light that nothing dims: convolution with the phase function, in single precision.
-TEST_CASE("light is convolved with the phase function on the device as the oracle's is",
-          "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("light is convolved with the phase function on the device as the oracle's is",
+                 "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const auto scattered = [&](double g, const std::vector<double>& light, const Vec3& direction) {
     scene::Medium medium;
     scene::GaussianSum sum;
@@ -273,8 +261,9 @@ TEST_CASE("light is convolved with the phase function on the device as the oracl
     options.variant = Options::Variant::paper;
     options.paper.multiple = Options::Paper::Multiple::none;
     options.paper.transmittance = Transmittance::series;
-    gpu::StageTimer timer(*context);
-    gpu::smoke::CentreSourcesOnDevice centres(*context, sum, medium, {}, true, nullptr, {}, options, timer, {1, {}});
+    gpu::StageTimer timer(context);
+    gpu::compensated_ray_marching::CentreSourcesOnDevice centres(context, sum, medium, {}, true, nullptr, {}, options,
+                                                                 timer, {1, {}});
     std::vector<Rgb> bands;
     for (const double b : light) bands.push_back(Rgb::Constant(b));
     centres.light(bands, timer, {1, {}});
@@ -308,11 +297,9 @@ TEST_CASE("light is convolved with the phase function on the device as the oracl
   }
 }
 
-TEST_CASE("the diffusion system on the device is the oracle's", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
-  namespace at = gpu::smoke::at;
+DEVICE_TEST_CASE("the diffusion system on the device is the oracle's", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
+  namespace at = gpu::compensated_ray_marching::at;
   for (const json& v : of_kind("collocation_matrix")) {
     const json& in = v.at("input");
     const double sigma_t = number(in.at("sigma_t")), albedo = number(in.at("albedo")), g = number(in.at("g")),
@@ -324,15 +311,15 @@ TEST_CASE("the diffusion system on the device is the oracle's", "[gpu][compensat
     std::vector<double> single(3 * 4 * n, 0.0);  // [channel][band][centre]
     for (std::size_t b = 0; b < 4; ++b)
       for (std::size_t i = 0; i < n; ++i) single[b * n + i] = number(in.at("Jss_sh_order2")[i][b]);
-    const CentreTables tables(*context, 2, Transmittance::series, infinity, false);
+    const CentreTables tables(context, 2, Transmittance::series, infinity, false);
     const auto program_of = [&](const char* file, const char* sums) -> gpu::Program& {
       Definitions definitions = tables.definitions();
       definitions["SUMS"] = sums;
-      return gpu::smoke::program(*context, file, 64, 1, definitions);
+      return gpu::compensated_ray_marching::program(context, file, 64, 1, definitions);
     };
-    const Buffer centres(*context, "centres", gaussians), sources(*context, "sources", single),
-        matrix(*context, "matrix", 8 * n * n), scales(*context, "scales", 8 * n),
-        vectors(*context, "vectors", 8 * 6 * n), systems(*context, "systems", 64);
+    const Buffer centres(context, "centres", gaussians), sources(context, "sources", single),
+        matrix(context, "matrix", 8 * n * n), scales(context, "scales", 8 * n), vectors(context, "vectors", 8 * 6 * n),
+        systems(context, "systems", 64);
     gpu::Program& of_matrix = program_of("diffusion_matrix", "5");
     centres.bind(at::centres);
     matrix.bind(at::matrix);

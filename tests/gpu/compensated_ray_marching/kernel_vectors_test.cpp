@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/compensated_ray_marching/residual_on_device.h"
-#include "gpu/compensated_ray_marching/smoke_density.h"
+#include "gpu/compensated_ray_marching/marched_smoke.h"
+#include "gpu/compensated_ray_marching/residual_store.h"
 #include "gpu/view_uniforms.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/convert/residual.h"
@@ -19,7 +19,7 @@ using namespace airlight;
 using namespace airlight::test;
 using Eigen::Vector3i;
 using gpu::Buffer;
-using gpu::compensated::ResidualOnDevice;
+using gpu::compensated_ray_marching::ResidualOnDevice;
 using Membership = ResidualOnDevice::Membership;
 
 namespace {
@@ -49,10 +49,8 @@ scene::Medium medium_of(scene::VoxelGrid grid, double sigma_t) {
 
 }  // namespace
 
-TEST_CASE("the oracle's residuals come back from hashes and bricks on the device", "[gpu][residual]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("the oracle's residuals come back from hashes and bricks on the device", "[gpu][residual]") {
+  const gpu::Use use(context);
   int seen = 0;
   for (const json& v : of_kind("hash_round_trip")) {
     const json &in = v.at("input"), &expected = v.at("expected");
@@ -64,30 +62,28 @@ TEST_CASE("the oracle's residuals come back from hashes and bricks on the device
     }
     const scene::ResidualLevels levels = scene::quantised(domain, residual, {in.at("threshold"), {}});
     const auto hash = scene::perfect_hash(domain, scene::hashed_voxels(domain, levels.values));
-    const ResidualOnDevice kinds[] = {{*context, domain, scene::apron_bricks_of(domain, levels.values)},
-                                      {*context, domain, hash, Membership::tags},
-                                      {*context, domain, hash, Membership::domain}};
+    const ResidualOnDevice kinds[] = {{context, domain, scene::apron_bricks_of(domain, levels.values)},
+                                      {context, domain, hash, Membership::tags},
+                                      {context, domain, hash, Membership::domain}};
     CAPTURE(v.at("id").get<std::string>());
     for (const ResidualOnDevice& on_device : kinds) {
-      const std::vector<int> all = levels_on_device(*context, on_device, Vector3i::Zero(), domain);
+      const std::vector<int> all = levels_on_device(context, on_device, Vector3i::Zero(), domain);
       CHECK(std::count_if(all.begin(), all.end(), [](int level) { return level != 0; }) ==
             number(expected.at("count")));
       for (std::size_t i = 0; i < in.at("positions").size(); ++i) {
-        const int level = level_at(*context, on_device, integers(in.at("positions")[i]));
+        const int level = level_at(context, on_device, integers(in.at("positions")[i]));
         CHECK(level == expected.at("quantised")[i].get<int>());
         CHECK(levels.step * level == Approx(number(expected.at("decoded")[i])).epsilon(1e-12).margin(1e-15));
       }
-      for (const json& p : in.at("absent_positions")) CHECK(level_at(*context, on_device, integers(p)) == 0);
+      for (const json& p : in.at("absent_positions")) CHECK(level_at(context, on_device, integers(p)) == 0);
     }
     ++seen;
   }
   CHECK(seen == 3);
 }
 
-TEST_CASE("addresses of a perfect hash on the device are those of the definition", "[gpu][residual]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("addresses of a perfect hash on the device are those of the definition", "[gpu][residual]") {
+  const gpu::Use use(context);
   for (const json& v : of_kind("psh_address")) {
     scene::PerfectHash hash;
     hash.m = v.at("input").at("m");
@@ -106,15 +102,13 @@ TEST_CASE("addresses of a perfect hash on the device are those of the definition
     hash.values[where] = 77;
     hash.tags[where] = std::uint32_t(p[0] + 64 * (p[1] + 64 * p[2]));
     for (const Membership membership : {Membership::tags, Membership::domain})
-      CHECK(level_at(*context, {*context, hash.extent, hash, membership}, p) == 77);
+      CHECK(level_at(context, {context, hash.extent, hash, membership}, p) == 77);
   }
 }
 
-TEST_CASE("density between voxels and at their border on the device is the oracle's",
-          "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("density between voxels and at their border on the device is the oracle's",
+                 "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/smoke_density.glsl"
 layout(std430, binding = 1) readonly buffer Points { vec4 points[]; };
@@ -134,7 +128,7 @@ void main() {
       const scene::Medium medium = medium_of(grid, 1);
       const compensated_ray_marching::SmokeField field(medium, {});
       const Point3 middle(0.9, 1.1, 1.6);
-      const gpu::smoke::SmokeDensity density(*context, field, middle, false);
+      const gpu::compensated_ray_marching::SmokeDensity density(context, field, middle, false);
       std::vector<std::array<float, 4>> points;
       for (const json& p : in.at("points")) {
         const Vec3 sample =
@@ -142,10 +136,11 @@ void main() {
         const Eigen::Vector3f place = (sample_to_world(grid, sample) - middle).cast<float>();
         points.push_back({place[0], place[1], place[2], 0});
       }
-      gpu::smoke::Definitions definitions = density.definitions();
-      definitions.insert({{"AT_DENSITY", std::to_string(int(gpu::smoke::at::density))}, {"LOCAL_SIZE_X", "64"}});
-      gpu::Program program(*context, "test.comp", definitions);
-      const Buffer places(*context, "points", points), result(*context, "result", 4 * points.size());
+      gpu::compensated_ray_marching::Definitions definitions = density.definitions();
+      definitions.insert(
+          {{"AT_DENSITY", std::to_string(int(gpu::compensated_ray_marching::at::density))}, {"LOCAL_SIZE_X", "64"}});
+      gpu::Program program(context, "test.comp", definitions);
+      const Buffer places(context, "points", points), result(context, "result", 4 * points.size());
       density.bind(program);
       places.bind(1);
       result.bind(2);
@@ -159,10 +154,8 @@ void main() {
     }
 }
 
-TEST_CASE("harmonics on the device are the oracle's", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("harmonics on the device are the oracle's", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "common/spherical_harmonics.glsl"
 layout(std430, binding = 1) writeonly buffer Result { float result[]; };
@@ -176,8 +169,8 @@ void main() {
 )");
   for (const json& v : of_kind("sh_basis")) {
     const int order = v.at("input").at("order");
-    gpu::Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "1"}});
-    const Buffer result(*context, "result", 4 * std::size_t(order * order));
+    gpu::Program program(context, "test.comp", {{"LOCAL_SIZE_X", "1"}});
+    const Buffer result(context, "result", 4 * std::size_t(order * order));
     result.bind(1);
     program.set("sh_order", order);
     program.set("w", vec(v.at("input").at("direction")).normalized());
@@ -191,11 +184,9 @@ void main() {
 }
 
 // The march itself, of a source radiance that is given: one ray through a voxel that is all the smoke.
-TEST_CASE("slices of even smoke on the device add up to the oracle's sums",
-          "[gpu][compensated_ray_marching][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("slices of even smoke on the device add up to the oracle's sums",
+                 "[gpu][compensated_ray_marching][thorough]") {
+  const gpu::Use use(context);
   for (const json& v : of_kind("ray_march_homogeneous")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const double slice = number(in.at("step")), length = slice * number(in.at("slices")), J = number(in.at("J"));
@@ -206,15 +197,15 @@ TEST_CASE("slices of even smoke on the device add up to the oracle's sums",
     grid.clamp_border = true;
     const scene::Medium medium = medium_of(grid, number(in.at("sigma_t")));
     const compensated_ray_marching::SmokeField field(medium, {});
-    const gpu::smoke::SmokeDensity density(*context, field, Point3::Zero(), false);
+    const gpu::compensated_ray_marching::SmokeDensity density(context, field, Point3::Zero(), false);
     scene::View view{scene::look_at({0, 0, 2 * length}, {0, 0, 0}, Vec3::UnitY()), 1, 1};
-    const Buffer ranges(*context, "ranges", 16), airlight(*context, "airlight", 12), column(*context, "column", 4),
-        logarithms(*context, "logarithms", std::vector<float>(4, float(std::log(J))));
-    using namespace gpu::smoke;
-    gpu::Program& find = program(*context, "ranges", 8, 8, density.definitions());
+    const Buffer ranges(context, "ranges", 16), airlight(context, "airlight", 12), column(context, "column", 4),
+        logarithms(context, "logarithms", std::vector<float>(4, float(std::log(J))));
+    using namespace gpu::compensated_ray_marching;
+    gpu::Program& find = program(context, "ranges", 8, 8, density.definitions());
     auto definitions = density.definitions();
     definitions["SCATTERS"] = "1";
-    gpu::Program& march = program(*context, "march", 8, 8, definitions);
+    gpu::Program& march = program(context, "march", 8, 8, definitions);
     for (const auto& [weight, name] : {std::pair(0, "paper_sum_without_background"), {1, "exact_without_background"}}) {
       CAPTURE(v.at("id").get<std::string>(), name);
       using compensated_ray_marching::SliceWeight;

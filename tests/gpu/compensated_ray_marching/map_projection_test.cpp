@@ -13,7 +13,7 @@ namespace map_projection_test {
 using namespace airlight;
 using namespace airlight::test;
 using gpu::Buffer;
-using gpu::smoke::MapProjection;
+using gpu::compensated_ray_marching::MapProjection;
 
 namespace {
 
@@ -34,12 +34,10 @@ double difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
 
 }  // namespace
 
-TEST_CASE("maps are projected on the device as on the processor", "[gpu][compensated_ray_marching][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("maps are projected on the device as on the processor", "[gpu][compensated_ray_marching][thorough]") {
+  const gpu::Use use(context);
   for (const int order : {1, 2, 4, 6, 8, 12, 32}) {
-    MapProjection projection(*context, order);
+    MapProjection projection(context, order);
     for (const auto& [width, height] : {std::pair(1, 1), {1, 5}, {7, 1}, {5, 3}, {64, 32}, {65, 130}, {257, 64}}) {
       CAPTURE(order, width, height);
       const auto map = rough_map(width, height);
@@ -50,23 +48,19 @@ TEST_CASE("maps are projected on the device as on the processor", "[gpu][compens
   }
 }
 
-TEST_CASE("maps of as many texels as real ones are projected on the device to nine digits",
-          "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
-  MapProjection projection(*context, 6);
+DEVICE_TEST_CASE("maps of as many texels as real ones are projected on the device to nine digits",
+                 "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
+  MapProjection projection(context, 6);
   const auto map = rough_map(1024, 512);
   const auto processor = on_processor(map, 6);
   CHECK(difference(on_device(projection, *map), processor) < 1e-9 * processor[0].maxCoeff());
 }
 
-TEST_CASE("even maps and single columns on the device, in closed form", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("even maps and single columns on the device, in closed form", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   const int order = 8;
-  MapProjection projection(*context, order);
+  MapProjection projection(context, order);
   const auto even = on_device(projection, {9, 6, std::vector<float>(3 * 9 * 6, 2.0F)});
   std::vector<Rgb> constant(std::size_t(order * order), Rgb::Zero());
   constant[0] = Rgb::Constant(2 * std::sqrt(4 * pi));

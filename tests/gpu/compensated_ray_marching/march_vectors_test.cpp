@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "gpu/compensated_ray_marching/centre_tables.h"
-#include "gpu/compensated_ray_marching/smoke_density.h"
+#include "gpu/compensated_ray_marching/marched_smoke.h"
 #include "gpu/view_uniforms.h"
 #include "tests/gpu/device.h"
 #include "tests/oracle_vectors.h"
@@ -16,7 +16,7 @@ using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
 using gpu::Buffer;
-namespace at = gpu::smoke::at;
+namespace at = gpu::compensated_ray_marching::at;
 
 namespace {
 
@@ -73,7 +73,8 @@ class MarchOnDevice {
   // From the ray's origin on, without what is behind.
   Marched operator()(const Ray& ray, double thickness, int count, SliceWeight weight) {
     const scene::View view = along(ray);
-    gpu::Program& towards = gpu::smoke::program(context_, "centre_towards", 64, 1, tables_.definitions());
+    gpu::Program& towards =
+        gpu::compensated_ray_marching::program(context_, "centre_towards", 64, 1, tables_.definitions());
     tables_.bind(towards);
     centres_->bind(at::centres);
     single_->bind(at::single_bands);
@@ -90,7 +91,7 @@ class MarchOnDevice {
         airlight(context_, "airlight", 12), column(context_, "column", 4);
     auto definitions = density_.definitions();
     definitions["SCATTERS"] = "1";
-    gpu::Program& march = gpu::smoke::program(context_, "march", 8, 8, definitions);
+    gpu::Program& march = gpu::compensated_ray_marching::program(context_, "march", 8, 8, definitions);
     ranges.bind(at::ranges);
     airlight.bind(at::airlight_layer);
     column.bind(at::column);
@@ -127,8 +128,8 @@ class MarchOnDevice {
   Options options_;
   SmokeField field_;
   Point3 middle_{0.5, 0.5, 0.5};
-  gpu::smoke::SmokeDensity density_;
-  gpu::smoke::CentreTables tables_;
+  gpu::compensated_ray_marching::SmokeDensity density_;
+  gpu::compensated_ray_marching::CentreTables tables_;
   Vec3 axis_;
   std::size_t count_ = 0;
   std::unique_ptr<Buffer> centres_, single_, again_, sources_;
@@ -136,16 +137,14 @@ class MarchOnDevice {
 
 }  // namespace
 
-TEST_CASE("slices through Gaussians on the device add up to the oracle's, with all weights",
-          "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("slices through Gaussians on the device add up to the oracle's, with all weights",
+                 "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   int vectors = 0;
   for (const json& v : vectors_of("compensated_ray_marching", "march_compensated")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     if (in.contains("residual")) continue;  // whose sum with the Gaussians the device knows at voxels alone
-    MarchOnDevice march(*context, in);
+    MarchOnDevice march(context, in);
     const double thickness = number(in.at("slice_thickness")), background = number(in.at("background"));
     const int count = in.at("slices");
     const CompensatedMarch processor = march.on_processor(in);

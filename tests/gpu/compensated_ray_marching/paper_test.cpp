@@ -2,43 +2,33 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching.h"
 #include "gpu/context.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
-#include "scene/convert/residual.h"
 #include "scene/geometry/shapes.h"
 #include "scene/math/random.h"
-#include "scene/media/fitted.h"
-#include "tests/gpu/device.h"
-#include "tests/gpu/p99.h"
-#include "tests/methods/compensated_ray_marching/risen.h"
-#include "tests/methods/compensated_ray_marching/rough_sky.h"
-#include "tests/pictures.h"
+#include "tests/gpu/compensated_ray_marching/pictures.h"
 
 namespace paper_test {
 
 using namespace airlight;
 using namespace airlight::test;
 using Catch::Contains;
+using gpu::test::backdrop_with_depths;
+using gpu::test::fitted_with_residual;
+using gpu::test::scene_13_wide;
+using gpu::test::uneven_voxels;
 
 namespace {
 
 const compensated_ray_marching::CompensatedRayMarching cpu;
-const gpu::CompensatedRayMarchingGpu device;
-// Sources and systems are in double precision; the march's depths and places are rounded to 6e-8 of the whole.
-constexpr double bound = 5e-5;
+const gpu::compensated_ray_marching::CompensatedRayMarching device;
 
 Given paper(Given more = {}) {
   more["variant"] = "paper";
   return more;
 }
 
-scene::GaussianSum puffs() {
-  scene::GaussianSum sum;
-  sum.cutoff = 3;
-  sum.gaussians = {{{0, 0, 0}, 0.4, 1}, {{0.5, 0.2, -0.1}, 0.25, 0.7}, {{-0.3, 0.4, 0.2}, 0.3, 0.9}};
-  return sum;
-}
 // Many, overlapping, of a plume 1 m wide.
 scene::GaussianSum cloud(int count) {
   scene::GaussianSum sum;
@@ -51,34 +41,10 @@ scene::GaussianSum cloud(int count) {
   }
   return sum;
 }
-std::shared_ptr<scene::Scene> scene_of(scene::DensityField field, double sigma_t, double albedo,
-                                       scene::EnvironmentLight light) {
-  auto s = std::make_shared<scene::Scene>();
-  s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
-  s->camera.vertical_fov = 0.6;
-  s->width = 13;
-  s->height = 9;
-  s->lights = {std::move(light)};
-  scene::Medium smoke;
-  smoke.field = std::move(field);
-  smoke.sigma_t = Rgb::Constant(sigma_t);
-  smoke.albedo = Rgb::Constant(albedo);
-  s->media = {smoke};
-  finish(*s);
-  return s;
-}
-
-void compare(const scene::Film& a, const scene::Film& b, double most = bound) {
-  REQUIRE(a.layers.size() == b.layers.size());
-  most += 20 * gpu::test::injected_error();
-  for (const auto& [layer, values] : a.layers) {
-    CAPTURE(layer);
-    CHECK(gpu::test::quantile(a, b, layer, 1) < most);
-  }
-}
-void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = paper(), double most = bound) {
+using gpu::test::compare;
+void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = paper()) {
   const scene::Rendering a = render(cpu, scene, given), b = render(device, scene, given);
-  compare(a.film, b.film, most);
+  compare(a.film, b.film);
   for (const char* counter : {"iterations", "negative_share"})
     if (a.counters.count(counter)) {
       CAPTURE(counter);
@@ -88,19 +54,18 @@ void compare(const std::shared_ptr<scene::Scene>& scene, const Given& given = pa
 
 }  // namespace
 
-TEST_CASE("paper on the device: thin to thick, albedo to .99", "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("paper on the device: thin to thick, albedo to .99", "[gpu][compensated_ray_marching][paper]") {
   for (const double sigma_t : {1e-6, 1e-3, 0.3, 4.0, 50.0, 7e3})
     for (const double albedo : {0.0, 0.5, 0.99}) {
       CAPTURE(sigma_t, albedo);
-      compare(scene_of(puffs(), sigma_t, albedo, uneven()));
+      compare(scene_13_wide(puffs(), sigma_t, albedo, uneven()));
     }
 }
 
-TEST_CASE("paper on the device: stages kept and left out as on the CPU", "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("paper on the device: stages kept and left out as on the CPU",
+                 "[gpu][compensated_ray_marching][paper]") {
   for (const double sigma_t : {1e-6, 1.6e-4, 1.8e-4, 3.0}) {
-    const auto scene = scene_of(puffs(), sigma_t, 0.8, uneven());
+    const auto scene = scene_13_wide(puffs(), sigma_t, 0.8, uneven());
     const auto again = [&](const scene::Renderer& renderer) {
       const auto prepared = renderer.prepare(scene, {renderer.settings(), paper()}, {1, {}});
       for (const scene::Stage& s : prepared->stages())
@@ -113,10 +78,9 @@ TEST_CASE("paper on the device: stages kept and left out as on the CPU", "[gpu][
   }
 }
 
-TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper][thorough]") {
-  if (!gpu::test::device()) return;
-  const auto grey = scene_of(cloud(70), 6, 0.8, scene::make_constant_environment(Rgb::Ones()));
-  auto coloured = scene_of(cloud(70), 6, 0.8, uneven());
+DEVICE_TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching][paper][thorough]") {
+  const auto grey = scene_13_wide(cloud(70), 6, 0.8, scene::make_constant_environment(Rgb::Ones()));
+  auto coloured = scene_13_wide(cloud(70), 6, 0.8, uneven());
   coloured->media[0].sigma_t = Rgb(2, 6, 6);
   coloured->media[0].albedo = Rgb(0.9, 0.6, 0.6);
   coloured->media[0].phase = scene::HenyeyGreenstein{0.6};
@@ -142,10 +106,9 @@ TEST_CASE("paper on the device: every setting", "[gpu][compensated_ray_marching]
   }
 }
 
-TEST_CASE("paper on the device: phase functions at their ends, light below 0 and none",
-          "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
-  auto scene = scene_of(puffs(), 4, 0.9, uneven());
+DEVICE_TEST_CASE("paper on the device: phase functions at their ends, light below 0 and none",
+                 "[gpu][compensated_ray_marching][paper]") {
+  auto scene = scene_13_wide(puffs(), 4, 0.9, uneven());
   for (const double g : {-0.99, 0.99}) {
     scene->media[0].phase = scene::HenyeyGreenstein{g};
     finish(*scene);
@@ -156,19 +119,18 @@ TEST_CASE("paper on the device: phase functions at their ends, light below 0 and
   finish(*scene);
   compare(scene);
   const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
-  compare(scene_of(puffs(), 4, 0.9,
-                   scene::make_sh_environment(
-                       {Rgb::Constant(0.4 * one), Rgb::Constant(slope), Rgb::Constant(-slope), Rgb(0.3, -1, 1)},
-                       Mat3::Identity(), Rgb::Ones())));
-  const auto dark = scene_of(puffs(), 4, 0.9, scene::make_constant_environment(Rgb::Zero()));
+  compare(scene_13_wide(puffs(), 4, 0.9,
+                        scene::make_sh_environment(
+                            {Rgb::Constant(0.4 * one), Rgb::Constant(slope), Rgb::Constant(-slope), Rgb(0.3, -1, 1)},
+                            Mat3::Identity(), Rgb::Ones())));
+  const auto dark = scene_13_wide(puffs(), 4, 0.9, scene::make_constant_environment(Rgb::Zero()));
   compare(dark);
   const scene::Film film = picture(device, dark, paper());
   for (const float v : film.layer("airlight")) REQUIRE(v == 0);
 }
 
-TEST_CASE("paper on the device: no Gaussian, one, two at one place, some without weight",
-          "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("paper on the device: no Gaussian, one, two at one place, some without weight",
+                 "[gpu][compensated_ray_marching][paper]") {
   scene::GaussianSum none, one, twins, idle = puffs(), uncut = puffs();
   none.cutoff = one.cutoff = twins.cutoff = 3;
   one.gaussians = {{{0, 0, 0}, 0.5, 1}};
@@ -179,50 +141,28 @@ TEST_CASE("paper on the device: no Gaussian, one, two at one place, some without
   for (const scene::GaussianSum& sum : {none, one, twins, idle, uncut})
     for (const char* multiple : {"as_printed", "corrected"}) {
       CAPTURE(sum.gaussians.size(), multiple);
-      compare(scene_of(sum, 3, 0.8, uneven()), paper({{"multiple", multiple}, {"iterations", "12"}}));
+      compare(scene_13_wide(sum, 3, 0.8, uneven()), paper({{"multiple", multiple}, {"iterations", "12"}}));
     }
-  compare(scene_of(puffs(), 0, 0.8, uneven()));
+  compare(scene_13_wide(puffs(), 0, 0.8, uneven()));
 }
 
-TEST_CASE("paper on the device: the eye within, from above, far away", "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
-  auto scene = scene_of(puffs(), 3, 0.8, uneven());
-  for (const Point3& eye : {Point3(0.05, 0.1, 0), Point3(0, 0, 0)}) {  // beside a centre, and in it
-    scene->camera = scene::look_at(eye, {1, 0.1, 0}, Vec3::UnitY());
+DEVICE_TEST_CASE("paper on the device: the eye within, from above, far away",
+                 "[gpu][compensated_ray_marching][paper]") {
+  auto scene = scene_13_wide(puffs(), 3, 0.8, uneven());
+  for (const scene::Camera& camera : gpu::test::cameras_about_puffs()) {
+    scene->camera = camera;
     finish(*scene);
     compare(scene);
   }
-  scene->camera = scene::look_at({0.05, 0.1, 0.6}, {0, 0, 0}, Vec3::UnitY());
-  scene->camera.vertical_fov = 2.9;
-  finish(*scene);
-  compare(scene);
-  scene->camera = scene::look_at({0, 40, 0}, {0, 0, 0}, Vec3::UnitZ());
-  scene->camera.vertical_fov = 0.05;
-  finish(*scene);
-  compare(scene);
-  scene->camera.kind = scene::Camera::Kind::orthographic;
-  scene->camera.height = 2;
-  finish(*scene);
-  compare(scene);
 }
 
-TEST_CASE("paper on the device: what Gaussians leave of voxels, turned",
-          "[gpu][compensated_ray_marching][paper][thorough]") {
-  if (!gpu::test::device()) return;
-  auto grid = std::make_shared<scene::VoxelGrid>();
-  grid->size = {9, 7, 8};
+DEVICE_TEST_CASE("paper on the device: what Gaussians leave of voxels, turned",
+                 "[gpu][compensated_ray_marching][paper][thorough]") {
+  const auto grid = uneven_voxels({-1, -0.4, -0.8});
   grid->origin_index = {1, -2, 0};
-  grid->voxel_size = 0.2;
-  grid->rotation = Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
-  grid->translation = {-1, -0.4, -0.8};
-  for (int i = 0; i < 9 * 7 * 8; ++i) grid->values.push_back(float(std::max(0.0, 0.4 + std::sin(0.37 * i))));
   for (const bool clamped : {false, true}) {
     grid->clamp_border = clamped;
-    auto fitted = std::make_shared<scene::Fitted>();
-    fitted->gaussians = puffs();
-    fitted->residual = std::make_shared<const scene::Residual>(scene::residual_of(*grid, fitted->gaussians, {0, {}}));
-    fitted->grid = *grid;
-    const auto scene = scene_of(scene::FittedPointer(fitted), 3, 0.8, uneven());
+    const auto scene = scene_13_wide(fitted_with_residual(*grid), 3, 0.8, uneven());
     compare(scene, paper({{"residual", "false"}}));
     const Given of_grid{{"multiple", "none"}, {"cells", "12"}, {"levels", "6"}};
     compare(scene, of_grid);
@@ -252,10 +192,9 @@ TEST_CASE("paper on the device: what Gaussians leave of voxels, turned",
   }
 }
 
-TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the smoke's on them",
-          "[gpu][compensated_ray_marching][paper][thorough]") {
-  if (!gpu::test::device()) return;
-  auto scene = scene_of(puffs(), 4, 0.9, uneven());
+DEVICE_TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the smoke's on them",
+                 "[gpu][compensated_ray_marching][paper][thorough]") {
+  auto scene = scene_13_wide(puffs(), 4, 0.9, uneven());
   scene->camera = scene::look_at({0.3, 1.7, 3.4}, {0, 0, 0}, Vec3::UnitY());
   scene->width = 26;
   scene->height = 18;
@@ -274,12 +213,7 @@ TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the
   finish(*meshes);
   for (const char* transmittance : {"hyb", "directional"}) compare(meshes, paper({{"transmittance", transmittance}}));
   scene->media[0].sigma_t = Rgb(3, 4, 5);
-  scene::Backdrop backdrop{26, 18, {}, {}, true};
-  for (int i = 0; i < 26 * 18; ++i) {
-    for (int c = 0; c < 3; ++c) backdrop.radiance.push_back(float(0.1 + 0.001 * i + 0.1 * c));
-    backdrop.depth.push_back(float(i % 3 ? 2.5 + 0.01 * i : infinity));
-  }
-  scene->backdrops.push_back(std::make_shared<const scene::Backdrop>(backdrop));
+  scene->backdrops.push_back(backdrop_with_depths(26, 18));
   finish(*scene);
   compare(scene);
   scene->media[0].sigma_t = Rgb::Zero();
@@ -288,11 +222,9 @@ TEST_CASE("paper on the device: balls and ground, their shadows on smoke and the
   compare(scene, paper({{"transmittance", "directional"}}));
 }
 
-TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, for no more than its harmonics",
-          "[gpu][compensated_ray_marching][paper]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const auto lit_by = [](scene::EnvironmentLight light) { return scene_of(cloud(60), 6, 0.9, std::move(light)); };
+DEVICE_TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, for no more than its harmonics",
+                 "[gpu][compensated_ray_marching][paper]") {
+  const auto lit_by = [](scene::EnvironmentLight light) { return scene_13_wide(cloud(60), 6, 0.9, std::move(light)); };
   const auto white = lit_by(scene::make_constant_environment(Rgb::Ones()));
   // Systems are far from solved after 15 iterations, so that a picture tells what they began with.
   const Given given = paper({{"iterations", "15"}});
@@ -302,16 +234,16 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
   bool was_even = true;  // a constant environment
   for (const auto& [even, light] : {std::pair(true, scene::make_constant_environment(Rgb::Constant(2))),
                                     {false, uneven()},
-                                    {false, uneven(0.5, Vec3(1, 2, 3))},
+                                    {false, uneven(0.5)},
                                     {true, scene::make_constant_environment(Rgb::Ones())},
-                                    {false, uneven(0.3, Vec3(1, 2, 3))},
-                                    {false, uneven(0.4, Vec3(1, 2, 3))}}) {
+                                    {false, uneven(0.3)},
+                                    {false, uneven(0.4)}}) {
     const auto scene = lit_by(light);
     REQUIRE(on_cpu->next(scene, {1, {}}));
-    const gpu::Use use(*context);
-    const gpu::Traffic before = context->traffic();
+    const gpu::Use use(context);
+    const gpu::Traffic before = context.traffic();
     const auto times = on_device->next(scene, {1, {}});
-    const gpu::Traffic moved = context->traffic() - before;
+    const gpu::Traffic moved = context.traffic() - before;
     REQUIRE(times);
     if (even == was_even) {  // else programs of another environment are wanted for what is seen behind the smoke
       // The light in four bands, and what is seen of it: nothing of the smoke.
@@ -334,7 +266,7 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
   // Other smoke, light with colour and without.
   for (const auto& light : {uneven(), scene::make_constant_environment(Rgb::Ones())})
     for (const double step : {0.01, 0.02}) {
-      const auto scene = scene_of(risen(cloud(60), step), 5, 0.9, light);
+      const auto scene = scene_13_wide(risen(cloud(60), step), 5, 0.9, light);
       REQUIRE(on_cpu->next(scene, {1, {}}));
       REQUIRE(on_device->next(scene, {1, {}}));
       const scene::Film a = on_cpu->render(view_of(*scene), {1, {}}).film;
@@ -343,12 +275,10 @@ TEST_CASE("paper on the device: the next frame's light as the CPU's next frame, 
     }
 }
 
-TEST_CASE("paper on the device: a map that turns is projected once, by the device",
-          "[gpu][compensated_ray_marching][paper]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("paper on the device: a map that turns is projected once, by the device",
+                 "[gpu][compensated_ray_marching][paper]") {
   const auto map = rough_map(64, 32), other = rough_map(32, 16, 3);
-  const auto lit_by = [](double turn, const auto& of) { return scene_of(cloud(60), 6, 0.9, rough_sky(turn, of)); };
+  const auto lit_by = [](double turn, const auto& of) { return scene_13_wide(cloud(60), 6, 0.9, rough_sky(turn, of)); };
   const Given given = paper({{"iterations", "12"}});
   const auto first = lit_by(0, map);
   const auto on_cpu = cpu.prepare(first, {cpu.settings(), given}, {1, {}});
@@ -358,10 +288,10 @@ TEST_CASE("paper on the device: a map that turns is projected once, by the devic
   for (const auto& [turn, of] : {std::pair(0.4, map), {2.0, map}, {2.0, other}, {2.5, other}, {1.0, map}}) {
     const auto scene = lit_by(turn, of);
     REQUIRE(on_cpu->next(scene, {1, {}}));
-    const gpu::Use use(*context);
-    const gpu::Traffic traffic = context->traffic();
+    const gpu::Use use(context);
+    const gpu::Traffic traffic = context.traffic();
     REQUIRE(on_device->next(scene, {1, {}}));
-    const gpu::Traffic moved = context->traffic() - traffic;
+    const gpu::Traffic moved = context.traffic() - traffic;
     if (of == before) CHECK(moved.bytes_up == 8 * 3 * 16);  // the light in four bands
     // Beside it the map for what is seen behind the smoke, and the tables of its projection where it was not known.
     const long texels = 4 * 3 * of->width * of->height, tables = 8 * (4 * of->width + 10 * of->height);
@@ -372,7 +302,7 @@ TEST_CASE("paper on the device: a map that turns is projected once, by the devic
 }
 
 TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ray_marching][paper]") {
-  const auto scene = scene_of(puffs(), 3, 0.8, uneven());
+  const auto scene = scene_13_wide(puffs(), 3, 0.8, uneven());
   const auto reason = [&](const Given& given) {
     const auto reasons = device.supports(*scene, {device.settings(), paper(given)});
     return reasons.empty() ? std::string() : reasons.front();
@@ -381,11 +311,10 @@ TEST_CASE("paper on the device: refusals name the reason", "[gpu][compensated_ra
   CHECK_THAT(reason({{"residual_store", "grid"}}), Contains("residual_store = grid"));
 }
 
-TEST_CASE("paper on the device: solved to the end, and stopped where rounding steers",
-          "[gpu][compensated_ray_marching][paper]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("paper on the device: solved to the end, and stopped where rounding steers",
+                 "[gpu][compensated_ray_marching][paper]") {
   const auto lit = [](double factor) {
-    auto scene = scene_of(cloud(70), 6, 0.8, uneven());
+    auto scene = scene_13_wide(cloud(70), 6, 0.8, uneven());
     for (Rgb& band : std::get<scene::EnvironmentLight>(scene->lights[0]).sh) band *= factor;
     finish(*scene);
     return scene;

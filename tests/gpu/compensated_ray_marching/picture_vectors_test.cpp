@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
-#include "gpu/compensated_ray_marching/smoke_source.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching.h"
+#include "gpu/compensated_ray_marching/lit_grid.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "scene/math/spherical_harmonics.h"
 #include "tests/gpu/device.h"
@@ -20,7 +20,7 @@ using namespace airlight::test;
 namespace {
 
 const compensated_ray_marching::CompensatedRayMarching cpu;
-const gpu::CompensatedRayMarchingGpu device;
+const gpu::compensated_ray_marching::CompensatedRayMarching device;
 constexpr double parity = 1e-4;  // row 30 of the stress list
 
 std::vector<json> of_kind(const std::string& kind) { return vectors_of("compensated_ray_marching", kind); }
@@ -66,8 +66,7 @@ struct OneRay {
 
 }  // namespace
 
-TEST_CASE("depths of a Gaussian on the device are the oracle's", "[gpu][compensated_ray_marching]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("depths of a Gaussian on the device are the oracle's", "[gpu][compensated_ray_marching]") {
   for (const json& v : of_kind("gaussian_optical_depth")) {
     const json& in = v.at("input");
     const double d = number(in.at("d")), mu = number(in.at("mu")), radius = number(in.at("radius")),
@@ -139,8 +138,8 @@ double distance(const std::vector<double>& got, const json& expected) {
 
 }  // namespace
 
-TEST_CASE("what smoke leaves of an environment on the device is the oracle's", "[gpu][compensated_ray_marching]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("what smoke leaves of an environment on the device is the oracle's",
+                 "[gpu][compensated_ray_marching]") {
   for (const json& v : of_kind("transmittance_environment")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const auto s = scene_of(in);
@@ -173,8 +172,7 @@ TEST_CASE("what smoke leaves of an environment on the device is the oracle's", "
   }
 }
 
-TEST_CASE("rays of single scattering on the device go where the oracle is", "[gpu][compensated_ray_marching]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("rays of single scattering on the device go where the oracle is", "[gpu][compensated_ray_marching]") {
   for (const json& v : of_kind("march_single_scattering")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const auto s = scene_of(in);
@@ -204,8 +202,8 @@ TEST_CASE("rays of single scattering on the device go where the oracle is", "[gp
   }
 }
 
-TEST_CASE("rays through Gaussians on the device have the oracle's transmittances", "[gpu][compensated_ray_marching]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("rays through Gaussians on the device have the oracle's transmittances",
+                 "[gpu][compensated_ray_marching]") {
   int rays = 0;
   for (const json& v : of_kind("march_compensated")) {
     const json &in = v.at("input"), &expected = v.at("expected");
@@ -233,9 +231,9 @@ void centre_on(scene::Scene& s, const Point3& x, double half_side) {
 struct AtNodes {
   compensated_ray_marching::LitGrid grid;
   std::optional<compensated_ray_marching::SmokeField> field;
-  std::unique_ptr<gpu::smoke::SmokeDensity> density;
-  std::unique_ptr<gpu::smoke::SmokeColumns> columns;
-  std::unique_ptr<gpu::smoke::SmokeSource> source;
+  std::unique_ptr<gpu::compensated_ray_marching::SmokeDensity> density;
+  std::unique_ptr<gpu::compensated_ray_marching::SmokeColumns> columns;
+  std::unique_ptr<gpu::compensated_ray_marching::LitGridOnDevice> source;
 
   AtNodes(const scene::Scene& s, const Given& given)
       : AtNodes(s, compensated_ray_marching::read_options({cpu.settings(), given})) {}
@@ -272,9 +270,10 @@ struct AtNodes {
     gpu::StageTimer timer(context);
     timer.begin("light");
     field.emplace(s.media[0], options);
-    density = std::make_unique<gpu::smoke::SmokeDensity>(context, *field, Point3::Zero(), false);
-    columns = std::make_unique<gpu::smoke::SmokeColumns>(context, s, grid, *density, Point3::Zero());
-    source = std::make_unique<gpu::smoke::SmokeSource>(context, s.media[0], options, grid, *columns);
+    density = std::make_unique<gpu::compensated_ray_marching::SmokeDensity>(context, *field, Point3::Zero(), false);
+    columns = std::make_unique<gpu::compensated_ray_marching::SmokeColumns>(context, s, grid, *density, Point3::Zero());
+    source =
+        std::make_unique<gpu::compensated_ray_marching::LitGridOnDevice>(context, s.media[0], options, grid, *columns);
     grid.light(light, {1, {}});
     source->light(light, timer, {1, {}});
     timer.times();
@@ -283,10 +282,8 @@ struct AtNodes {
 
 }  // namespace
 
-TEST_CASE("source radiance on the device goes where the oracle is", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("source radiance on the device goes where the oracle is", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   for (const json& v : of_kind("single_scattering_source")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const auto s = scene_of(in);
@@ -312,10 +309,8 @@ TEST_CASE("source radiance on the device goes where the oracle is", "[gpu][compe
   }
 }
 
-TEST_CASE("ordinates on the device are the processor's, cell by cell", "[gpu][compensated_ray_marching]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("ordinates on the device are the processor's, cell by cell", "[gpu][compensated_ray_marching]") {
+  const gpu::Use use(context);
   for (const json& v : of_kind("single_scattering_source"))
     for (const double albedo : {0.9, 1.0}) {
       const auto s = scene_of(v.at("input"));
@@ -330,11 +325,9 @@ TEST_CASE("ordinates on the device are the processor's, cell by cell", "[gpu][co
     }
 }
 
-TEST_CASE("a ball of smoke with all orders on the device goes where the oracle is",
-          "[gpu][compensated_ray_marching][slow][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("a ball of smoke with all orders on the device goes where the oracle is",
+                 "[gpu][compensated_ray_marching][slow][thorough]") {
+  const gpu::Use use(context);
   for (const json& v : of_kind("multiple_scattering_sphere")) {
     const json &in = v.at("input"), &expected = v.at("expected");
     const double r = number(in.at("rbf_x_y_z_r_w")[0][3]), albedo = number(in.at("albedo")), g = number(in.at("g"));

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/compensated_ray_marching/residual_on_device.h"
+#include "gpu/compensated_ray_marching/residual_store.h"
 #include "scene/convert/hashed_sequence.h"
 #include "scene/math/random.h"
 #include "tests/gpu/device.h"
@@ -11,7 +11,7 @@ namespace residual_test {
 
 using namespace airlight;
 using namespace airlight::gpu;
-using namespace airlight::gpu::compensated;
+using namespace airlight::gpu::compensated_ray_marching;
 using Eigen::Vector3i;
 using Membership = ResidualOnDevice::Membership;
 
@@ -65,10 +65,8 @@ double worst_between(Context& context, const ResidualOnDevice& residual, const V
 
 }  // namespace
 
-TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[gpu][residual]") {
-  Context* context = gpu::test::device();
-  if (!context) return;
-  const Use use(*context);
+DEVICE_TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[gpu][residual]") {
+  const Use use(context);
   std::uint32_t set = 0;
   for (const Vector3i& size : {Vector3i(1, 1, 1), Vector3i(8, 8, 8), Vector3i(7, 15, 16), Vector3i(33, 9, 20)})
     for (const double share : {0.0, 0.002, 0.15, 1.0}) {
@@ -76,21 +74,18 @@ TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[
       const auto bricks = scene::apron_bricks_of(size, levels);
       const auto hash = scene::perfect_hash(size, scene::hashed_voxels(size, levels));
       INFO(size.transpose() << ", share " << share);
-      const ResidualOnDevice kinds[] = {{*context, size, bricks},
-                                        {*context, size, hash, Membership::tags},
-                                        {*context, size, hash, Membership::domain}};
+      const ResidualOnDevice kinds[] = {
+          {context, size, bricks}, {context, size, hash, Membership::tags}, {context, size, hash, Membership::domain}};
       for (const ResidualOnDevice& residual : kinds) {
-        CHECK(wrong_levels(*context, residual, size, levels) == 0);
+        CHECK(wrong_levels(context, residual, size, levels) == 0);
         // Products and sums of numbers up to 254 along three axes, of a place that is rounded to 2^-23 of up to 64.
-        CHECK(worst_between(*context, residual, size, bricks) <= 3 * 254 * 64 * std::exp2(-23));
+        CHECK(worst_between(context, residual, size, bricks) <= 3 * 254 * 64 * std::exp2(-23));
       }
     }
 }
 
-TEST_CASE("a frame of a sequence decodes on the device, tags wider than 24 bits", "[gpu][residual]") {
-  Context* context = gpu::test::device();
-  if (!context) return;
-  const Use use(*context);
+DEVICE_TEST_CASE("a frame of a sequence decodes on the device, tags wider than 24 bits", "[gpu][residual]") {
+  const Use use(context);
   const Vector3i size(90, 90, 90);  // 270^3 > 2^24
   std::vector<std::vector<std::int8_t>> frames;
   for (std::uint32_t f = 0; f < 27; ++f) frames.push_back(random_levels(size, f == 13 ? 0 : 0.001, 200 + f));
@@ -98,9 +93,9 @@ TEST_CASE("a frame of a sequence decodes on the device, tags wider than 24 bits"
   REQUIRE(sequence.tables.size() == 1);
   for (const int frame : {0, 13, 14, 26})
     for (const Membership membership : {Membership::tags, Membership::domain}) {
-      const ResidualOnDevice residual(*context, size, sequence.tables[0], membership,
+      const ResidualOnDevice residual(context, size, sequence.tables[0], membership,
                                       scene::HashedSequence::tile(size, frame));
-      CHECK(wrong_levels(*context, residual, size, frames[std::size_t(frame)]) == 0);
+      CHECK(wrong_levels(context, residual, size, frames[std::size_t(frame)]) == 0);
     }
 }
 

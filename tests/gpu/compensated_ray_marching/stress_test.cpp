@@ -2,7 +2,7 @@
 #include <set>
 #include <string>
 
-#include "gpu/compensated_ray_marching/compensated_ray_marching_gpu.h"
+#include "gpu/compensated_ray_marching/compensated_ray_marching.h"
 #include "methods/compensated_ray_marching/compensated_ray_marching.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/compensated_ray_marching/stress_scenes.h"
@@ -16,13 +16,12 @@ using Catch::Contains;
 namespace {
 
 const compensated_ray_marching::CompensatedRayMarching cpu;
-const gpu::CompensatedRayMarchingGpu device;
+const gpu::compensated_ray_marching::CompensatedRayMarching device;
 
 }  // namespace
 
-TEST_CASE("compensated march on the device, stress list: the processor's pictures",
-          "[gpu][stress][compensated_ray_marching][slow][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("compensated march on the device, stress list: the processor's pictures",
+                 "[gpu][stress][compensated_ray_marching][slow][thorough]") {
   const bool paper = GENERATE(false, true);
   std::set<int> compared;
   std::set<std::string> deep;  // transmittances of row 22

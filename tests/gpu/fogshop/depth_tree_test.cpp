@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/fogshop/fogshop.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/geometry/shapes.h"
 #include "scene/scene.h"
@@ -56,8 +56,7 @@ Scene fog_banks(int count, double scale) {
 
 }  // namespace
 
-TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[gpu][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[gpu][thorough]") {
   const test::Given tree{{"reflectance", "npsf"}, {"erf", "erf10"}},
       exact{{"reflectance", "npsf"}, {"erf", "erf10"}, {"average_depth", "exact"}};
   struct Case {
@@ -67,8 +66,8 @@ TEST_CASE("fogshop: average depths by a tree on the GPU agree with the CPU", "[g
   for (const Case& c : {Case{80, 1}, Case{80, 0.01}, Case{80, 2e5}, Case{1200, 1}}) {
     const Scene scene = fog_banks(c.count, c.scale);
     const scene::Rendering a = test::render(fogshop::Fogshop(), scene, tree),
-                           b = test::render(gpu::FogshopGpu(), scene, tree),
-                           truth = test::render(gpu::FogshopGpu(), scene, exact);
+                           b = test::render(gpu::fogshop::Fogshop(), scene, tree),
+                           truth = test::render(gpu::fogshop::Fogshop(), scene, exact);
     CAPTURE(scene.name);
     CHECK(a.counters.at("average_depth_cells") > 50);
     CHECK(b.counters.at("average_depth_cells") == a.counters.at("average_depth_cells"));

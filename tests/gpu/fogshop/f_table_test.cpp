@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "gpu/fogshop/fog_on_device.h"
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/fogshop/fog.h"
+#include "gpu/fogshop/fogshop.h"
 #include "gpu/program.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/scene.h"
@@ -39,7 +39,7 @@ double on_device(gpu::Context& context, const fogshop::FTable& table, const fogs
   fogshop::Needs needs{};
   needs.airlight = needs.f_table = true;
   model.f_table = std::make_unique<fogshop::FTable>(table);
-  gpu::fog::FogOnDevice device(context, model, needs);
+  gpu::fogshop::FogOnDevice device(context, model, needs);
   gpu::Frame frame(context);
   frame.begin({});
   const scene::View one{scene::look_at(Point3::Zero(), Vec3::UnitZ(), Vec3::UnitY()), 1, 1};
@@ -50,8 +50,7 @@ double on_device(gpu::Context& context, const fogshop::FTable& table, const fogs
 
 }  // namespace
 
-TEST_CASE("fogshop: table of F, GPU agrees with CPU", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: table of F, GPU agrees with CPU", "[gpu]") {
   auto coloured = scene_named("f100_constant");
   coloured->media[0].sigma_t = 0.25 * Rgb(0.5, 0.8, 1);
   auto alone = std::make_shared<scene::Scene>(*coloured);
@@ -60,7 +59,7 @@ TEST_CASE("fogshop: table of F, GPU agrees with CPU", "[gpu]") {
   double p99 = 0, p999 = 0, worst = 0;
   for (const auto& scene : {scene_named("f100_constant"), scene_named("tube"), scene_named("a30"), coloured, alone})
     for (const Pairs& given : {Pairs{}, Pairs{{"downsample", "2"}}}) {
-      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::FogshopGpu(), scene, given);
+      const scene::Film a = render(fogshop::Fogshop(), scene, given), b = render(gpu::fogshop::Fogshop(), scene, given);
       CAPTURE(scene->name, scene == alone, given);
       CHECK(*std::max_element(a.layer("airlight").begin(), a.layer("airlight").end()) > 0);
       for (const char* layer : {"airlight", "mean"}) {
@@ -76,9 +75,7 @@ TEST_CASE("fogshop: table of F, GPU agrees with CPU", "[gpu]") {
 
 // Lights before, beside and behind the ray's start, from thin to thick. Far behind in thick fog the printed form is e^T
 // times a difference of two numbers near their limit: noise in double precision as well.
-TEST_CASE("fogshop: table of F under many geometries on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("fogshop: table of F under many geometries on the device", "[gpu]") {
   const fogshop::FTable table;
   std::mt19937 random(7);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
@@ -91,7 +88,7 @@ TEST_CASE("fogshop: table of F under many geometries on the device", "[gpu]") {
     const double d_vp = i % 5 == 0 ? infinity : double(float(d_sv * std::pow(10, between(-3, 2))));
     const fogshop::LightFromRay light{float(d_sv * std::cos(gamma)), float(d_sv * std::sin(gamma))};
     const double expected = table.homogeneous_airlight(light, d_vp, beta);
-    const double got = on_device(*context, table, light, d_vp, beta);
+    const double got = on_device(context, table, light, d_vp, beta);
     errors.push_back(std::abs(got - expected) / (expected + 1e-30));
   }
   std::sort(errors.begin(), errors.end());
@@ -100,9 +97,8 @@ TEST_CASE("fogshop: table of F under many geometries on the device", "[gpu]") {
   CHECK(errors[1999] < 1.5e-4);
 }
 
-TEST_CASE("fogshop: a table of F that nothing reads is not made", "[gpu]") {
-  if (!gpu::test::device()) return;
-  const gpu::FogshopGpu method;
+DEVICE_TEST_CASE("fogshop: a table of F that nothing reads is not made", "[gpu]") {
+  const gpu::fogshop::Fogshop method;
   const auto made = [&](const std::shared_ptr<const scene::Scene>& scene, Pairs given) {
     given["homogeneous"] = "table";
     const auto times = method.prepare(scene, {method.settings(), given}, {1, {}})->prepare_times();
@@ -115,7 +111,7 @@ TEST_CASE("fogshop: a table of F that nothing reads is not made", "[gpu]") {
   };
   auto scene = scene_named("f100_constant");
   CHECK(made(scene, {{"variant", "paper"}}));
-  CHECK_FALSE(made(scene, {{"variant", "S"}}));
+  CHECK_THROWS_WITH(made(scene, {{"variant", "S"}}), Catch::Contains("is not read with variant = S"));
   CHECK_FALSE(made(scene_named("f100"), {{"variant", "paper"}}));
   scene->lights.clear();
   CHECK_FALSE(made(scene, {{"variant", "paper"}}));

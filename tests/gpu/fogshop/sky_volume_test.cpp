@@ -1,7 +1,7 @@
 // environment_airlight = volume on the device against the CPU: same nodes, same slices, to single precision.
 #include <catch2/catch.hpp>
 
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/fogshop/fogshop.h"
 #include "gpu/program.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/base/error.h"
@@ -43,7 +43,7 @@ struct Differences {
 
   double add(const ScenePointer& scene, const Pairs& given) {
     const scene::Film a = render(fogshop::Fogshop(), scene, given).film,
-                      b = render(gpu::FogshopGpu(), scene, given).film;
+                      b = render(gpu::fogshop::Fogshop(), scene, given).film;
     double here = 0;
     for (const char* layer : {"airlight", "transmittance", "mean"}) {
       here = std::max(here, quantile(a, b, layer, 0.99));
@@ -58,8 +58,7 @@ struct Differences {
 
 }  // namespace
 
-TEST_CASE("fogshop: sky volume, GPU agrees with CPU", "[gpu][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: sky volume, GPU agrees with CPU", "[gpu][thorough]") {
   const ScenePointer sky = cloud(), both = std::make_shared<scene::Scene>(*sky);
   both->lights.emplace_back(scene::PointLight{Point3(0.5, 1.2, 7), Rgb(300, 200, 100), 0});  // among the Gaussians
   both->surfaces.push_back({"floor", scene::Plane{Point3(0, -1, 0), Vec3::UnitY()}, scene::Lambert{}});
@@ -79,8 +78,7 @@ TEST_CASE("fogshop: sky volume, GPU agrees with CPU", "[gpu][thorough]") {
   CHECK(d.worst < 1.7e-4);
 }
 
-TEST_CASE("fogshop: sky volume under extreme inputs on the device", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: sky volume under extreme inputs on the device", "[gpu]") {
   const auto scaled = [](double factor) {
     const ScenePointer scene = cloud();
     for (auto& g : std::get<scene::GaussianSum>(scene->media[0].field).gaussians) g.amplitude *= factor;
@@ -111,32 +109,29 @@ TEST_CASE("fogshop: sky volume under extreme inputs on the device", "[gpu]") {
 }
 
 // More beams than a dispatch may loop over are done by several; what no device can hold is refused.
-TEST_CASE("fogshop: sky volume by many beams on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("fogshop: sky volume by many beams on the device", "[gpu]") {
   const ScenePointer scene = cloud();
   const Pairs many{{"sky_cells", "3"}, {"sky_directions", "3000"}};  // 102 * 3000 iterations
   const long before = gpu::Program::dispatches();
-  const scene::Film b = render(gpu::FogshopGpu(), scene, many).film;
+  const scene::Film b = render(gpu::fogshop::Fogshop(), scene, many).film;
   CHECK(gpu::Program::dispatches() - before ==
         6 + 5);  // tiles, reach, the environment's by two passes, background, composition; nodes
   CHECK(quantile(render(fogshop::Fogshop(), scene, many).film, b, "airlight", 1) < 3.5e-6);
   std::get<scene::GaussianSum>(scene->media[0].field).gaussians.resize(1);  // a cube
   finish(*scene);
-  if (context->limits().storage_block < std::size_t(257) * 257 * 257 * 12)
-    CHECK_THROWS_AS(render(gpu::FogshopGpu(), scene, {{"sky_cells", "256"}}), Unavailable);
+  if (context.limits().storage_block < std::size_t(257) * 257 * 257 * 12)
+    CHECK_THROWS_AS(render(gpu::fogshop::Fogshop(), scene, {{"sky_cells", "256"}}), Unavailable);
 }
 
-TEST_CASE("fogshop: a sky volume that nothing needs costs no dispatch", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: a sky volume that nothing needs costs no dispatch", "[gpu]") {
   const auto dispatches = [](const ScenePointer& scene) {
     const long before = gpu::Program::dispatches();
-    render(gpu::FogshopGpu(), scene, {});
+    render(gpu::fogshop::Fogshop(), scene, {});
     return gpu::Program::dispatches() - before;
   };
   const ScenePointer scene = cloud();
   CHECK(dispatches(scene) == 7);  // the nodes, tiles, reach, the environment's by two, background, composition
-  const gpu::FogshopGpu method;
+  const gpu::fogshop::Fogshop method;
   const Pairs given{{"environment_airlight", "volume"}};
   const auto prepared = method.prepare(scene, {method.settings(), given}, {1, {}});
   const auto has = [](const std::vector<scene::StageTime>& times, const std::string& name) {

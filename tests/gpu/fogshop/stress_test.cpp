@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/fogshop/fog_on_device.h"
+#include "gpu/fogshop/fog.h"
 #include "gpu/fogshop/interface.h"
 #include "gpu/program.h"
 #include "methods/fogshop/surface_psf.h"
@@ -18,12 +18,8 @@ using namespace airlight;
 using namespace airlight::fogshop;
 using fogshop_test::exact;
 using fogshop_test::grey_fog;
-using scene::Gaussian;
 
 namespace {
-
-// a = 1/width, c = amplitude.
-Gaussian gaussian(double a, double c, const Point3& b) { return {b, 1 / a, c}; }
 
 struct RayAnswer {
   std::array<float, 3> airlight;
@@ -41,7 +37,7 @@ RayAnswer one_ray(gpu::Context& context, const Options& options, const Fog& fog,
   Needs needs{};
   needs.airlight = true;
   needs.center_depths = light && model.paper() && model.gaussians.count > 0;
-  gpu::fog::FogOnDevice device(context, model, needs);
+  gpu::fogshop::FogOnDevice device(context, model, needs);
   if (needs.center_depths) {
     device.fill_light_depths();
     device.fill_view_depths(view);
@@ -56,35 +52,14 @@ RayAnswer one_ray(gpu::Context& context, const Options& options, const Fog& fog,
 
 }  // namespace
 
-TEST_CASE("depths under extreme inputs on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  struct Case {
-    double a, c;
-    Point3 b;
-    double d, expected;
-  };
-  const Case cases[] = {
-      {1, 1e6, {0, 0, 3}, 6, 1.772414696519e6},
-      {1e-6, 1e6, {0, 0, 3}, infinity, 8.862299254528e11},
-      {1e6, 1e6, {1e-6, 0, 3}, 6, 0.6520493321733},
-      {1e6, 1, {1e-4, 0, 3}, 6, 0},  // 2e-4349
-      {1e-6, 1, {0, 0, 1e6}, 1e6, 7.468241328124e5},
-      {1, 1, {0, 0, -1}, infinity, 0.1394027926403},
-      {1, 1, {0, 0, -26}, infinity, 0},  // 5e-296
-      {1, 1e-8, {0, 0, 3}, 6, 1.772414696519e-8},
-      {1, 1, {0, 0, 3}, 1e-15, 1.234098040867e-19},
-      {1, 1, {0, 0, 8}, 7.9999999, 0.8862268254528},
-      {1, 0, {0, 0, 3}, 6, 0},
-      {1, 1, {0, 0, 3}, 0, 0},
-  };
-  for (const Case& c : cases) {
+DEVICE_TEST_CASE("depths under extreme inputs on the device", "[gpu]") {
+  for (const fogshop_test::DepthCase& c : fogshop_test::depth_cases) {
     INFO(c.a << " " << c.c << " " << c.b.transpose() << " " << c.d);
-    const double got = one_ray(*context, exact(Options::Variant::slices, 8),
-                               grey_fog({{gaussian(c.a, c.c, c.b)}, 0, infinity}), Point3::Zero(), c.d, nullptr)
+    const double got = one_ray(context, exact(Options::Variant::slices, 8), grey_fog({{c.gaussian()}, 0, infinity}),
+                               Point3::Zero(), c.d, nullptr)
                            .depth;
     // The error function is good to 3.3e-7. The depth of a step of 1e-15 is lost in its rounding.
-    CHECK(std::abs(got - c.expected) <= (3.3e-7 + gpu::test::injected_error()) * c.c * std::sqrt(pi) / c.a);
+    CHECK(std::abs(got - c.depth) <= (3.3e-7 + gpu::test::injected_error()) * c.c * std::sqrt(pi) / c.a);
   }
 }
 
@@ -108,9 +83,7 @@ double tail_over_slices(const fogshop_test::StressCase& c) {
   return ratio;
 }
 
-TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]") {
   for (const fogshop_test::StressCase& c : fogshop_test::stress_cases) {
     const Fog fog = grey_fog({{c.gaussian()}, 0, infinity});
     INFO(c.expected);
@@ -120,22 +93,20 @@ TEST_CASE("airlight of one Gaussian under extreme inputs on the device", "[gpu]"
     slices.extrapolate = true;
     slices.boxes = true;
     const Line ray{c.view, Vec3::UnitZ(), c.d};
-    const double got = one_ray(*context, slices, fog, c.view, c.d, &c.light).airlight[0];
+    const double got = one_ray(context, slices, fog, c.view, c.d, &c.light).airlight[0];
     const double tails = tail_over_slices(c), bound = 2e-4 + tails * (std::exp2(-24) + gpu::test::injected_error());
     CAPTURE(tails, got);
     CHECK(std::abs(got / c.expected - 1) <= bound);
     CHECK(std::abs(got / fogshop_test::ray_airlight(slices, fog, c.light, Rgb::Ones(), ray)[0] - 1) <= bound);
     // The paper's variant has its own answer; what is below 1e-38 is 0.
     const Options paper = exact(Options::Variant::paper, 8);
-    const double ours = one_ray(*context, paper, fog, c.view, c.d, &c.light).airlight[0];
+    const double ours = one_ray(context, paper, fog, c.view, c.d, &c.light).airlight[0];
     const double theirs = fogshop_test::ray_airlight(paper, fog, c.light, Rgb::Ones(), ray)[0];
     CHECK(std::abs(ours - theirs) <= 2e-5 * theirs + 1e-38);
   }
 }
 
-TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[gpu]") {
   struct Case {
     double gamma, d_sv, d_vp, beta, radius, expected;
   };
@@ -156,31 +127,27 @@ TEST_CASE("airlight of a constant medium under extreme inputs on the device", "[
     Options options = exact(Options::Variant::slices, 8);
     options.source_radius = c.radius;
     const double got =
-        one_ray(*context, options, grey_fog({{}, c.beta, infinity}), Point3::Zero(), c.d_vp, &light).airlight[0];
+        one_ray(context, options, grey_fog({{}, c.beta, infinity}), Point3::Zero(), c.d_vp, &light).airlight[0];
     CHECK(std::abs(got - c.expected) <= (5e-7 + 2 * gpu::test::injected_error()) * c.expected);
   }
 }
 
 // Of an endless ray at depth 1 from the light, the airlight is NPSF / (e d^2) (Eq. 17). From 100 m: lights nearer to
 // the ray than 1e-9 m are taken as that far.
-TEST_CASE("limits of the NPSF on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("limits of the NPSF on the device", "[gpu]") {
   for (const auto& [gamma, expected] : {std::pair(1e-10, 2.499999996188e9), {pi, 0.02207023608763}}) {
     const Point3 light(100 * std::sin(gamma), 0, 100 * std::cos(gamma));
     const Fog fog = grey_fog({{}, 0.01, infinity});
     const double got =
-        one_ray(*context, exact(Options::Variant::slices, 8), fog, Point3::Zero(), infinity, &light).airlight[0];
+        one_ray(context, exact(Options::Variant::slices, 8), fog, Point3::Zero(), infinity, &light).airlight[0];
     CAPTURE(gamma, got);
     CHECK(std::abs(1e4 * got * std::exp(1.0) / expected - 1) <= 5e-7);
   }
 }
 
 // Eq. 26 for one Gaussian, as the shader of surfaces computes it: by its fit and by its series far away.
-TEST_CASE("average depth under extreme inputs on the device", "[gpu]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("average depth under extreme inputs on the device", "[gpu]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
 #include "fogshop/average_depth.glsl"
@@ -191,14 +158,14 @@ void main() {
   depth_of[i] = average_depth(vec3(0, distance_of[i], 0));
 }
 )");
-  gpu::fog::Definitions definitions = gpu::fog::dawson_definitions();
+  gpu::fogshop::Definitions definitions = gpu::fogshop::dawson_definitions();
   definitions.insert({{"ERF_COUNT", "0"}, {"COLOURED", "0"}, {"AT_GAUSSIANS", "0"}});
-  gpu::Program program(*context, "test.comp", definitions);
+  gpu::Program program(context, "test.comp", definitions);
   // At the origin, width 1, half_depth so that the sum is average_depth(u).
-  const gpu::Buffer gaussian(*context, "Gaussian",
+  const gpu::Buffer gaussian(context, "Gaussian",
                              std::vector<float>{0, 0, 0, 1, float(std::sqrt(pi) / 2), 1e30f, 0, 0});
   const std::vector<float> u = {0, 1e-6f, 0.3f, 1, 3, 9.99f, 10, 10.01f, 1e3f, 1e6f, 1e15f, 1e25f};
-  const gpu::Buffer distances(*context, "distances", u), depths(*context, "depths", u.size() * 4);
+  const gpu::Buffer distances(context, "distances", u), depths(context, "depths", u.size() * 4);
   gaussian.bind(0);
   distances.bind(1);
   depths.bind(3);

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/fogshop/fogshop.h"
 #include "methods/fogshop/fogshop.h"
 #include "scene/geometry/brdf_table.h"
 #include "scene/geometry/shapes.h"
@@ -33,7 +33,7 @@ struct Pair {
     a = airlight::test::picture(fogshop::Fogshop(), scene, given);
     Pairs small_map = given;
     small_map["light_distance_side"] = "64";  // the last test: nothing depends on it
-    b = airlight::test::picture(gpu::FogshopGpu(), scene, small_map);
+    b = airlight::test::picture(gpu::fogshop::Fogshop(), scene, small_map);
   }
 };
 
@@ -97,8 +97,7 @@ Scene things(const Rgb& sigma_t) {
 
 }  // namespace
 
-TEST_CASE("fogshop: surfaces on the GPU agree with the CPU", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: surfaces on the GPU agree with the CPU", "[gpu]") {
   for (const Rgb& sigma_t : {Rgb(1, 1, 1), Rgb(1, 0.6, 0.3)})
     for (const char* reflectance : {"direct", "npsf", "npsfT"})
       check(things(sigma_t), {{"erf", "erf10"}, {"reflectance", reflectance}});
@@ -116,8 +115,7 @@ TEST_CASE("fogshop: surfaces on the GPU agree with the CPU", "[gpu]") {
 
 // Tables, lobes sharper than a quadrature in the shader would resolve, the form without harmonics, shadows of scattered
 // light.
-TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu][thorough]") {
   for (const Rgb& sigma_t : {Rgb(1, 1, 1), Rgb(1, 0.6, 0)}) {
     Scene scene = things(sigma_t);
     scene.surfaces[0].material = scene::Phong{Rgb(0.3, 0.2, 0.1), Rgb::Constant(0.6), 300};
@@ -135,8 +133,7 @@ TEST_CASE("fogshop: every reflectance on the GPU agrees with the CPU", "[gpu][th
 }
 
 // Eqs. 26 and 27, and the background: a map, harmonics and a constant, with and without lamps and visibility.
-TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU", "[gpu][slow][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU", "[gpu][slow][thorough]") {
   const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(0.3, 1, 0.2).normalized()).toRotationMatrix();
   const std::vector<scene::Light> skies = {
       scene::make_map_environment(gpu::test::small_courtyard(), turned, Rgb(1, 0.9, 0.8), "courtyard"),
@@ -167,8 +164,7 @@ TEST_CASE("fogshop: surfaces under an environment on the GPU agree with the CPU"
   }
 }
 
-TEST_CASE("fogshop: light between surfaces on the GPU agrees with the CPU", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: light between surfaces on the GPU agrees with the CPU", "[gpu]") {
   Scene scene = things(Rgb::Ones());
   scene.media.clear();
   scene.lights = {scene::make_constant_environment(Rgb(0.5, 0.7, 1))};
@@ -182,16 +178,14 @@ TEST_CASE("fogshop: light between surfaces on the GPU agrees with the CPU", "[gp
   CHECK(airlight::test::relative_l2(with.a, without.a, "mean") > 0.02);
 }
 
-TEST_CASE("fogshop: the elephant on the GPU agrees with the CPU", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: the elephant on the GPU agrees with the CPU", "[gpu]") {
   const Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                         {{"film.width", "120"}, {"film.height", "90"}});
   check(scene, {{"erf", "erf10"}, {"reflectance", "npsfT"}});
 }
 
 // From within a sphere, with lamps within and without, and a plane that is seen from behind its normal.
-TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
   Scene scene;
   scene.width = scene.height = 32;
   scene.camera = scene::look_at({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0});
@@ -208,14 +202,13 @@ TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
 }
 
 // What the maps do not decide the tree of surfaces does.
-TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "[gpu]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "[gpu]") {
   Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                   {{"film.width", "160"}, {"film.height", "120"}});
   scene.media.clear();
   const Pair pair(scene, {});
   for (const char* side : {"1", "64", "512"}) {
-    const scene::Film b = airlight::test::picture(gpu::FogshopGpu(), pair.scene, {{"light_distance_side", side}});
+    const scene::Film b = airlight::test::picture(gpu::fogshop::Fogshop(), pair.scene, {{"light_distance_side", side}});
     CAPTURE(side);
     CHECK(gpu::test::quantile(pair.a, b, "surface", 1) < 2e-6);
   }

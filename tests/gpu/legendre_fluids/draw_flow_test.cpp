@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "experiments/application/flow_pictures.h"
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
+#include "gpu/legendre_fluids/light.h"
 #include "methods/legendre_fluids/light.h"
 #include "scene/film/color_image.h"
 #include "scene/media/legendre_box.h"
@@ -29,7 +29,7 @@ std::unique_ptr<scene::Flow> rising_blob(double background, double density = 1) 
   problem.expansion = 1.0 / 300;
   problem.density = background;
   problem.blobs.push_back({Point3(0.2, -0.3, 0.1), 0.6, density, 30});
-  const gpu::LegendreFluidsGpu solver;
+  const gpu::legendre_fluids::LegendreFluids solver;
   return solver.start(std::make_shared<const scene::FlowProblem>(problem),
                       scene::Settings(solver.settings(), {{"n", std::to_string(n)}}), {});
 }
@@ -59,7 +59,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
   constant[0] = 1;
   const auto scene =
       scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   const auto picture = method.prepare(scene, {method.settings(), given}, {1, {}});
   const scene::View view = view_of(*scene);
   scene::Execution none{1, {}};
@@ -67,7 +67,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
   gpu::Traffic& traffic = gpu::Context::get().traffic();
   const auto frame = [&](const scene::Execution& execution) {
     flow.step(0.05);
-    REQUIRE(gpu::draw_flow(*picture, flow));
+    REQUIRE(gpu::legendre_fluids::draw_flow(*picture, flow));
     return picture->render(view, execution).film;
   };
   frame({1, {}});  // how many steps the paper's systems take
@@ -84,8 +84,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendre_fluids][thorough]") {
   const auto flow = rising_blob(0.5);
   const scene::Film drawn = drawn_while_nothing_comes_down(*flow, {});
   const scene::LegendrePointer field = box_of(*flow, 1);
@@ -97,9 +96,8 @@ TEST_CASE("legendre fluids on the device: drawn where they flow", "[gpu][legendr
   }
 }
 
-TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's systems",
+                 "[gpu][legendre_fluids][thorough]") {
   const auto flow = rising_blob(0.5);
   for (const char* closure : {"upwind", "least_squares"}) {
     CAPTURE(closure);
@@ -112,15 +110,15 @@ TEST_CASE("legendre fluids on the device: drawn where they flow by the paper's s
 }
 
 // Whether the systems were solved to the end is looked at where no layer is asked for, too.
-TEST_CASE("legendre fluids on the device: systems of frames that nobody sees", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: systems of frames that nobody sees",
+                 "[gpu][legendre_fluids][thorough]") {
   const auto flow = rising_blob(0.01), dark = rising_blob(0, 1e300);
   Eigen::VectorXd constant = Eigen::VectorXd::Zero(n * n * n);
   constant[0] = 10;
   const auto scene =
       scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
   scene->media[0].sigma_t = Rgb::Constant(20);
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   for (const char* closure : {"upwind", "least_squares"}) {
     CAPTURE(closure);
     const test::Given given{{"variant", "paper"}, {"closure", closure}, {"n", "8"}};
@@ -129,19 +127,19 @@ TEST_CASE("legendre fluids on the device: systems of frames that nobody sees", "
     scene::Execution none{1, {}};
     none.layers.emplace();
     const double before = picture->render(view, none).counters.at("iterations");
-    REQUIRE(gpu::draw_flow(*picture, *flow));
+    REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *flow));
     const double unseen = picture->render(view, none).counters.at("iterations");
     CHECK(unseen > 1.25 * before);  // more than the first try takes
-    REQUIRE(gpu::draw_flow(*picture, *flow));
+    REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *flow));
     CHECK(picture->render(view, {1, {}}).counters.at("iterations") == unseen);
     // What is no number in single precision has no solution.
-    REQUIRE(gpu::draw_flow(*picture, *dark));
+    REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *dark));
     CHECK_THROWS_WITH(picture->render(view, none), Catch::Contains("left a residual of"));
   }
 }
 
-TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its mean", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its mean",
+                 "[gpu][legendre_fluids]") {
   const auto flow = rising_blob(0);
   flow->step(0.05);
   REQUIRE(box_of(*flow, 1)->negative());
@@ -149,9 +147,9 @@ TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its
   constant[0] = 1;
   const auto scene =
       scene_with(std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n}, constant));
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
-  REQUIRE(gpu::draw_flow(*picture, *flow));
+  REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *flow));
   const scene::Film drawn = picture->render(view_of(*scene), {1, {}}).film;
   // The share that theta leaves, by a search on a fine lattice.
   const scene::LegendrePointer field = box_of(*flow, 1);
@@ -163,16 +161,15 @@ TEST_CASE("legendre fluids on the device: a density below 0 is drawn towards its
       test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, mean / (mean - least)))).film;
   // The margin for what lies between points is 2 % of the way to the mean.
   for (const char* layer : {"transmittance", "airlight"}) CHECK(test::relative_l2(drawn, expected, layer) < 0.01);
-  CHECK_FALSE(gpu::draw_flow(
+  CHECK_FALSE(gpu::legendre_fluids::draw_flow(
       *method.prepare(scene_with(random_density({4, 4, 4}, 1)), {method.settings(), {}}, {1, {}}), *flow));
 }
 
-TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time", "[gpu][legendre_fluids]") {
   const TemporaryFolder folder;
   const auto flow = rising_blob(0.5);
   const auto scene = scene_with(box_of(*flow, 1));
-  const gpu::LegendreLightGpu on_device;
+  const gpu::legendre_fluids::LegendreLight on_device;
   const legendre_fluids::LegendreLight on_processor;
   const scene::Settings settings(on_processor.settings(), {});  // the same for both
   experiments::FlowPictures there(*scene, on_device, settings, 3, 1), here(*scene, on_processor, settings, 3, 1);
@@ -199,15 +196,15 @@ TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time",
 }
 
 // What rings below 0 around a blob is taken as 0, as the processor does, in a few stretches of each ray.
-TEST_CASE("legendre light on the device: a blob of a flow that rings below 0", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: a blob of a flow that rings below 0",
+                 "[gpu][legendre_fluids][thorough]") {
   const auto flow = rising_blob(0);
   for (int frame = 0; frame < 3; ++frame) {
     const scene::LegendrePointer field = box_of(*flow, 1);
     REQUIRE(field->negative());
     const auto scene = scene_with(field);
     const scene::Film a = test::render(legendre_fluids::LegendreLight(), scene).film;
-    const gpu::LegendreLightGpu method;
+    const gpu::legendre_fluids::LegendreLight method;
     const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
     const scene::Rendering b = picture->render(view_of(*scene), {1, {}});
     CAPTURE(frame, b.counters.at("rounds"));

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
+#include "gpu/legendre_fluids/light.h"
 #include "methods/legendre_fluids/light.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
@@ -30,13 +30,13 @@ scene::FlowProblem swirl_and_blob(int dimensions, double viscosity) {
 }
 
 std::unique_ptr<scene::Flow> start(const scene::FlowProblem& problem, int n) {
-  const gpu::LegendreFluidsGpu solver;
+  const gpu::legendre_fluids::LegendreFluids solver;
   return solver.start(std::make_shared<const scene::FlowProblem>(problem),
                       scene::Settings(solver.settings(), {{"n", std::to_string(n)}}), {});
 }
 
 std::string objection(int n) {
-  const gpu::LegendreFluidsGpu solver;
+  const gpu::legendre_fluids::LegendreFluids solver;
   const auto all =
       solver.supports(swirl_and_blob(3, 0), scene::Settings(solver.settings(), {{"n", std::to_string(n)}}));
   return all.empty() ? "" : all[0];
@@ -45,9 +45,8 @@ std::string objection(int n) {
 }  // namespace
 
 // dt = 10 is divided by the rule of Runge-Kutta, as on the processor; viscosity times a step up to 1e4.
-TEST_CASE("legendre fluids on the device, extremes: no step and no viscosity makes a value that is no number",
-          "[gpu][legendre_fluids][slow][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device, extremes: no step and no viscosity makes a value that is no number",
+                 "[gpu][legendre_fluids][slow][thorough]") {
   for (const int dimensions : {2, 3})
     for (const int n : {2, 3, 8, 16})
       for (const double viscosity : {0.0, 1e-12, 1e-3, 1.0, 1e3})
@@ -75,7 +74,7 @@ TEST_CASE("legendre fluids on the device, extremes: counts and numbers that are 
   CHECK_THAT(objection(1), Contains("n = 1: shaders take 2 to 16 coefficients along an axis"));
   CHECK_THAT(objection(32), Contains("n = 32: shaders take 2 to 16 coefficients along an axis"));
   for (const char* n : {"0", "-3", "2.5", "nan", "65"}) {
-    const gpu::LegendreFluidsGpu solver;
+    const gpu::legendre_fluids::LegendreFluids solver;
     CHECK_THROWS_WITH(scene::Settings(solver.settings(), {{"n", n}}), Contains("n = ") && Contains("expected"));
   }
   if (!gpu::test::device()) return;
@@ -91,11 +90,10 @@ TEST_CASE("legendre fluids on the device, extremes: counts and numbers that are 
 }
 
 // Rounding of depths: 2.5e-7 of the whole, of 24 bits (light_test.cpp).
-TEST_CASE("legendre light on the device, extremes: every row by rays and by the paper's systems",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device, extremes: every row by rays and by the paper's systems",
+                 "[gpu][legendre_fluids][thorough]") {
   const legendre_fluids::LegendreLight on_cpu;
-  const gpu::LegendreLightGpu on_device;
+  const gpu::legendre_fluids::LegendreLight on_device;
   for (const ExtremeLight& row : extreme_lights()) {
     CAPTURE(row.row, row.depth);
     const scene::Film film = test::picture(on_device, row.scene), same = test::picture(on_cpu, row.scene);

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/legendre_fluids/fluid_on_device.h"
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
+#include "gpu/legendre_fluids/confined_fluid.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
@@ -24,7 +24,7 @@ std::unique_ptr<scene::Flow> start(const FlowProblem& problem, const Given& sett
   return solver.start(std::make_shared<const FlowProblem>(problem), scene::Settings(solver.settings(), settings), {});
 }
 std::unique_ptr<scene::Flow> on_device(const FlowProblem& problem, const Given& settings) {
-  return start<gpu::LegendreFluidsGpu>(problem, settings);
+  return start<gpu::legendre_fluids::LegendreFluids>(problem, settings);
 }
 
 FlowProblem box(int dimensions, const Vec3& size = Vec3::Ones()) {
@@ -82,15 +82,14 @@ Difference difference(const scene::Flow& a, const scene::Flow& b, const FlowProb
 }
 
 std::vector<std::string> objections(const FlowProblem& problem, const Given& settings) {
-  const gpu::LegendreFluidsGpu solver;
+  const gpu::legendre_fluids::LegendreFluids solver;
   return solver.supports(problem, scene::Settings(solver.settings(), settings));
 }
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: flows agree with the CPU after many steps",
+                 "[gpu][legendre_fluids][thorough]") {
   struct Case {
     int dimensions;
     const char* n;
@@ -121,16 +120,15 @@ TEST_CASE("legendre fluids on the device: flows agree with the CPU after many st
   }
 }
 
-TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without divergence",
-          "[gpu][legendre_fluids][slow][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without divergence",
+                 "[gpu][legendre_fluids][slow][thorough]") {
   using namespace legendre_fluids;
   const std::pair<int, int> cases[] = {{2, 8}, {2, 16}, {3, 8}};
   for (const auto& [dimensions, n] : cases) {
     ConfinedFluid fluid(dimensions, n, Vec3::Ones(), {}, {});
     fluid.velocity = testing::swirl(fluid.space());
     const double before = fluid.energy();
-    gpu::legendre::FluidOnDevice device(gpu::Context::get(), fluid, {}, {});
+    gpu::legendre_fluids::FluidOnDevice device(gpu::Context::get(), fluid, {}, {});
     for (int i = 0; i < 500; ++i) device.step(0.02);
     device.download(fluid);
     CAPTURE(dimensions, n);
@@ -140,8 +138,7 @@ TEST_CASE("legendre fluids on the device: 500 steps keep energy and stay without
   }
 }
 
-TEST_CASE("legendre fluids on the device: a warm step sends nothing and waits once", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: a warm step sends nothing and waits once", "[gpu][legendre_fluids]") {
   const FlowProblem problem = everything(3);
   const auto flow = on_device(problem, {{"n", "6"}});
   gpu::Traffic& traffic = gpu::Context::get().traffic();
@@ -166,8 +163,7 @@ TEST_CASE("legendre fluids on the device: a warm step sends nothing and waits on
   CHECK(warm.bytes_up == 0);
 }
 
-TEST_CASE("legendre fluids on the device: restart gives the same bits", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: restart gives the same bits", "[gpu][legendre_fluids]") {
   const Given settings{{"n", "6"}, {"filter_carried", "1"}};
   const auto whole = on_device(everything(3), settings), again = on_device(everything(3), settings);
   run(*whole, 4, 0.02);
@@ -177,8 +173,8 @@ TEST_CASE("legendre fluids on the device: restart gives the same bits", "[gpu][l
   CHECK(whole->state() == again->state());
 }
 
-TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: extremes of viscosity, steps and speed",
+                 "[gpu][legendre_fluids][thorough]") {
   FlowProblem problem = box(3);
   problem.velocity = scene::Swirl{1};
   problem.density = 1;

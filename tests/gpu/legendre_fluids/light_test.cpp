@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/light.h"
 #include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
@@ -16,8 +16,6 @@ namespace light_test {
 using namespace airlight;
 using namespace legendre_fluids::testing;
 using Catch::Contains;
-using gpu::test::p99;
-using gpu::test::quantile;
 
 namespace {
 
@@ -26,28 +24,16 @@ constexpr double bent = 3.5e-6;  // likewise, where light has kinks
 
 using ScenePointer = std::shared_ptr<scene::Scene>;
 
-// The worst pixel of any layer.
-double compare(const char* name, const ScenePointer& scene, double most, const test::Given& given = {}) {
+void compare(const char* name, const ScenePointer& scene, double most, const test::Given& given = {}) {
   const scene::Film a = test::render(legendre_fluids::LegendreLight(), scene, given).film;
-  const scene::Rendering on_device = test::render(gpu::LegendreLightGpu(), scene, given);
+  const scene::Rendering on_device = test::render(gpu::legendre_fluids::LegendreLight(), scene, given);
   const scene::Film& b = on_device.film;
-  CAPTURE(name, given);
-  REQUIRE(a.layers.size() == b.layers.size());
-  double worst = 0;
   most += 20 * gpu::test::injected_error();
-  for (const auto& [layer, values] : a.layers) {
-    const double error = quantile(a, b, layer, 1);
-    worst = std::max(worst, error);
-    CAPTURE(layer, p99(a, b, layer), error);
-    CHECK(error < most);
-  }
+  gpu::test::agree(fmt::format("{} {}", name, fmt::join(given, " ")), a, b, {most, most});
   if (on_device.counters.count("rounds")) {
     CHECK(on_device.counters.at("rounds") < 200);
     CHECK(on_device.counters.at("stretches_at_limit") == 0);
   }
-  if (std::getenv("AIRLIGHT_TEST_FIGURES"))
-    fmt::print("{} {}: {:.1e} of {:.1e}\n", name, fmt::join(given, " "), worst, most);
-  return worst;
 }
 
 ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 3) {
@@ -56,8 +42,8 @@ ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 
 
 }  // namespace
 
-TEST_CASE("legendre light on the device: optical depths from thin to black", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: optical depths from thin to black",
+                 "[gpu][legendre_fluids][thorough]") {
   for (const double depth : {1e-3, 0.1, 1.0, 5.0, 20.0, 100.0, 5e3}) {
     CAPTURE(depth);
     // Depths are rounded to 6e-8 of the whole one.
@@ -70,9 +56,8 @@ TEST_CASE("legendre light on the device: optical depths from thin to black", "[g
   compare("one", oblique({1, 1, 1}, 2), bound);
 }
 
-TEST_CASE("legendre light on the device: colours, several media and lights, cameras, phase functions",
-          "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: colours, several media and lights, cameras, phase functions",
+                 "[gpu][legendre_fluids]") {
   ScenePointer scene = oblique({4, 5, 3}, 2);
   scene->media[0].sigma_t = Rgb(0.5, 1, 2);
   scene->media[0].albedo = Rgb(0.9, 0.7, 0.5);
@@ -102,9 +87,8 @@ TEST_CASE("legendre light on the device: colours, several media and lights, came
   compare("three media", scene, bound);
 }
 
-TEST_CASE("legendre light on the device: an environment lights the smoke and a wall behind it",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: an environment lights the smoke and a wall behind it",
+                 "[gpu][legendre_fluids][thorough]") {
   ScenePointer scene = oblique({4, 5, 3}, 2);
   scene->media[0].sigma_t = Rgb(0.5, 1, 2);
   scene->lights = {scene::make_constant_environment({1, 2, 0.5})};
@@ -115,8 +99,7 @@ TEST_CASE("legendre light on the device: an environment lights the smoke and a w
   compare("uneven sky", scene, 4 * bound, {{"environment_directions", "24"}});
 }
 
-TEST_CASE("legendre light on the device: scenes without light, without media", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: scenes without light, without media", "[gpu][legendre_fluids]") {
   ScenePointer scene = oblique({4, 4, 4}, 2);
   scene->lights.clear();
   compare("dark", scene, bound);
@@ -124,8 +107,7 @@ TEST_CASE("legendre light on the device: scenes without light, without media", "
   compare("empty", scene, bound);
 }
 
-TEST_CASE("legendre light on the device: surfaces behind and within the medium", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: surfaces behind and within the medium", "[gpu][legendre_fluids]") {
   ScenePointer scene = oblique({4, 4, 4}, 2);
   scene->lights = {scene::DirectionalLight{Vec3(0.2, 0.3, 1).normalized(), Rgb(1, 2, 3)}};
   scene->camera = scene::look_at(Point3(0.3, 0.2, 5), Point3::Zero(), Vec3::UnitY());
@@ -137,8 +119,8 @@ TEST_CASE("legendre light on the device: surfaces behind and within the medium",
 }
 
 // What is below 0 is taken as 0, on rays and on the way of the light.
-TEST_CASE("legendre light on the device: densities that are below 0 in places", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: densities that are below 0 in places",
+                 "[gpu][legendre_fluids][thorough]") {
   const auto rough = [](const scene::TensorShape& n, unsigned seed, double mean, const Box& box = unit_box) {
     Eigen::VectorXd c = random_density(n, seed, 1, box)->coefficients();
     c[0] *= mean;
@@ -185,7 +167,7 @@ TEST_CASE("legendre light on the device: densities that are below 0 in places", 
 }
 
 TEST_CASE("legendre light on the device: what shaders do not know is refused by name", "[gpu][legendre_fluids]") {
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   const auto objections = [&](const scene::Scene& scene) {
     return method.supports(scene, scene::Settings(method.settings(), {}));
   };

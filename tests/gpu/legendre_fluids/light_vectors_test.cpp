@@ -1,8 +1,8 @@
 // Light on the device against the oracle's vectors, in single precision: 2e-5 of the largest entry.
 #include <catch2/catch.hpp>
 
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
-#include "gpu/legendre_fluids/paper_systems.h"
+#include "gpu/legendre_fluids/light.h"
+#include "gpu/legendre_fluids/paper_light.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 #include "tests/oracle_vectors.h"
@@ -13,24 +13,11 @@ using namespace airlight;
 using namespace legendre_fluids::testing;
 using test::Given;
 using test::json;
+using test::Tensor;
 
 namespace {
 
 constexpr double gate = 2e-5;
-
-struct Tensor {
-  scene::TensorShape shape{1, 1, 1};
-  std::vector<double> values;
-  Tensor(const json& v) { add(v, 0); }
-  void add(const json& v, std::size_t axis) {
-    if (!v.is_array()) return values.push_back(test::number(v));
-    shape[axis] = int(v.size());
-    for (const json& part : v) add(part, axis + 1);
-  }
-  Eigen::VectorXd array() const {
-    return Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
-  }
-};
 
 Vec3 padded(const json& v) {
   const Tensor t(v);
@@ -55,7 +42,7 @@ std::shared_ptr<scene::Scene> scene_of(const json& v) {
 class Eye {
  public:
   Eye(const json& v, const Given& given = {}) : scene_(scene_of(v)) {
-    const gpu::LegendreLightGpu method;
+    const gpu::legendre_fluids::LegendreLight method;
     prepared_ = method.prepare(scene_, {method.settings(), given}, {1, {}});
   }
   double at(const Point3& x, const Vec3& forward, const char* layer = "airlight") const {
@@ -85,8 +72,7 @@ double most_of(const Tensor& t) { return t.array().cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
-TEST_CASE("legendre light on the device: rays of the vectors", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: rays of the vectors", "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "scatter")) {
     const Eye eye(v);
     double most = 0;
@@ -112,9 +98,9 @@ TEST_CASE("legendre light on the device: rays of the vectors", "[gpu][legendre_f
 }
 
 // Each pixel a picture of one, with the vector's depth and background behind the medium.
-TEST_CASE("legendre light on the device: airlight of the vectors before a background", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
-  const gpu::LegendreLightGpu method;
+DEVICE_TEST_CASE("legendre light on the device: airlight of the vectors before a background",
+                 "[gpu][legendre_fluids]") {
+  const gpu::legendre_fluids::LegendreLight method;
   for (const json& v : test::vectors_of("legendre_fluids", "airlight")) {
     double most = 0;
     for (const json& pixel : v.at("pixels")) most = std::max(most, test::number(pixel.at("total")));
@@ -142,8 +128,8 @@ TEST_CASE("legendre light on the device: airlight of the vectors before a backgr
   }
 }
 
-TEST_CASE("legendre light on the device: upwind systems of the vectors, and their image", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: upwind systems of the vectors, and their image",
+                 "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "upwind-galerkin")) {
     CAPTURE(v.at("id"));
     const auto scene = scene_of(v);
@@ -154,7 +140,7 @@ TEST_CASE("legendre light on the device: upwind systems of the vectors, and thei
     gpu::Context& context = gpu::Context::get();
     const gpu::Use use(context);
     const legendre_fluids::PaperMedium media = legendre_fluids::paper_medium(*scene);
-    gpu::legendre::PaperSystems systems(context, media, lights, options, {true, true, !flat(v)});
+    gpu::legendre_fluids::PaperSystems systems(context, media, lights, options, {true, true, !flat(v)});
     systems.begin();
     // In two dimensions L_0 along z is left out of the coefficients.
     const double scale = (flat(v) ? std::sqrt(0.5) : 1) * test::number(v.at("E_in"));

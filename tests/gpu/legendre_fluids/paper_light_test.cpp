@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
+#include "gpu/legendre_fluids/light.h"
 #include "methods/legendre_fluids/light.h"
 #include "scene/flow/particles.h"
 #include "scene/media/legendre_box.h"
@@ -46,7 +46,7 @@ double worst(const scene::Film& a, const scene::Film& b) {
 
 void compare(const char* name, const ScenePointer& scene, const Given& given, double most = bound) {
   const scene::Rendering a = test::render(legendre_fluids::LegendreLight(), scene, given);
-  const scene::Rendering b = test::render(gpu::LegendreLightGpu(), scene, given);
+  const scene::Rendering b = test::render(gpu::legendre_fluids::LegendreLight(), scene, given);
   const double error = worst(a.film, b.film);
   CAPTURE(name, given, error);
   CHECK(error < most);
@@ -65,8 +65,8 @@ ScenePointer oblique(const scene::TensorShape& n, double depth, unsigned seed = 
 
 }  // namespace
 
-TEST_CASE("legendre light on the device: the paper's systems from thin to black", "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems from thin to black",
+                 "[gpu][legendre_fluids][thorough]") {
   for (const char* closure : {"upwind", "least_squares"})
     for (const double depth : {1e-6, 0.1, 1.0, 5.0, 20.0, 100.0}) {
       CAPTURE(depth);
@@ -74,9 +74,8 @@ TEST_CASE("legendre light on the device: the paper's systems from thin to black"
     }
 }
 
-TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems with up to 16 coefficients",
+                 "[gpu][legendre_fluids][thorough]") {
   compare("8", oblique({4, 4, 4}, 5), paper("upwind", 8));
   compare("8", oblique({6, 6, 6}, 5), paper("least_squares", 8));
   compare("unequal", oblique({5, 3, 7}, 2), paper("upwind", 7));
@@ -84,9 +83,8 @@ TEST_CASE("legendre light on the device: the paper's systems with up to 16 coeff
   compare("12", oblique({4, 4, 4}, 20), paper("least_squares", 12, {{"boundary_weight", "10"}}));
 }
 
-TEST_CASE("legendre light on the device: the paper's systems by colours, lights, boxes, truncations",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems by colours, lights, boxes, truncations",
+                 "[gpu][legendre_fluids][thorough]") {
   const Box flat{{-1, 0, 2}, {3, 0.7, 3}};
   auto scene = lit_scene(smoke(random_density({4, 3, 2}, 5, 1, flat), 1), {1, 0, 0}, {0.2, -1, 0.1}, 24, 12, 4);
   scene->camera.position += flat.center();
@@ -115,9 +113,8 @@ TEST_CASE("legendre light on the device: the paper's systems by colours, lights,
   for (const char* closure : {"upwind", "least_squares"}) compare("one", scene, paper(closure, 1));
 }
 
-TEST_CASE("legendre light on the device: the paper's systems with an albedo that is a field",
-          "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems with an albedo that is a field",
+                 "[gpu][legendre_fluids]") {
   auto colours = with_albedo_field(oblique({4, 3, 5}, 2), {4, 3, 5}, 5);
   for (scene::Medium& medium : colours->media) medium.sigma_t = {0.4, 0.8, 0.4};
   colours->lights.push_back(scene::DirectionalLight{Vec3(0.1, 1, 0.1).normalized(), {3, 1, 1}});
@@ -126,9 +123,8 @@ TEST_CASE("legendre light on the device: the paper's systems with an albedo that
 }
 
 // Depths in front of the box, in it, behind it, and none; flakes, drawn by the camera.
-TEST_CASE("legendre light on the device: the paper's systems before pictures with depth",
-          "[gpu][legendre_fluids][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems before pictures with depth",
+                 "[gpu][legendre_fluids][thorough]") {
   const auto with_ends = [](ScenePointer scene, double step) {
     auto picture = std::make_shared<scene::Backdrop>();
     picture->width = scene->width;
@@ -157,7 +153,7 @@ TEST_CASE("legendre light on the device: the paper's systems before pictures wit
   scene = lit_scene(smoke(random_density({8, 8, 8}, 3), 1), {0, 1, 0}, {0, 0, -1}, 24, 20);
   compare("along an axis", with_ends(scene, 0.17), paper("upwind", 6));
   // What nobody asks for does not come down, and the picture is the same.
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   const auto prepared = method.prepare(scene, {method.settings(), paper("upwind", 6)}, {1, {}});
   scene::Execution some{1, {}};
   some.layers = std::set<std::string>{"mean"};
@@ -169,11 +165,10 @@ TEST_CASE("legendre light on the device: the paper's systems before pictures wit
   CHECK_THROWS_WITH(prepared->render(other, {1, {}}), Contains("belongs to the scene's own camera"));
 }
 
-TEST_CASE("legendre light on the device: the paper's systems where nothing is lit", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: the paper's systems where nothing is lit", "[gpu][legendre_fluids]") {
   ScenePointer scene = oblique({4, 4, 4}, 2);
   const auto black = [&] {
-    const scene::Film film = test::render(gpu::LegendreLightGpu(), scene, paper("upwind", 4)).film;
+    const scene::Film film = test::render(gpu::legendre_fluids::LegendreLight(), scene, paper("upwind", 4)).film;
     return film.layers.size() == 2 && film.layer("mean") == std::vector<float>(film.layer("mean").size(), 0) &&
            film.layer("airlight") == film.layer("mean");
   };
@@ -186,36 +181,18 @@ TEST_CASE("legendre light on the device: the paper's systems where nothing is li
   CHECK(black());
 }
 
-TEST_CASE("legendre light on the device: a warm frame of the paper's systems sends nothing", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre light on the device: another view of the paper's systems", "[gpu][legendre_fluids]") {
   const ScenePointer scene = oblique({4, 4, 4}, 2);
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   for (const char* closure : {"upwind", "least_squares"}) {
     const auto prepared = method.prepare(scene, {method.settings(), paper(closure, 6)}, {1, {}});
     const scene::View view = view_of(*scene);
-    scene::Execution none{1, {}}, all{1, {}};
-    none.layers.emplace();
-    const scene::Film first = prepared->render(view, all).film;
-    prepared->render(view, none);
-    scene::Rendering warm = prepared->render(view, none);
-    CHECK(warm.film.layers.empty());
-    CHECK(warm.counters.at("bytes_down") == 8);  // how the one system ended
-    for (const char* counter : {"bytes_up", "allocations", "look_ups"}) {
-      CAPTURE(closure, counter);
-      CHECK(warm.counters.at(counter) == 0);
-    }
-    CHECK(warm.counters.at("syncs") == 1);
-    CHECK(warm.counters.at("dispatches") <= 12);
-    const scene::Rendering full = prepared->render(view, all);
-    CHECK(full.counters.at("bytes_down") <= 2 * 12 * full.counters.at("rays") + 64);
-    CHECK(full.counters.at("syncs") == 1);
-    CHECK(full.film.layer("mean") == first.layer("mean"));
-    // Another view: its tables go up, and the picture is that of a scene seen so.
+    // Its tables go up, and the picture is that of a scene seen so.
     scene::View turned = view;
     turned.camera = scene::look_at(Point3(3, 4, 0.5), Point3::Zero(), Vec3::UnitY());
     turned.camera.kind = scene::Camera::Kind::orthographic;
     turned.camera.height = view.camera.height;
-    const scene::Film seen = prepared->render(turned, all).film;
+    const scene::Film seen = prepared->render(turned, {1, {}}).film;
     auto other = std::make_shared<scene::Scene>(*scene);
     other->camera = turned.camera;
     CHECK(worst(test::render(legendre_fluids::LegendreLight(), other, paper(closure, 6)).film, seen) < bound);
@@ -223,7 +200,7 @@ TEST_CASE("legendre light on the device: a warm frame of the paper's systems sen
 }
 
 TEST_CASE("legendre light on the device: what the paper's systems refuse there", "[gpu][legendre_fluids]") {
-  const gpu::LegendreLightGpu method;
+  const gpu::legendre_fluids::LegendreLight method;
   const auto objections = [&](const scene::Scene& scene, const Given& given) {
     return method.supports(scene, scene::Settings(method.settings(), given));
   };

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/particles_on_device.h"
+#include "gpu/legendre_fluids/flow_particles.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
 #include "methods/legendre_fluids/legendre_fluids.h"
 #include "scene/flow/flow_particles.h"
 #include "tests/gpu/device.h"
@@ -48,7 +48,7 @@ std::vector<Point3> by_processor(const scene::FlowProblem& problem, const Given&
   return particles.positions().back();
 }
 std::vector<Point3> by_device(const scene::FlowProblem& problem, const Given& given, int steps, double dt) {
-  const auto flow = start<gpu::LegendreFluidsGpu>(problem, given);
+  const auto flow = start<gpu::legendre_fluids::LegendreFluids>(problem, given);
   scene::FlowParticles particles(problem);
   REQUIRE(particles.ride(*flow));
   for (int i = 0; i < steps; ++i) {
@@ -69,9 +69,8 @@ double psi(const Point3& x) { return 0.5 * (1 - x[0] * x[0]) * (1 - x[1] * x[1])
 
 }  // namespace
 
-TEST_CASE("particles on the device stay on their stream lines to the fourth order of the step",
-          "[gpu][legendre_fluids][particles]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("particles on the device stay on their stream lines to the fourth order of the step",
+                 "[gpu][legendre_fluids][particles]") {
   // u = (-y (1 - x^2), x (1 - y^2)): phi_1 = sqrt(3/2) (x^2 - 1) / 2.
   legendre_fluids::ConfinedFluid fluid(2, 4, Vec3::Ones(), {0, 0, false}, {});
   legendre_fluids::Components parts;
@@ -82,9 +81,9 @@ TEST_CASE("particles on the device stay on their stream lines to the fourth orde
   const scene::FlowProblem problem = swirl(2, 300);
   const scene::FlowParticles start(problem);
   const auto drift = [&](double dt) {
-    gpu::legendre::FluidOnDevice device(gpu::Context::get(), fluid, {0, 0, false}, {});
+    gpu::legendre_fluids::FluidOnDevice device(gpu::Context::get(), fluid, {0, 0, false}, {});
     scene::ParticlePlaces places{start.positions(), {std::vector<double>(300)}};
-    gpu::legendre::ParticlesOnDevice particles(gpu::Context::get(), device, problem, places);
+    gpu::legendre_fluids::ParticlesOnDevice particles(gpu::Context::get(), device, problem, places);
     for (int i = 0; i < std::lround(20 / dt); ++i) {
       device.step(dt);
       particles.step(dt);
@@ -103,8 +102,7 @@ TEST_CASE("particles on the device stay on their stream lines to the fourth orde
   CHECK(std::log2(middle / fine) > 3.7);
 }
 
-TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre_fluids][particles][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre_fluids][particles][thorough]") {
   for (const int dimensions : {2, 3})
     for (const Leaving leaving : {Leaving::stay, Leaving::wrap, Leaving::respawn})
       for (const char* n : {"3", "6", "16"}) {
@@ -124,18 +122,16 @@ TEST_CASE("particles on the device go where the processor's do", "[gpu][legendre
       }
 }
 
-TEST_CASE("particles on the device never leave the box", "[gpu][legendre_fluids][particles][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("particles on the device never leave the box", "[gpu][legendre_fluids][particles][thorough]") {
   scene::FlowProblem problem = swirl(3, 200);
   problem.velocity = scene::Swirl{30};
   for (const Point3& x : by_device(problem, {{"n", "6"}}, 10, 0.3)) REQUIRE(x.cwiseAbs().maxCoeff() <= 1);
 }
 
-TEST_CASE("particles on the device move without the processor, and go on from a state",
-          "[gpu][legendre_fluids][particles]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("particles on the device move without the processor, and go on from a state",
+                 "[gpu][legendre_fluids][particles]") {
   const scene::FlowProblem problem = swirl(3, 3000, Leaving::respawn, Vec3(0, -0.5, 0));
-  const auto flow = start<gpu::LegendreFluidsGpu>(problem, {{"n", "6"}});
+  const auto flow = start<gpu::legendre_fluids::LegendreFluids>(problem, {{"n", "6"}});
   scene::FlowParticles particles(problem);
   REQUIRE(particles.ride(*flow));
   gpu::Traffic& traffic = gpu::Context::get().traffic();
@@ -159,7 +155,7 @@ TEST_CASE("particles on the device move without the processor, and go on from a 
   warm = traffic - before;
   CHECK(warm.bytes_down == 3000 * 32);
   CHECK(warm.syncs == 1);
-  const auto other = start<gpu::LegendreFluidsGpu>(problem, {{"n", "6"}});
+  const auto other = start<gpu::legendre_fluids::LegendreFluids>(problem, {{"n", "6"}});
   scene::FlowParticles same(problem);
   REQUIRE(same.ride(*other));
   same.restore(state);

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gpu/legendre_fluids/fluid_on_device.h"
-#include "gpu/legendre_fluids/legendre_fluids_gpu.h"
-#include "gpu/legendre_fluids/particles_on_device.h"
+#include "gpu/legendre_fluids/confined_fluid.h"
+#include "gpu/legendre_fluids/flow_particles.h"
+#include "gpu/legendre_fluids/legendre_fluids.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/swirl.h"
 #include "tests/oracle_vectors.h"
@@ -13,7 +13,7 @@ namespace vectors_test {
 
 using namespace airlight;
 using namespace airlight::legendre_fluids;
-using gpu::legendre::FluidOnDevice;
+using gpu::legendre_fluids::FluidOnDevice;
 using legendre_fluids::testing::error;
 using test::json;
 
@@ -21,15 +21,7 @@ namespace {
 
 constexpr double gate = 2e-5;
 
-void flatten(const json& v, std::vector<double>& out) {
-  if (!v.is_array()) return out.push_back(test::number(v));
-  for (const json& part : v) flatten(part, out);
-}
-Array array_of(const json& v) {
-  std::vector<double> values;
-  flatten(v, values);
-  return Eigen::Map<Array>(values.data(), Eigen::Index(values.size()));
-}
+Array array_of(const json& v) { return test::Tensor(v).array(); }
 Array velocity_of(const ConfinedSpace& space, const json& v, const std::string& before = "",
                   const std::string& after = "") {
   Components parts;
@@ -99,8 +91,8 @@ struct Moved {
 
 }  // namespace
 
-TEST_CASE("legendre fluids on the device: advection of the vectors by another velocity", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: advection of the vectors by another velocity",
+                 "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "advect")) {
     if (!v.contains("w_a")) continue;
     CAPTURE(v.at("id"));
@@ -110,8 +102,7 @@ TEST_CASE("legendre fluids on the device: advection of the vectors by another ve
   }
 }
 
-TEST_CASE("legendre fluids on the device: projections of the vectors", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: projections of the vectors", "[gpu][legendre_fluids]") {
   for (const char* kind : {"project", "coefficients"})
     for (const json& v : test::vectors_of("legendre_fluids", kind)) {
       CAPTURE(v.at("id"));
@@ -122,9 +113,8 @@ TEST_CASE("legendre fluids on the device: projections of the vectors", "[gpu][le
     }
 }
 
-TEST_CASE("legendre fluids on the device: advection of the vectors, before and after the projection",
-          "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: advection of the vectors, before and after the projection",
+                 "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "advect")) {
     if (v.contains("w_a")) continue;  // by another velocity: above
     CAPTURE(v.at("id"));
@@ -141,8 +131,7 @@ TEST_CASE("legendre fluids on the device: advection of the vectors, before and a
   }
 }
 
-TEST_CASE("legendre fluids on the device: diffusion and steps of the vectors", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: diffusion and steps of the vectors", "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "diffuse")) {
     CAPTURE(v.at("id"));
     Twin twin(v, {1, 0, true});
@@ -160,8 +149,7 @@ TEST_CASE("legendre fluids on the device: diffusion and steps of the vectors", "
     }
 }
 
-TEST_CASE("legendre fluids on the device: the density of the vectors", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: the density of the vectors", "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "density-advect")) {
     Twin twin(v, {0, 0, false});
     ConfinedFluid rate = twin.fluid;
@@ -176,9 +164,8 @@ TEST_CASE("legendre fluids on the device: the density of the vectors", "[gpu][le
 }
 
 // What `w` makes of a scalar.
-TEST_CASE("legendre fluids on the device: the form of advection, by velocities with and without divergence",
-          "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: the form of advection, by velocities with and without divergence",
+                 "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "energy-identity")) {
     Twin twin(v, {0, 0, false}, "w_");
     ConfinedFluid rate = twin.fluid;
@@ -204,8 +191,8 @@ TEST_CASE("legendre fluids on the device: the form of advection, by velocities w
 }
 
 // The velocity by what it carries in a microsecond, in double precision: u dt + O(dt^2). The rest from the coefficients that come back.
-TEST_CASE("legendre fluids on the device: values of the vectors at points, walls included", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: values of the vectors at points, walls included",
+                 "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "evaluate")) {
     CAPTURE(v.at("id"));
     Twin twin(v, {0, 0, false});
@@ -229,7 +216,7 @@ TEST_CASE("legendre fluids on the device: values of the vectors at points, walls
     }
     const std::vector<Point3> from = places.positions[0];
     const double dt = 1e-6;
-    gpu::legendre::ParticlesOnDevice particles(gpu::Context::get(), *twin.device, problem, places);
+    gpu::legendre_fluids::ParticlesOnDevice particles(gpu::Context::get(), *twin.device, problem, places);
     twin.device->step(dt);
     particles.step(dt);
     particles.read(places);
@@ -242,9 +229,9 @@ TEST_CASE("legendre fluids on the device: values of the vectors at points, walls
       for (int a = 0; a < d; ++a) {
         CHECK((places.positions[0][i] - from[i])[a] / dt == Approx(u[i][a]).margin(gate * most).epsilon(0));
         for (int b = 0; b < d; ++b)
-          CHECK(twin.space().sampled_slope(fluid.velocity, a, b, at)[0] ==
+          CHECK(twin.space().sampled_gradient(fluid.velocity, a, b, at)[0] ==
                 Approx(gradient[i][a * d + b]).margin(gate * steepest).epsilon(0));
-        CHECK(twin.space().scalar_sampled_slope(fluid.density, a, at)[0] ==
+        CHECK(twin.space().scalar_sampled_gradient(fluid.density, a, at)[0] ==
               Approx(slope[i][a]).margin(gate * steepest_r).epsilon(0));
       }
       CHECK(twin.space().scalar_sampled(fluid.density, at)[0] ==
@@ -254,8 +241,7 @@ TEST_CASE("legendre fluids on the device: values of the vectors at points, walls
 }
 
 // 16 coefficients are exact to 2e-10 at the end of it (specification, section 7): what is left is single precision.
-TEST_CASE("legendre fluids on the device: the vortices of the vectors", "[gpu][legendre_fluids]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("legendre fluids on the device: the vortices of the vectors", "[gpu][legendre_fluids]") {
   for (const json& v : test::vectors_of("legendre_fluids", "taylor-green")) {
     CAPTURE(v.at("id"));
     auto problem = std::make_shared<scene::FlowProblem>();
@@ -263,7 +249,7 @@ TEST_CASE("legendre fluids on the device: the vortices of the vectors", "[gpu][l
     problem->box = {Point3(-1, -1, 0), Point3(1, 1, 0)};
     problem->viscosity = v.at("nu");
     problem->velocity = scene::TaylorGreen{};
-    const gpu::LegendreFluidsGpu solver;
+    const gpu::legendre_fluids::LegendreFluids solver;
     const auto flow = solver.start(problem, scene::Settings(solver.settings(), {{"n", "16"}}), {});
     const double t = v.at("t");
     const int steps = int(std::lround(t / 0.01));

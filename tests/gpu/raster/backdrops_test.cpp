@@ -1,8 +1,8 @@
 // Backdrops and particles on the device: the picture of the CPU.
 #include <catch2/catch.hpp>
 
-#include "gpu/legendre_fluids/legendre_light_gpu.h"
-#include "gpu/ray_marcher/ray_marcher_gpu.h"
+#include "gpu/legendre_fluids/light.h"
+#include "gpu/ray_marcher/ray_marcher.h"
 #include "methods/legendre_fluids/light.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "tests/gpu/device.h"
@@ -91,18 +91,16 @@ void compare(const scene::Renderer& processor, const scene::Renderer& device, co
 
 }  // namespace
 
-TEST_CASE("ray marcher: the device sees backdrops and particles as the processor does",
-          "[gpu][ray_marcher][backdrop][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: the device sees backdrops and particles as the processor does",
+                 "[gpu][ray_marcher][backdrop][thorough]") {
   const std::string more = GENERATE("", "[[surface]]\ntype = 'sphere'\ncenter = [0, 0, -2]\nradius = 1\n");
-  compare(ray_marcher::RayMarcher(), gpu::RayMarcherGpu(), with_backdrops(lamp, more),
+  compare(ray_marcher::RayMarcher(), gpu::ray_marcher::RayMarcher(), with_backdrops(lamp, more),
           {{"steps", "32"}, {"shadow_steps", "8"}, {"environment_directions", "8"}});
 }
 
-TEST_CASE("Legendre light: the device sees backdrops and particles as the processor does",
-          "[gpu][legendre_fluids][backdrop][thorough]") {
-  if (!gpu::test::device()) return;
-  compare(legendre_fluids::LegendreLight(), gpu::LegendreLightGpu(), with_backdrops(sun, ""), {});
+DEVICE_TEST_CASE("Legendre light: the device sees backdrops and particles as the processor does",
+                 "[gpu][legendre_fluids][backdrop][thorough]") {
+  compare(legendre_fluids::LegendreLight(), gpu::legendre_fluids::LegendreLight(), with_backdrops(sun, ""), {});
 }
 
 }  // namespace backdrops_test

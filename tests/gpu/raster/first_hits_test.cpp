@@ -98,9 +98,7 @@ Scene scaled(double scale, const Vec3& shift) {
 
 }  // namespace
 
-TEST_CASE("first hits of the experiments' scenes", "[gpu][raster][slow][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("first hits of the experiments' scenes", "[gpu][raster][slow][thorough]") {
   int scenes = 0;
   std::set<std::vector<double>> seen;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(AIRLIGHT_SOURCE_DIR "/experiments/scenes")) {
@@ -108,14 +106,12 @@ TEST_CASE("first hits of the experiments' scenes", "[gpu][raster][slow][thorough
     const Scene scene = scene::load_scene(entry.path(), {{"film.width", "48"}, {"film.height", "36"}});
     if (scene.surfaces.empty()) continue;
     ++scenes;
-    if (seen.insert(hits_of(scene)).second) check(*context, scene, view_of(scene));
+    if (seen.insert(hits_of(scene)).second) check(context, scene, view_of(scene));
   }
   CHECK(scenes >= 20);
 }
 
-TEST_CASE("first hits at every scale and far from the origin", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("first hits at every scale and far from the origin", "[gpu][raster]") {
   for (const auto& [scale, shift] : {std::pair<double, Vec3>{1, Vec3::Zero()},
                                      {1e6, Vec3::Zero()},
                                      {1e-6, Vec3::Zero()},
@@ -124,18 +120,16 @@ TEST_CASE("first hits at every scale and far from the origin", "[gpu][raster]") 
                                      {1, Vec3(3e5, -2e5, 1e6)}}) {
     Scene scene = scaled(scale, shift);
     CAPTURE(scale);
-    check(*context, scene, view_of(scene));
+    check(context, scene, view_of(scene));
     scene.camera.kind = Camera::Kind::orthographic;
     scene.camera.height = 2.5 * scale;
-    check(*context, scene, view_of(scene));
+    check(context, scene, view_of(scene));
   }
 }
 
 // A near plane would have to lie before 1e-9 m here, and there is a box at 1e6 m. (The floor is a plane: in triangles
 // that reach so far, the CPU's hits are rounded as their corners are, 1e-10 m.)
-TEST_CASE("nothing before the camera is lost", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("nothing before the camera is lost", "[gpu][raster]") {
   using scene::surface_of;
   scene::TriangleMesh fan;  // small triangles at 1e-9 m to 1e3 m, side by side
   for (int i = 0; i < 12; ++i) {
@@ -150,7 +144,7 @@ TEST_CASE("nothing before the camera is lost", "[gpu][raster]") {
                       surface_of(scene::make_box({{-1e6, -1, -2e6}, {1e6, 3e5, -1e6}})),
                       surface_of(scene::Sphere{Point3(0, 3e-8, -1e-7), 1e-8})},
                      Camera{});
-  check(*context, scene, view_of(scene));
+  check(context, scene, view_of(scene));
   // Inside a ball, a sphere and a box, and looking along its floor.
   Scene inside =
       made("inside",
@@ -158,30 +152,26 @@ TEST_CASE("nothing before the camera is lost", "[gpu][raster]") {
             surface_of(scene::make_box({{-0.5, -1e-6, -0.5}, {0.5, 0.5, 0.5}}))},
            scene::look_at({0, 0, 0}, {0.3, 0, -1}, {0, 1, 0}));
   inside.lights.emplace_back(scene::PointLight{{0, 0, 0.01}, Rgb::Ones(), 0.1});
-  check(*context, inside, view_of(inside));
+  check(context, inside, view_of(inside));
   for (const double fov : {0.01, 2.9}) {
     inside.camera.vertical_fov = fov;
-    check(*context, inside, view_of(inside));
+    check(context, inside, view_of(inside));
   }
 }
 
-TEST_CASE("of coinciding surfaces the first is seen", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("of coinciding surfaces the first is seen", "[gpu][raster]") {
   using scene::surface_of;
   const auto box = [](double lo) { return surface_of(scene::make_box({{-1, -1, lo}, {1, 1, 2}})); };
   const Camera camera = scene::look_at({0.2, 0.3, -4}, {0, 0, 0}, {0, 1, 0});
   const Scene one = made("coinciding", {box(0), surface_of(scene::Plane{{0, 0, 0}, {0, 0, 1}}), box(0)}, camera);
-  check(*context, one, view_of(one));
+  check(context, one, view_of(one));
   const Scene two = made("coinciding too", {surface_of(scene::Plane{{0, 0, 0}, {0, 0, 1}}), box(0)}, camera);
-  check(*context, two, view_of(two));
+  check(context, two, view_of(two));
 }
 
 // Twenty thousand triangles whose planes nearly contain the camera. Without the limit that raster/triangles.glsl sets for the raster pass,
 // 13 of 8162 pixels are beyond. The tree meets triangles by another test, and takes seconds here.
-TEST_CASE("triangles seen from their edge are met within their reach", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("triangles seen from their edge are met within their reach", "[gpu][raster]") {
   scene::Random random;
   scene::TriangleMesh mesh;
   for (int i = 0; i < 20000; ++i) {
@@ -194,12 +184,12 @@ TEST_CASE("triangles seen from their edge are met within their reach", "[gpu][ra
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   const Scene scene = made("slivers", {scene::surface_of(mesh)}, Camera{});
-  const gpu::Use use(*context);
+  const gpu::Use use(context);
   for (const auto& [way, view] : {std::pair(Way::raster, scene::View{scene.camera, 240, 180}),
                                   std::pair(Way::tree, scene::View{scene.camera, 120, 90})}) {
     const std::size_t pixels = std::size_t(view.width) * view.height;
-    const gpu::Buffer distances(*context, "distances", 4 * pixels), primitives(*context, "primitives", 4 * pixels);
-    gpu::FirstHits(*context, scene, true, way).find(view, distances, &primitives);
+    const gpu::Buffer distances(context, "distances", 4 * pixels), primitives(context, "primitives", 4 * pixels);
+    gpu::FirstHits(context, scene, true, way).find(view, distances, &primitives);
     const auto distance = distances.download<float>();
     const auto primitive = primitives.download<int>();
     int met = 0, outside = 0;
@@ -221,9 +211,7 @@ TEST_CASE("triangles seen from their edge are met within their reach", "[gpu][ra
 
 // Sixty thousand hairs, each from one side of a ball to the other: a ray is in nearly all their boxes, and at more nodes of
 // the tree than llvmpipe goes through loops.
-TEST_CASE("rays go on in a next dispatch where loops would end", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("rays go on in a next dispatch where loops would end", "[gpu][raster]") {
   scene::Random random;
   scene::TriangleMesh hairs;
   for (int i = 0; i < 60000; ++i) {
@@ -234,44 +222,40 @@ TEST_CASE("rays go on in a next dispatch where loops would end", "[gpu][raster]"
   Scene scene =
       made("hairs", {scene::surface_of(hairs), scene::surface_of(scene::make_box({{-2, -1.5, -3}, {1.5, 1.5, -2}}))},
            scene::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}));
-  const Agreement a = compare(*context, scene, {scene.camera, 16, 12});
+  const Agreement a = compare(context, scene, {scene.camera, 16, 12});
   CAPTURE(a.first);
   CHECK(a.hits > 20);
   CHECK(a.wrong == 0);
   CHECK(a.moved == 0);
-  if (!context->software()) return;
+  if (!context.software()) return;
   const scene::View view{scene.camera, 16, 12};
-  const gpu::FirstHits pass(*context, scene);
+  const gpu::FirstHits pass(context, scene);
   CHECK(pass.tree().nodes() > 8 * 2150);  // leaves: more than twice as many as a dispatch takes
-  const gpu::Buffer distances(*context, "distances", 16 * 12 * 4);
+  const gpu::Buffer distances(context, "distances", 16 * 12 * 4);
   const long before = gpu::Program::dispatches();
   pass.find(view, distances);
   CHECK(gpu::Program::dispatches() - before > 2);
 }
 
-TEST_CASE("first hits that do not fit into a buffer are refused in one line", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("first hits that do not fit into a buffer are refused in one line", "[gpu][raster]") {
   const Scene scene = scaled(1, Vec3::Zero());
-  const gpu::FirstHits pass(*context, scene);
+  const gpu::FirstHits pass(context, scene);
   const scene::View view{scene.camera, 8, 4};
-  const gpu::Buffer small(*context, "small", 8 * 4 * 4 - 4), fits(*context, "fits", 8 * 4 * 4);
+  const gpu::Buffer small(context, "small", 8 * 4 * 4 - 4), fits(context, "fits", 8 * 4 * 4);
   CHECK_THROWS_WITH(pass.find(view, small), Catch::Contains("do not fit"));
   CHECK_THROWS_WITH(pass.find(view, fits, &small), Catch::Contains("do not fit"));
   CHECK_THROWS_WITH(pass.find(view, fits, nullptr, {1, 1}), Catch::Contains("do not fit"));
 }
 
 // The factor divides neither side: the last blocks reach beyond the film.
-TEST_CASE("first hits of blocks of pixels", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("first hits of blocks of pixels", "[gpu][raster]") {
   const Scene scene = scaled(1, Vec3::Zero());
   const scene::View view{scene.camera, 94, 70};
   for (const auto& [way, block] : {std::pair{Way::tree, 1}, {Way::tree, 3}, {Way::tree, 4}, {Way::raster, 4}}) {
-    const gpu::FirstHits pass(*context, scene, true, way);
+    const gpu::FirstHits pass(context, scene, true, way);
     const gpu::HitGrid grid{block, 5};
     const int columns = grid.columns(view), rows = grid.rows(view);
-    const gpu::Buffer distances(*context, "distances", (5 + std::size_t(columns) * rows) * 4);
+    const gpu::Buffer distances(context, "distances", (5 + std::size_t(columns) * rows) * 4);
     pass.find(view, distances, nullptr, grid);
     const auto distance = distances.download<float>();
     CHECK(distance[4] == 0);

@@ -30,9 +30,7 @@ TEST_CASE("texels of a light-distance map look where they are looked up", "[rast
   }
 }
 
-TEST_CASE("lights see what Embree sees", "[gpu][raster]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("lights see what Embree sees", "[gpu][raster]") {
   constexpr int side = 48;
   scene::Scene scene =
       scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml", {{"light.0.radius", "0"}});
@@ -40,8 +38,8 @@ TEST_CASE("lights see what Embree sees", "[gpu][raster]") {
   scene.surfaces.push_back(scene::surface_of(scene::make_box({{-3, -0.6, -3}, {3, 4, 3}})));
   finish(scene);
   const std::vector<Point3> lights = {{-0.45, 0.75, 0.35}, {0.4, -0.3, 0.45}, {0, -0.499999, 0.9}};  // one in the ball
-  const gpu::Use use(*context);
-  const LightDistances maps(*context, scene, lights, side);
+  const gpu::Use use(context);
+  const LightDistances maps(context, scene, lights, side);
   const auto distances = maps.distances().download<float>();
   const auto primitives = maps.primitives().download<int>();
   REQUIRE(distances.size() == lights.size() * maps.texels_per_light());
@@ -49,7 +47,7 @@ TEST_CASE("lights see what Embree sees", "[gpu][raster]") {
   for (std::size_t l = 0; l < lights.size(); ++l)
     for (int face = 0; face < 6; ++face) {
       const scene::View view = LightDistances::face_view(lights[l], face, side);
-      const gpu::test::Agreement a = gpu::test::compare(*context, scene, view);
+      const gpu::test::Agreement a = gpu::test::compare(context, scene, view);
       CAPTURE(l, face, a.first);
       CHECK(a.wrong == 0);
       CHECK(a.distance < 6.1e-8);

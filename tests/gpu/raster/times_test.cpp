@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "gpu/fogshop/fogshop_gpu.h"
+#include "gpu/fogshop/fogshop.h"
 #include "gpu/raster/light_distances.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/surface_pass.h"
@@ -14,17 +14,15 @@ namespace times_test {
 
 using namespace airlight;
 
-TEST_CASE("times of the raster pass", "[.][times]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("times of the raster pass", "[.][times]") {
   scene::Scene elephant = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                             {{"film.width", "800"}, {"film.height", "600"}});
   scene::Scene torus = elephant;
   torus.surfaces[0] = scene::surface_of(moved(scene::torus(700, 350), 0.35, Vec3::Zero()));
   finish(torus);
-  fmt::print("{}\n", context->description());
+  fmt::print("{}\n", context.description());
   for (const auto& [name, scene] : {std::pair{"elephant, 5558 triangles", elephant}, {"torus, 490000", torus}}) {
-    const gpu::FogshopGpu method;
+    const gpu::fogshop::Fogshop method;
     const auto shared = std::make_shared<const scene::Scene>(scene);
     const auto prepared = method.prepare(shared, {method.settings(), {{"reflectance", "npsfT"}}}, {});
     std::map<std::string, double> best;
@@ -40,9 +38,7 @@ TEST_CASE("times of the raster pass", "[.][times]") {
   }
 }
 
-TEST_CASE("times of first hits", "[.][times]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("times of first hits", "[.][times]") {
   for (const int width : {100, 800})
     for (const char* name :
          {"fogshop/table1/gargoyle", "fogshop/table1/box", "fogshop/table1/terrain", "fogshop/table1/city",
@@ -51,9 +47,9 @@ TEST_CASE("times of first hits", "[.][times]") {
       const scene::Scene scene =
           scene::load_scene(fmt::format("{}/experiments/scenes/{}.toml", AIRLIGHT_SOURCE_DIR, name),
                             {{"film.width", std::to_string(width)}, {"film.height", std::to_string(width * 3 / 4)}});
-      const gpu::FirstHits traced(*context, scene);
-      const gpu::FirstHits raster(*context, scene, true, gpu::FirstHits::Way::raster);
-      const gpu::Buffer distances(*context, "distances", 480000 * 4), primitives(*context, "primitives", 480000 * 4);
+      const gpu::FirstHits traced(context, scene);
+      const gpu::FirstHits raster(context, scene, true, gpu::FirstHits::Way::raster);
+      const gpu::Buffer distances(context, "distances", 480000 * 4), primitives(context, "primitives", 480000 * 4);
       std::vector<double> seconds[2];  // timestamps of a few milliseconds mean nothing on llvmpipe
       for (int n = 0; n < 7; ++n)
         for (int way = 0; way < 2; ++way) {

@@ -14,16 +14,15 @@ namespace {
 
 // Rounds as on a software renderer: a fast device would do these pictures in one.
 struct ManyRounds {
-  explicit ManyRounds(int budget = 3000) { gpu::marcher::Rounds::budget = budget; }
-  ~ManyRounds() { gpu::marcher::Rounds::budget = 0; }
+  explicit ManyRounds(int budget = 3000) { gpu::ray_marcher::Rounds::budget = budget; }
+  ~ManyRounds() { gpu::ray_marcher::Rounds::budget = 0; }
 };
 
 }  // namespace
 
 // Counters go into tables: every one of them the same in every run, however busy the machine is. The first frame learns
 // how many rounds there are (gpu/ray_marcher/rounds.h); a warm one takes them without a look, and gives the same bits.
-TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher][thorough]") {
   const ManyRounds many;
   for (const auto& [name, scene] : assorted_scenes()) {
     const bool several = name == "Gaussians";  // rounds
@@ -31,7 +30,7 @@ TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher][t
     CAPTURE(name);
     scene::View view = look();
     view.width = 28, view.height = 21;
-    const gpu::RayMarcherGpu marcher;
+    const gpu::ray_marcher::RayMarcher marcher;
     const Given given{
         {"steps", several ? "256" : "16"}, {"shadow_steps", several ? "32" : "4"}, {"environment_directions", "8"}};
     const auto prepared = marcher.prepare(scene, {marcher.settings(), given}, {1, {}});
@@ -59,12 +58,11 @@ TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_marcher][t
 }
 
 // More rounds than the frame before had: they are found to be too few, and the picture is made again.
-TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]") {
   const ManyRounds many;
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name != "Gaussians") continue;
-    const gpu::RayMarcherGpu marcher;
+    const gpu::ray_marcher::RayMarcher marcher;
     const Given given{{"steps", "512"}, {"shadow_steps", "64"}};
     scene::View away = look();
     away.camera = scene::look_at(Point3(0, 0, 40), Point3(0, 0, 80), Vec3::UnitY());
@@ -77,8 +75,7 @@ TEST_CASE("ray marcher: rounds that were too few are seen", "[gpu][ray_marcher]"
 }
 
 // Where a ray stops until the next round changes nothing: thick Gaussians, whose steps are divided, in rounds of three lengths.
-TEST_CASE("ray marcher: pictures and counters are the same in any rounds", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: pictures and counters are the same in any rounds", "[gpu][ray_marcher]") {
   const auto scene = make_scene(
       {make_medium(scene::GaussianSum{{{Point3(0, 0, 0), 0.4, 1}, {Point3(0.3, 0.1, 0), 0.2, 2}}, 0, infinity},
                    scene::Sphere{Point3::Zero(), 1}, Rgb::Constant(300), Rgb::Constant(0.9), scene::Isotropic{})},

@@ -28,12 +28,11 @@ void agree(const std::vector<Given>& all) {
     for (Given given : all) {
       if (given.count("step") && scene->geometry) continue;  // seconds
       given.insert({{"steps", "64"}, {"shadow_steps", "12"}, {"environment_directions", "8"}});
+      given = scene::without_unread(option_specs(), given);
       const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
       CAPTURE(name, given["spacing"], given["step"]);
-      for (const char* layer : {"airlight", "transmittance", "surface"}) {
-        CAPTURE(layer);
-        CHECK(p99(cpu.film, gpu.film, layer) < 7e-6);  // measured: 2.5e-6 at worst
-      }
+      gpu::test::agree(name, cpu.film, gpu.film, {7e-6},
+                       {"airlight", "transmittance", "surface"});  // measured: 2.5e-6 at worst
       // The same steps: what rounding makes of a ray along a cut apart.
       for (const char* counter : {"rays", "steps", "shadow_rays", "occlusion_rays"}) {
         if (given.count("early_exit") && counter == std::string("steps")) continue;  // the CPU samples, then leaves out
@@ -60,8 +59,7 @@ TEST_CASE("ray marcher: GPU agrees with CPU in steps of one length, without skip
 }
 
 // Triangles, which the scenes above have not.
-TEST_CASE("ray marcher: meshes cast shadows on the GPU", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: meshes cast shadows on the GPU", "[gpu][ray_marcher]") {
   const auto scene = std::make_shared<const scene::Scene>(
       scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/crosscheck/mesh_in_fog.toml"));
   scene::View view = view_of(*scene);
@@ -75,8 +73,7 @@ TEST_CASE("ray marcher: meshes cast shadows on the GPU", "[gpu][ray_marcher]") {
 }
 
 // Meshes, a sphere, a plane, a light's ball: every pixel, at silhouettes and edges of shadows too.
-TEST_CASE("ray marcher: surfaces on the GPU are those of the CPU", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: surfaces on the GPU are those of the CPU", "[gpu][ray_marcher]") {
   for (const char* file : {"crosscheck/mesh_in_fog", "crosscheck/surfaces_in_fog", "elephant_fog"}) {
     auto changed = scene::load_scene(fmt::format(AIRLIGHT_SOURCE_DIR "/experiments/scenes/{}.toml", file));
     for (scene::Light& light : changed.lights)
@@ -88,15 +85,8 @@ TEST_CASE("ray marcher: surfaces on the GPU are those of the CPU", "[gpu][ray_ma
     const scene::Rendering cpu = render(scene, view, given, 1), gpu = render_gpu(scene, view, given);
     CHECK(std::any_of(gpu.times.begin(), gpu.times.end(), [](const auto& t) { return t.name == "distances"; }));
     CAPTURE(file);
-    for (const char* layer : {"surface", "transmittance", "mean"}) {
-      const std::vector<float>&x = cpu.film.layer(layer), &y = gpu.film.layer(layer);
-      const double most = *std::max_element(x.begin(), x.end());
-      double worst = 0;
-      for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, std::abs(y[i] - x[i]) / (x[i] + 0.01 * most));
-      CAPTURE(layer);
-      CHECK(p99(cpu.film, gpu.film, layer) < 4e-6);
-      CHECK(worst < (layer == std::string("mean") ? 1.8e-4 : 3e-6));
-    }
+    gpu::test::agree(file, cpu.film, gpu.film, {4e-6, 3e-6}, {"surface", "transmittance"});
+    gpu::test::agree(file, cpu.film, gpu.film, {4e-6, 1.8e-4}, {"mean"});
     for (const char* counter : {"occlusion_rays", "shadow_rays"})
       CHECK(gpu.counters.at(counter) == Approx(cpu.counters.at(counter)).epsilon(1e-4));
     // By the rasteriser, too, but for silhouettes.
@@ -110,8 +100,7 @@ TEST_CASE("ray marcher: surfaces on the GPU are those of the CPU", "[gpu][ray_ma
 }
 
 // Rays go on beyond a lamp that lies deeper than the horizon.
-TEST_CASE("ray marcher: a lamp deep in endless fog on the GPU", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: a lamp deep in endless fog on the GPU", "[gpu][ray_marcher]") {
   for (const double depth : {10.0, 30.0, 50.0}) {
     const auto scene = make_scene(
         {make_medium(scene::Homogeneous{1}, scene::Unbounded{}, Rgb(0.9, 1, 0.95) * depth / 4, Rgb::Constant(0.9))},
@@ -127,8 +116,7 @@ TEST_CASE("ray marcher: a lamp deep in endless fog on the GPU", "[gpu][ray_march
   }
 }
 
-TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name != "Gaussians") continue;
     const Given given{{"shadow", "exact"}};
@@ -138,8 +126,7 @@ TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_march
   }
 }
 
-TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray_marcher][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray_marcher][thorough]") {
   // Two of them, of different sizes, one turned.
   const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 2) / 3).toRotationMatrix();
   const auto medium = [](std::shared_ptr<const scene::VoxelGrid> grid, const Rgb& sigma_t) {
@@ -162,10 +149,8 @@ TEST_CASE("ray marcher: grids in textures are the grids in a buffer", "[gpu][ray
 }
 
 // More than a storage buffer of llvmpipe holds: automatic storage changes over, and a buffer is refused in one line.
-TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_marcher][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  if (context->limits().storage_block > std::size_t(128) << 20) {
+DEVICE_TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_marcher][thorough]") {
+  if (context.limits().storage_block > std::size_t(128) << 20) {
     WARN("test skipped: storage buffers of this device are larger");
     return;
   }
@@ -195,8 +180,7 @@ TEST_CASE("ray marcher: a grid beyond the limit of storage buffers", "[gpu][ray_
 }
 
 // Order 2, towards the closed reference and not towards the CPU's marcher.
-TEST_CASE("ray marcher: the GPU reaches the deterministic truth at order 2", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: the GPU reaches the deterministic truth at order 2", "[gpu][ray_marcher]") {
   const scene::View view = look();
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name != "Gaussians") continue;
@@ -224,9 +208,8 @@ TEST_CASE("ray marcher: the GPU reaches the deterministic truth at order 2", "[g
   }
 }
 
-TEST_CASE("ray marcher: the GPU takes no step in empty space, nor makes a dispatch without a medium",
-          "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: the GPU takes no step in empty space, nor makes a dispatch without a medium",
+                 "[gpu][ray_marcher]") {
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name == "nothing") {
       const long before = gpu::Program::dispatches();
@@ -250,7 +233,7 @@ TEST_CASE("ray marcher: the GPU takes no step in empty space, nor makes a dispat
 }
 
 TEST_CASE("ray marcher: what the GPU does not do is said; a render can be stopped", "[gpu][ray_marcher]") {
-  const gpu::RayMarcherGpu marcher;
+  const gpu::ray_marcher::RayMarcher marcher;
   const auto objections = [&](const std::string& wanted, const Given& given) {
     for (const auto& [name, scene] : assorted_scenes())
       if (name == wanted) return marcher.supports(*scene, {marcher.settings(), given}).size();
@@ -270,8 +253,7 @@ TEST_CASE("ray marcher: what the GPU does not do is said; a render can be stoppe
 }
 
 // Steps follow the optical depth as the CPU's do, as far as single precision knows places; beyond, it says so.
-TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
   scene::View view = look();
   view.width = 8, view.height = 6;
   for (int kind = 0; kind < 3; ++kind)
@@ -285,7 +267,7 @@ TEST_CASE("ray marcher: thick media on the GPU", "[gpu][ray_marcher]") {
                                     {scene::DirectionalLight{Vec3(0.4, 0.5, 1).normalized(), Rgb(3, 2, 1)}});
       scene->camera = view.camera;
       CAPTURE(kind, extinction);
-      const gpu::RayMarcherGpu marcher;
+      const gpu::ray_marcher::RayMarcher marcher;
       const auto reasons = marcher.supports(*scene, {marcher.settings(), {}});
       if (extinction > 1e5) {
         REQUIRE(reasons.size() == 1);

@@ -1,6 +1,6 @@
 // Pictures of the ray marcher on the device.
 #pragma once
-#include "gpu/ray_marcher/ray_marcher_gpu.h"
+#include "gpu/ray_marcher/ray_marcher.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
 #include "tests/reference/ray_marcher/march_scenes.h"
@@ -18,7 +18,7 @@ inline scene::View look() {
 
 inline scene::Rendering render_gpu(std::shared_ptr<const scene::Scene> scene, const scene::View& view,
                                    const Given& given) {
-  const gpu::RayMarcherGpu marcher;
+  const gpu::ray_marcher::RayMarcher marcher;
   return marcher.prepare(std::move(scene), {marcher.settings(), given}, {1, {}})->render(view, {1, {}});
 }
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "gpu/shadow_planes/origin_counts.h"
+#include "gpu/shadow_planes/surface_count.h"
 #include "methods/shadow_planes/general_position.h"
 #include "scene/geometry/shapes.h"
 #include "tests/gpu/device.h"
@@ -25,13 +25,13 @@ Counted compare(gpu::Context& context, const std::shared_ptr<const scene::Scene>
                 const Point3& light) {
   const auto occluders = std::make_shared<const shadow_planes::Occluders>(scene);
   const shadow_planes::SurfaceCount expected(occluders, light);
-  const gpu::planes::Silhouettes silhouettes(context, *occluders, 1);
+  const gpu::shadow_planes::Silhouettes silhouettes(context, *occluders, 1);
   const gpu::FirstHits hits(context, *scene);
-  const gpu::planes::OriginCounts counts(context, silhouettes, hits);
-  gpu::planes::LightEdges edges;
+  const gpu::shadow_planes::OriginCounts counts(context, silhouettes, hits);
+  gpu::shadow_planes::LightEdges edges;
   silhouettes.find(light, edges);
   const std::size_t pixels = std::size_t(view.width) * view.height;
-  using gpu::planes::StateData;
+  using gpu::shadow_planes::StateData;
   const gpu::Buffer states(context, "states", pixels * sizeof(StateData)), counters(context, "counters", 64);
   counts.find(view, light, edges, states, counters);
   const std::vector<StateData> found = states.download<StateData>();
@@ -50,7 +50,7 @@ Counted compare(gpu::Context& context, const std::shared_ptr<const scene::Scene>
       from_there.camera.position = origin;
       counts.find(from_there, light, edges, states, counters);
       const auto state = edges.state->download<int>();
-      CHECK(state[offsetof(gpu::planes::LightStateData, count_at_camera) / 4] ==
+      CHECK(state[offsetof(gpu::shadow_planes::LightStateData, count_at_camera) / 4] ==
             expected.at(origin_in_general_position(origin, light)));
     }
   return result;
@@ -65,13 +65,11 @@ scene::View parallel_view(const Point3& at, const Point3& target, double height,
 
 }  // namespace
 
-TEST_CASE("shadow planes: surfaces between light and origins are counted alike", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("shadow planes: surfaces between light and origins are counted alike", "[gpu][shadow_planes]") {
+  const gpu::Use use(context);
   Counted all;
   const auto add = [&](const std::shared_ptr<const scene::Scene>& scene, const scene::View& view, const Point3& light) {
-    const Counted counted = compare(*context, scene, view, light);
+    const Counted counted = compare(context, scene, view, light);
     all.points += counted.points;
     all.crossed += counted.crossed;
   };

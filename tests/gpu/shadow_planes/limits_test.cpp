@@ -41,20 +41,18 @@ std::shared_ptr<scene::Scene> plates(int count) {
 
 }  // namespace
 
-TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: more crossings than a pixel holds", "[gpu][shadow_planes]") {
   const auto scene = plates(60);
   compare(scene, {});
   compare(scene, {{"shadows", "signed_sum"}});
   compare(scene, {{"shadows", "stencil"}}, 2e-5, 1.5e-5);
-  const scene::Rendering many = render(gpu::ShadowPlanesGpu(), scene, {});
+  const scene::Rendering many = render(gpu::shadow_planes::ShadowPlanes(), scene, {});
   CHECK(many.counters.at("gatherings_after_first") > 100);
   CHECK(many.counters.at("crossings") == render(shadow_planes::ShadowPlanes(), scene, {}).counters.at("crossings"));
 }
 
-TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
-  const gpu::ShadowPlanesGpu method;
+DEVICE_TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow_planes]") {
+  const gpu::shadow_planes::ShadowPlanes method;
   const auto dispatches = [&](const scene::Scene& s, const Pairs& given) {
     auto scene = std::make_shared<scene::Scene>(s);
     finish(*scene);
@@ -73,9 +71,7 @@ TEST_CASE("shadow planes: what a scene has not costs no dispatch", "[gpu][shadow
 }
 
 // A hundred crossings on a ray and thousands of edges beside it: llvmpipe's limit on loops is not met, or said to be.
-TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow_planes][thorough]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow_planes][thorough]") {
   const auto scene = std::make_shared<scene::Scene>(scene::load_scene(
       AIRLIGHT_SOURCE_DIR "/experiments/scenes/shadow_planes/edges.toml", {{"film.width", "20"},
                                                                            {"film.height", "15"},
@@ -83,19 +79,17 @@ TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu][shadow
                                                                            {"surface.0.columns", "129"},
                                                                            {"surface.0.lot", "0.0775193798"}}));
   compare(scene, {});
-  CHECK(render(gpu::ShadowPlanesGpu(), scene, {}).counters.at("gatherings_after_first") > 100);
-  if (!context->software()) return;
+  CHECK(render(gpu::shadow_planes::ShadowPlanes(), scene, {}).counters.at("gatherings_after_first") > 100);
+  if (!context.software()) return;
   const auto media = scene_of("shadow_planes/media", 16, 12);
   for (const Pairs& given :
        {Pairs{{"nodes", "1024"}}, Pairs{{"nodes", "1024"}, {"shadows", "stencil"}, {"evaluation", "vertices"}}})
-    CHECK_THROWS_AS(render(gpu::ShadowPlanesGpu(), media, given), Unavailable);
+    CHECK_THROWS_AS(render(gpu::shadow_planes::ShadowPlanes(), media, given), Unavailable);
 }
 
 // What is crossed at the ends of a plane: `times` may be any number, infinity too, which is no level.
-TEST_CASE("shadow planes: a plane is crossed within its mesh, however far out", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("shadow planes: a plane is crossed within its mesh, however far out", "[gpu][shadow_planes]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;
 #include "shadow_planes/plane_mesh.glsl"
 layout(std430, binding = 0) readonly buffer Places { vec2 places[]; };  // share of the edge, times as far as it
@@ -115,8 +109,8 @@ void main() {
   std::vector<std::array<float, 2>> places;
   for (const float share : {0.0f, 0.3f, 0.5f, 1.0f})
     for (const float times : {0.5f, 1.0f, 3.0f, 1e30f, 3e38f, infinite}) places.push_back({share, times});
-  gpu::Program program(*context, "test.comp", {{"LOCAL_SIZE_X", "32"}});
-  const gpu::Buffer input(*context, "places", places), output(*context, "found", 32 * places.size());
+  gpu::Program program(context, "test.comp", {{"LOCAL_SIZE_X", "32"}});
+  const gpu::Buffer input(context, "places", places), output(context, "found", 32 * places.size());
   input.bind(0);
   output.bind(1);
   const int levels = 8;

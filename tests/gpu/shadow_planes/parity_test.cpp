@@ -17,16 +17,14 @@ using gpu::test::Pairs;
 using gpu::test::render;
 using gpu::test::scene_of;
 
-TEST_CASE("shadow planes: GPU agrees with CPU", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU", "[gpu][shadow_planes]") {
   for (const char* file : {"shadow_planes/lamp", "shadow_planes/boxes_1", "shadow_planes/boxes_3",
                            "shadow_planes/boxes_8", "shadow_planes/spot", "shadow_planes/media"})
     compare(scene_of(file), {});
   compare(scene_of("elephant_fog"), {}, 2e-5, 1.2e-5);
 }
 
-TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_planes]") {
   const auto scene = scene_of("shadow_planes/boxes_8");
   for (const Pairs& given :
        {Pairs{{"shadows", "none"}}, Pairs{{"shadows", "signed_sum"}}, Pairs{{"shadows", "stencil"}},
@@ -38,8 +36,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every setting", "[gpu][shadow_p
   compare(scene, {{"shadows", "stencil"}, {"frame_buffer", "true"}}, 1);
 }
 
-TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][shadow_planes]") {
   for (const scene::PhaseFunction& phase :
        {scene::PhaseFunction(scene::Rayleigh{}), scene::PhaseFunction(scene::Hazy{}),
         scene::PhaseFunction(scene::Murky{}), scene::PhaseFunction(scene::HenyeyGreenstein{0.8}),
@@ -61,8 +58,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "[gpu][s
 
 // Two lights, one of them a spot; an orthographic camera; cameras and lights inside occluders; spheres; grey and
 // coloured media, boxes and slabs that overlap.
-TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes][thorough]") {
   const auto scene = scene_of("shadow_planes/boxes_3", 20, 15);
   scene->name = "two lights and a ball";
   const Point3 light = scene::ball(scene->lights[0])->center;
@@ -103,8 +99,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_plan
 }
 
 // The paper's own evaluation: Gamma at vertices, a constant R in media, boundaries sorted in among the planes.
-TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][shadow_planes][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][shadow_planes][thorough]") {
   const Pairs vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}};
   const auto with = [](Pairs given, const Pairs& more) {
     given.insert(more.begin(), more.end());
@@ -131,8 +126,7 @@ TEST_CASE("shadow planes: GPU agrees with CPU in the paper's stages", "[gpu][sha
 }
 
 // Boxes that cut one another, inside out, with faces missing, there twice; lights inside them and in a wall.
-TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_planes]") {
   for (unsigned seed = 0; seed < 8; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> place(-1, 1), size(0.1, 0.8);
@@ -162,15 +156,14 @@ TEST_CASE("shadow planes: GPU agrees with CPU in soups of boxes", "[gpu][shadow_
   }
 }
 
-TEST_CASE("shadow planes: GPU agrees with CPU where camera, light and edges share planes", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU where camera, light and edges share planes",
+                 "[gpu][shadow_planes]") {
   for (const auto& scene : test::special_scenes()) compare(scene, {});
 }
 
 // Where single precision would cancel: lights far from a region, cones of a thousandth, entries far before a light that
 // is close to the ray.
-TEST_CASE("shadow planes: single precision where numbers cancel", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: single precision where numbers cancel", "[gpu][shadow_planes]") {
   const auto scene_with = [](const scene::Light& light, const scene::Region& region, double sigma_t) {
     auto scene = std::make_shared<scene::Scene>();
     scene->width = 32;
@@ -243,15 +236,14 @@ TEST_CASE("shadow planes: the frame buffer of 8 bits is one", "[shadow_planes]")
   }
 }
 
-TEST_CASE("shadow planes: the frame buffer of 8 bits on the GPU", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("shadow planes: the frame buffer of 8 bits on the GPU", "[gpu][shadow_planes]") {
   const auto scene = two_lights_in_two_media();
   for (const char* evaluation : {"pixels", "vertices"}) {
     CAPTURE(evaluation);
     const Pairs given = in_frame_buffer(evaluation);
     const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, given).film;
     const std::vector<float>& x = a.layer("airlight");
-    const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, given).film;
+    const scene::Film b = render(gpu::shadow_planes::ShadowPlanes(), scene, given).film;
     const std::vector<float>& y = b.layer("airlight");
     int beyond_a_step = 0;
     for (std::size_t i = 0; i < x.size(); ++i) beyond_a_step += std::abs(x[i] - y[i]) > 1.01 / 255;

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <cstdlib>
 
-#include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/shadow_planes/shadow_planes.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "scene/scene.h"
 #include "tests/gpu/device.h"
@@ -30,17 +28,9 @@ inline void compare(const std::shared_ptr<const scene::Scene>& scene, const Pair
                     double own = 2.5e-6, bool lit = true) {
   const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, given).film;
   // The device's rule: 16 nodes are good to single precision.
-  const scene::Film b = render(gpu::ShadowPlanesGpu(), scene, given).film;
-  CAPTURE(scene->name, given);
-  for (const char* layer : {"airlight", "transmittance", "surface", "mean"}) {
-    const double most = quantile(a, b, layer, 1), usual = p99(a, b, layer);
-    CAPTURE(layer, most, usual);
-    CHECK(usual < own);
-    CHECK(most < worst);
-    if (std::getenv("AIRLIGHT_TEST_FIGURES"))
-      fmt::print("{} {} {}: p99 {:.1e} of {:.1e}, worst {:.1e} of {:.1e}\n", scene->name, fmt::join(given, " "), layer,
-                 usual, own, most, worst);
-  }
+  const scene::Film b = render(gpu::shadow_planes::ShadowPlanes(), scene, given).film;
+  agree(fmt::format("{} {}", scene->name, fmt::join(given, " ")), a, b, {own, worst},
+        {"airlight", "transmittance", "surface", "mean"});
   CHECK((*std::max_element(b.layer("airlight").begin(), b.layer("airlight").end()) > 0) == lit);
 }
 

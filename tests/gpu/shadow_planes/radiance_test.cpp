@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "gpu/program.h"
-#include "gpu/shadow_planes/airlight_terms_on_device.h"
+#include "gpu/shadow_planes/airlight_term.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/shader_folder.h"
 #include "tests/methods/shadow_planes/vectors.h"
@@ -32,10 +32,8 @@ void main() {
 
 }  // namespace
 
-TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][shadow_planes]") {
+  const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(one_ray);
   std::map<std::map<std::string, std::string>, std::unique_ptr<gpu::Program>> programs;
   int count = 0, vanished = 0;
@@ -57,13 +55,13 @@ TEST_CASE("shadow planes: radiances of the stress list on the device", "[gpu][sh
     options.stretch = 3;
     options.printed_phases = true;
     const auto shared = std::make_shared<const scene::Scene>(scene);
-    const gpu::planes::AirlightTermsOnDevice airlight_terms(*context, shared, options);
+    const gpu::shadow_planes::AirlightTermsOnDevice airlight_terms(context, shared, options);
     REQUIRE(airlight_terms.count() == 1);
     auto definitions = airlight_terms.definitions(0, 0);
-    definitions.merge(gpu::planes::shared_definitions());
+    definitions.merge(gpu::shadow_planes::shared_definitions());
     auto& program = programs[definitions];
-    if (!program) program = std::make_unique<gpu::Program>(*context, "test.comp", definitions);
-    const gpu::Buffer radiance(*context, "radiance", 4);
+    if (!program) program = std::make_unique<gpu::Program>(context, "test.comp", definitions);
+    const gpu::Buffer radiance(context, "radiance", 4);
     airlight_terms.bind(*program, 0, 0);
     radiance.bind(0);
     program->set_double("from_place", x0);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "gpu/raster/first_hits.h"
-#include "gpu/shadow_planes/evaluator_on_device.h"
+#include "gpu/shadow_planes/evaluator.h"
 #include "methods/shadow_planes/mapped_rule.h"
 #include "methods/shadow_planes/polynomial.h"
 #include "tests/gpu/device.h"
@@ -27,19 +27,17 @@ constexpr auto one = [](auto, auto, auto) { return 1; };
 
 }  // namespace
 
-TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_planes]") {
   const MappedRule<double> truth(128, 6);
-  std::vector<gpu::planes::EvaluatorCase> cases;
+  std::vector<gpu::shadow_planes::EvaluatorCase> cases;
   for (const auto& [a, d0, length] : rule_cases()) cases.push_back({a, 1, d0, device_length(length)});
   for (const RuleErrors& row : rule_errors()) {
-    const std::vector<float> quick = integrals_on_device(*context, {row.phase, false, 8, 2}, cases);
-    const std::vector<float> fine = integrals_on_device(*context, {row.phase, false, 16, 3}, cases);
+    const std::vector<float> quick = integrals_on_device(context, {row.phase, false, 8, 2}, cases);
+    const std::vector<float> fine = integrals_on_device(context, {row.phase, false, 16, 3}, cases);
     double worst_quick = 0;
     std::vector<double> errors;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      const gpu::planes::EvaluatorCase& c = cases[i];
+      const gpu::shadow_planes::EvaluatorCase& c = cases[i];
       const LitPart<double> part{0, c.length < gpu::far_away ? c.length : infinity};
       const double exact = airlight_integral(truth, row.phase, double(c.extinction), double(-c.d0), 1.0, part, one);
       REQUIRE((std::isfinite(quick[i]) && std::isfinite(fine[i])));
@@ -60,9 +58,7 @@ TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shadow_plane
 }
 
 // The stress list and all other cases of eq. (1): Ihat, without the factor e^(-k (x0 + r0)) that no float can hold.
-TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]") {
   const MappedRule<double> truth(128, 6);
   int count = 0;
   for (const auto& v : vectors_of("airlight")) {
@@ -71,8 +67,8 @@ TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]
     const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
                  length = number(in.at("x1")) - x0;
     const shadow_planes::PhaseForm phase = phase_of(in);
-    const gpu::planes::EvaluatorCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
-    const float got = gpu::planes::integrals_on_device(*context, {phase}, {rounded}).front();
+    const gpu::shadow_planes::EvaluatorCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
+    const float got = gpu::shadow_planes::integrals_on_device(context, {phase}, {rounded}).front();
     // Of the rounded input, which is all that a float can know.
     const LitPart<double> part{0, rounded.length < gpu::far_away ? rounded.length : infinity};
     const double exact =
@@ -86,16 +82,14 @@ TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]
 }
 
 // The paper's evaluator in single precision: the polynomial that double precision has, where it is of use.
-TEST_CASE("shadow planes: the polynomial on the device", "[gpu][shadow_planes]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
+DEVICE_TEST_CASE("shadow planes: the polynomial on the device", "[gpu][shadow_planes]") {
   for (const shadow_planes::PhaseForm& phase :
        {shadow_planes::PhaseForm{}, shadow_planes::PhaseForm{shadow_planes::PhaseForm::Kind::rayleigh, 0, 1}})
     for (const int degree : {2, 4, 8})
       for (const float a : {1e-4f, 0.1f, 1.0f, 3.0f})
         for (const float d0 : {-2.0f, -0.3f, 0.5f}) {
           const float got =
-              gpu::planes::integrals_on_device(*context, {phase, true, degree}, {{a, 1, d0, 0.7f}}).front();
+              gpu::shadow_planes::integrals_on_device(context, {phase, true, degree}, {{a, 1, d0, 0.7f}}).front();
           const auto c = shadow_planes::taylor_coefficients(phase, double(a), degree);
           const double theta0 = std::atan(double(d0)), theta1 = std::atan(double(d0) + double(0.7f));
           const double expected = std::exp(double(a) * (shadow_planes::q_at(double(d0), 1.0) - 1)) *

@@ -14,7 +14,7 @@
 namespace grids_test {
 
 using namespace airlight;
-using namespace airlight::gpu::fogmaps;
+using namespace airlight::gpu::wavelet_fog;
 using wavelet_fog::Coefficients;
 using wavelet_fog::Family;
 
@@ -72,10 +72,8 @@ double value_at(const Coefficients& c, int i, int j) {
 
 }  // namespace
 
-TEST_CASE("wavelets on the GPU: reconstruction of any size and depth", "[gpu][wavelet_fog]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("wavelets on the GPU: reconstruction of any size and depth", "[gpu][wavelet_fog]") {
+  const gpu::Use use(context);
   double worst = 0;
   for (const char* name : {"haar", "cdf22", "cdf33"})
     for (const auto& [width, height, levels] : std::vector<std::array<int, 3>>{
@@ -83,7 +81,7 @@ TEST_CASE("wavelets on the GPU: reconstruction of any size and depth", "[gpu][wa
       const Family& f = wavelet_fog::family(name);
       if (width > 1000 && f.degree < 2) continue;  // seconds; the longest filters
       const Coefficients c = random_map(width, height, 3);
-      Grids grids(*context);
+      Grids grids(context);
       grids.add(c.range);
       std::vector<Split> splits;
       for (int l = 0; l < levels; ++l) splits.push_back(add_split(grids, l == 0 ? 0 : splits.back().aa, f));
@@ -104,15 +102,13 @@ TEST_CASE("wavelets on the GPU: reconstruction of any size and depth", "[gpu][wa
   CHECK(worst > 0);  // single precision was at work
 }
 
-TEST_CASE("wavelets on the GPU: restricted and clamped grids are the processor's", "[gpu][wavelet_fog]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("wavelets on the GPU: restricted and clamped grids are the processor's", "[gpu][wavelet_fog]") {
+  const gpu::Use use(context);
   for (int degree = 0; degree <= 3; ++degree)
     for (const auto& [width, height] : std::vector<std::pair<int, int>>{{1, 1}, {33, 20}, {130, 257}}) {
       const Coefficients c = random_map(width, height, 8);
       const Taps low = wavelet_fog::restriction(degree);
-      Grids grids(*context);
+      Grids grids(context);
       grids.add(c.range);
       const int coarse = grids.add(coarse_range(c.range, low, low));
       grids.down(0, low, low, coarse);
@@ -132,10 +128,8 @@ TEST_CASE("wavelets on the GPU: restricted and clamped grids are the processor's
     }
 }
 
-TEST_CASE("wavelets on the GPU: the oracle's decomposition", "[gpu][wavelet_fog]") {
-  gpu::Context* context = gpu::test::device();
-  if (!context) return;
-  const gpu::Use use(*context);
+DEVICE_TEST_CASE("wavelets on the GPU: the oracle's decomposition", "[gpu][wavelet_fog]") {
+  const gpu::Use use(context);
   int bands = 0;
   for (const test::json& v : test::vectors_of("wavelet_fog", "analysis2d")) {
     const Family& f = wavelet_fog::family(v.at("family").get<std::string>());
@@ -145,7 +139,7 @@ TEST_CASE("wavelets on the GPU: the oracle's decomposition", "[gpu][wavelet_fog]
       return c;
     };
     const Coefficients c = listed(v.at("c"));
-    Grids grids(*context);
+    Grids grids(context);
     grids.add(c.range);
     const Split split = add_split(grids, 0, f);
     grids.allocate();

@@ -12,17 +12,12 @@ using namespace airlight;
 using namespace airlight::gpu::test;
 using test::json;
 using test::number;
+using test::numbers;
 
 namespace {
 
 // The vectors' map lies in x and y, their height is z.
 Point3 upright(const json& v) { return {number(v[0]), number(v[2]), number(v[1])}; }
-
-std::vector<double> numbers(const json& list) {
-  std::vector<double> values;
-  for (const json& value : list) values.push_back(number(value));
-  return values;
-}
 
 scene::HeightProfile profile_of(const json& v) {
   const std::string type = v.at("type");
@@ -71,7 +66,7 @@ int look_at_all(const char* kind, Depth&& depth) {
     const std::vector<double> coefficients = numbers(v.at("coef"));
     if (*std::min_element(coefficients.begin(), coefficients.end()) < 0) continue;  // no fog, but a detail alone
     const auto scene = scene_of(v);
-    const gpu::WaveletFogGpu method;
+    const gpu::wavelet_fog::WaveletFog method;
     if (!method.supports(*scene, {method.settings(), {}}).empty()) continue;  // beyond single precision, it says
     const double expected = number(v.at("expected").at("optical_depth"));
     if (expected > 60) continue;  // nothing is left of the transmittance
@@ -86,18 +81,16 @@ int look_at_all(const char* kind, Depth&& depth) {
 
 }  // namespace
 
-TEST_CASE("wavelet fog: the oracle's optical depths on the GPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: the oracle's optical depths on the GPU", "[gpu][wavelet_fog]") {
   for (const char* variant : {"direct", "skip"}) {
     const int looked_at = look_at_all("optical_depth", [&](const json&, const auto& scene) {
-      return depth_of(render(gpu::WaveletFogGpu(), scene, {{"variant", variant}}).film);
+      return depth_of(render(gpu::wavelet_fog::WaveletFog(), scene, {{"variant", variant}}).film);
     });
     CHECK(looked_at >= 20);
   }
 }
 
-TEST_CASE("wavelet fog: the oracle's levels on the GPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: the oracle's levels on the GPU", "[gpu][wavelet_fog]") {
   for (const char* variant : {"paper", "tele"}) {
     const int looked_at = look_at_all("multires", [&](const json& v, const auto& scene) {
       const bool restricted = v.at("family") == "restrict";
@@ -105,7 +98,7 @@ TEST_CASE("wavelet fog: the oracle's levels on the GPU", "[gpu][wavelet_fog]") {
                         {"coarse", restricted ? "restricted" : "wavelet"},
                         {"levels", fmt::format("{}", v.at("levels").get<int>())},
                         {"mu", fmt::format("{}", number(v.at("mu")))}};
-      return depth_of(render(gpu::WaveletFogGpu(), scene, given).film);
+      return depth_of(render(gpu::wavelet_fog::WaveletFog(), scene, given).film);
     });
     CHECK(looked_at >= 8);
   }

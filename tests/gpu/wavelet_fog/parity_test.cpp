@@ -19,8 +19,7 @@ const scene::HeightProfile profiles[] = {scene::SameAtAllHeights{}, scene::Layer
 
 }  // namespace
 
-TEST_CASE("wavelet fog: GPU agrees with CPU in every profile and degree", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: GPU agrees with CPU in every profile and degree", "[gpu][wavelet_fog]") {
   for (int degree = 0; degree <= 3; ++degree)
     for (const scene::HeightProfile& profile : profiles)
       for (const auto& [eye, at] : views)
@@ -33,8 +32,7 @@ TEST_CASE("wavelet fog: GPU agrees with CPU in every profile and degree", "[gpu]
         }
 }
 
-TEST_CASE("wavelet fog: every variant on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: every variant on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
   for (int degree = 0; degree <= 2; ++degree)
     for (const char* coarse : {"wavelet", "clamped", "restricted"})
       for (const auto& [eye, at] : views) {
@@ -46,8 +44,7 @@ TEST_CASE("wavelet fog: every variant on the GPU is that of the CPU", "[gpu][wav
       }
 }
 
-TEST_CASE("wavelet fog: the polar table on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: the polar table on the GPU is that of the CPU", "[gpu][wavelet_fog]") {
   for (int degree = 0; degree <= 3; ++degree)
     for (int profile = 0; profile < 2; ++profile)
       for (const auto& [eye, at] : views) {
@@ -57,8 +54,7 @@ TEST_CASE("wavelet fog: the polar table on the GPU is that of the CPU", "[gpu][w
       }
 }
 
-TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's rim", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's rim", "[gpu][wavelet_fog]") {
   for (int profile = 0; profile < 2; ++profile) {
     const auto scene = scene_of(patches(2, 64, 47, 0.8, 7, profiles[profile]), 0.2, {-1200, 90, -700}, {0, 0, 0});
     for (const double fov : {0.08, 0.8}) {
@@ -69,8 +65,7 @@ TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's rim", "[g
   }
 }
 
-TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
   auto valley = airlight::test::scene_named("wavelet_fog/valley", 96, 72);
   compare(valley, {}, 1.7e-6);
   compare(valley, {{"variant", "tele"}}, 3e-6);

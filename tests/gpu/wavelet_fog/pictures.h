@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
-#include "gpu/wavelet_fog/wavelet_fog_gpu.h"
+#include "gpu/wavelet_fog/wavelet_fog.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "scene/media/spline_map.h"
 #include "tests/gpu/device.h"
@@ -56,30 +55,18 @@ inline std::shared_ptr<scene::Scene> scene_of(std::shared_ptr<const scene::Fogma
   return made;
 }
 
-// The greatest 99th percentile of relative differences in any layer of two films of a scene; each below `bound`.
-inline double compare(const scene::Scene& scene, const Given& given, const scene::Film& a, const scene::Film& b,
-                      double bound) {
-  CAPTURE(scene.name, given);
-  bound += 10 * injected_error();  // thin fog's opacity is a difference
-  double worst = 0;
-  REQUIRE(a.layers.size() == b.layers.size());
-  for (const auto& [layer, values] : a.layers) {
-    const double error = p99(a, b, layer);
-    worst = std::max(worst, error);
-    CAPTURE(layer, error, quantile(a, b, layer, 1));
-    CHECK(error < bound);
-  }
-  if (std::getenv("AIRLIGHT_TEST_FIGURES"))
-    fmt::print("{} {}: p99 {:.1e} of {:.1e}\n", scene.name, fmt::join(given, " "), worst, bound);
-  return worst;
+inline void compare(const scene::Scene& scene, const Given& given, const scene::Film& a, const scene::Film& b,
+                    double bound) {
+  agree(fmt::format("{} {}", scene.name, fmt::join(given, " ")), a, b,
+        {bound + 10 * injected_error()});  // thin fog's opacity is a difference
 }
 
-// Draws a scene on the processor and on the device, checks that p99 of each layer's difference is below `bound`, and returns the worst.
-inline double compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
+// Draws a scene on the processor and on the device, and checks that p99 of each layer's difference is below `bound`.
+inline void compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
   Given of_both = given;
   of_both.erase("first_hits");
   const scene::Film a = render(wavelet_fog::WaveletFog(), scene, of_both).film;
-  return compare(*scene, given, a, render(gpu::WaveletFogGpu(), scene, given).film, bound);
+  compare(*scene, given, a, render(gpu::wavelet_fog::WaveletFog(), scene, given).film, bound);
 }
 
 }  // namespace airlight::gpu::test

@@ -29,8 +29,7 @@ std::shared_ptr<scene::Scene> sunny(int degree, const scene::HeightProfile& prof
 
 }  // namespace
 
-TEST_CASE("wavelet fog: a sun on the GPU is that of the CPU", "[gpu][wavelet_fog][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: a sun on the GPU is that of the CPU", "[gpu][wavelet_fog][thorough]") {
   const scene::PhaseFunction phases[] = {scene::Isotropic{}, scene::Rayleigh{}, scene::HenyeyGreenstein{0.7},
                                          scene::Hazy{}, scene::Murky{}};
   const Vec3 suns[] = {{0.5, 0.4, 0.3}, {-1, 0.05, 0.2}, {0, 1, 0}};
@@ -46,8 +45,8 @@ TEST_CASE("wavelet fog: a sun on the GPU is that of the CPU", "[gpu][wavelet_fog
       }
 }
 
-TEST_CASE("wavelet fog: two suns, one below the horizon, thick fog and ends of rays on the GPU", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: two suns, one below the horizon, thick fog and ends of rays on the GPU",
+                 "[gpu][wavelet_fog]") {
   const auto scene = sunny(1, profiles[0], views[0], {0.3, 0.5, -0.4});
   scene->lights.push_back(scene::DirectionalLight{Vec3(0.6, -0.2, 0.3).normalized(), Rgb(0.5, 1, 2)});
   compare(scene, {{"sun", "true"}}, 1.6e-6);
@@ -58,9 +57,9 @@ TEST_CASE("wavelet fog: two suns, one below the horizon, thick fog and ends of r
           1.8e-6);
 }
 
-TEST_CASE("wavelet fog: a frame under a sun stays on the device, also where the sun moves", "[gpu][wavelet_fog]") {
-  if (!gpu::test::device()) return;
-  const gpu::WaveletFogGpu method;
+DEVICE_TEST_CASE("wavelet fog: a frame under a sun stays on the device, also where the sun moves",
+                 "[gpu][wavelet_fog]") {
+  const gpu::wavelet_fog::WaveletFog method;
   const Given given{{"sun", "true"}};
   const auto first = sunny(1, profiles[1], views[0], {0.5, 0.4, 0.3});
   const auto prepared = method.prepare(first, {method.settings(), given}, {1, {}});
@@ -99,7 +98,7 @@ int pixels_that_differ(const scene::Film& a, const scene::Film& b, const std::st
 // Every layer to `bound` at the 99th percentile; and but for `most` of the pixels, all of the airlight.
 void compare_under_sun(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound, int most) {
   const scene::Rendering a = render(wavelet_fog::WaveletFog(), scene, given);
-  const scene::Rendering b = render(gpu::WaveletFogGpu(), scene, given);
+  const scene::Rendering b = render(gpu::wavelet_fog::WaveletFog(), scene, given);
   compare(*scene, given, a.film, b.film, bound);
   const int differ = pixels_that_differ(a.film, b.film, "airlight");
   if (std::getenv("AIRLIGHT_TEST_FIGURES"))
@@ -114,8 +113,7 @@ void compare_under_sun(const std::shared_ptr<const scene::Scene>& scene, const G
 
 }  // namespace
 
-TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
   // The ten scenes in which the CPU is judged by the quadrature and the path tracer, with the map's cells that it is judged with, and
   // those without houses with houses too. Columns through thick fog are differences of
   // sums that are rounded: up to 20 of optical depth in a ball, 8 from above.
@@ -135,8 +133,8 @@ TEST_CASE("wavelet fog: suns behind surfaces on the GPU are those of the CPU", "
   }
 }
 
-TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU", "[gpu][wavelet_fog][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU",
+                 "[gpu][wavelet_fog][thorough]") {
   for (const auto& view : views) {
     const auto scene = sunny(1, profiles[0], view, {0.5, 0.4, 0.3});
     scene->lights.push_back(scene::DirectionalLight{Vec3(-0.3, 0.7, -0.2).normalized(), Rgb(0.5, 1, 2)});
@@ -155,8 +153,7 @@ TEST_CASE("wavelet fog: suns behind spheres and planes, lit surfaces on the GPU"
   }
 }
 
-TEST_CASE("wavelet fog: suns in several media on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: suns in several media on the GPU are those of the CPU", "[gpu][wavelet_fog][thorough]") {
   const scene::PhaseFunction phases[] = {scene::HenyeyGreenstein{0.6}, scene::Rayleigh{}, scene::Isotropic{}};
   for (const auto& view : views)
     for (const bool houses : {false, true}) {
@@ -194,9 +191,8 @@ scene::Film rows_of(const scene::Film& film, int first, int last) {
 
 }  // namespace
 
-TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU",
-          "[gpu][wavelet_fog][slow][thorough]") {
-  if (!gpu::test::device()) return;
+DEVICE_TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU",
+                 "[gpu][wavelet_fog][slow][thorough]") {
   // Rays along 2048 cells: more loops than a dispatch has on llvmpipe.
   const auto large = sunny(1, profiles[1], {{-25, 1.2, 0.1}, {20, 0.9, 0}}, {0.5, 0.4, 0.3});
   large->media[0].field = scene::FogmapPointer(patches(1, 2048, 64, 0.02, 3, profiles[1]));
@@ -214,7 +210,7 @@ TEST_CASE("wavelet fog: rays under a sun are done in strips and parts on the GPU
   finish(*tall);
   const Given given{{"sun", "true"}};
   const scene::Film a = render(wavelet_fog::WaveletFog(), tall, given).film,
-                    b = render(gpu::WaveletFogGpu(), tall, given).film;
+                    b = render(gpu::wavelet_fog::WaveletFog(), tall, given).film;
   for (const auto& [first, last] : {std::pair(540, 607), std::pair(607, 640)}) {
     const scene::Film part = rows_of(a, first, last);
     tall->name = fmt::format("strips, rows from {}", first);

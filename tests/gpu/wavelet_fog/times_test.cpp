@@ -44,9 +44,8 @@ std::shared_ptr<scene::Fogmap> drawn(const std::string& kind, int size) {
 
 }  // namespace
 
-TEST_CASE("wavelet fog: times of variants on the GPU", "[.times]") {
-  if (!gpu::test::device()) return;
-  const gpu::WaveletFogGpu method;
+DEVICE_TEST_CASE("wavelet fog: times of variants on the GPU", "[.times]") {
+  const gpu::wavelet_fog::WaveletFog method;
   for (const char* kind : {"smooth", "patchy", "hard"})
     for (const int size : {64, 1024}) {
       const auto scene = scene_of(drawn(kind, size), kind[0] == 's' ? 0.04 : 0.12, {0, 2, -34}, {0, 2, 0});

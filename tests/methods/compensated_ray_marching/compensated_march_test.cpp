@@ -76,25 +76,6 @@ TEST_CASE("compensated march: the oracle's sums over slices, and its integral", 
   }
 }
 
-TEST_CASE("compensated march: even smoke", "[compensated_ray_marching]") {
-  for (const json& v : vectors_of("compensated_ray_marching", "ray_march_homogeneous")) {
-    const json &in = v.at("input"), &expected = v.at("expected");
-    // A Gaussian so wide that it is even over the ray.
-    MarchedSmoke smoke;
-    smoke.extinction = Rgb::Constant(number(in.at("sigma_t")));
-    smoke.gaussians.gaussians = {{Point3::Zero(), 1e9, number(in.at("D"))}};
-    smoke.source = {{Rgb::Constant(number(in.at("J")) * std::sqrt(4 * pi))}};
-    const Slices slices{Vec3(0, 0, 1), number(in.at("step")), int(number(in.at("slices")))};
-    const CompensatedMarch march(smoke);
-    const Ray ray{Point3::Zero(), Vec3(0, 0, 1)};
-    const Marched paper = march.slices(ray, slices, SliceWeight::paper),
-                  exact = march.slices(ray, slices, SliceWeight::exact);
-    CHECK(exact.transmittance[0] == Approx(number(expected.at("transmittance"))).epsilon(1e-11));
-    CHECK(paper.radiance[0] == Approx(number(expected.at("paper_sum_without_background"))).epsilon(1e-11));
-    CHECK(exact.radiance[0] == Approx(number(expected.at("exact_without_background"))).epsilon(1e-11));
-  }
-}
-
 TEST_CASE("compensated march: extremes", "[compensated_ray_marching]") {
   MarchedSmoke smoke;
   smoke.extinction = Rgb::Constant(1e4);

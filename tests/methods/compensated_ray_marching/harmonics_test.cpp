@@ -1,11 +1,10 @@
-// Depths of Gaussians and their exponentials in spherical harmonics against the oracle's numbers, and what each approximation is worth.
+// Exponentials of depths in spherical harmonics: what each approximation is worth. `airlight verify` compares the functions with the oracle.
 #include <catch2/catch.hpp>
 
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
-#include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 #include "tests/oracle_vectors.h"
 
@@ -17,38 +16,6 @@ using namespace airlight::compensated_ray_marching;
 
 namespace {
 
-const std::string file = "compensated_ray_marching";
-
-std::vector<double> numbers(const json& list) {
-  std::vector<double> values;
-  for (const json& v : list) values.push_back(number(v));
-  return values;
-}
-
-void check_close(const std::vector<double>& got, const json& expected, const json& v) {
-  REQUIRE(got.size() == expected.size());
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    CAPTURE(v.at("id").get<std::string>(), i, 1e12 * (got[i] - number(expected[i])), number(expected[i]));
-    CHECK(std::abs(got[i] - number(expected[i])) <=
-          number(v.at("atol")) + number(v.at("rtol")) * std::abs(number(expected[i])));
-  }
-}
-
-std::vector<json> of_kind(const std::string& kind) { return vectors_of(file, kind); }
-
-// The depth vector of some Gaussians about the origin.
-Harmonics depth_of(const json& in) {
-  const double sigma_t = number(in.at("sigma_t"));
-  Harmonics sum(16, 0.0);
-  for (const json& b : in.at("blockers_xyz_r_w")) {
-    const Vec3 center = vec(b);
-    const double r = number(b[3]), w = number(b[4]), d = center.norm();
-    const Harmonics one = about_axis(zonal_depth(4, d / r), d > 0 ? Vec3(center / d) : Vec3(0, 0, 1));
-    for (std::size_t i = 0; i < 16; ++i) sum[i] -= sigma_t * w * r * one[i];
-  }
-  return sum;
-}
-
 double distance(const Harmonics& a, const Harmonics& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -57,46 +24,10 @@ double distance(const Harmonics& a, const Harmonics& b) {
 
 }  // namespace
 
-TEST_CASE("harmonics of the publication: its zonal functions, products, depths", "[compensated_ray_marching]") {
-  for (const json& v : of_kind("hg_zh"))
-    check_close(henyey_greenstein(int(number(v.at("input").at("order"))), number(v.at("input").at("g"))),
-                v.at("expected"), v);
-  for (const json& v : of_kind("sh_convolution"))
-    check_close(convolved(numbers(v.at("input").at("f")), numbers(v.at("input").at("zonal"))), v.at("expected"), v);
-  for (const json& v : of_kind("zh_rotation"))
-    check_close(about_axis(numbers(v.at("input").at("zonal")), vec(v.at("input").at("axis")).normalized()),
-                v.at("expected"), v);
-  for (const json& v : of_kind("sh_triple_product"))
-    check_close(scene::triple_product(4)(numbers(v.at("input").at("f")), numbers(v.at("input").at("g"))),
-                v.at("expected"), v);
-  for (const json& v : of_kind("sh_triple_counts")) {
-    const json& orders = v.at("input").at("orders");
-    for (std::size_t i = 0; i < orders.size(); ++i)
-      CHECK(double(scene::triple_product(int(number(orders[i]))).terms().size()) ==
-            number(v.at("expected").at("unique_sorted")[i]));
-  }
-  for (const json& v : of_kind("sh_triple_entry")) {
-    std::array<int, 3> at;
-    for (std::size_t a = 0; a < 3; ++a) at[a] = int(number(v.at("input").at(std::string(1, char('i' + a)))));
-    std::vector<double> f(16, 0.0), h(16, 0.0);
-    f[std::size_t(at[0])] = h[std::size_t(at[1])] = 1;
-    check_close({scene::triple_product(4)(f, h)[std::size_t(at[2])]}, json::array({v.at("expected")}), v);
-  }
-  for (const json& v : of_kind("sh_basis"))
-    check_close(
-        scene::evaluate_sh(int(number(v.at("input").at("order"))), vec(v.at("input").at("direction")).normalized()),
-        v.at("expected"), v);
-  for (const json& v : of_kind("theta_of_d")) {
+TEST_CASE("harmonics of the publication: angles of distances, and back", "[compensated_ray_marching]") {
+  for (const json& v : vectors_of("compensated_ray_marching", "theta_of_d")) {
     const double d = number(v.at("input").at("d"));
-    check_close({angle_of_distance(d)}, json::array({v.at("expected")}), v);
     CHECK(distance_of_angle(angle_of_distance(d)) == Approx(d).epsilon(1e-14).margin(1e-15));
-  }
-  for (const json& v : of_kind("rbf_zh_optical_depth")) {
-    const json& cut = v.at("input").at("cut");
-    std::vector<double> depth = zonal_depth(int(number(v.at("input").at("order"))), number(v.at("input").at("d")),
-                                            cut.is_null() ? infinity : number(cut));
-    for (double& value : depth) value *= number(v.at("input").at("radius"));
-    check_close(depth, v.at("expected"), v);
   }
 }
 
@@ -130,12 +61,9 @@ TEST_CASE("depth tables: the errors that the spacings are known to have", "[comp
 
 TEST_CASE("exponentials of depths", "[compensated_ray_marching]") {
   const LinearExponential linear(depth_family(4, {1, 2, 4, 16, 64}, 40));
-  for (const json& v : of_kind("sh_exponential")) {
-    const Harmonics depth = depth_of(v.at("input"));
-    check_close(depth, v.at("expected").at("minus_depth_vector"), v);
-    const Harmonics exact = exact_exponential(depth), expected = numbers(v.at("expected").at("exp_of_bandlimited"));
+  for (const json& v : vectors_of("compensated_ray_marching", "sh_exponential")) {
+    const Harmonics depth = numbers(v.at("expected").at("minus_depth_vector")), exact = exact_exponential(depth);
     CAPTURE(v.at("id").get<std::string>());
-    CHECK(distance(exact, expected) < 1e-8);
     const double once = distance(linear(depth), exact),
                  often = distance(squared_exponential(depth, linear, 0.1), exact);
     CAPTURE(once, often);
@@ -143,52 +71,6 @@ TEST_CASE("exponentials of depths", "[compensated_ray_marching]") {
     CHECK(often <= once + 1e-12);
     CHECK(often < 0.02);
     CHECK(distance(series_exponential(depth), exact) < 0.02);
-  }
-}
-
-TEST_CASE("linear exponentials of families", "[compensated_ray_marching]") {
-  for (const json& v : of_kind("ol_table")) {
-    const json &in = v.at("input"), &expected = v.at("expected");
-    const std::vector<double> sizes = numbers(in.at("s"));
-    CAPTURE(v.at("id").get<std::string>());
-    if (in.contains("unit_vectors")) {
-      std::vector<Harmonics> family;
-      for (const json& h : in.at("unit_vectors")) family.push_back(numbers(h));
-      const LinearExponential linear(family, 8, 160);
-      for (std::size_t i = 0; i < sizes.size(); ++i) {
-        CHECK(linear.constant(sizes[i]) == Approx(number(expected.at("a")[i])).epsilon(1e-8));
-        CHECK(linear.slope(sizes[i]) == Approx(number(expected.at("b")[i])).epsilon(1e-8));
-      }
-    } else if (in.contains("counts")) {
-      // By own samples: within four standard errors, of which this has sqrt(50000 / 100) times the oracle's.
-      const LinearExponential linear(depth_family(4, {1, 2, 4, 16, 64}, 100), 8, 160);
-      for (std::size_t i = 0; i < sizes.size(); ++i) {
-        CHECK(std::abs(linear.constant(sizes[i]) - number(expected.at("a")[i])) <
-              4 * 22.4 * number(v.at("stderr").at("a")[i]));
-        CHECK(std::abs(linear.slope(sizes[i]) - number(expected.at("b")[i])) <
-              4 * 22.4 * number(v.at("stderr").at("b")[i]));
-      }
-    } else {
-      // One Gaussian: the axis does not matter, distances by quadrature in their logarithm on either side of the cut.
-      const scene::GaussLegendre rule = scene::gauss_legendre(24);
-      for (std::size_t i = 0; i < sizes.size(); ++i) {
-        double a = 0, b = 0;
-        for (const auto& [lo, hi] : {std::pair(std::log(0.3), std::log(3.0)), std::pair(std::log(3.0), std::log(10.0))})
-          for (std::size_t k = 0; k < rule.node.size(); ++k) {
-            Harmonics h =
-                about_axis(zonal_depth(4, std::exp(lo + 0.5 * (hi - lo) * (1 + rule.node[k]))), Vec3(0, 0, 1));
-            h[0] = 0;
-            const double size = distance(h, Harmonics(16, 0.0)) * std::sqrt(4 * pi);
-            for (double& value : h) value /= size;
-            const LinearExponential one({h}, sizes[i], 1);
-            const double share = 0.5 * rule.weight[k] * (hi - lo) / std::log(10 / 0.3);
-            a += share * one.constant(sizes[i]);
-            b += share * one.slope(sizes[i]);
-          }
-        CHECK(a == Approx(number(expected.at("a")[i])).epsilon(1e-6));
-        CHECK(b == Approx(number(expected.at("b")[i])).epsilon(1e-6));
-      }
-    }
   }
 }
 

@@ -39,9 +39,7 @@ TEST_CASE("compensated march: the next frame's light as if prepared anew", "[com
     sun->lights.push_back(scene::DirectionalLight{Vec3(1, 2, 2).normalized(), Rgb(1, 2, 3)});
     finish(*sun);
     if (given.count("variant")) continue;
-    REQUIRE(prepared->next(sun, {1, {}}));
-    CHECK(greatest_difference(prepared->render(view_of(*sun), {1, {}}).film, picture(method, sun, given), "mean") <
-          1e-5);
+    CHECK(greatest_difference(next_frame(*prepared, sun).film, picture(method, sun, given), "mean") < 1e-5);
   }
 }
 
@@ -71,8 +69,7 @@ TEST_CASE("compensated march: other smoke as if prepared anew, from the last fra
     const auto prepared = method.prepare(at(0, 4), {method.settings(), given}, {1, {}});
     // Smoke that moves, smoke whose attributes change, and smoke that was away for a frame.
     for (const auto& scene : {at(0.02, 4.1), at(0.02, 0), at(0.03, 4.1)}) {
-      REQUIRE(prepared->next(scene, {1, {}}));
-      const scene::Rendering warm = prepared->render(view_of(*scene), {1, {}});
+      const scene::Rendering warm = next_frame(*prepared, scene);
       const scene::Rendering cold =
           method.prepare(scene, {method.settings(), given}, {1, {}})->render(view_of(*scene), {1, {}});
       if (same) CHECK(relative_l2(warm.film, cold.film, "mean") < 3e-4);
@@ -139,8 +136,7 @@ TEST_CASE("compensated march: under a map that turns, the next frame's light as 
     const auto before = at(0);
     const auto prepared = method.prepare(before, {method.settings(), given}, {1, {}});
     for (const auto& scene : {at(0.4), at(2), scene_of(puffs(), 4, 0.9, rough_sky(2, rough_map(32, 16, 3))), before}) {
-      REQUIRE(prepared->next(scene, {1, {}}));
-      const scene::Film warm = prepared->render(view_of(*scene), {1, {}}).film, cold = picture(method, scene, given);
+      const scene::Film warm = next_frame(*prepared, scene).film, cold = picture(method, scene, given);
       CAPTURE(given);
       CHECK(relative_l2(warm, cold) < 3e-6);
       if (scene != before) CHECK(relative_l2(warm, picture(method, before, given)) > 0.01);

@@ -1,8 +1,5 @@
-// Three Gaussians that overlap, seen from the front, and how far two films of them differ.
+// Three Gaussians that overlap, and any smoke seen from the front.
 #pragma once
-#include <algorithm>
-#include <cmath>
-
 #include "tests/methods/compensated_ray_marching/risen.h"
 #include "tests/pictures.h"
 
@@ -15,7 +12,7 @@ inline scene::GaussianSum puffs() {
   return sum;
 }
 
-inline std::shared_ptr<scene::Scene> scene_of(scene::GaussianSum sum, double sigma_t, double albedo,
+inline std::shared_ptr<scene::Scene> scene_of(scene::DensityField field, double sigma_t, double albedo,
                                               scene::EnvironmentLight light) {
   auto s = std::make_shared<scene::Scene>();
   s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
@@ -24,7 +21,7 @@ inline std::shared_ptr<scene::Scene> scene_of(scene::GaussianSum sum, double sig
   s->height = 9;
   s->lights = {std::move(light)};
   scene::Medium smoke;
-  smoke.field = std::move(sum);
+  smoke.field = std::move(field);
   smoke.sigma_t = Rgb::Constant(sigma_t);
   smoke.albedo = Rgb::Constant(albedo);
   s->media = {smoke};
@@ -33,13 +30,6 @@ inline std::shared_ptr<scene::Scene> scene_of(scene::GaussianSum sum, double sig
 }
 inline std::shared_ptr<scene::Scene> in_white(scene::GaussianSum sum, double sigma_t, double albedo = 0.8) {
   return scene_of(std::move(sum), sigma_t, albedo, scene::make_constant_environment(Rgb::Ones()));
-}
-
-inline double greatest_difference(const scene::Film& a, const scene::Film& b, const std::string& layer) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.layer(layer).size(); ++i)
-    most = std::max(most, std::abs(double(a.layer(layer)[i]) - b.layer(layer)[i]));
-  return most;
 }
 
 }  // namespace airlight::test

@@ -24,13 +24,6 @@ namespace {
 const CompensatedRayMarching method;
 const Given paper{{"variant", "paper"}};
 
-bool finite(const scene::Film& film) {
-  for (const auto& [name, values] : film.layers)
-    for (const float v : values)
-      if (!std::isfinite(v)) return false;
-  return true;
-}
-
 }  // namespace
 
 TEST_CASE("compensated march: what scatters everything is not seen in an even light", "[compensated_ray_marching]") {
@@ -114,7 +107,7 @@ TEST_CASE("compensated march: albedo 0, no light, thin and black smoke", "[compe
     Given any_depth = given;
     if (given.empty()) any_depth["deepest_cell"] = "1e9";
     const scene::Film thick = picture(method, in_white(puffs(), 1e4), any_depth);
-    CHECK(finite(thick));
+    CHECK(all_finite(thick));
     const std::size_t middle = 3 * (4 * 12 + 6);
     CHECK(thick.layer("transmittance")[middle] == 0);
     for (const float v : thick.layer("mean")) REQUIRE((v >= 0 && v < (given.empty() ? 1.5 : 1e3)));
@@ -184,14 +177,14 @@ TEST_CASE("compensated march: no Gaussian, one, two at one place, one without we
     }
     const scene::Film single = picture(method, in_white(one, 2), given),
                       both = picture(method, in_white(twins, 2), given);
-    CHECK(finite(single));
+    CHECK(all_finite(single));
     CHECK(relative_l2(both, single, "mean") < (given.empty() ? 1e-6 : 1e-3));
     CHECK(relative_l2(picture(method, in_white(idle, 2), given), picture(method, in_white(puffs(), 2), given), "mean") <
           1e-6);
     auto inside = in_white(puffs(), 2);
     inside->camera = scene::look_at({0.05, 0.1, 0}, {1, 0.1, 0}, Vec3::UnitY());
     finish(*inside);
-    CHECK(finite(picture(method, inside, given)));
+    CHECK(all_finite(picture(method, inside, given)));
   }
 }
 
@@ -204,7 +197,7 @@ TEST_CASE("compensated march: phase functions at their ends stay finite and not 
       finish(*scene);
       const scene::Film film = picture(method, scene, given);
       CAPTURE(g, given);
-      CHECK(finite(film));
+      CHECK(all_finite(film));
       for (const float v : film.layer("airlight")) REQUIRE(v >= 0);
     }
 }

@@ -22,10 +22,10 @@ inline scene::EnvironmentLight rough_sky(double turn, std::shared_ptr<const scen
                               Rgb(0.3, 0.5, 0.4), "");
 }
 
-// Radiance 1 + 0.8 cos towards +y in the red, from the side in the other channels; turned about an axis.
-inline scene::EnvironmentLight uneven(double turn = 0, const Vec3& axis = Vec3::UnitZ()) {
+// Radiance 1 + 0.8 cos towards +y in the red, from the side in the other channels; turned about a slanting axis.
+inline scene::EnvironmentLight uneven(double turn = 0) {
   const double one = std::sqrt(4 * pi), slope = std::sqrt(4 * pi / 3);
-  const Mat3 rotation = Eigen::AngleAxisd(turn, axis.normalized()).toRotationMatrix();
+  const Mat3 rotation = Eigen::AngleAxisd(turn, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   return scene::make_sh_environment(
       {Rgb::Constant(one), Rgb(-0.8 * slope, 0, 0.2), Rgb(0, 0.5, 0), Rgb(0, -0.5 * slope, 0.4)}, rotation,
       Rgb::Ones());

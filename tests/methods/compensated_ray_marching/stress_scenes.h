@@ -11,7 +11,7 @@
 #include "scene/convert/residual.h"
 #include "scene/math/spherical_harmonics.h"
 #include "scene/media/fitted.h"
-#include "tests/pictures.h"
+#include "tests/methods/compensated_ray_marching/puffs.h"
 
 namespace airlight::test {
 
@@ -29,13 +29,8 @@ struct StressScene {
 // The settings of a stress scene for one of the variants. Settings that only the other variant reads are left out.
 inline Given given_of(const StressScene& s, bool paper) {
   Given given = s.given;
-  const std::string variant = paper ? "paper" : "grid";
-  for (const scene::SettingSpec& spec : compensated_ray_marching::CompensatedRayMarching().settings()) {
-    const auto read = spec.read_where.find("variant");
-    if (read != spec.read_where.end() && std::ranges::count(read->second, variant) == 0) given.erase(spec.name);
-  }
-  given["variant"] = variant;
-  return given;
+  given["variant"] = paper ? "paper" : "grid";
+  return scene::without_unread(compensated_ray_marching::CompensatedRayMarching().settings(), given);
 }
 
 class StressScenes {
@@ -52,12 +47,6 @@ class StressScenes {
     return made;
   }
 
-  static scene::GaussianSum puffs() {
-    scene::GaussianSum sum;
-    sum.cutoff = 3;
-    sum.gaussians = {{{0, 0, 0}, 0.4, 1}, {{0.5, 0.2, -0.1}, 0.25, 0.7}, {{-0.3, 0.4, 0.2}, 0.3, 0.9}};
-    return sum;
-  }
   static scene::EnvironmentLight white() { return scene::make_constant_environment(Rgb::Ones()); }
   // Radiance 0.2 to 1.8 in the red, 0.5 to 1.5 in the green, less in the blue.
   static scene::EnvironmentLight uneven() {
@@ -85,18 +74,8 @@ class StressScenes {
   }
   StressScene& add(int row, const std::string& what, scene::DensityField field, double sigma_t, double albedo,
                    scene::EnvironmentLight light = uneven(), double brightest = 1.8) {
-    auto s = std::make_shared<scene::Scene>();
-    s->camera = scene::look_at({0.3, 0.5, 4}, {0, 0.1, 0}, Vec3::UnitY());
-    s->camera.vertical_fov = 0.6;
-    s->width = 12;
-    s->height = 9;
-    s->lights = {std::move(light)};
-    scene::Medium smoke;
-    smoke.field = std::move(field);
-    smoke.sigma_t = Rgb::Constant(sigma_t);
-    smoke.albedo = Rgb::Constant(albedo);
-    s->media = {smoke};
-    scenes_.push_back({row, what, s, sigma_t * density_times_side(smoke), brightest});
+    const auto s = scene_of(std::move(field), sigma_t, albedo, std::move(light));
+    scenes_.push_back({row, what, s, sigma_t * density_times_side(s->media[0]), brightest});
     return scenes_.back();
   }
 
@@ -255,7 +234,7 @@ inline void check_stress(const StressScene& s, const scene::Film& film, bool pap
   if (s.row == 7) {  // opaque in the middle, whose light is that of the surface
     // In cells a thousand deep, which must be asked for, light leaks: 1.8 of what comes in where all of it is scattered.
     const double bound = paper ? 1e3 : s.what == "white smoke" ? 2.5 : 1.5;
-    CHECK(left[3 * (4 * 12 + 6)] == 0);
+    CHECK(left[3 * (4 * s.scene->width + 6)] == 0);
     CHECK(most < bound);
   }
   if (s.row == 8)

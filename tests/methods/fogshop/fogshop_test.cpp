@@ -82,7 +82,7 @@ TEST_CASE("fogshop says what it cannot render", "[fogshop]") {
   const Pairs large{{"map_directions", "1024"}, {"map_edges", "64"}};
   CHECK(reasons(scene, large).empty());
   refused([](Scene& s) { s.lights.resize(16, s.lights[0]); }, "16 light maps of 4.4 GB in all", large);
-  refused([](Scene&) {}, "source_radius", {{"homogeneous", "table"}, {"source_radius", "0.1"}});
+  refused([](Scene&) {}, "source_radius", {{"variant", "paper"}, {"homogeneous", "table"}, {"source_radius", "0.1"}});
   // A light at the camera is fine outside the medium, or softened.
   scene.media.clear();
   std::get<scene::PointLight>(scene.lights[0]).position = scene.camera.position;

@@ -93,11 +93,13 @@ TEST_CASE("noise disturbs depths and keeps their mean", "[fogshop]") {
   }
 }
 
-TEST_CASE("no noise, no trace; the same bits on one thread and on two", "[fogshop]") {
+TEST_CASE("no noise has no seed; the same bits on one thread and on two", "[fogshop]") {
   for (const char* variant : {"paper", "S"}) {
     const scene::Film plain = render("a30", {{"variant", variant}});
-    CHECK(render("a30", {{"variant", variant}, {"noise_seed", "5"}, {"noise_phase", "3"}, {"noise_frequency", "2"}})
-              .layers == plain.layers);
+    for (const char* name : {"noise_seed", "noise_phase", "noise_frequency"})
+      CHECK_THROWS_WITH(render("a30", {{"variant", variant}, {name, "2"}}),
+                        Catch::Contains("is not read with noise_scale = 0, expected noise_scale > 0"));
+    CHECK(render("a30", {{"variant", variant}, {"noise_scale", "0"}}).layers == plain.layers);
     const Pairs noisy{{"variant", variant}, {"noise_scale", "0.4"}};
     CHECK(render("a30", noisy, 1).layers == render("a30", noisy, 2).layers);
     CHECK(render("a30", noisy).layers != plain.layers);

@@ -48,7 +48,7 @@ TEST_CASE("shadow planes: media one by one with a stencil", "[shadow_planes]") {
   const auto scene = two_media();
   const Given paper = {{"bounded", "paper"}};
   const scene::Rendering counted = render(scene, paper);
-  const Given fine = {{"edge_split", "64"}, {"boundary_cells", "64"}, {"plane_levels", "64"}};
+  const Given fine = {{"edge_split", "64"}, {"boundary_cells", "64"}};
   const scene::Rendering stencil = render(scene, with(with(paper, {{"shadows", "stencil"}}), fine));
   CHECK(relative_l2(stencil.film, counted.film) < 1e-5);  // one convex occluder: any order will do, finely cut
   // What is drawn is what is lit within a medium: no plane in front of one, none behind.
@@ -79,7 +79,7 @@ TEST_CASE("shadow planes: media one by one with a stencil", "[shadow_planes]") {
     const scene::Rendering got = render(
         scene,
         with(with(paper, by_vertices), {{"edge_split", "64"}, {"boundary_cells", cells}, {"plane_levels", cells}}));
-    CHECK(finite(got.film));
+    CHECK(airlight::test::all_finite(got.film));
     const double e = relative_l2(got.film, counted.film);
     CAPTURE(cells, e, before);
     CHECK(e < 0.4 * before);

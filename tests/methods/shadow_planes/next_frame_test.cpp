@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "gpu/shadow_planes/shadow_planes_gpu.h"
+#include "gpu/shadow_planes/shadow_planes.h"
 #include "methods/shadow_planes/shadow_planes.h"
 #include "tests/gpu/device.h"
 
@@ -117,10 +117,9 @@ TEST_CASE("shadow planes: occluders that move, as if prepared anew", "[shadow_pl
   check_casters(method, {{"evaluation", "vertices"}, {"evaluator", "polynomial"}, {"shadows", "stencil"}});
 }
 
-TEST_CASE("shadow planes: occluders that move, as if prepared anew, on the device", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
-  check_casters(gpu::ShadowPlanesGpu(), {});
-  check_casters(gpu::ShadowPlanesGpu(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
+DEVICE_TEST_CASE("shadow planes: occluders that move, as if prepared anew, on the device", "[gpu][shadow_planes]") {
+  check_casters(gpu::shadow_planes::ShadowPlanes(), {});
+  check_casters(gpu::shadow_planes::ShadowPlanes(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
 }
 
 TEST_CASE("shadow planes: a light that moves", "[shadow_planes]") {
@@ -130,10 +129,9 @@ TEST_CASE("shadow planes: a light that moves", "[shadow_planes]") {
   check(method, {{"evaluation", "vertices"}, {"evaluator", "polynomial"}, {"shadows", "stencil"}});
 }
 
-TEST_CASE("shadow planes: a light that moves, on the device", "[gpu][shadow_planes]") {
-  if (!gpu::test::device()) return;
-  check(gpu::ShadowPlanesGpu(), {});
-  check(gpu::ShadowPlanesGpu(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
+DEVICE_TEST_CASE("shadow planes: a light that moves, on the device", "[gpu][shadow_planes]") {
+  check(gpu::shadow_planes::ShadowPlanes(), {});
+  check(gpu::shadow_planes::ShadowPlanes(), {{"shadows", "stencil"}, {"evaluation", "vertices"}});
 }
 
 }  // namespace next_frame_test

@@ -16,13 +16,6 @@ inline scene::Rendering render(const std::shared_ptr<const scene::Scene>& scene,
   return airlight::test::render(shadow_planes::ShadowPlanes(), scene, given);
 }
 
-inline bool finite(const scene::Film& film) {
-  for (const char* layer : {"airlight", "mean"})
-    for (const float v : film.layer(layer))
-      if (!std::isfinite(v)) return false;
-  return true;
-}
-
 inline double sum(const scene::Film& film) {
   double all = 0;
   for (const float v : film.layer("airlight")) all += v;

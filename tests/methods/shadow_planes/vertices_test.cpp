@@ -195,7 +195,7 @@ TEST_CASE("shadow planes: at vertices, what there is not and extremes", "[shadow
         finish(*extreme);
         const scene::Film film = render(extreme, given).film;
         CAPTURE(bounded, place.transpose(), camera.transpose());
-        CHECK(finite(film));
+        CHECK(airlight::test::all_finite(film));
         CHECK(sum(film) > 0);
       }
     }

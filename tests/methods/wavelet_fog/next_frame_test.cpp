@@ -83,8 +83,7 @@ TEST_CASE("wavelet fog: the next frame is that of a preparation from nothing", "
     for (const ScenePointer& frame :
          {moved(start), changed(start), moved(changed(start)), twice(start), without_fog(start), ScenePointer(start)}) {
       CAPTURE(given.at("variant"), frame->media.size());
-      REQUIRE(prepared->next(frame, {1, {}}));
-      const scene::Film after = prepared->render(view_of(*frame), {1, {}}).film;
+      const scene::Film after = next_frame(*prepared, frame).film;
       const scene::Film anew = render(method, frame, given).film;
       REQUIRE(after.layers.size() == anew.layers.size());
       for (const auto& [layer, values] : anew.layers) CHECK(after.layer(layer) == values);

@@ -41,6 +41,7 @@ inline Plan plan_for(std::shared_ptr<const scene::Scene> scene, const Given& giv
 inline Pixel march(std::shared_ptr<const scene::Scene> scene, const Ray& ray, int n, Given given = {},
                    double t_end = infinity) {
   given["steps"] = given["shadow_steps"] = std::to_string(n);
+  given = scene::without_unread(option_specs(), given);
   Counters counters;
   return march_media(plan_for(std::move(scene), given), ray, t_end, counters);
 }

@@ -8,6 +8,7 @@
 #include "scene/base/error.h"
 #include "scene/geometry/shapes.h"
 #include "tests/reference/stable_fluids/problems.h"
+#include "tests/texts.h"
 
 namespace transforms_test {
 
@@ -182,14 +183,7 @@ TEST_CASE("stable fluids: nothing diverges among obstacles, in closed parts eith
 TEST_CASE("stable fluids: a flow that cannot be balanced is refused with its flux", "[stable_fluids]") {
   scene::FlowProblem problem = box_problem(2, Vec3(1, 1, 0));
   problem.sides[0][0] = {Kind::no_slip, Vec3(2, 0, 0)};
-  const auto message = [&] {
-    try {
-      testing::start(problem, {});
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
+  const auto message = [&] { return test::message_of([&] { testing::start(problem, {}); }); };
   CHECK(message() == "2 m^2/s flow into a part of 256 cells that has no open side, expected as much in as out");
   problem.sides[0][1] = {Kind::no_slip, Vec3(2, 0, 0)};
   CHECK(message().empty());

@@ -12,6 +12,7 @@
 #include "scene/convert/residual_file.h"
 #include "scene/math/random.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace airlight::scene {
 namespace {
@@ -59,15 +60,9 @@ double greatest_difference(const VoxelGrid& a, const VoxelGrid& b) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    residual_from_bytes(bytes);
-  } catch (const Error& e) {
-    const std::string what = e.what();
-    CHECK(what.find('\n') == std::string::npos);
-    CHECK(what.size() < 200);
-    return what;
-  }
-  return "";
+  const std::string what = test::message_of([&] { residual_from_bytes(bytes); });
+  CHECK(what.size() < 200);
+  return what;
 }
 
 // With the checksum that it ought to have.

@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace assets_test {
 
@@ -181,14 +182,7 @@ TEST_CASE("what is no file is refused at once", "[load]") {
 }
 
 TEST_CASE("a scene file that cannot be read says why", "[load]") {
-  const auto what = [](const std::string& path) {
-    try {
-      load_scene(path);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
+  const auto what = [](const std::string& path) { return test::message_of([&] { load_scene(path); }); };
   const TemporaryFolder folder;
   const std::string empty = (folder.path() / "empty.toml").string();
   std::ofstream{empty};

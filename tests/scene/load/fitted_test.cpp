@@ -9,16 +9,18 @@
 #include "scene/base/error.h"
 #include "scene/convert/residual_file.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace fitted_test {
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
 
 namespace {
 
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 const std::string medium = camera + "[[medium]]\ntype = 'fitted'\n";
 
 VoxelGrid grid() {
@@ -57,12 +59,7 @@ struct Files {
   }
   Scene scene(const std::string& keys) const { return parse_scene(medium + keys, "s.toml", folder.path().string()); }
   std::string message(const std::string& keys) const {
-    try {
-      scene(keys);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return test::message_of([&] { scene(keys); });
   }
 };
 

@@ -5,6 +5,7 @@
 #include "scene/flow/flow.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace flow_start_test {
 
@@ -24,12 +25,7 @@ std::unique_ptr<Flow> start(const FlowProblem& problem, std::map<std::string, st
 }
 
 std::string refusal(const std::string& text, const TemporaryFolder& folder) {
-  try {
-    parse_flow(text, "f.toml", folder.path().string());
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { parse_flow(text, "f.toml", folder.path().string()); });
 }
 
 // (u, v, w), density and temperature linear in space, on n cells of a box from `low`.

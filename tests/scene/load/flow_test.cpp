@@ -4,6 +4,7 @@
 #include "scene/flow/flow_problem.h"
 #include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
+#include "tests/texts.h"
 
 namespace flow_test {
 
@@ -65,12 +66,7 @@ frequency = 0.5
 FlowProblem flow(const std::string& text) { return parse_flow(text, "f.toml", "."); }
 
 std::string refusal(const std::string& text) {
-  try {
-    flow(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { flow(text); });
 }
 
 }  // namespace

@@ -6,26 +6,19 @@
 #include "scene/base/error.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 #include "tests/temporary_folder.h"
 
 namespace legendre_test {
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
+using test::message;
 
 namespace {
 
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 const std::string box = camera + "[[medium]]\ntype = 'legendre'\nlo = [-1, 0, 2]\nhi = [1, 3, 4]\nsize = [2, 3, 1]\n";
-
-std::string message(const std::string& text, const std::string& folder = "") {
-  try {
-    parse_scene(text, "s.toml", folder);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
 
 }  // namespace
 

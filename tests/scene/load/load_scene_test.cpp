@@ -2,6 +2,7 @@
 
 #include "scene/base/error.h"
 #include "scene/scene.h"
+#include "tests/texts.h"
 
 namespace load_scene_test {
 
@@ -29,12 +30,7 @@ gaussians = [{ center = [0, 0, 0], width = 1, amplitude = 0.5 }]
 )";
 
 std::string error_of(const std::string& text, const Overrides& overrides = {}) {
-  try {
-    parse_scene(text, "fog.toml", "", overrides);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { parse_scene(text, "fog.toml", "", overrides); });
 }
 
 }  // namespace

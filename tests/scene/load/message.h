@@ -5,6 +5,7 @@
 
 #include "scene/base/error.h"
 #include "scene/scene.h"
+#include "tests/texts.h"
 
 namespace airlight::test {
 
@@ -13,13 +14,7 @@ inline const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0,
 
 // Empty if the text loads. Relative names of its files are those of `folder`.
 inline std::string message(const std::string& text, const std::string& folder = "") {
-  try {
-    scene::parse_scene(text, "s.toml", folder);
-  } catch (const Error& e) {
-    CHECK(e.exit_code() == 2);
-    return e.what();
-  }
-  return "";
+  return test::message_of([&] { scene::parse_scene(text, "s.toml", folder); });
 }
 
 }  // namespace airlight::test

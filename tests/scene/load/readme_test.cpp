@@ -8,16 +8,17 @@
 #include "scene/base/error.h"
 #include "scene/flow/flow_problem.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 
 namespace readme_test {
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
 
 namespace {
 
 const std::string root = AIRLIGHT_SOURCE_DIR;
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 
 std::string readme() {
   std::ifstream stream(root + "/scene/README.md");

@@ -6,16 +6,17 @@
 #include "scene/base/error.h"
 #include "scene/media/voxel_grid.h"
 #include "scene/scene.h"
+#include "tests/scene/load/message.h"
 
 namespace values_test {
 
 using namespace airlight;
 using namespace airlight::scene;
+using test::camera;
 
 namespace {
 
 const std::string root = AIRLIGHT_SOURCE_DIR;
-const std::string camera = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
 
 Scene load(const std::string& text) { return parse_scene(camera + text, "s.toml", root + "/experiments/scenes"); }
 

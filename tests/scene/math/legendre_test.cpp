@@ -24,17 +24,9 @@ double largest_difference(const Eigen::MatrixXd& a, const json& b) {
   return most;
 }
 
-// Flat, index order [x][y][z]; `shape` is what is found on the way in.
-void flatten(const json& v, std::size_t axis, TensorShape& shape, std::vector<double>& out) {
-  if (!v.is_array()) return out.push_back(test::number(v));
-  shape[axis] = int(v.size());
-  for (const json& part : v) flatten(part, axis + 1, shape, out);
-}
 std::pair<Eigen::VectorXd, TensorShape> tensor(const json& v) {
-  TensorShape shape = {1, 1, 1};
-  std::vector<double> flat;
-  flatten(v, 0, shape, flat);
-  return {Eigen::Map<Eigen::VectorXd>(flat.data(), Eigen::Index(flat.size())), shape};
+  const test::Tensor all(v);
+  return {all.array(), all.shape};
 }
 
 }  // namespace

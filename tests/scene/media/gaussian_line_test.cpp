@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/media/gaussian_sum.h"
+#include "tests/methods/fogshop/stress_cases.h"
 
 namespace gaussian_line_test {
 
@@ -167,29 +168,10 @@ TEST_CASE("Gaussian line integrals to the rounding of their input", "[media]") {
 
 // The line-integral entries of the stress table, 13 digits: half a unit of the last is 5e-13 relative at worst.
 TEST_CASE("line integrals of one Gaussian: stress table", "[media]") {
-  struct Case {
-    double a, c;
-    Point3 b;
-    double d, value;
-  };
-  const Case cases[] = {
-      {1, 1e6, {0, 0, 3}, 6, 1.772414696519e6},
-      {1e-6, 1e6, {0, 0, 3}, infinity, 8.862299254528e11},
-      {1e6, 1e6, {1e-6, 0, 3}, 6, 0.6520493321733},
-      {1e6, 1, {1e-4, 0, 3}, 6, 0},
-      {1e-6, 1, {0, 0, 1e6}, 1e6, 7.468241328124e5},
-      {1, 1, {0, 0, -1}, infinity, 0.1394027926403},
-      {1, 1, {0, 0, -26}, infinity, 5.018873596748e-296},
-      {1, 1e-8, {0, 0, 3}, 6, 1.772414696519e-8},
-      {1, 1, {0, 0, 3}, 1e-15, 1.234098040867e-19},
-      {1, 1, {0, 0, 8}, 7.9999999, 0.8862268254528},
-      {1, 0, {0, 0, 3}, 6, 0},
-      {1, 1, {0, 0, 3}, 0, 0},
-  };
-  for (const Case& c : cases) {
+  for (const fogshop_test::DepthCase& c : fogshop_test::depth_cases) {
     INFO(c.a << " " << c.c << " " << c.b.transpose() << " " << c.d);
-    const double got = line_integral({c.b, 1 / c.a, c.c}, {Point3::Zero(), Vec3::UnitZ()}, c.d);
-    CHECK(std::abs(got - c.value) <= std::max(6e-13 * c.value, 1e-300));
+    const double got = line_integral(c.gaussian(), {Point3::Zero(), Vec3::UnitZ()}, c.d);
+    CHECK(std::abs(got - c.depth) <= std::max(6e-13 * c.depth, 1e-300));
   }
 }
 

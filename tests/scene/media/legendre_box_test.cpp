@@ -4,18 +4,13 @@
 #include <cmath>
 
 #include "scene/base/error.h"
-#include "scene/math/gauss_legendre.h"
-#include "scene/math/legendre_range.h"
 #include "scene/media/legendre_line.h"
-#include "tests/oracle_vectors.h"
 #include "tests/scene/media/legendre_fields.h"
 
 namespace airlight::scene {
 namespace {
 
-using test::json;
 using test::modular_box;
-using test::modular_series;
 using test::random_point;
 
 struct Segment {
@@ -32,54 +27,6 @@ double summed(const LegendreBox& field, const Segment& s, int steps) {
 }
 
 }  // namespace
-
-TEST_CASE("optical depths of Legendre boxes agree with the vectors", "[media][legendre]") {
-  int seen = 0;
-  for (const json& v : test::vectors_of("references", "optical_depth")) {
-    const json& in = v.at("input");
-    if (!in.contains("F000")) continue;
-    ++seen;
-    const int n = in.at("n"), seed = in.at("seed");
-    const Segment s = between(test::vec(in.at("p")), test::vec(in.at("q")));
-    const auto field = modular_box(n, seed, test::number(in.at("F000")));
-    CHECK(field->negative());
-    CHECK(density_integral(*field, s.ray, {0, s.length}) ==
-          Approx(test::number(v.at("expected").at("tau_clamped"))).margin(1e-11));
-    // A segment ends in the box's faces: as many pieces as its sign changes leave.
-    const Interval t = extent(*field, s.ray, {0, s.length});
-    const LegendreLine line(*field, s.ray, t);
-    int changes = 0;
-    for (const Interval& part : line.positive()) changes += (part.lo > t.lo) + (part.hi < t.hi);
-    CHECK(changes == v.at("expected").at("sign_changes"));
-    double raw = 0;
-    const GaussLegendre rule = gauss_legendre(3 * n);
-    for (int i = 0; i < 3 * n; ++i)
-      raw += 0.5 * s.length * rule.weight[std::size_t(i)] *
-             field->value(s.ray.at(0.5 * (1 + rule.node[std::size_t(i)]) * s.length));
-    CHECK(raw == Approx(test::number(v.at("expected").at("tau_raw"))).margin(1e-11));
-  }
-  CHECK(seen == 2);
-}
-
-TEST_CASE("hulls of Legendre series agree with the vectors", "[media][legendre]") {
-  int seen = 0;
-  for (const json& v : test::vectors_of("references", "field_bounds")) {
-    const json& in = v.at("input");
-    if (!in.contains("F000")) continue;
-    ++seen;
-    const int n = in.at("n");
-    const Eigen::VectorXd f = modular_series(n, in.at("seed"), test::number(in.at("F000")));
-    const Vec3 lo = test::vec(in.at("lo")), hi = test::vec(in.at("hi"));
-    const TensorShape shape = {n, n, n};
-    const Interval hull =
-        legendre_range(along_axes(legendre_restriction(n, lo[0], hi[0]), legendre_restriction(n, lo[1], hi[1]),
-                                  legendre_restriction(n, lo[2], hi[2]), f, shape),
-                       shape);
-    CHECK(hull.lo == Approx(test::number(v.at("expected").at("bernstein_min"))).margin(1e-11));
-    CHECK(hull.hi == Approx(test::number(v.at("expected").at("bernstein_max"))).margin(1e-11));
-  }
-  CHECK(seen == 3);
-}
 
 // Two million random points, in boxes of all sizes, of all degrees, some of them partly outside.
 TEST_CASE("bounds of Legendre boxes hold at random points", "[media][legendre]") {

@@ -1,0 +1,36 @@
+#include "experiments/verify/verify.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "experiments/cli/command_line.h"
+#include "experiments/cli/commands.h"
+#include "scene/base/error.h"
+
+namespace airlight::experiments::cli {
+namespace {
+
+struct VerifyOptions {
+  std::vector<std::string> files;
+  std::string kind, profile = "quick";
+};
+
+}  // namespace
+
+void add_verify(Commands& commands) {
+  const auto options = std::make_shared<VerifyOptions>();
+  CLI::App* c = add_command(commands.app, "verify", "recompute oracle vectors");
+  c->add_option("FILE", options->files, "JSON files");
+  c->add_option("--kind", options->kind, "only vectors of this kind");
+  c->add_option("--profile", options->profile, "quick (default) or paper");
+  commands.on(c, [options] {
+    if (options->files.empty()) throw Error("FILE is missing; see --help");
+    if (options->profile != "quick" && options->profile != "paper")
+      throw Error(fmt::format("--profile '{}': expected quick or paper", options->profile));
+    return verify(options->files, options->kind,
+                  options->profile == "quick" ? VerifyProfile::quick : VerifyProfile::paper, std::cout);
+  });
+}
+
+}  // namespace airlight::experiments::cli

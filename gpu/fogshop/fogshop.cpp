@@ -1,0 +1,251 @@
+#include "gpu/fogshop/fogshop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/fogshop/background.h"
+#include "gpu/fogshop/fog.h"
+#include "gpu/fogshop/interface.h"
+#include "gpu/fogshop/surface_pass.h"
+#include "gpu/raster/first_hits.h"
+#include "methods/fogshop/fogshop.h"
+#include "methods/fogshop/surface_lighting.h"
+#include "scene/base/error.h"
+#include "scene/light/light_on_ray.h"
+#include "scene/media/spline_map.h"
+#include "scene/single_precision.h"
+
+namespace airlight::gpu::fogshop {
+namespace {
+
+// Steps of nodes from each light are unrolled in the shaders.
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+class PreparedFogshopGpu final : public scene::Prepared {
+ public:
+  // `map_side`: texels to a face of the light-distance maps.
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const airlight::fogshop::Options& options, int map_side,
+                     const Execution& execution)
+      : scene_(std::move(scene)),
+        model_(airlight::fogshop::make_model(*scene_, options)),
+        plan_(airlight::fogshop::make_plan(*scene_, model_)),
+        casts_shadows_(needs_.surfaces && casts_shadows(*scene_, model_)),
+        context_(Context::get()),
+        map_side_(map_side),
+        frame_(context_),
+        fog_(context_, model_, needs_) {
+    StageTimer& timer = frame_.timer;
+    if (needs_.f_table) timer.stage("table of F");
+    if (needs_.distances) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+    if (needs_.light_maps) {
+      fog_.fill_light_maps();
+      timer.stage("light maps");
+    }
+    if (needs_.center_depths) {
+      fog_.fill_light_depths();
+      timer.stage("depths to centres");
+    }
+    lighting_ = airlight::fogshop::make_lighting(*scene_, model_, needs_, execution,
+                                                 [&](const std::string& stage) { timer.stage(stage); });
+    if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*lighting_.environment);
+    if (needs_.sky_volume) {
+      fog_.fill_sky_volume(*scene_, execution);
+      timer.stage("sky volume");
+    }
+    if (needs_.environment) {
+      background_ = std::make_unique<Background>(context_, *scene_, fog_);
+      timer.stage("background");
+    }
+    if (needs_.surfaces) {
+      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_, fog_);
+      timer.stage("tables of surfaces");
+      if (casts_shadows_) {
+        shading_->fill_light_distances(map_side);
+        timer.stage("light-distance maps");
+      }
+    }
+    times_ = timer.times();
+  }
+
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+
+ private:
+  // What a frame leaves on the device, null where the scene has no such thing.
+  struct Picture {
+    const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
+  };
+  void find_distances(const View&, Picture&) const;
+  void find_airlight(const View&, Picture&) const;
+  void find_surfaces(const View&, Picture&) const;
+  void refuse_cut_loops(const scene::Film&) const;
+
+  std::shared_ptr<const Scene> scene_;
+  airlight::fogshop::Model model_;
+  airlight::fogshop::Plan plan_;
+  const airlight::fogshop::Needs& needs_ = plan_.needs;
+  bool casts_shadows_;
+  Context& context_;
+  int map_side_;
+  mutable Frame frame_;
+  mutable FogOnDevice fog_;
+  airlight::fogshop::SurfaceLighting lighting_;
+  std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
+  std::unique_ptr<SurfaceShading> shading_;  // null: left out
+  std::unique_ptr<Background> background_;   // the same
+  std::vector<scene::StageTime> times_;
+};
+
+std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
+  auto stages = plan_.stages;
+  const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
+                              : model_.lights.empty()  ? "no point light shines"
+                                                       : "a lone plane or sphere casts no shadow";
+  const std::string why = fmt::format("shadows of surfaces: 6 faces of {0}^2 for each of {1} point light{2}", map_side_,
+                                      model_.lights.size(), model_.lights.size() == 1 ? "" : "s");
+  const auto surfaces =
+      std::find_if(stages.begin(), stages.end(), [](const scene::Stage& stage) { return stage.name == "surfaces"; });
+  stages.insert(surfaces, {"light-distance maps", casts_shadows_, casts_shadows_ ? why : why_not});
+  return stages;
+}
+
+// Section 5.4, step 1: d_vp of every pixel [m], and what is seen there.
+void PreparedFogshopGpu::find_distances(const View& view, Picture& picture) const {
+  if (!first_hits_) return;
+  frame_.timer.begin("distances");
+  const std::size_t bytes = std::size_t(view.width) * view.height * 4;
+  picture.distances = &frame_.buffers.get("distances", bytes);
+  if (shading_) picture.primitives = &frame_.buffers.get("primitives", bytes);
+  first_hits_->find(view, *picture.distances, picture.primitives);
+}
+
+void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const {
+  if (!needs_.airlight) return;
+  if (needs_.center_depths) {
+    frame_.timer.begin("depths to centres");
+    fog_.fill_view_depths(view.camera.position);
+  }
+  if (!needs_.low_resolution) {
+    picture.airlight = &fog_.airlight(view, picture.distances, frame_);
+    return;
+  }
+  const airlight::fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
+  const Buffer* distances = nullptr;
+  if (first_hits_) {
+    frame_.timer.begin("distances, low resolution");
+    distances = &frame_.buffers.get("low distances", std::size_t(low.low_width()) * low.low_height() * 4);
+    first_hits_->find(view, *distances, nullptr, {low.factor, 0});
+  }
+  picture.airlight = &fog_.low_resolution_airlight(view, picture.distances, distances, frame_);
+}
+
+// Steps 4 and 7: e^-T L_p of Eq. 29.
+void PreparedFogshopGpu::find_surfaces(const View& view, Picture& picture) const {
+  if (!shading_ && !background_) return;
+  const std::size_t bytes = std::size_t(view.width) * view.height * 12;
+  Buffer& surface = frame_.buffers.get("surface", bytes);
+  picture.surface = &surface;
+  if (shading_) {
+    frame_.timer.begin("surfaces");
+    Buffer* scattered = needs_.scattered ? &frame_.buffers.get("reflected_airlight", bytes) : nullptr;
+    shading_->shade(fog_, *first_hits_, view, *picture.primitives, picture.airlight, surface, scattered);
+    if (scattered) frame_.download.add("reflected_airlight", *scattered, bytes);
+  } else {
+    surface.clear();
+  }
+  if (background_) {
+    frame_.timer.begin("background");
+    background_->draw(fog_, view, picture.distances, picture.airlight, surface);
+  }
+  frame_.download.add("surface", surface, bytes);
+}
+
+// The mark of surfaces.comp, which goes into the mean too. How long rays through the tree of surfaces take nobody knows
+// before.
+void PreparedFogshopGpu::refuse_cut_loops(const scene::Film& film) const {
+  if (!shading_ || !context_.software()) return;
+  for (const char* name : {"surface", "mean"})
+    if (const auto layer = film.layers.find(name); layer != film.layers.end())
+      for (const float v : layer->second)
+        if (v <= -far_away)
+          throw Unavailable(fmt::format(
+              "gpu: shadow rays take more loop iterations than {} allows: fewer lights or a coarser mesh expected",
+              context_.renderer()));
+}
+
+scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& execution) const {
+  if (model_.options.source_radius == 0) require_lights_apart(*scene_, view, 1e-9, "fogshop_gpu");
+  const std::string objection = unsupported_view(*scene_, model_.fog, model_.options, view.camera);
+  if (!objection.empty()) throw Error(scene_->name + ": " + objection);
+  scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+  scene::Film& film = result.film;
+  const Use use(context_);
+  frame_.begin(execution);
+  Picture picture;
+  find_distances(view, picture);
+  find_airlight(view, picture);
+  find_surfaces(view, picture);
+  if (picture.airlight || picture.surface)
+    fog_.compose(view, picture.airlight, picture.surface, frame_);  // L = L_a + e^-T L_p, Eq. 29
+  frame_.finish(result);
+  if (!picture.airlight && !picture.surface) {  // no medium, and nothing that shines
+    film.add("airlight");
+    film.add("mean");
+    film.layers["transmittance"].assign(3 * film.pixels(), 1.0f);
+  }
+  if (!picture.surface) film.add("surface");
+  if (execution.layers)
+    for (auto layer = film.layers.begin(); layer != film.layers.end();)
+      layer = execution.layers->count(layer->first) ? std::next(layer) : film.layers.erase(layer);
+  refuse_cut_loops(film);
+  if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop_gpu: " + plan_.doubt;
+  result.counters["rays"] = double(film.pixels());
+  result.counters["gaussians"] = model_.gaussians.count;
+  result.counters["gaussians_dropped"] = model_.dropped;
+  if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());
+  return result;
+}
+
+struct LightDistanceMaps {
+  int side = 512;
+};
+void bind_maps(scene::SettingBinder& b, LightDistanceMaps& maps) {
+  b.integer("light_distance_side", maps.side, 1, 8192,
+            "texels to a side of a light-distance map's six faces; shadows are exact whatever it is");
+}
+
+}  // namespace
+
+std::string Fogshop::about() const {
+  return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
+}
+
+std::vector<scene::SettingSpec> Fogshop::settings() const {
+  auto settings = airlight::fogshop::Fogshop().settings();
+  settings.push_back(scene::list_settings(bind_maps).front());
+  return settings;
+}
+
+std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Settings& settings) const {
+  std::vector<std::string> reasons = airlight::fogshop::Fogshop().supports(scene, settings);
+  refuse_backdrops(scene, reasons);
+  for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
+  if (scene.lights.size() > most_lights)
+    reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> Fogshop::prepare_supported(std::shared_ptr<const Scene> scene,
+                                                            const scene::Settings& settings,
+                                                            const Execution& execution) const {
+  return std::make_unique<PreparedFogshopGpu>(std::move(scene), airlight::fogshop::read_options(settings),
+                                              scene::read_settings(bind_maps, settings).side, execution);
+}
+
+}  // namespace airlight::gpu::fogshop

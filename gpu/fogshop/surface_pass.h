@@ -1,0 +1,46 @@
+// Surfaces in shaders: direct light with shadows, scattered light, light of the environment
+// (methods/fogshop/surface_pass.h), and the environment behind everything.
+#pragma once
+#include <memory>
+
+#include "gpu/fogshop/fog.h"
+#include "gpu/fogshop/surface_tables.h"
+#include "gpu/raster/light_distances.h"
+
+namespace airlight::gpu::fogshop {
+
+class SurfaceShading {
+ public:
+  // Uploads materials, light positions and the tables of `lighting`. Both it and the model must live on.
+  SurfaceShading(Context&, const scene::Scene&, const airlight::fogshop::Model&,
+                 const airlight::fogshop::SurfaceLighting& lighting, const FogOnDevice&);
+
+  // Light-distance maps of `side` texels to a face, where anything can cast a shadow (casts_shadows).
+  void fill_light_distances(int side);
+
+  // e^-T L_p of every pixel, 3 floats each: `pixels` as FogOnDevice::airlight left them (null: there is no medium),
+  // `primitives` as the first hits did. The scattered part into `scattered` too, if it is there.
+  void shade(const FogOnDevice&, const FirstHits&, const scene::View&, const Buffer& primitives, const Buffer* pixels,
+             const Buffer& surface, const Buffer* scattered);
+
+ private:
+  Context& context_;
+  const scene::Scene& scene_;
+  const airlight::fogshop::Model& model_;
+  const airlight::fogshop::SurfaceLighting& lighting_;
+  double magnitude_;  // the largest coordinate [m]
+  SurfaceTables places_;
+  Buffer materials_, light_places_, tables_, transfer_;
+  void list_gaussians(const FogOnDevice&);
+
+  std::unique_ptr<Buffer> lists_;         // Gaussians by cells of directions from each light
+  int cells_ = 0;                         // to a side
+  std::unique_ptr<LightDistances> maps_;  // null: nothing casts a shadow
+  Program* program_;
+};
+
+// A point light shines on something that is not a lone plane or sphere, which shadows itself only where it is turned
+// away.
+bool casts_shadows(const scene::Scene&, const airlight::fogshop::Model&);
+
+}  // namespace airlight::gpu::fogshop

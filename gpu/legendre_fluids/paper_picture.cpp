@@ -1,0 +1,251 @@
+#include "gpu/legendre_fluids/paper_picture.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "gpu/frame.h"
+#include "gpu/legendre_fluids/paper_light.h"
+#include "gpu/raster/backdrops.h"
+#include "gpu/view_uniforms.h"
+#include "methods/legendre_fluids/lit_media.h"
+#include "methods/legendre_fluids/paper_picture.h"
+#include "scene/base/error.h"
+#include "scene/light/background.h"
+#include "scene/light/scattered_lights.h"
+
+namespace airlight::gpu::legendre_fluids {
+namespace {
+
+using scene::Execution;
+using scene::Scene;
+using scene::View;
+
+constexpr int tile = 8;            // of pixels, both ways
+constexpr int most_loops = 50000;  // of a ray's column: llvmpipe ends all loops after 65535 iterations
+
+int column_points(const scene::TensorShape& density) { return (density[0] + density[1] + density[2] - 3) / 2 + 1; }
+
+// What paper_image.comp needs for columns.
+void define_columns(const scene::TensorShape& density, bool ends, Definitions& definitions) {
+  definitions["ENDS"] = ends ? "1" : "0";
+  const scene::LegendrePoints& rule = scene::legendre_points(column_points(density));
+  std::vector<std::string> nodes, weights;
+  for (Eigen::Index i = 0; i < rule.node.size(); ++i) {
+    nodes.push_back(fmt::format("{:.9f}", 0.5 + 0.5 * rule.node[i]));
+    weights.push_back(fmt::format("{:.9f}", 0.5 * rule.weight[i]));
+  }
+  definitions["COLUMN_POINTS"] = std::to_string(nodes.size());
+  definitions["NODES"] = fmt::format("float[]({})", fmt::join(nodes, ", "));
+  definitions["WEIGHTS"] = fmt::format("float[]({})", fmt::join(weights, ", "));
+}
+
+class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
+ public:
+  PreparedPaperGpu(std::shared_ptr<const Scene>, const airlight::legendre_fluids::PaperOptions&, std::string settings);
+  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::StageTime> prepare_times() const override { return times_; }
+  scene::Rendering render(const View&, const Execution&) const override;
+  bool take(const DensityOnDevice&) override;
+
+ private:
+  void draw(const View&) const;
+  std::map<std::string, double> counters() const;
+
+  std::shared_ptr<const Scene> scene_;
+  airlight::legendre_fluids::PaperOptions options_;
+  std::string settings_;
+  Context& context_;
+  airlight::legendre_fluids::PaperMedium media_;
+  scene::LegendrePointer field_;  // of those; null where nothing extinguishes
+  std::vector<scene::DirectionalLight> lights_;
+  std::array<bool, 3> moving_;
+  std::unique_ptr<PaperSystems> systems_;  // null: no light scatters
+  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
+  Program* image_ = nullptr;
+  double negative_direct_ = 0;
+  bool flows_ = false;          // the density is a flow's
+  mutable bool stale_ = false;  // E_d is of another density
+  mutable Frame frame_;
+  std::vector<scene::StageTime> times_;
+};
+
+PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene,
+                                   const airlight::legendre_fluids::PaperOptions& options, std::string settings)
+    : scene_(std::move(scene)),
+      options_(options),
+      settings_(std::move(settings)),
+      context_(Context::get()),
+      moving_(airlight::legendre_fluids::moving_axes(*scene_)),
+      frame_(context_) {
+  for (const scene::Light& light : scene_->lights)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+        sun && (scatter(scene_->media, light) || (!scene_->backdrops.empty() && scene::shines(light))))
+      lights_.push_back(*sun);
+  media_ = airlight::legendre_fluids::paper_medium(*scene_);
+  field_ = media_.density;
+  if (!field_ || lights_.empty()) return;
+  const Use use(context_);
+  StageTimer timer(context_);
+  timer.begin("upload");
+  systems_ = std::make_unique<PaperSystems>(context_, media_, lights_, options_, moving_);
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+  Definitions definitions = systems_->definitions();
+  define_columns(field_->shape(), bool(backdrops_), definitions);
+  image_ = &program(context_, "paper_image", tile, tile, definitions);
+  timer.begin("direct systems");
+  systems_->begin();
+  times_ = timer.times();
+  for (const Eigen::VectorXd& e : systems_->direct())
+    negative_direct_ = std::max(negative_direct_, airlight::legendre_fluids::negative_share(systems_->shape(), e));
+}
+
+std::vector<scene::Stage> PreparedPaperGpu::stages() const {
+  const bool kept = bool(systems_);
+  const std::string why = field_ ? scene::why_nothing_scatters(*scene_) : "no medium extinguishes";
+  const std::string how =
+      !kept ? ""
+            : fmt::format("{} of {} unknowns",
+                          options_.solver.closure == airlight::legendre_fluids::Closure::upwind ? "GMRES"
+                                                                                                : "conjugate gradients",
+                          scene::tensor_size(systems_->shape()));
+  return {{"direct systems", kept, kept ? how : why},
+          {"scattered systems", kept, kept ? how : why},
+          {"albedo", bool(media_.scattering[0]),
+           media_.scattering[0] ? "a field: of several densities in one box" : "the same everywhere"},
+          {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
+          {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
+          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"}};
+}
+
+bool PreparedPaperGpu::take(const DensityOnDevice& density) {
+  const Use use(context_);
+  if (!systems_ || !systems_->take(density)) return false;
+  flows_ = stale_ = true;
+  return true;
+}
+
+void PreparedPaperGpu::draw(const View& view) const {
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  Program& p = *image_;
+  std::vector<std::pair<const char*, int>> all{{"mean", at::mean_layer}, {"airlight", at::airlight_layer}};
+  if (backdrops_) {
+    const Buffer &ends = frame_.buffers.get("ends", 4 * pixels), &seen = frame_.buffers.get("seen", 12 * pixels);
+    backdrops_->find(view, ends, false, seen);
+    ends.bind(at::ray_ends);
+    seen.bind(at::seen);
+    all.insert(all.end(), {{"surface", at::surface_layer}, {"transmittance", at::transmittance_layer}});
+    p.set("sigma_t", media_.medium->sigma_t);
+  }
+  for (const auto& [name, binding] : all) {
+    const Buffer& buffer = frame_.buffers.get(name, 12 * pixels);
+    buffer.bind(binding);
+    frame_.download.add(name, buffer, 12 * pixels);
+  }
+  Buffer& counts = frame_.buffers.get("counts", 8);
+  counts.clear();
+  counts.bind(at::status);
+  frame_.download.add_values("counts", counts, 8);
+  systems_->faces().bind(at::faces);
+  set_view(p, view);
+  p.set_double("box_low", field_->box().lo);
+  p.set_double("box_high", field_->box().hi);
+  p.set("scale", systems_->scale());
+  for (std::size_t c = 0; c < 3; ++c) p.set(fmt::format("system_of[{}]", c), systems_->system_of()[c]);
+  p.dispatch(view.width, view.height);
+}
+
+std::map<std::string, double> PreparedPaperGpu::counters() const {
+  std::map<std::string, double> all{{"unknowns", double(scene::tensor_size(systems_->shape()))},
+                                    {"iterations", double(systems_->iterations())}};
+  const auto counts = frame_.download.values<unsigned>("counts");
+  if (counts.empty()) return all;
+  all["negative_share"] = counts[0] > 0 ? double(counts[1]) / counts[0] : 0;
+  if (flows_) return all;
+  all["negative_direct_share"] = negative_direct_;
+  all["negative_density_share"] = airlight::legendre_fluids::negative_share(field_->shape(), field_->coefficients());
+  return all;
+}
+
+scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& execution) const {
+  airlight::legendre_fluids::require_view(view, moving_);
+  const Use use(context_);
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  for (;;) {
+    scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
+    frame_.begin(execution);
+    if (systems_) {
+      if (stale_) {
+        frame_.timer.begin("direct systems");
+        systems_->solve_direct(frame_);
+      }
+      frame_.timer.begin("scattered systems");
+      systems_->solve_scattered(frame_, -view.camera.forward);
+      frame_.timer.begin("image");
+      draw(view);
+    } else {
+      for (const char* layer : {"mean", "airlight"}) {
+        frame_.buffers.get(layer, 12 * pixels).clear();
+        frame_.download.add(layer, frame_.buffers.get(layer, 12 * pixels), 12 * pixels);
+      }
+    }
+    frame_.finish(result);
+    // Systems that were not solved to the end are solved anew, with more steps.
+    if (systems_ && !systems_->keep_up(frame_)) continue;
+    stale_ = false;
+    result.counters["rays"] = double(pixels);
+    if (systems_) result.counters.merge(counters());
+    result.film.metadata = {
+        {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+    return result;
+  }
+}
+
+}  // namespace
+
+namespace {
+
+// The systems are what columns are made beside.
+void object_to_backdrops(const Scene& scene, std::vector<std::string>& reasons) {
+  const bool shines = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    return sun && sun->irradiance.maxCoeff() > 0;
+  });
+  const auto medium =
+      std::find_if(scene.media.begin(), scene.media.end(), [](const scene::Medium& m) { return extinguishes(m); });
+  if (!shines || medium == scene.media.end())
+    reasons.push_back(
+        "variant = paper with backdrops or particles where no medium is lit: shaders have no systems there");
+  else if (const auto* field = std::get_if<scene::LegendrePointer>(&medium->field);
+           field && column_points((*field)->shape()) * scene::tensor_size((*field)->shape()) > most_loops)
+    reasons.push_back(
+        fmt::format("variant = paper with backdrops or particles in a density of {} coefficients: shaders add "
+                    "up columns of fewer, about {}",
+                    scene::tensor_size((*field)->shape()), 2500));
+}
+
+}  // namespace
+
+std::vector<std::string> unsupported_paper(const Scene& scene, const airlight::legendre_fluids::PaperOptions& options) {
+  std::vector<std::string> reasons;
+  if (!scene.surfaces.empty() || scene::has_environment(scene))
+    reasons.push_back("variant = paper with surfaces or an environment: shaders know backdrops and particles alone");
+  if (!scene.backdrops.empty()) object_to_backdrops(scene, reasons);
+  if (options.n > most_intensities)
+    reasons.push_back(fmt::format("variant = paper with n = {}: shaders take up to {} coefficients along an axis",
+                                  options.n, most_intensities));
+  const airlight::legendre_fluids::LightSolver& solver = options.solver;
+  if (solver.closure == airlight::legendre_fluids::Closure::least_squares && solver.weight > most_weight)
+    reasons.push_back(fmt::format("boundary_weight = {:g}: shaders' normal equations keep their digits up to {:g}",
+                                  solver.weight, most_weight));
+  return reasons;
+}
+
+std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const Scene> scene,
+                                               const airlight::legendre_fluids::PaperOptions& options,
+                                               const std::string& settings) {
+  return std::make_unique<PreparedPaperGpu>(std::move(scene), options, settings);
+}
+
+}  // namespace airlight::gpu::legendre_fluids

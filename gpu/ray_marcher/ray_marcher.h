@@ -1,0 +1,23 @@
+// The brute-force ray marcher in compute shaders: the settings and the steps of reference/ray_marcher.
+#pragma once
+#include "gpu/context.h"
+#include "scene/renderer.h"
+
+namespace airlight::gpu::ray_marcher {
+
+class RayMarcher final : public scene::Renderer {
+ public:
+  std::string name() const override { return "ray_marcher_gpu"; }
+  std::string about() const override;
+  std::string device() const override { return Context::name_of_device(); }
+  std::vector<scene::SettingSpec> settings() const override;
+  // What the CPU refuses; and, one line each, what the shaders do not do.
+  std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
+  // Throws Unavailable without a device, or where it has no room.
+
+ private:
+  std::unique_ptr<scene::Prepared> prepare_supported(std::shared_ptr<const scene::Scene>, const scene::Settings&,
+                                                     const scene::Execution&) const override;
+};
+
+}  // namespace airlight::gpu::ray_marcher
