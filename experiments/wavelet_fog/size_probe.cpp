@@ -90,7 +90,7 @@ Findings WaveletMapSize::run(const ProbeInput&, const scene::Settings& s, const 
   std::map<std::string, std::string> given{{"variant", variant}, {"levels", fmt::format("{}", s.integer("levels"))}};
   if (variant == "bound") given["tolerance"] = fmt::format("{}", s.real("tolerance"));
   if (variant == "paper" || variant == "tele") given["mu"] = fmt::format("{}", s.real("mu"));
-  const scene::Settings settings(method.settings(), given);
+  const scene::Settings settings(method.settings(), scene::without_unread(method.settings(), given));
   const scene::Settings exact(method.settings(), {{"variant", "direct"}});
   scene::Stopwatch watch;
   const auto prepared = method.prepare(scene, settings, execution);
