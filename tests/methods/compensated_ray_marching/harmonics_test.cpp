@@ -1,10 +1,12 @@
-// Exponentials of depths in spherical harmonics: what each approximation is worth. `airlight verify` compares the functions with the oracle.
+// Exponentials of depths in spherical harmonics: what each approximation is worth, and tables of families against the oracle's.
+// `airlight verify` compares the functions themselves with the oracle.
 #include <catch2/catch.hpp>
 
 #include "methods/compensated_ray_marching/gaussian_depth.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
 #include "methods/compensated_ray_marching/ordinate_directions.h"
 #include "methods/compensated_ray_marching/zonal_harmonics.h"
+#include "scene/math/gauss_legendre.h"
 #include "scene/math/spherical_harmonics.h"
 #include "tests/oracle_vectors.h"
 
@@ -71,6 +73,52 @@ TEST_CASE("exponentials of depths", "[compensated_ray_marching]") {
     CHECK(often <= once + 1e-12);
     CHECK(often < 0.02);
     CHECK(distance(series_exponential(depth), exact) < 0.02);
+  }
+}
+
+TEST_CASE("linear exponentials of families", "[compensated_ray_marching]") {
+  for (const json& v : vectors_of("compensated_ray_marching", "ol_table")) {
+    const json &in = v.at("input"), &expected = v.at("expected");
+    const std::vector<double> sizes = numbers(in.at("s"));
+    CAPTURE(v.at("id").get<std::string>());
+    if (in.contains("unit_vectors")) {
+      std::vector<Harmonics> family;
+      for (const json& h : in.at("unit_vectors")) family.push_back(numbers(h));
+      const LinearExponential linear(family, 8, 160);
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        CHECK(linear.constant(sizes[i]) == Approx(number(expected.at("a")[i])).epsilon(1e-8));
+        CHECK(linear.slope(sizes[i]) == Approx(number(expected.at("b")[i])).epsilon(1e-8));
+      }
+    } else if (in.contains("counts")) {
+      // By own samples: within four standard errors, of which this has sqrt(50000 / 100) times the oracle's.
+      const LinearExponential linear(depth_family(4, {1, 2, 4, 16, 64}, 100), 8, 160);
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        CHECK(std::abs(linear.constant(sizes[i]) - number(expected.at("a")[i])) <
+              4 * 22.4 * number(v.at("stderr").at("a")[i]));
+        CHECK(std::abs(linear.slope(sizes[i]) - number(expected.at("b")[i])) <
+              4 * 22.4 * number(v.at("stderr").at("b")[i]));
+      }
+    } else {
+      // One Gaussian: the axis does not matter, distances by quadrature in their logarithm on either side of the cut.
+      const scene::GaussLegendre rule = scene::gauss_legendre(24);
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        double a = 0, b = 0;
+        for (const auto& [lo, hi] : {std::pair(std::log(0.3), std::log(3.0)), std::pair(std::log(3.0), std::log(10.0))})
+          for (std::size_t k = 0; k < rule.node.size(); ++k) {
+            Harmonics h =
+                about_axis(zonal_depth(4, std::exp(lo + 0.5 * (hi - lo) * (1 + rule.node[k]))), Vec3(0, 0, 1));
+            h[0] = 0;
+            const double size = distance(h, Harmonics(16, 0.0)) * std::sqrt(4 * pi);
+            for (double& value : h) value /= size;
+            const LinearExponential one({h}, sizes[i], 1);
+            const double share = 0.5 * rule.weight[k] * (hi - lo) / std::log(10 / 0.3);
+            a += share * one.constant(sizes[i]);
+            b += share * one.slope(sizes[i]);
+          }
+        CHECK(a == Approx(number(expected.at("a")[i])).epsilon(1e-6));
+        CHECK(b == Approx(number(expected.at("b")[i])).epsilon(1e-6));
+      }
+    }
   }
 }
 
