@@ -89,7 +89,7 @@ Array ConfinedFluid::sampled(int component, const Components& positions) const {
 Array ConfinedFluid::sampled_gradient(int component, int axis, const Components& positions) const {
   Array gradient = space_.sampled_gradient(velocity, component, axis, positions);
   if (!wind_) return gradient;
-  // Of a wind that is at most linear a difference is its gradient.
+  // The wind is at most linear in space, so this central difference is its exact gradient.
   const Vec3 step = Vec3::Unit(axis);
   const double of_wind = 0.5 * (wind_->velocity(step) - wind_->velocity(-step))[component];
   return gradient.array() + of_wind;

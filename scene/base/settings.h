@@ -67,7 +67,7 @@ class Settings {
   double real(const std::string& name) const;
   bool flag(const std::string& name) const;
   const std::string& text(const std::string& name) const;
-  // Of a choice of a probe: the enumerator with the place of its text among the choices.
+  // The value of a choice as an enumerator: the n-th text of the choice is the n-th enumerator. Probes use it.
   template <class Enum>
   Enum choice(const std::string& name) const {
     return Enum(place_of_choice(name));
