@@ -77,10 +77,11 @@ TEST_CASE("time left in words", "[progress]") {
 
 TEST_CASE("work is planned from the records, and a shared reference counted once", "[progress]") {
   const airlight::TemporaryFolder folder;
-  const auto record = [&](const std::string& id, const std::string& seconds, const std::string& cached) {
+  const auto record = [&](const std::string& id, const std::string& seconds, const std::string& cached,
+                          const std::string& committed = "") {
     folder.write(id + "/run.json", R"({"seconds": )" + seconds +
                                        R"(, "references": [{"scene": "s", "key": "k", "seconds": 4, "from_cache": )" +
-                                       cached + "}]}");
+                                       cached + R"(, "committed": ")" + committed + R"("}]})");
   };
   record("g/a", "10", "false");
   record("g/b", "20", "true");
@@ -97,6 +98,11 @@ TEST_CASE("work is planned from the records, and a shared reference counted once
   CHECK(planned[2].total() == 15);  // the mean of the known
   CHECK(planned[3].total() == 15);
   CHECK(planned_work({experiments[3]}, folder.path())[0].total() > 0);
+  // A committed film is read in no time: the seconds of its making count neither in its own record nor in one that computed it.
+  record("g/none", "3", "false", "references/k.exr");
+  CHECK(planned_work({experiments[3]}, folder.path())[0].total() == 3);
+  experiments[0].reference.committed = "references";
+  CHECK(planned_work({experiments[0]}, folder.path())[0].total() == 6);
 }
 
 TEST_CASE("a run says where it is and how long all of it will take", "[progress]") {
