@@ -49,7 +49,7 @@ bool write_map_plot(const std::vector<Row>& rows, const PlotCase& plot, const st
   };
   const std::string name = plot_name(plot, "");
   std::string out = fmt::format(
-      "# Draws {0}.svg and {0}.png from {0}.csv: run gnuplot on this file in its folder.\n"
+      "# Draws {0}.svg from {0}.csv: run gnuplot on this file in its folder.\n"
       "data = \"{0}.csv\"\nset datafile separator comma\nset encoding utf8\n"
       "set xrange {1}\nset yrange {2}\nset cbrange [-16:2]\nset xtics 2\nset ytics 2\n"
       "set palette defined (0 \"#440154\", 1 \"#3b528b\", 2 \"#21918c\", 3 \"#5ec962\", 4 \"#fde725\", 4.5 \"#d55e00\")\n"
@@ -62,13 +62,10 @@ bool write_map_plot(const std::vector<Row>& rows, const PlotCase& plot, const st
     out += "EOD\n";
   }
   const std::size_t columns = std::min<std::size_t>(4, blocks), across = (blocks + columns - 1) / columns;
-  for (const bool svg : {true, false}) {
-    const std::size_t side = svg ? 375 : 450;
-    out += fmt::format(
-        "set terminal {} size {},{} font \"{}\"\nset output \"{}.{}\"\nset multiplot layout {},{}\n{}unset multiplot\n",
-        svg ? "svg dynamic" : "pngcairo", side * columns, (side - 20) * across, svg ? "sans-serif,11" : "Sans,11", name,
-        svg ? "svg" : "png", across, columns, panels);
-  }
+  out += fmt::format(
+      "set terminal svg dynamic size {},{} font \"sans-serif,11\"\nset output \"{}.svg\"\nset multiplot layout "
+      "{},{}\n{}unset multiplot\n",
+      375 * columns, 355 * across, name, across, columns, panels);
   make_folder(folder);
   scene::write_file_atomically((folder / (name + ".csv")).string(), data);
   scene::write_file_atomically((folder / (name + ".gp")).string(), out);

@@ -191,21 +191,16 @@ std::string script(const PlotCase& plot, const std::string& title, const std::st
   }
   if (drawing.floor > 0)
     add(fmt::format("{:.6g} with lines dt 2 lw 1 lc rgb \"#888888\" title \"noise floor\"", drawing.floor));
-  std::string out = fmt::format(
-      "# Draws {0}.svg and {0}.png from {0}.csv: run gnuplot on this file in its folder.\n"
+  return fmt::format(
+      "# Draws {0}.svg from {0}.csv: run gnuplot on this file in its folder.\n"
       "data = \"{0}.csv\"\n"
       "set datafile separator comma\n"
       "set title {1} noenhanced\nset xlabel {2} noenhanced\nset ylabel {3} noenhanced\n"
       "set key outside right center vertical Left reverse noenhanced\n"
       "set grid xtics ytics lt 1 lw 0.5 lc rgb \"#cccccc\"\nset border 3 lc rgb \"#444444\"\nset tics nomirror\n"
-      "{4}{5}",
+      "{4}{5}set terminal svg size 820,440 dynamic font \"sans-serif,13\"\nset output \"{0}.svg\"\nplot {6}\n",
       name, gnuplot_text(title), gnuplot_text(axis_label(plot.x_label, plot.x)),
-      gnuplot_text(axis_label(plot.y_label, plot.y)), x.axis("x"), y.axis("y"));
-  for (const auto& [terminal, file] :
-       {std::pair<const char*, const char*>{"svg size 820,440 dynamic font \"sans-serif,13\"", "svg"},
-        {"pngcairo size 1230,660 font \"Sans,13\"", "png"}})
-    out += fmt::format("set terminal {}\nset output \"{}.{}\"\nplot {}\n", terminal, name, file, lines);
-  return out;
+      gnuplot_text(axis_label(plot.y_label, plot.y)), x.axis("x"), y.axis("y"), lines);
 }
 
 // Runs a program in a folder, without a shell, and returns its exit status. Its output goes to a new file.
@@ -248,9 +243,7 @@ void run_gnuplot(const fs::path& folder, const std::vector<std::string>& scripts
   for (const std::string& name : scripts) {
     const fs::path script = folder / name, log = folder / (name + ".log");
     // gnuplot would write through a link that has one of these names.
-    for (const fs::path& written :
-         {log, fs::path(script).replace_extension("svg"), fs::path(script).replace_extension("png")})
-      fs::remove(written);
+    for (const fs::path& written : {log, fs::path(script).replace_extension("svg")}) fs::remove(written);
     if (exit_status(folder, log, {"gnuplot", name}) != 0)
       throw Error(fmt::format("gnuplot failed on {}; see {}", script.string(), log.string()));
     fs::remove(log);

@@ -1,4 +1,4 @@
-// Plots: a CSV file and a gnuplot script beside it, drawn as SVG and PNG. Drawing reads the CSV only.
+// Plots: a CSV file and a gnuplot script beside it, drawn as SVG. Drawing reads the CSV only.
 #pragma once
 #include <filesystem>
 #include <string_view>
