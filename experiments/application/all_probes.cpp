@@ -5,7 +5,6 @@
 #include "experiments/compensated_ray_marching/residual_decode_probe.h"
 #include "experiments/compensated_ray_marching/residual_probe.h"
 #include "experiments/compensated_ray_marching/smoke_flicker_probe.h"
-#include "experiments/fogshop/kernel_rate.h"
 #include "experiments/legendre_fluids/fluid_probes.h"
 #include "experiments/legendre_fluids/frame_probe.h"
 #include "experiments/legendre_fluids/rendering_probe.h"
@@ -23,7 +22,6 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
   static const auto probes = [] {
     std::vector<std::unique_ptr<Probe>> list;
     list.push_back(std::make_unique<OracleProbe>());
-    list.push_back(std::make_unique<KernelRate>());
     list.push_back(std::make_unique<shadow_planes::EvaluatorMap>());
     list.push_back(std::make_unique<shadow_planes::EvaluatorAngles>());
     list.push_back(std::make_unique<shadow_planes::EvaluatorImage>());
@@ -37,8 +35,6 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<CavityProbe>());
     list.push_back(std::make_unique<FlowStability>());
     list.push_back(std::make_unique<PressureSolvers>());
-    list.push_back(std::make_unique<TransformsRate>());
-    list.push_back(std::make_unique<AdvectionRate>());
     list.push_back(std::make_unique<LegendreCost>());
     list.push_back(std::make_unique<LegendreSpeed>());
     list.push_back(std::make_unique<LegendreStability>());

@@ -7,9 +7,16 @@
 #include "experiments/judging/metrics.h"
 #include "experiments/judging/statistics.h"
 #include "scene/base/component.h"
+#include "scene/base/error.h"
 #include "scene/renderer.h"
 
 namespace airlight::experiments {
+
+// Input of a data folder, and nobody named one.
+class NoDataFolder : public Unavailable {
+ public:
+  using Unavailable::Unavailable;
+};
 
 // What a probe may be given besides its settings: the file of the experiment's [[scene]], none without one.
 struct ProbeInput {

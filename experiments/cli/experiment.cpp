@@ -11,7 +11,6 @@
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/driver/agreement.h"
-#include "experiments/driver/check.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"

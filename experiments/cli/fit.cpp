@@ -70,7 +70,9 @@ void add_fit(Commands& commands) {
               "send none to another place in later frames, as the publication: fewer new ones, greater errors");
   c->add_option("--threshold", options->threshold, "residual: levels of this size or less are dropped (0)")
       ->check(CLI::Range(0, 126));
-  c->add_option("--method,-m", options->method, fmt::format("one of {}", fmt::join(scene::fit_method_names(), ", ")));
+  std::vector<std::string> methods;
+  for (const auto& [name, method] : scene::fit_methods()) methods.push_back(name);
+  c->add_option("--method,-m", options->method, fmt::format("one of {}", fmt::join(methods, ", ")));
   c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
   commands.add_limit(c);
   commands.add_data(c);

@@ -14,6 +14,8 @@ namespace airlight::experiments {
 namespace {
 
 enum class Residual { left_out, kept, within_support };
+const scene::Choices<Residual> residuals{
+    {"left_out", Residual::left_out}, {"kept", Residual::kept}, {"within_support", Residual::within_support}};
 
 constexpr float least_sum = 1e-10f;  // of the Gaussians, below which Zhou et al. take the residual as 0
 
@@ -54,7 +56,7 @@ std::vector<scene::SettingSpec> FittedPicture::settings() const {
                             "of all pictures"),
       scene::integer_setting("samples", "16", 1, 1e6, "a pixel, of the path tracer"),
       scene::integer_setting("gaussians", "400", 0, 100000, "fitted to the voxels"),
-      scene::choice_setting("residual", "kept", {"left_out", "kept", "within_support"},
+      scene::choice_setting("residual", Residual::kept, residuals,
                             "within_support: the density is 0 where the Gaussians are below 1e-10, as in the paper"),
       scene::flag_setting("keep_empty", false, "no density where the smoke has none, whatever the threshold"),
       scene::integer_setting("threshold", "0", 0, 126, "levels of this size or less are dropped")};
@@ -73,7 +75,7 @@ Findings FittedPicture::run(const ProbeInput& input, const scene::Settings& s,
 
   auto fitted = std::make_shared<scene::Fitted>();
   fitted->gaussians = gaussians_for(grid, int(s.integer("gaussians")), execution);
-  const Residual kind = s.choice<Residual>("residual");
+  const Residual kind = s.choice("residual", residuals);
   const scene::Residual residual =
       scene::residual_of(grid, fitted->gaussians, {int(s.integer("threshold")), {}, s.flag("keep_empty")});
   if (kind != Residual::left_out) fitted->residual = std::make_shared<const scene::Residual>(residual);

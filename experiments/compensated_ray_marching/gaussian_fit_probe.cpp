@@ -24,19 +24,21 @@ using scene::GaussianFit;
 using scene::VoxelGrid;
 
 enum class Smoke { noise, puff, scene, data };
+const scene::Choices<Smoke> smokes{
+    {"noise", Smoke::noise}, {"puff", Smoke::puff}, {"scene", Smoke::scene}, {"data", Smoke::data}};
 
 // A frame of the smoke that the settings name.
 VoxelGrid smoke_at(const ProbeInput& input, const scene::Settings& s, int frame) {
   const double time = s.real("rise") * frame;
-  if (s.choice<Smoke>("smoke") == Smoke::noise)
+  if (s.choice("smoke", smokes) == Smoke::noise)
     return noise_smoke(int(s.integer("size")), time, int(s.integer("octaves")));
-  if (s.choice<Smoke>("smoke") == Smoke::puff) return puff_smoke(int(s.integer("size")), time);
-  if (s.choice<Smoke>("smoke") == Smoke::data) {
+  if (s.choice("smoke", smokes) == Smoke::puff) return puff_smoke(int(s.integer("size")), time);
+  if (s.choice("smoke", smokes) == Smoke::data) {
     const std::string name =
         fmt::format("volumes/plume/plume_{:04}.vdb", s.integer("first") + frame * s.integer("step"));
+    if (scene::data_folder().empty()) throw NoDataFolder(fmt::format("no data folder (--data) with {}", name));
     const std::filesystem::path path = std::filesystem::path(scene::data_folder()) / name;
-    if (scene::data_folder().empty() || !std::filesystem::exists(path))
-      throw Unavailable(fmt::format("no data folder (--data) with {}", name));
+    if (!std::filesystem::exists(path)) throw Unavailable(fmt::format("{}: no such file", path.string()));
     return scene::read_vdb(path.string(), "density");
   }
   ProbeInput one = input;
@@ -54,7 +56,7 @@ double unit_of(const ProbeInput& input, const scene::Settings& s) {
     voxel = grid.voxel_size;
     lo = lo.min(grid.origin_index.cast<double>().array());
     hi = hi.max((grid.origin_index + grid.size).cast<double>().array());
-    if (s.choice<Smoke>("smoke") == Smoke::noise || s.choice<Smoke>("smoke") == Smoke::puff) break;  // all alike
+    if (s.choice("smoke", smokes) == Smoke::noise || s.choice("smoke", smokes) == Smoke::puff) break;  // all alike
   }
   return voxel * std::cbrt((hi - lo).prod());
 }
@@ -178,8 +180,8 @@ scene::FitOptions fit_options(const scene::Settings& s, const scene::Execution& 
   options.gaussians = int(s.integer("gaussians"));
   options.widths.lo = s.real("least_width");
   options.least_voxels = s.real("least_voxels");
-  options.method = s.choice<scene::FitMethod>("method");
-  options.teleport = s.choice<scene::Teleport>("teleport");
+  options.method = s.choice("method", scene::fit_methods());
+  options.teleport = s.choice("teleport", scene::teleports());
   options.rounds = int(s.integer("rounds"));
   options.iterations = int(s.integer("iterations"));
   options.tolerance = s.real("tolerance");
@@ -200,16 +202,16 @@ std::string GaussianFitProbe::about() const {
 std::vector<scene::SettingSpec> GaussianFitProbe::settings() const {
   return {
       scene::choice_setting(
-          "smoke", "noise", {"noise", "puff", "scene", "data"},
+          "smoke", Smoke::noise, smokes,
           "curl noise, a ball stirred by a curl, the voxels of the [[scene]], or volumes/plume of the data folder"),
       scene::integer_setting("size", "48", 4, 256, "samples along an axis, of noise and puff"),
       scene::integer_setting("octaves", "4", 0, 8, "of noise: the finest has 6 2^(octaves - 1) cells to the side"),
       scene::integer_setting("gaussians", "200", 1, scene::most_fit_gaussians, "of the first frame"),
       scene::real_setting("least_width", "0.015", 1e-3, 0.08, "of the box"),
       scene::real_setting("least_voxels", "0.7", 0.1, 8, "and no width below so many"),
-      scene::choice_setting("method", "gauss_newton", scene::fit_method_names(), "the minimiser"),
+      scene::choice_setting("method", scene::FitMethod::gauss_newton, scene::fit_methods(), "the minimiser"),
       scene::choice_setting(
-          "teleport", "greatest", scene::teleport_names(),
+          "teleport", scene::Teleport::greatest, scene::teleports(),
           "within the first frame, and of every cold one: none; to where most is missing; there and to random "
           "filled voxels by turns"),
       scene::integer_setting("rounds", "12", 1, 1000, "at most, each followed by teleportation"),

@@ -22,6 +22,8 @@ using Levels = std::vector<std::int8_t>;
 using Points = std::vector<Eigen::Vector4f>;  // in samples; the last is not read
 
 enum class DeviceStore { bricks, hash_tags, hash_domain };
+const scene::Choices<DeviceStore> device_stores{
+    {"bricks", DeviceStore::bricks}, {"hash_tags", DeviceStore::hash_tags}, {"hash_domain", DeviceStore::hash_domain}};
 
 std::unique_ptr<ResidualOnDevice> store_of(gpu::Context& context, DeviceStore store, const Vector3i& size,
                                            const Levels& levels) {
@@ -130,7 +132,7 @@ std::string ResidualDecode::about() const {
 }
 
 std::vector<scene::SettingSpec> ResidualDecode::settings() const {
-  return {scene::choice_setting("store", "bricks", {"bricks", "hash_tags", "hash_domain"},
+  return {scene::choice_setting("store", DeviceStore::bricks, device_stores,
                                 "bricks of 8^3 cells; hash_tags, hash_domain: how it tells what is stored"),
           scene::choice_setting("smoke", "scene", {"scene", "noise"}, "the grid of the scene's medium, or curl noise"),
           scene::integer_setting("size", "64", 8, 256, "samples along a side of the curl noise"),
@@ -156,7 +158,7 @@ Findings ResidualDecode::run(const ProbeInput& input, const scene::Settings& s,
       scene::residual_of(grid, gaussians_for(grid, int(s.integer("gaussians")), execution), options);
   const Vector3i size = residual.layout.size;
   const Levels levels = levels_of(residual.bricks);
-  const auto store = store_of(context, s.choice<DeviceStore>("store"), size, levels);
+  const auto store = store_of(context, s.choice("store", device_stores), size, levels);
   const int lookups = int(s.integer("lookups"));
   const Points random = random_points(size, lookups);
   const Decoder decoder(context, *store, int(s.integer("runs")));

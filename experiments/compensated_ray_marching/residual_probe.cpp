@@ -22,8 +22,19 @@ using Eigen::Vector3i;
 using Positions = std::vector<Vector3i>;
 
 enum class Store { raw, bricks, apron, hash_tags, hash_domain, hash_sequence, nano_floats, nano_eight_bits };
-enum class Step { residual, density };
 enum class Of { residual, density };
+const scene::Choices<Store> stores{{"raw", Store::raw},
+                                   {"bricks", Store::bricks},
+                                   {"apron", Store::apron},
+                                   {"hash_tags", Store::hash_tags},
+                                   {"hash_domain", Store::hash_domain},
+                                   {"hash_sequence", Store::hash_sequence},
+                                   {"nano_floats", Store::nano_floats},
+                                   {"nano_eight_bits", Store::nano_eight_bits}};
+const scene::Choices<Of> quantities{{"residual", Of::residual}, {"density", Of::density}};
+using Offsets = scene::HashOptions::Offsets;
+const scene::Choices<Offsets> offsets{
+    {"thirds", Offsets::thirds}, {"root_thirds", Offsets::root_thirds}, {"sixths", Offsets::sixths}};
 
 constexpr int middle_frame = scene::HashedSequence::frames_per_table / 2;
 
@@ -140,14 +151,14 @@ Measured measure_sequence(const Task& task, const scene::HashOptions& options, s
 }
 
 Measured measure_store(const Task& task, const scene::Settings& s, scene::PerfectHash& hash) {
-  const scene::HashOptions options{s.choice<scene::HashOptions::Offsets>("offsets"), 1};
+  const scene::HashOptions options{s.choice("offsets", offsets), 1};
   const auto hashed = [&](auto bytes, auto level) {
     return measure_levels(
         task, hash,
         [&] { return scene::perfect_hash(task.size, scene::hashed_voxels(task.size, task.levels), options); }, bytes,
         level);
   };
-  switch (s.choice<Store>("store")) {
+  switch (s.choice("store", stores)) {
     case Store::raw: {
       std::vector<std::int8_t> copy;
       return measure_levels(
@@ -203,8 +214,7 @@ std::string ResidualStores::about() const {
 
 std::vector<scene::SettingSpec> ResidualStores::settings() const {
   return {scene::choice_setting(
-              "store", "bricks",
-              {"raw", "bricks", "apron", "hash_tags", "hash_domain", "hash_sequence", "nano_floats", "nano_eight_bits"},
+              "store", Store::bricks, stores,
               "apron: bricks of 8^3 cells with 9^3 samples; hash_tags, hash_domain: how it tells what is stored; "
               "hash_sequence: a 27th of 27 frames in one"),
           scene::choice_setting("smoke", "scene", {"scene", "noise"}, "the grid of the scene's medium, or curl noise"),
@@ -212,15 +222,14 @@ std::vector<scene::SettingSpec> ResidualStores::settings() const {
           scene::integer_setting("gaussians", "400", 0, 100000, "that the residual is against"),
           scene::integer_setting("threshold", "0", 0, 126, "levels of this size or less are dropped"),
           scene::flag_setting("keep_empty", false, "no density where the smoke has none, whatever the threshold"),
-          scene::choice_setting("step", "residual", {"residual", "density"}, "of a level: max|R|/127, or max D/255"),
-          scene::choice_setting("of", "residual", {"residual", "density"},
-                                "what is stored: the residual, or the density itself"),
+          scene::choice_setting("step", Of::residual, quantities, "of a level: max|R|/127, or max D/255"),
+          scene::choice_setting("of", Of::residual, quantities, "what is stored: the residual, or the density itself"),
           scene::real_setting(
               "rise", "0", 0, 1,
               "hash_sequence: of the curl noise from frame to frame, m, each with Gaussians of its own; 0: one frame "
               "27 times"),
           scene::integer_setting("edge", "8", 1, 64, "of bricks"),
-          scene::choice_setting("offsets", "thirds", {"thirds", "root_thirds", "sixths"},
+          scene::choice_setting("offsets", Offsets::thirds, offsets,
                                 "first r of a hash: cbrt(K/3) + 9, cbrt(K)/3 + 9, cbrt(K/6)"),
           scene::integer_setting("lookups", "1000000", 1, 1e8, "that are timed, random and one after another"),
           scene::integer_setting("runs", "5", 1, 1000, "timed")};
@@ -234,21 +243,21 @@ std::vector<std::string> ResidualStores::figures() const {
 Findings ResidualStores::run(const ProbeInput& input, const scene::Settings& s,
                              const scene::Execution& execution) const {
   const bool moves = s.real("rise") > 0;
-  if (moves && (s.choice<Store>("store") != Store::hash_sequence || s.text("smoke") == "scene"))
+  if (moves && (s.choice("store", stores) != Store::hash_sequence || s.text("smoke") == "scene"))
     throw Error("residual_stores: rise has an effect with store = hash_sequence and smoke = noise alone");
   const auto noise = [&](int frame) { return noise_smoke(int(s.integer("size")), s.real("rise") * frame); };
   const scene::VoxelGrid grid = s.text("smoke") == "scene" ? grid_of_scene(input) : noise(moves ? middle_frame : 0);
-  const bool density = s.choice<Of>("of") == Of::density;
+  const bool density = s.choice("of", quantities) == Of::density;
   const int gaussians = density ? 0 : int(s.integer("gaussians"));
   const scene::GaussianSum sum = gaussians_for(grid, gaussians, execution);
   scene::QuantisationOptions options;
   options.threshold = int(s.integer("threshold"));
   options.keep_empty = s.flag("keep_empty");
   const float most = *std::max_element(grid.values.begin(), grid.values.end());
-  if (s.choice<Step>("step") == Step::density) options.step = most / 255;
+  if (s.choice("step", quantities) == Of::density) options.step = most / 255;
   const scene::Residual residual = scene::residual_of(grid, sum, options);
   Task task{residual.layout.size, levels_of(residual.bricks), {}, {}, {}, int(s.integer("runs"))};
-  if (s.choice<Store>("store") == Store::hash_sequence) {
+  if (s.choice("store", stores) == Store::hash_sequence) {
     task.frames.assign(scene::HashedSequence::frames_per_table, task.levels);
     for (int frame = 0; moves && frame < scene::HashedSequence::frames_per_table; ++frame) {
       if (frame == middle_frame) continue;

@@ -11,6 +11,7 @@
 #include "experiments/application/json.h"
 #include "experiments/application/json_value.h"
 #include "experiments/application/probes.h"
+#include "experiments/driver/kind.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments {
@@ -161,7 +162,8 @@ std::string text(const Agreement& a, const std::string& name) {
   }
   if (a.rows_here > 0) parts.push_back(counted(a.rows_here, "row") + " only here");
   if (a.rows_there > 0) parts.push_back(counted(a.rows_there, "row") + " only there");
-  if (a.not_comparable > 0) parts.push_back(counted(a.not_comparable, "row") + " of another device not compared");
+  if (a.not_comparable > 0)
+    parts.push_back(counted(a.not_comparable, "row") + " not compared, unavailable here or of another device");
   if (a.times)
     parts.push_back(
         fmt::format("times {:.2g} times as long ({:.2g} to {:.2g})", a.times->value, a.times->low, a.times->high));
@@ -187,9 +189,8 @@ std::optional<Agreement> agreement_with(const std::filesystem::path& results, co
   const Experiment& e = outcome.experiment;
   const auto committed = recorded_rows(results / results_name(e.id, e.profile) / "run.json");
   if (!committed) return std::nullopt;
-  const bool numbers = e.kind == "numbers";
-  return compare_tables(outcome.rows, *committed, [numbers](const Row& row, const std::string& metric) {
-    return numbers && is_speed(find_probe(row.renderer, row.method), metric);
+  return compare_tables(outcome.rows, *committed, [kind = e.kind](const Row& row, const std::string& metric) {
+    return kind->is_speed(row, metric);
   });
 }
 

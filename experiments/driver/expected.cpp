@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "experiments/application/probes.h"
+#include "experiments/driver/kind.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments {
@@ -84,7 +85,7 @@ std::string in_unit(double x, const ExpectedCase& e) {
 // [s] Of a row of pictures with the film that the time is of.
 std::string time_and_film(const Outcome& outcome, const Row& row) {
   const std::string time = time_text(row);
-  return outcome.experiment.kind == "images"
+  return outcome.experiment.kind->draws_pictures()
              ? fmt::format("{} at {}x{}, {:.3g} per second", time, row.width, row.height, 1 / row.seconds.value)
              : time;
 }
@@ -103,7 +104,7 @@ std::string ours(const Outcome& outcome, const ExpectedCase& e) {
     if (found->at_least) return figure_text(outcome, e);
     std::string out = in_unit(f.value, e);
     if (f.low < f.high) out += fmt::format(" [{}, {}]", in_unit(f.low, e), in_unit(f.high, e));
-    const bool film = found->row && e.metric == "seconds" && outcome.experiment.kind == "images";
+    const bool film = found->row && e.metric == "seconds" && outcome.experiment.kind->draws_pictures();
     return film ? fmt::format("{} at {}x{}", out, found->row->width, found->row->height) : out;
   }
   for (const Row& row : outcome.rows)

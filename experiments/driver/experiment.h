@@ -11,6 +11,7 @@
 
 namespace airlight::experiments {
 
+class ExperimentKind;
 using Pairs = std::map<std::string, std::string>;
 
 struct SceneCase {  // kind "numbers": the input of a probe, all empty where there is none; "flow": the problem
@@ -90,7 +91,7 @@ struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
   std::string summary;  // one sentence for people; {1} stands for the figure of the first [[expected]]
-  std::string kind;     // "images", "numbers" or "flow"
+  const ExperimentKind* kind = nullptr;
   std::string profile;  // "quick" or "paper"
   std::vector<SceneCase> scenes;
   std::vector<std::string> sequences;  // that scenes show (sequences.h)

@@ -5,10 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/driver/experiment.h"
-#include "scene/base/component.h"
+#include "experiments/driver/kind.h"
 #include "scene/load/parse_toml.h"
-#include "scene/load/table_reader.h"
 
 namespace airlight::experiments {
 
@@ -21,24 +19,13 @@ class ExperimentReader {
  private:
   using TableReader = scene::load::TableReader;
 
-  bool images() const { return experiment_.kind == "images"; }
-  bool numbers() const { return experiment_.kind == "numbers"; }
-  bool flow() const { return experiment_.kind == "flow"; }
+  const ExperimentKind& kind() const { return *experiment_.kind; }
   std::string position(const std::string& key) const;
   // The tables of [[key]], each with its reader.
   std::vector<std::pair<const toml::table*, TableReader>> lists(const TableReader& top, const std::string& key) const;
   bool in_profile(const toml::table& table, const TableReader& reader) const;
   void profile(const TableReader& top, Pairs& scene_overrides, Pairs& reference_settings);
-  // What makes the rows: its key in the file, and the thing itself.
-  const char* component_key() const { return numbers() ? "probe" : images() ? "renderer" : "solver"; }
-  const scene::Component& find_component(const std::string& name, const std::string& where) const;
-  // What a row may have for time.
-  std::vector<std::string> times() const;
   void check_component(const TableReader& reader, const std::string& name, const Pairs& given) const;
-  // The publications print root mean squares: each table has them beside its relative errors.
-  void add_rms_errors();
-  // Each metric is a figure of some probe.
-  void figures() const;
   void reference(const TableReader& top, const Pairs& finer);
   void scenes(const TableReader& top, const Pairs& of_profile);
   void methods(const TableReader& top);

@@ -12,6 +12,7 @@
 #include "experiments/application/interrupt.h"
 #include "experiments/application/machine.h"
 #include "experiments/application/solvers.h"
+#include "experiments/driver/comparisons.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/timing.h"
@@ -232,7 +233,45 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const JudgedFlow> judged, 
 
 }  // namespace
 
-Outcome run_flows(Experiment experiment, const RunOptions& options) {
+const scene::Component& Flows::find_component(const std::string& name, const std::string& position) const {
+  return find_solver(name, position);
+}
+
+void Flows::read(const TableReader& top, Experiment& e) const {
+  e.stages = top.flag("stages", false);
+  e.orders = top.flag("orders", false);
+}
+
+void Flows::check_metrics(Experiment& e, const std::string& position) const {
+  for (const std::string& metric : e.metrics) parse_flow_metric(metric, position);
+}
+
+bool Flows::needs_reference(const std::string& metric, const std::string& position) const {
+  return experiments::needs_reference(parse_flow_metric(metric, position));
+}
+
+std::vector<std::string> Flows::times() const {
+  return {"seconds", "step_seconds", "cell_seconds", "simulated_seconds"};
+}
+
+std::vector<RowColumn> Flows::time_columns() const {
+  const auto part = [](const char* name) {
+    return [name](const Row& row) {
+      const auto time = quantity(row, name);
+      return time ? duration(time->value) : "";
+    };
+  };
+  return {{"time of the whole", time_text},
+          {"of a step", part("step_seconds")},
+          {"of a simulated second", part("simulated_seconds")}};
+}
+
+std::string Flows::conditions() const {
+  return "Errors at 61 samples along the longest side of the box; times: median [ranks] of the whole run's wall clock, what "
+         "looks at it left out.";
+}
+
+Outcome Flows::run(Experiment experiment, const RunOptions& options) const {
   RowKeeper keeper(std::move(experiment), options);
   return keeper.run([&](const SceneCase& c) {
     const Experiment& e = keeper.experiment();
@@ -243,14 +282,7 @@ Outcome run_flows(Experiment experiment, const RunOptions& options) {
       if (!is_on(m, c)) continue;
       const scene::Solver& solver = find_solver(m.renderer, m.name);
       const Solve solve{solver, scene::Settings(solver.settings(), m.settings, m.name)};
-      Row row;
-      row.scene = c.name;
-      row.method = m.name;
-      row.setting = m.setting;
-      row.renderer = m.renderer;
-      row.settings = solve.settings.canonical();
-      row.parameter = c.parameter;
-      row.scene_hash = judged->problem->hash;
+      Row row = row_of(c, m, solve.settings, judged->problem->hash);
       row.reference_key = judged->reference_key;
       row.key = row_key(e, m, solver, row);
       rows.push_back({row, [&e, judged, solve](Row known, const scene::Execution& execution) {
@@ -261,7 +293,7 @@ Outcome run_flows(Experiment experiment, const RunOptions& options) {
   });
 }
 
-void check_flows(const Experiment& e) {
+void Flows::check(const Experiment& e, const RunOptions&) const {
   for (const SceneCase& c : e.scenes) {
     const JudgedFlow judged = plan_problem(e, c);
     if (e.reference.renderer.empty()) continue;

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/application/interrupt.h"
+#include "experiments/application/renderers.h"
 #include "experiments/driver/committed_references.h"
+#include "experiments/driver/comparisons.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/next_frames.h"
 #include "experiments/driver/pictures.h"
@@ -11,6 +15,8 @@
 #include "experiments/driver/reference_cache.h"
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/timing.h"
+#include "experiments/driver/trial.h"
+#include "experiments/judging/metrics.h"
 
 namespace airlight::experiments {
 namespace {
@@ -134,7 +140,50 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
 
 }  // namespace
 
-Outcome run_images(Experiment experiment, const RunOptions& options) {
+const scene::Component& Images::find_component(const std::string& name, const std::string& position) const {
+  return find_renderer(name, position);
+}
+
+void Images::read(const TableReader& top, Experiment& e) const {
+  e.layer = top.text("layer", "mean");
+  e.stages = top.flag("stages", false);
+}
+
+void Images::read_method(const TableReader& reader, const Experiment& e, MethodCase& method) const {
+  method.layer = reader.text("layer", e.layer);
+  method.picture_only = reader.flag("picture_only", false);
+  method.count_noise = reader.flag("count_noise", false);
+  if (reader.has("moving")) method.moving = reader.choice("moving", what_may_move());
+}
+
+void Images::check_metrics(Experiment& e, const std::string& position) const {
+  for (const std::string& metric : e.metrics) check_metric_name(metric, position);
+  std::vector<std::string>& metrics = e.metrics;
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    const std::string relative = "rel_l2";
+    std::string rms = metrics[i];
+    const std::size_t at = rms.find(relative);
+    if (at == std::string::npos || rms.find("squared") != std::string::npos) continue;
+    rms.replace(at, relative.size(), "rmse");
+    if (std::find(metrics.begin(), metrics.end(), rms) == metrics.end())
+      metrics.insert(metrics.begin() + std::ptrdiff_t(i) + 1, rms);
+  }
+}
+
+void Images::check(const Experiment& e, const RunOptions& options) const { try_pictures(e, options); }
+
+std::vector<RowColumn> Images::time_columns() const { return {{"time of one render", time_text}}; }
+
+std::vector<RowColumn> Images::preparation_columns() const {
+  return {{"prepared once in", [](const Row& row) { return row.runs ? duration(row.prepare_seconds) : ""; }}};
+}
+
+std::string Images::conditions() const {
+  return "Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
+         "precomputation apart.";
+}
+
+Outcome Images::run(Experiment experiment, const RunOptions& options) const {
   RowKeeper keeper(std::move(experiment), options);
   for (const std::string& name : keeper.experiment().sequences) {
     Row history;

@@ -12,8 +12,10 @@
 #include "experiments/application/folders.h"
 #include "experiments/application/interrupt.h"
 #include "experiments/application/machine.h"
+#include "experiments/application/probe.h"
 #include "experiments/application/progress.h"
 #include "experiments/application/say.h"
+#include "experiments/driver/kind.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/tables.h"
 #include "experiments/driver/timing.h"
@@ -113,7 +115,7 @@ double RowKeeper::row_work() const { return progress_.work_of_rows() / double(ro
 
 // Which part of a row's time its timed runs are is not recorded: half.
 double RowKeeper::making_work() const {
-  const bool timed = experiment().kind != "numbers" && experiment().timing.budget > 0;
+  const bool timed = experiment().kind->times_rows() && experiment().timing.budget > 0;
   return timed ? row_work() / 2 : row_work();
 }
 
@@ -181,7 +183,8 @@ void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
   } catch (const Unavailable& reason) {
     step.spare();
     row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
-    row.unavailable = dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen();
+    row.unavailable = dynamic_cast<const NoDataFolder*>(&reason) ||
+                      (dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen());
     rows[place] = row;  // not into the journal: the next run may find what is missing
     say(row, "left out");
   }

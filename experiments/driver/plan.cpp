@@ -28,6 +28,19 @@ std::string program_and_machine() {
 
 }  // namespace
 
+Row row_of(const SceneCase& c, const MethodCase& m, const scene::Settings& settings, const std::string& scene_hash) {
+  Row row;
+  row.scene = c.name;
+  row.method = m.name;
+  row.setting = m.setting;
+  row.renderer = m.renderer;
+  row.settings = settings.canonical();
+  row.layer = m.layer;
+  row.parameter = c.parameter;
+  row.scene_hash = scene_hash;
+  return row;
+}
+
 std::string row_key(const Experiment& e, const MethodCase& m, const scene::Component& component, const Row& row) {
   const TimingRule& rule = e.timing;
   std::vector<std::string> parts{program_and_machine(),
@@ -66,14 +79,7 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
     if (!is_on(m, c)) continue;
     const scene::Renderer& renderer = find_renderer(m.renderer, m.name);
     PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), {}};
-    p.row.scene = c.name;
-    p.row.method = m.name;
-    p.row.setting = m.setting;
-    p.row.renderer = m.renderer;
-    p.row.settings = p.settings.canonical();
-    p.row.layer = m.layer;
-    p.row.parameter = c.parameter;
-    p.row.scene_hash = scene.hash;
+    p.row = row_of(c, m, p.settings, scene.hash);
     p.row.width = scene.width;
     p.row.height = scene.height;
     p.row.reference_key = reference;

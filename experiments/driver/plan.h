@@ -32,6 +32,9 @@ struct PlannedScene {
 // is no good.
 PlannedScene plan_scene(const Experiment&, const SceneCase&);
 
+// What the file says of a row, and the content of its scene.
+Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);
+
 // Of a row whose names, settings and hashes are known.
 std::string row_key(const Experiment&, const MethodCase&, const scene::Component&, const Row&);
 

@@ -3,16 +3,11 @@
 
 #include <algorithm>
 
-#include "experiments/application/probes.h"
 #include "experiments/application/renderers.h"
-#include "experiments/application/solvers.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/experiment_reader.h"
-#include "experiments/driver/next_frames.h"
 #include "experiments/driver/sequences.h"
 #include "experiments/driver/toml_values.h"
-#include "experiments/judging/flow_metrics.h"
-#include "experiments/judging/metrics.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest.h"
 #include "scene/base/read_file.h"
@@ -31,35 +26,31 @@ ExperimentReader::ExperimentReader(const Folders& folders, const std::string& id
 
 Experiment ExperimentReader::read() {
   TableReader top(toml_, "");
-  experiment_.kind = toml_["kind"].value_or(std::string("images"));
+  std::vector<std::string> kinds;
+  experiment_.kind = all_kinds().front();
+  for (const ExperimentKind* kind : all_kinds()) {
+    kinds.push_back(kind->name());
+    if (toml_["kind"].value_or(std::string()) == kind->name()) experiment_.kind = kind;
+  }
   std::vector<std::string> keys{"kind",   "title", "paper", "about",    "summary",  "metrics", "in_tests", "scene",
                                 "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing"};
-  if (!numbers()) keys.insert(keys.end(), {"stages", "reference"});
-  if (images()) keys.push_back("layer");
-  if (flow()) keys.push_back("orders");
+  const std::vector<std::string> of_kind = kind().keys();
+  keys.insert(keys.end(), of_kind.begin(), of_kind.end());
   top.allow(keys);
-  top.choice("kind", {"images", "numbers", "flow"}, "images");
+  top.choice("kind", kinds, kinds.front());
   experiment_.title = top.text("title");
   experiment_.paper = top.text("paper", "");
   experiment_.about = top.text("about", "");
   experiment_.summary = top.text("summary", "");
   experiment_.in_tests = top.flag("in_tests", false);
-  if (images()) experiment_.layer = top.text("layer", "mean");
-  if (flow()) experiment_.orders = top.flag("orders", false);
-  if (!numbers()) experiment_.stages = top.flag("stages", false);
+  kind().read(top, experiment_);
   experiment_.metrics = strings(toml_, "metrics", top);
-  for (const std::string& metric : experiment_.metrics)
-    if (images())
-      check_metric_name(metric, position("metrics"));
-    else if (flow())
-      parse_flow_metric(metric, position("metrics"));
-  if (images()) add_rms_errors();
   Pairs overrides, reference_settings;
   profile(top, overrides, reference_settings);
-  if (!numbers()) reference(top, reference_settings);
+  if (std::find(of_kind.begin(), of_kind.end(), "reference") != of_kind.end()) reference(top, reference_settings);
   scenes(top, overrides);
   methods(top);
-  if (numbers()) figures();
+  kind().check_metrics(experiment_, position("metrics"));
   plots(top);
   names_apart();
   checks(top);
@@ -116,7 +107,8 @@ void ExperimentReader::profile(const TableReader& top, Pairs& scene_overrides, P
     if (reader.has("runs") && budget == 0)
       reader.fail("runs", "has no effect where budget = 0: then the picture is rendered once");
     const bool committed = reader.flag("committed_references", false);
-    if (committed && !images()) reader.fail("committed_references", "only pictures have committed references");
+    if (committed && !kind().draws_pictures())
+      reader.fail("committed_references", "only pictures have committed references");
     if (committed && !toml_.contains("reference"))
       reader.fail("committed_references", "there is no [reference] that could be committed");
     if (name != experiment_.profile) continue;
@@ -128,66 +120,32 @@ void ExperimentReader::profile(const TableReader& top, Pairs& scene_overrides, P
   }
 }
 
-const scene::Component& ExperimentReader::find_component(const std::string& name, const std::string& where) const {
-  if (numbers()) return find_probe(name, where);
-  if (images()) return find_renderer(name, where);
-  return find_solver(name, where);
-}
-
-std::vector<std::string> ExperimentReader::times() const {
-  if (flow()) return {"seconds", "step_seconds", "cell_seconds", "simulated_seconds"};
-  return {"seconds", "prepare_seconds", "total_seconds"};
-}
-
 void ExperimentReader::check_component(const TableReader& reader, const std::string& name, const Pairs& given) const {
   const scene::Component* component = nullptr;
   try {
-    component = &find_component(name, reader.where());
+    component = &kind().find_component(name, reader.where());
     scene::Settings(component->settings(), given, reader.where() + ": settings");
   } catch (const Error& error) {
-    reader.fail(component ? "settings" : component_key(), std::string(error.what()).substr(reader.where().size() + 2));
+    reader.fail(component ? "settings" : kind().component_key(),
+                std::string(error.what()).substr(reader.where().size() + 2));
   }
-}
-
-void ExperimentReader::add_rms_errors() {
-  std::vector<std::string>& metrics = experiment_.metrics;
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    const std::string relative = "rel_l2";
-    std::string rms = metrics[i];
-    const std::size_t at = rms.find(relative);
-    if (at == std::string::npos || rms.find("squared") != std::string::npos) continue;
-    rms.replace(at, relative.size(), "rmse");
-    if (std::find(metrics.begin(), metrics.end(), rms) == metrics.end())
-      metrics.insert(metrics.begin() + std::ptrdiff_t(i) + 1, rms);
-  }
-}
-
-void ExperimentReader::figures() const {
-  std::vector<std::string> known;
-  for (const MethodCase& m : experiment_.methods)
-    for (const std::string& figure : find_probe(m.renderer, m.name).figures())
-      if (std::find(known.begin(), known.end(), figure) == known.end()) known.push_back(figure);
-  for (const std::string& metric : experiment_.metrics)
-    if (std::find(known.begin(), known.end(), metric) == known.end())
-      throw Error(fmt::format("{}: unknown figure '{}', expected one of {}{}", position("metrics"), metric,
-                              fmt::join(known, ", "), scene::nearest_hint(metric, known)));
 }
 
 void ExperimentReader::reference(const TableReader& top, const Pairs& finer) {
   auto reader = top.table("reference");
   if (!reader) {
     for (const std::string& metric : experiment_.metrics)
-      if (images() || needs_reference(parse_flow_metric(metric, position("metrics"))))
+      if (kind().needs_reference(metric, position("metrics")))
         top.fail("metrics", fmt::format("there is {} and no [reference]", metric));
     return;
   }
-  reader->allow({component_key(), "settings"});
-  experiment_.reference.renderer = reader->text(component_key());
+  reader->allow({kind().component_key(), "settings"});
+  experiment_.reference.renderer = reader->text(kind().component_key());
   experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
   for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
   check_component(*reader, experiment_.reference.renderer, experiment_.reference.settings);
   if (!experiment_.reference.committed.empty() && !is_reference(find_renderer(experiment_.reference.renderer, "")))
-    reader->fail(component_key(),
+    reader->fail(kind().component_key(),
                  "committed_references = true, but only those of reference/ may be committed: a test renders "
                  "a part of each anew");
 }
@@ -225,7 +183,7 @@ void ExperimentReader::scenes(const TableReader& top, const Pairs& of_profile) {
     }
     if (wanted) experiment_.scenes.insert(experiment_.scenes.end(), cases.begin(), cases.end());
   }
-  if (numbers() && !top.has("scene")) experiment_.scenes.emplace_back();
+  if (!kind().needs_scene() && !top.has("scene")) experiment_.scenes.emplace_back();
   if (experiment_.scenes.empty()) top.fail("", "there is no [[scene]] in this profile");
   if (!experiment_.reference.committed.empty() && !experiment_.sequences.empty())
     top.fail("",
@@ -235,20 +193,16 @@ void ExperimentReader::scenes(const TableReader& top, const Pairs& of_profile) {
 
 void ExperimentReader::methods(const TableReader& top) {
   for (auto& [table, reader] : lists(top, "method")) {
-    std::vector<std::string> keys{"name", component_key(), "settings", "sweep", "profiles", "scenes"};
-    if (images()) keys.insert(keys.end(), {"layer", "picture_only", "count_noise", "moving"});
+    std::vector<std::string> keys{"name", kind().component_key(), "settings", "sweep", "profiles", "scenes"};
+    const std::vector<std::string> of_kind = kind().method_keys();
+    keys.insert(keys.end(), of_kind.begin(), of_kind.end());
     reader.allow(keys);
     MethodCase method;
-    method.renderer = reader.text(component_key());
+    method.renderer = reader.text(kind().component_key());
     method.name = reader.name("name", method.renderer);
     method.position = scene::load::location(table->source());
     method.settings = settings(*table, "settings", reader);
-    if (images()) {
-      method.layer = reader.text("layer", experiment_.layer);
-      method.picture_only = reader.flag("picture_only", false);
-      method.count_noise = reader.flag("count_noise", false);
-      if (reader.has("moving")) method.moving = reader.choice("moving", what_may_move());
-    }
+    kind().read_method(reader, experiment_, method);
     method.scenes = strings(*table, "scenes", reader);
     for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
     std::vector<MethodCase> cases{method};
@@ -273,7 +227,7 @@ void ExperimentReader::methods(const TableReader& top) {
 void ExperimentReader::leave_out_unread(const MethodCase& method, std::vector<MethodCase>& cases) const {
   std::vector<scene::SettingSpec> specs;
   try {
-    specs = find_component(method.renderer, "").settings();
+    specs = kind().find_component(method.renderer, "").settings();
   } catch (const Error&) {
     return;  // check_component says why
   }

@@ -44,7 +44,7 @@ void ExperimentReader::plots(const TableReader& top) {
     for (const std::string& name : plot.methods) known(reader, "methods", name, "method");
     for (const std::string key : {"x", "y"}) {
       const std::string& axis = key == "x" ? plot.x : plot.y;
-      std::vector<std::string> axes = times();
+      std::vector<std::string> axes = kind().times();
       axes.insert(axes.end(), {"parameter", "setting"});
       const bool known =
           std::find(axes.begin(), axes.end(), axis) != axes.end() || axis.starts_with("counter.") ||
@@ -69,19 +69,20 @@ void ExperimentReader::names_apart() const {
       throw Error(fmt::format("{}: {} '{}' of {} is that of {}, too: expected names that differ in letters or digits",
                               position, what, name, owner, found->second));
   };
-  const auto folded = [this](const std::string& name) { return images() ? file_name(name) : name; };
+  const bool pictures = kind().draws_pictures();
+  const auto folded = [&](const std::string& name) { return pictures ? file_name(name) : name; };
   Owners scenes, plots;
   for (const SceneCase& c : experiment_.scenes) {
-    claim(scenes, images() ? "the folder of pictures" : "the name", folded(c.name), fmt::format("scene '{}'", c.name),
+    claim(scenes, pictures ? "the folder of pictures" : "the name", folded(c.name), fmt::format("scene '{}'", c.name),
           c.position);
     Owners rows;
-    if (images() && !experiment_.reference.renderer.empty()) rows["reference"] = "the reference";
+    if (pictures && !experiment_.reference.renderer.empty()) rows["reference"] = "the reference";
     for (const MethodCase& m : experiment_.methods) {
       if (!is_on(m, c)) continue;
       const std::string owner = m.setting.empty() ? fmt::format("method '{}'", m.name)
                                                   : fmt::format("method '{}' with setting '{}'", m.name, m.setting);
-      claim(rows, images() ? "the picture" : "the row",
-            images() ? picture_name(m.name, m.setting) : m.name + " " + m.setting, owner, m.position);
+      claim(rows, pictures ? "the picture" : "the row",
+            pictures ? picture_name(m.name, m.setting) : m.name + " " + m.setting, owner, m.position);
     }
   }
   for (const PlotCase& plot : experiment_.plots)
@@ -99,12 +100,12 @@ void ExperimentReader::known(const TableReader& reader, const std::string& key, 
   if (list == "metric") {
     if (value.rfind("counter.", 0) == 0) return;
     names = experiment_.metrics;
-    for (const std::string& time : times()) names.push_back(time);
+    for (const std::string& time : kind().times()) names.push_back(time);
     names.push_back("counter.NAME");
   } else if (const toml::array* array = toml_.get_as<toml::array>(list)) {
     for (const toml::node& node : *array) {
       const toml::table& table = *node.as_table();
-      const std::string source = list == "scene" ? "file" : component_key();
+      const std::string source = list == "scene" ? "file" : kind().component_key();
       const std::string fallback = table[source].value_or(std::string());
       names.push_back(table["name"].value_or(list == "scene" ? fs::path(fallback).stem().string() : fallback));
     }
@@ -120,12 +121,12 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
     reader.fail("", fmt::format("{} in profile {}", what, experiment_.profile));
   };
   const std::vector<std::string> tests = {"objections", "largest_z", "detectable_bias"};
-  const std::vector<std::string> of_time = times();
+  const std::vector<std::string> of_time = kind().times();
   const bool of_time_or_work =
       gate.metric.starts_with("counter.") || std::find(of_time.begin(), of_time.end(), gate.metric) != of_time.end();
   const bool test = std::find(tests.begin(), tests.end(), gate.metric) != tests.end();
   const auto noisy = [this](const std::string& name) {
-    return images() && !name.empty() && find_renderer(name, "gate").monte_carlo();
+    return kind().draws_pictures() && !name.empty() && find_renderer(name, "gate").monte_carlo();
   };
   const bool noisy_reference = noisy(experiment_.reference.renderer);
   bool found = false;
@@ -133,7 +134,7 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
     for (const MethodCase& m : experiment_.methods) {
       if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
       found = true;
-      if (of_time_or_work || !images()) continue;
+      if (of_time_or_work || !kind().draws_pictures()) continue;
       if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
       if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
       if (test && !noisy_reference && !noisy(m.renderer))
@@ -181,7 +182,7 @@ void ExperimentReader::checks(const TableReader& top) {
     e.what = reader.text("what");
     e.paper = reader.text("paper");
     if (reader.has("method")) {
-      if (!numbers() || reader.has("scene")) known(reader, "scene", e.scene = reader.text("scene"), "scene");
+      if (kind().needs_scene() || reader.has("scene")) known(reader, "scene", e.scene = reader.text("scene"), "scene");
       e.method = reader.text("method");
       e.metric = reader.text("metric");
       if (reader.has("setting")) e.setting = plain(*table->get("setting"));

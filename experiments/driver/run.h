@@ -20,6 +20,13 @@ struct RunOptions {
   bool trials = true;               // check_experiment renders small pictures; false: it loads and plans alone
 };
 
+// Whether the experiment can be computed as its file says, found out before anything is written: simulates the sequences that its scenes
+// show, loads every scene with its overrides, and tries everything that is not finished on a film of at most 8x8 pixels: the reference on
+// every scene, each method on the first scene it is on; then the metrics, on the layers that they look at. With options.resume, rows of an
+// earlier run count as finished. Throws Error in one line that begins with the experiment. What this machine lacks is not tried. Without
+// options.trials everything is loaded and planned, nothing rendered.
+void check_experiment(const Experiment&, const RunOptions&);
+
 // Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.
 // Interrupted: writes what is finished, then throws scene::Interrupted. A scene that fails all the same is left out,
 // the others are computed and written, then its Error is thrown. Without a row nothing is written: older tables stay.

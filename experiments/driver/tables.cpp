@@ -11,6 +11,7 @@
 #include "experiments/application/machine.h"
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/expected.h"
+#include "experiments/driver/kind.h"
 
 namespace airlight::experiments {
 namespace {
@@ -64,13 +65,13 @@ std::vector<Cells> summary(const Outcome& outcome) {
   head.push_back("method");
   if (setting) head.push_back("setting");
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
-  const bool images = outcome.experiment.kind == "images";
-  const bool flows = outcome.experiment.kind == "flow";
-  if (timed) head.push_back(images ? "time of one render" : flows ? "time of the whole" : "time of one");
-  if (timed && flows) head.insert(head.end(), {"of a step", "of a simulated second"});
+  using Columns = std::vector<RowColumn>;
+  const Columns times = timed ? outcome.experiment.kind->time_columns() : Columns{};
+  const Columns preparations = timed ? outcome.experiment.kind->preparation_columns() : Columns{};
+  for (const RowColumn& column : times) head.push_back(column.head);
   const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
   if (downloads) head.push_back("download");
-  if (timed && images) head.push_back("prepared once in");
+  for (const RowColumn& column : preparations) head.push_back(column.head);
   const bool compared = timed && !outcome.experiment.metrics.empty();
   const std::vector<bool> best = on_front(outcome);
   if (compared) head.push_back("front");
@@ -89,14 +90,9 @@ std::vector<Cells> summary(const Outcome& outcome) {
           std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& m) { return m.name == metric; });
       line.push_back(found == row.measures.end() ? "" : text(*found));
     }
-    if (timed) line.push_back(time_text(row));
-    if (timed && flows)
-      for (const char* part : {"step_seconds", "simulated_seconds"}) {
-        const auto time = quantity(row, part);
-        line.push_back(time ? duration(time->value) : "");
-      }
+    for (const RowColumn& column : times) line.push_back(column.text(row));
     if (downloads) line.push_back(download(row) ? duration(*download(row)) : "");
-    if (timed && images) line.push_back(row.runs ? duration(row.prepare_seconds) : "");
+    for (const RowColumn& column : preparations) line.push_back(column.text(row));
     if (compared) line.push_back(best[i] ? "yes" : "");
     if (device) line.push_back(device_text(row));
     if (note) line.push_back(row.note);
@@ -246,16 +242,7 @@ std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& 
   for (const Row& row : outcome.rows)
     if (!row.device.empty()) devices.insert(row.device);
   for (const std::string& device : devices) out += fmt::format("- Device: {}.\n", device);
-  if (e.kind == "images")
-    out +=
-        "- Errors with [95 % interval] where the reference is noisy; times: median [ranks] of one render's wall clock, "
-        "precomputation apart.\n";
-  else if (e.kind == "flow")
-    out +=
-        "- Errors at 61 samples along the longest side of the box; times: median [ranks] of the whole run's wall clock, what "
-        "looks at it left out.\n";
-  else
-    out += "- Figures with [95 % interval by ranks] where they are medians of several runs.\n";
+  out += fmt::format("- {}\n", e.kind->conditions());
   if (any(outcome, [](const Row& r) { return download(r).has_value(); }))
     out +=
         "- A device's render ends when the frame is complete there, and no layer is read back; download: what reading back "

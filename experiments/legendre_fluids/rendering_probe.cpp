@@ -16,6 +16,7 @@ namespace airlight::experiments {
 namespace {
 
 enum class How { ray, paper, upwind, grid };
+const scene::Choices<How> ways{{"ray", How::ray}, {"paper", How::paper}, {"upwind", How::upwind}, {"grid", How::grid}};
 using Given = std::map<std::string, std::string>;
 
 // The same for all z in two dimensions: a thin slice, seen in its plane.
@@ -131,7 +132,7 @@ std::string LegendreRendering::about() const {
 }
 
 std::vector<scene::SettingSpec> LegendreRendering::settings() const {
-  return {scene::choice_setting("how", "ray", {"ray", "paper", "upwind", "grid"},
+  return {scene::choice_setting("how", How::ray, ways,
                                 "variants and closures of legendre_fluids; grid: the ray marcher in voxels"),
           scene::integer_setting("size", "4", 1, 512, "coefficients, or voxels, along an axis"),
           scene::integer_setting("dimensions", "3", 2, 3, "2: the same for all z, a film of one row"),
@@ -156,7 +157,7 @@ std::vector<std::string> LegendreRendering::speeds() const {
 
 Findings LegendreRendering::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
   const Smoke smoke{int(s.integer("dimensions")), s.real("depth"), int(s.integer("width")), s.real("softness")};
-  const How how = s.choice<How>("how");
+  const How how = s.choice("how", ways);
   const int size = int(s.integer("size")), runs = int(s.integer("runs"));
   if (how != How::grid && size > scene::LegendreBox::most)
     throw Error(fmt::format("size = {} coefficients, expected at most {}", size, scene::LegendreBox::most));

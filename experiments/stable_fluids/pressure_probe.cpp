@@ -12,6 +12,10 @@ namespace {
 
 using namespace stable_fluids;
 
+const scene::Choices<PressureSolver> solvers{{"transforms", PressureSolver::transforms},
+                                             {"incomplete_cholesky", PressureSolver::incomplete_cholesky},
+                                             {"transforms_as_guess", PressureSolver::transforms_as_guess}};
+
 template <class Real>
 void settle(Velocity<Real>& u, const Lattice& l, const Obstacles& obstacles) {
   for (Field<Real>& component : u) {
@@ -47,7 +51,7 @@ Findings measure_pressure(const scene::Settings& s) {
   const Lattice l = make_lattice(problem, int(s.integer("n")));
   problem.obstacles = obstacles_of(s.text("obstacle"));
   const Obstacles obstacles = make_obstacles(problem, l), none;
-  const auto which = s.choice<PressureSolver>("solver");
+  const auto which = s.choice("solver", solvers);
   Projection<Real> project(l, obstacles, which, s.real("tolerance"), 100'000);
   Projection<Real> by_transforms(l, none, PressureSolver::transforms, 0, 0);
   Velocity<Real> start = velocity_before<Real>(l, s.text("start") == "noise"), u;
@@ -86,8 +90,7 @@ std::string PressureSolvers::about() const {
 
 std::vector<scene::SettingSpec> PressureSolvers::settings() const {
   return {
-      scene::choice_setting("solver", "transforms", {"transforms", "incomplete_cholesky", "transforms_as_guess"},
-                            "as pressure of stable_fluids"),
+      scene::choice_setting("solver", PressureSolver::transforms, solvers, "as pressure of stable_fluids"),
       scene::integer_setting("n", "32", 1, 1024, "cells a side of a cube"),
       scene::choice_setting("obstacle", "none", {"none", "ball", "plate"},
                             "a ball of radius 0.2 of a side, or a plate across but for a fifth; not with transforms"),

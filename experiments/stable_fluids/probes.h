@@ -36,26 +36,4 @@ class PressureSolvers : public Probe {
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
-// The transforms of a pressure, there and back, against one plan of FFTW that was measured. One thread.
-class TransformsRate : public Probe {
- public:
-  std::string name() const override { return "transforms_rate"; }
-  std::string about() const override;
-  std::vector<scene::SettingSpec> settings() const override;
-  std::vector<std::string> figures() const override;
-  std::vector<std::string> speeds() const override { return {"share"}; }
-  Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
-};
-
-// Advection against the memory's bandwidth.
-class AdvectionRate : public Probe {
- public:
-  std::string name() const override { return "advection_rate"; }
-  std::string about() const override;
-  std::vector<scene::SettingSpec> settings() const override;
-  std::vector<std::string> figures() const override;
-  std::vector<std::string> speeds() const override { return {"rate", "memory_rate", "share"}; }
-  Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
-};
-
 }  // namespace airlight::experiments

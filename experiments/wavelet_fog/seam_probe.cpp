@@ -12,6 +12,9 @@ namespace fog = airlight::wavelet_fog;
 
 constexpr double near_object = 20, far_object = 80;  // [cells]
 enum class Depth { paper, tele, direct };
+const scene::Choices<Depth> depths{{"paper", Depth::paper}, {"tele", Depth::tele}, {"direct", Depth::direct}};
+const scene::Choices<fog::Coarse> grids{
+    {"wavelet", fog::Coarse::wavelet}, {"clamped", fog::Coarse::clamped}, {"restricted", fog::Coarse::restricted}};
 
 struct Reading {
   Depth depth;
@@ -53,13 +56,13 @@ std::string WaveletSeams::about() const {
 }
 
 std::vector<scene::SettingSpec> WaveletSeams::settings() const {
-  return {scene::choice_setting("depth", "paper", {"paper", "tele", "direct"},
-                                "how the depth comes about, as the variants of wavelet_fog"),
-          scene::choice_setting("coarse", "wavelet", {"wavelet", "clamped", "restricted"}, "coarse grids"),
-          scene::integer_setting("levels", "3", 0, 20, "of the decomposition"),
-          scene::real_setting("mu", "0.6", 0, 1, "detail m counts up to |OP| mu^m"),
-          scene::real_setting("mean_depth", "1", 1e-6, 1e3, "mean optical depth of the rays"),
-          scene::integer_setting("angles", "96", 1, 100000, "directions of each of six eyes, five lengths each")};
+  return {
+      scene::choice_setting("depth", Depth::paper, depths, "how the depth comes about, as the variants of wavelet_fog"),
+      scene::choice_setting("coarse", fog::Coarse::wavelet, grids, "coarse grids"),
+      scene::integer_setting("levels", "3", 0, 20, "of the decomposition"),
+      scene::real_setting("mu", "0.6", 0, 1, "detail m counts up to |OP| mu^m"),
+      scene::real_setting("mean_depth", "1", 1e-6, 1e3, "mean optical depth of the rays"),
+      scene::integer_setting("angles", "96", 1, 100000, "directions of each of six eyes, five lengths each")};
 }
 
 std::vector<std::string> WaveletSeams::figures() const {
@@ -68,8 +71,8 @@ std::vector<std::string> WaveletSeams::figures() const {
 
 Findings WaveletSeams::run(const ProbeInput& input, const scene::Settings& s, const scene::Execution&) const {
   const MapRays rays = map_rays(input.file, input.overrides, int(s.integer("angles")), s.real("mean_depth"));
-  const Reading reading{s.choice<Depth>("depth"), s.real("mu")};
-  const fog::Levels levels = fog::make_levels(rays.map, families[rays.map.degree()], s.choice<fog::Coarse>("coarse"),
+  const Reading reading{s.choice("depth", depths), s.real("mu")};
+  const fog::Levels levels = fog::make_levels(rays.map, families[rays.map.degree()], s.choice("coarse", grids),
                                               int(s.integer("levels")), reading.depth == Depth::paper);
   Spread error, seam;
   double above_one = 0;

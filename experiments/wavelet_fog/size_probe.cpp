@@ -16,6 +16,7 @@ namespace {
 
 constexpr double side = 64;  // [m] of every map
 enum class Kind { smooth, patchy, hard };
+const scene::Choices<Kind> kinds{{"smooth", Kind::smooth}, {"patchy", Kind::patchy}, {"hard", Kind::hard}};
 
 // The same fog at any size: finer maps have finer details of the noise, hard edges stay where they are.
 std::vector<double> drawn(Kind kind, int size) {
@@ -72,7 +73,7 @@ std::string WaveletMapSize::about() const {
 std::vector<scene::SettingSpec> WaveletMapSize::settings() const {
   return {scene::choice_setting("depth", "direct", {"direct", "skip", "bound", "tele", "polar", "paper"},
                                 "how it comes about, as the variants of wavelet_fog"),
-          scene::choice_setting("fog", "smooth", {"smooth", "patchy", "hard"}, "of 64 m a side, drawn at any size"),
+          scene::choice_setting("fog", Kind::smooth, kinds, "of 64 m a side, drawn at any size"),
           scene::integer_setting("size", "64", 2, 8192, "of the map, coefficients a side"),
           scene::integer_setting("levels", "3", 0, 12, "of paper, tele and bound"),
           scene::real_setting("tolerance", "0.03", 0, 1e9, "of bound, in optical depth"),
@@ -84,7 +85,7 @@ std::vector<scene::SettingSpec> WaveletMapSize::settings() const {
 std::vector<std::string> WaveletMapSize::figures() const { return {"rms", "greatest", "prepare_ms"}; }
 
 Findings WaveletMapSize::run(const ProbeInput&, const scene::Settings& s, const scene::Execution& execution) const {
-  const auto scene = make_scene(s.choice<Kind>("fog"), int(s.integer("size")), int(s.integer("width")));
+  const auto scene = make_scene(s.choice("fog", kinds), int(s.integer("size")), int(s.integer("width")));
   const airlight::wavelet_fog::WaveletFog method;
   const std::string variant = s.text("depth");
   std::map<std::string, std::string> given{{"variant", variant}, {"levels", fmt::format("{}", s.integer("levels"))}};

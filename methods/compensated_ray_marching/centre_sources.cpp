@@ -64,25 +64,25 @@ void CentreSources::light(const std::vector<scene::Light>& lights, bool scatters
 
 void CentreSources::begin_with(const Solution& last) {
   if (last.empty()) return;
-  before_.assign(3, Eigen::VectorXd::Zero(Eigen::Index(sum_.gaussians.size())));
+  mean_radiance_.assign(3, Eigen::VectorXd::Zero(Eigen::Index(sum_.gaussians.size())));
   for (int c = 0; c < 3; ++c)
     if (Eigen::VectorXd start = at_centres(last, c, sum_.gaussians); start.size() > 0)
-      before_[std::size_t(c)] = std::move(start);
+      mean_radiance_[std::size_t(c)] = std::move(start);
 }
 
 Solution CentreSources::solution() const {
   Solution now;
   now.centres = sum_.gaussians;
-  for (std::size_t c = 0; c < before_.size(); ++c) now.of_channel[c] = before_[c];
+  for (std::size_t c = 0; c < mean_radiance_.size(); ++c) now.of_channel[c] = mean_radiance_[c];
   return now;
 }
 
 void CentreSources::scatter_again() {
   const DiffusionForm form = options_.paper.multiple == Options::Paper::Multiple::as_printed ? DiffusionForm::as_printed
                                                                                              : DiffusionForm::corrected;
-  const double g = mean_cosine(medium_.phase), mean = std::sqrt(4 * pi), along = std::sqrt(4 * pi / 3);
+  const double g = mean_cosine(medium_.phase), of_one = std::sqrt(4 * pi), of_direction = std::sqrt(4 * pi / 3);
   const auto n = Eigen::Index(sources_.size());
-  before_.resize(3, Eigen::VectorXd::Zero(n));
+  mean_radiance_.resize(3, Eigen::VectorXd::Zero(n));
   const std::vector<std::vector<Rgb>> single = sources_;
   Eigen::Index negative = 0;
   for (int c = 0; c < 3; ++c) {
@@ -95,20 +95,20 @@ void CentreSources::scatter_again() {
       linear.push_back(linear_source(bands));
     }
     const DiffusionSystem system = diffusion_system(sum_.gaussians, linear, sigma_t, albedo, g, form);
-    LeastSquares solution = solve_least_squares(system, before_[std::size_t(c)], options_.iterations,
+    LeastSquares solution = solve_least_squares(system, mean_radiance_[std::size_t(c)], options_.iterations,
                                                 options_.tolerance, options_.paper.solver);
     iterations_ += solution.iterations;
     residual_ = std::max(residual_, solution.residual);
     negative += (solution.x.array() < 0).count();
-    before_[std::size_t(c)] = solution.x;
-    const std::vector<LinearSource> again =
+    mean_radiance_[std::size_t(c)] = solution.x;
+    const std::vector<LinearSource> radiance =
         scattered_radiance(sum_.gaussians, linear, solution.x.cwiseMax(0), sigma_t, albedo, g, form);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       std::vector<Rgb>& source = sources_[i];
-      source[0][c] += albedo * again[i].mean * mean;
+      // J_ms of Eq. 4, albedo (L0 + g L1 . w), in harmonics: f0 = sqrt(4 pi) J0, (f3, f1, f2) = sqrt(4 pi / 3) (-J1x, -J1y, J1z).
+      source[0][c] += albedo * radiance[i].mean * of_one;
       if (source.size() < 4) continue;
-      // J1 = sqrt(3 / 4 pi) (-f3, -f1, f2): linear_source's.
-      const Vec3 direction = albedo * g * along * again[i].direction;
+      const Vec3 direction = albedo * g * of_direction * radiance[i].direction;
       source[3][c] -= direction[0];
       source[1][c] -= direction[1];
       source[2][c] += direction[2];

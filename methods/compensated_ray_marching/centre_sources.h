@@ -56,7 +56,7 @@ class CentreSources {
   std::vector<int> surface_of_;             // of each object
   std::optional<SourceRadiance> radiance_;  // of the light now
   std::vector<std::vector<Rgb>> sources_;
-  std::vector<Eigen::VectorXd> before_;  // a channel's mean radiance at the centres
+  std::vector<Eigen::VectorXd> mean_radiance_;  // of each channel, at the centres; first that of the frame before
   std::vector<scene::StageTime> times_;
   int iterations_ = 0;
   double residual_ = 0, negative_share_ = 0;

@@ -1,5 +1,6 @@
-// The march along a view ray: density from Gaussians and residual, source radiance interpolated from the Gaussians' centres and multiplied by
-// that density. Zhou et al. 2008, Eq. 14 to 16, sections 5.5 and 5.6.
+// The march along a view ray, written out as in the text: density from Gaussians and residual, source radiance interpolated from the
+// Gaussians' centres and multiplied by that density. Zhou et al. 2008, Eq. 14 to 16, sections 5.5 and 5.6. This is the form to read and to
+// check against; pictures march in picture.cpp (PreparedPicture::pixel).
 #pragma once
 #include <memory>
 #include <vector>
@@ -17,8 +18,8 @@ struct MarchedSmoke {
   Rgb extinction;                                    // sigma_t [1/m]
 };
 
-// How much of a slice's source is seen: times depth / cos printed without the cos (E6 of the specification), with it, or 1 - exp(-depth), what
-// the slice itself absorbs of its own light counted.
+// What a slice's source is multiplied by. printed: its depth across (section 5.5, before Eq. 16); paper: its depth along the ray, that over
+// the cosine (section 5.6); exact: 1 - exp(-depth), since the slice absorbs of its own light, too.
 enum class SliceWeight { printed, paper, exact };
 // For a slice's depth along the ray; cosine: of the angle between the ray and the axis across the slices.
 Rgb seen(const Rgb& depth, double cosine, SliceWeight);

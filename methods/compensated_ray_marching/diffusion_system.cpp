@@ -52,7 +52,7 @@ DiffusionSystem diffusion_system(const std::vector<scene::Gaussian>& gaussians,
       const double share = q.value / D;
       const Vec3 gradient = (q.gradient - share * all.gradient) / D;
       const double laplacian = (q.laplacian - share * all.laplacian - 2 * gradient.dot(all.gradient)) / D;
-      // grad kappa = -kappa grad D / D.
+      // Multiplied out: the left side of Eq. 13, with grad kappa = -kappa grad D / D. A third of the paper's mu-bar is g.
       system.matrix(h, l) = kappa * (laplacian - gradient.dot(all.gradient) / D) - (1 - albedo) * sigma_t * D * share;
       mean += share * sources[std::size_t(l)].mean;
       divergence += gradient.dot(sources[std::size_t(l)].direction);

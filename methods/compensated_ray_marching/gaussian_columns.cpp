@@ -64,19 +64,19 @@ void AddColumns(const Nearby& near, float cutoff, const Starts& starts, float* c
       const float reach = near.reach[g], gu = near.u[g], gv = near.v[g];
       if (gu + reach < u0 || gu - reach > u1 || gv + reach < v0 || gv - reach > v1 || near.t[g] + reach < t0) continue;
       const VF scale = hn::Set(f, near.inverse_width[g]);
-      const VF du = hn::Mul(scale, hn::Sub(hn::Set(f, gu), u)), dv = hn::Mul(scale, hn::Sub(hn::Set(f, gv), v));
-      const VF ahead = hn::Mul(scale, hn::Sub(hn::Set(f, near.t[g]), t));
-      const VF aside = hn::MulAdd(du, du, hn::Mul(dv, dv));
+      const VF du = scale * (hn::Set(f, gu) - u), dv = scale * (hn::Set(f, gv) - v);
+      const VF ahead = scale * (hn::Set(f, near.t[g]) - t);
+      const VF aside = MulAdd(du, du, dv * dv);
       VF beyond = hn::Set(f, 1.0f), before = ahead;
-      const auto met = hn::And(hn::Le(aside, hn::Set(f, end2)), hn::Ge(ahead, hn::Set(f, -nothing_beyond)));
+      const auto met = And(aside <= hn::Set(f, end2), ahead >= hn::Set(f, -nothing_beyond));
       if (cut) {
-        const VF half = hn::Sqrt(hn::Max(hn::Sub(hn::Set(f, end2), aside), hn::Zero(f)));
+        const VF half = Sqrt(Max(hn::Set(f, end2) - aside, hn::Zero(f)));
         beyond = error_function(half);
-        before = hn::Max(hn::Neg(half), hn::Min(ahead, half));
+        before = Max(Neg(half), Min(ahead, half));
       }
-      const VF share = hn::Mul(hn::Exp(f, hn::Neg(aside)), hn::Add(beyond, error_function(before)));
+      const VF share = hn::Exp(f, Neg(aside)) * (beyond + error_function(before));
       // Of each ray alone, so that the bits do not depend on how many are looked at together.
-      sum = hn::IfThenElse(met, hn::MulAdd(hn::Set(f, 0.5f * near.full[g]), share, sum), sum);
+      sum = IfThenElse(met, MulAdd(hn::Set(f, 0.5f * near.full[g]), share, sum), sum);
     }
     hn::BlendedStore(sum, hn::FirstN(f, std::min(lanes, end - i)), f, columns + i);
   }

@@ -57,12 +57,12 @@ struct Axis {
   HWY_INLINE VF to_face(VF place) const { return (far - place) * inverse; }
   // On by `length`; into the next voxel where `enters`.
   HWY_INLINE void advance(hn::Mask<F> enters, VF length, VF& place, VI& sample) const {
-    place = hn::IfThenElse(enters, near, hn::MulAdd(length, velocity, place));
-    sample = sample + hn::IfThenElseZero(hn::RebindMask(i32, enters), step);
+    place = IfThenElse(enters, near, MulAdd(length, velocity, place));
+    sample = sample + IfThenElseZero(hn::RebindMask(i32, enters), step);
   }
 };
 
-HWY_INLINE VF mix(VF a, VF b, VF share) { return hn::MulAdd(share, b - a, a); }
+HWY_INLINE VF mix(VF a, VF b, VF share) { return MulAdd(share, b - a, a); }
 
 // Sums of each ray, voxel by voxel, whatever the others do: the bits do not depend on how many are walked together.
 void Columns(const Samples& samples, const float* velocity, const RayStarts& rays, float* columns) {
@@ -75,21 +75,21 @@ void Columns(const Samples& samples, const float* velocity, const RayStarts& ray
     VI sample = hn::LoadU(i32, rays.sample.data() + i);
     for (auto under_way = left > hn::Zero(f); !hn::AllFalse(f, under_way); under_way = left > hn::Zero(f)) {
       const VF to_x = along_x.to_face(x), to_y = along_y.to_face(y), to_z = along_z.to_face(z);
-      const VF length = hn::Max(hn::Min(hn::Min(to_x, to_y), hn::Min(to_z, left)), hn::Zero(f));
+      const VF length = Max(Min(Min(to_x, to_y), Min(to_z, left)), hn::Zero(f));
       const auto corner = [&](int offset) HWY_ATTR { return hn::GatherIndex(f, samples.values + offset, sample); };
       const int row = samples.row, slice = samples.slice;
       const VF v000 = corner(0), v100 = corner(1), v010 = corner(row), v110 = corner(row + 1);
       const VF v001 = corner(slice), v101 = corner(slice + 1), v011 = corner(slice + row),
                v111 = corner(slice + row + 1);
       const auto value = [&](VF t) HWY_ATTR {
-        const VF sx = hn::MulAdd(t, along_x.velocity, x), sy = hn::MulAdd(t, along_y.velocity, y);
+        const VF sx = MulAdd(t, along_x.velocity, x), sy = MulAdd(t, along_y.velocity, y);
         const VF lower = mix(mix(v000, v100, sx), mix(v010, v110, sx), sy);
         const VF upper = mix(mix(v001, v101, sx), mix(v011, v111, sx), sy);
-        return mix(lower, upper, hn::MulAdd(t, along_z.velocity, z));
+        return mix(lower, upper, MulAdd(t, along_z.velocity, z));
       };
       const VF first = length * hn::Set(f, gauss);
-      sum = hn::MulAdd(hn::Set(f, 0.5f) * length, value(first) + value(length - first), sum);
-      const auto enters = [&](VF to_face) HWY_ATTR { return hn::And(under_way, to_face <= length); };
+      sum = MulAdd(hn::Set(f, 0.5f) * length, value(first) + value(length - first), sum);
+      const auto enters = [&](VF to_face) HWY_ATTR { return And(under_way, to_face <= length); };
       along_x.advance(enters(to_x), length, x, sample);
       along_y.advance(enters(to_y), length, y, sample);
       along_z.advance(enters(to_z), length, z, sample);

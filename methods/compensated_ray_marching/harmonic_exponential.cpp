@@ -84,7 +84,7 @@ LinearExponential::LinearExponential(const std::vector<Harmonics>& family, doubl
       for (std::size_t i = 0; i < sphere.directions.size(); ++i) {
         const double value = sphere.value(h, i), weight = sphere.directions[i].weight;
         const double factor = std::exp(-longest / steps * value);
-        double power = 0;
+        double power = 0;  // of one factor, begun anew every 16 steps against rounding
         for (int k = first; k <= last; ++k) {
           power = k != first && k % 16 ? power * factor : std::exp(-longest * k / steps * value);
           a[k] += weight * power;
@@ -93,9 +93,9 @@ LinearExponential::LinearExponential(const std::vector<Harmonics>& family, doubl
       }
   };
   // The larger the size, the sharper the peak that the rule has to see.
-  const int blunt = std::min(steps, int(steps * largest_blunt / longest));
-  if (blunt > 0) add(Sphere(order_of(family[0]), 24, 48), 1, blunt);
-  if (blunt < steps) add(Sphere(order_of(family[0]), 40, 80), blunt + 1, steps);
+  const int resolved = std::min(steps, int(steps * largest_blunt / longest));
+  if (resolved > 0) add(Sphere(order_of(family[0]), 24, 48), 1, resolved);
+  if (resolved < steps) add(Sphere(order_of(family[0]), 40, 80), resolved + 1, steps);
   for (int k = 1; k <= steps; ++k) {
     const double s = longest * k / steps, members = double(family.size());
     log_a_[std::size_t(k)] = std::log(a[k] / (4 * pi * members));

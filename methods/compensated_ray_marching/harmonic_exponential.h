@@ -38,7 +38,7 @@ class LinearExponential {
 // widths. `members` of each number.
 std::vector<Harmonics> depth_family(int order, const std::vector<int>& counts, int members);
 
-// Scaling and squaring (HYB): f / 2^p is at most `threshold` long without its mean; its linear approximation is squared p times.
+// Scaling and squaring (HYB of Ren et al. 2006): f / 2^p is at most `threshold` long without its mean; its linear approximation is squared p times.
 Harmonics squared_exponential(const Harmonics&, const LinearExponential&, double threshold = 0.5);
 
 // Scaling and squaring of the product series of degree 3, without a table; as good as HYB with a threshold of 0.1.

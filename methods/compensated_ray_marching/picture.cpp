@@ -229,7 +229,9 @@ scene::Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const Gaus
     slices.step = t.length() / slices.count;
     density.assign(std::size_t(slices.count), 0.0);
     weighted.assign(centres_ && row ? density.size() : 0, Rgb::Zero());
-    // Where density jumps lines go on beyond nodes; smoke is no brighter than the light it scatters.
+    // Near to far, with the transmittance so far: the paper's sum, which goes from far to near. Slices are the ray's own, at most slice_ thick,
+    // where the paper has common planes.
+    // At hard edges interpolation between nodes may overshoot; smoke is no brighter than the light it scatters.
     const Rgb brightest = grid_ && has_hard_edges(smoke_->medium())
                               ? Rgb(smoke_->medium().albedo * incoming_->brightest())
                               : Rgb(Rgb::Constant(infinity));
@@ -248,7 +250,7 @@ scene::Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const Gaus
         p.transmittance *= 1 - lost;
         continue;
       }
-      if (grid_)
+      if (grid_)  // nodes hold logarithms
         source = exponentials(between_nodes(grid_->grid(), towards, x)).min(brightest);
       else if (volume_)
         source = voxel.source;

@@ -62,6 +62,7 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
       phase_(std::move(phase)),
       light_(std::move(light)),
       kind_(kind),
+      // Not even in the angle, as the paper tabulates: what is far away adds up (gaussian_depth.h).
       depths_(int(phase_.size()), DepthTable::Spacing::even, depth_samples, smoke_.cutoff),
       objects_(std::move(objects)),
       linear_(linear_of(int(phase_.size()), kind)) {
@@ -78,6 +79,7 @@ SourceRadiance::SourceRadiance(scene::GaussianSum smoke, const Rgb& extinction, 
   }
 }
 
+// - sum over Gaussians of w_h T_h(x), Eq. 10.
 Harmonics SourceRadiance::minus_depth(const Point3& x) const {
   Harmonics sum(phase_.size() * phase_.size(), 0.0);
   std::vector<double> zonal(phase_.size());
@@ -109,7 +111,7 @@ Rgb SourceRadiance::left_of(std::size_t k, const Point3& x, const std::vector<sc
   return share * from_[k] * (-extinction_ * density_integral(smoke_, Ray{x, toward}, {0, infinity})).exp();
 }
 
-// What gets through smoke and past objects: of each channel, of the first alone where all are alike. Nothing within an object.
+// tau~, exp* of the depths: what gets through smoke and past objects, of each channel, of the first alone where all are alike. Nothing within an object.
 std::vector<Harmonics> SourceRadiance::passed(const Point3& x, const std::vector<scene::Sphere>& objects) const {
   std::optional<Harmonics> hidden;
   if (!objects.empty() && !(hidden = log_visibility(objects, x, *shadows_))) return {};
@@ -125,6 +127,7 @@ std::vector<Harmonics> SourceRadiance::passed(const Point3& x, const std::vector
   return channels;
 }
 
+// L_in times tau~.
 std::vector<Rgb> SourceRadiance::attenuated_light(const Point3& x) const {
   if (kind_ == Transmittance::directional) return by_directions(x);
   std::vector<Rgb> left(light_.harmonics.size(), Rgb::Zero());
@@ -157,6 +160,7 @@ Rgb SourceRadiance::irradiance(const Point3& x, const Vec3& normal,
   return sum;
 }
 
+// Eq. 11.
 std::vector<Rgb> SourceRadiance::at(const Point3& x) const { return scattered(attenuated_light(x), albedo_, phase_); }
 
 std::vector<Rgb> scattered(std::vector<Rgb> light, const Rgb& albedo, const std::vector<double>& phase) {

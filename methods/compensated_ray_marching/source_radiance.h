@@ -19,8 +19,8 @@ struct SourceLight {
 };
 
 // How what is left of the light in every direction is found.
-//   paper_linear, paper_squared, series: the depths of all Gaussians added in harmonics, exponentiated by OL, HYB or the product series,
-//     times the light by the triple product; as the publication does
+//   paper_linear, paper_squared, series: the depths of all Gaussians added in harmonics, exponentiated by OL, HYB (of Ren et al. 2006; the
+//     publication prints OL) or the product series, times the light by the triple product; as the publication does
 //   directional: exact depths in fixed directions, whose transmittances times the light are projected once; nothing rings
 enum class Transmittance { paper_linear, paper_squared, series, directional };
 

@@ -1,5 +1,4 @@
-// The arithmetic of one Gaussian along one line, on vectors: what the kernels do with values from memory, and the bare
-// loops (bare_loop.h) with values in registers. Included once per instruction set (the guard is Highway's).
+// The arithmetic of one Gaussian along one line, on vectors. Included once per instruction set (the guard is Highway's).
 #if defined(AIRLIGHT_FOGSHOP_ARITHMETIC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef AIRLIGHT_FOGSHOP_ARITHMETIC_INL_H_
 #undef AIRLIGHT_FOGSHOP_ARITHMETIC_INL_H_
@@ -24,7 +23,7 @@ HWY_INLINE V set(double x) { return hn::Set(d, x); }
 HWY_INLINE V load(const std::vector<double>& v, std::size_t i) { return hn::LoadU(d, v.data() + i); }
 
 // exp for arguments that may be as low as -infinity.
-HWY_INLINE V exp_of(V x) { return hn::Exp(d, hn::Max(x, set(-700))); }
+HWY_INLINE V exp_of(V x) { return hn::Exp(d, Max(x, set(-700))); }
 
 // The lanes of v where the mask is set, first; the others follow undefined.
 HWY_INLINE V compress(V v, hn::Mask<D> mask) {
@@ -39,9 +38,7 @@ HWY_INLINE V compress(V v, hn::Mask<D> mask) {
 struct Vectors {
   V x, y, z;
 };
-HWY_INLINE V dot(const Vectors& a, const Vectors& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
+HWY_INLINE V dot(const Vectors& a, const Vectors& b) { return MulAdd(a.x, b.x, MulAdd(a.y, b.y, a.z * b.z)); }
 
 // A centre q, seen from the line's origin, against the line's direction: m along it, and p^2, the squared distance.
 struct Projection {
@@ -50,19 +47,18 @@ struct Projection {
 HWY_INLINE Projection project(const Vectors& q, const Vectors& direction) {
   const V m = dot(q, direction);
   // The cross product's length: |q|^2 - m^2 would cancel.
-  const Vectors p{hn::NegMulAdd(m, direction.x, q.x), hn::NegMulAdd(m, direction.y, q.y),
-                  hn::NegMulAdd(m, direction.z, q.z)};
+  const Vectors p{NegMulAdd(m, direction.x, q.x), NegMulAdd(m, direction.y, q.y), NegMulAdd(m, direction.z, q.z)};
   return {m, dot(p, p)};
 }
 
 // -e = -a^2 p^2 of Eq. 31.
-HWY_INLINE V peak_exponent(V a, V squared) { return hn::Neg(hn::Mul(hn::Mul(a, a), squared)); }
+HWY_INLINE V peak_exponent(V a, V squared) { return Neg(a * a * squared); }
 
 // erf(a (t - m)) + erf(a m), the latter given: twice the share of the depth that lies in [0, t]. The paper's polynomial
 // is not monotone: below 0 it is 0.
 template <Erf kind>
 HWY_INLINE V share_up_to(V t, V a, V middle, V base) {
-  return hn::Max(hn::Add(Erf_<kind>(d, hn::Mul(a, hn::Sub(t, middle))), base), hn::Zero(d));
+  return Max(Erf_<kind>(d, a * (t - middle)) + base, hn::Zero(d));
 }
 
 // Eqs. 10 to 13 for one Gaussian and one light, but for the extinction ratio: the term is weight exp(exponent).
@@ -72,24 +68,22 @@ struct PaperTerm {
 // 4 pi times Henyey-Greenstein's phase function, of light that goes along a direction whose cosine with the view ray is
 // given, towards the viewer.
 HWY_INLINE V phase_of(double g, V along) {
-  const V square = hn::MulAdd(set(2 * g), along, set(1 + g * g));
-  return hn::Div(set(1 - g * g), hn::Mul(square, hn::Sqrt(square)));
+  const V square = MulAdd(set(2 * g), along, set(1 + g * g));
+  return set(1 - g * g) / (square * Sqrt(square));
 }
 
 // `center` and `nearest` (b_i^r) as seen from the light; `own` is the light's E_i (PaperLight), `softness` r_s^2.
 template <Erf kind>
 HWY_INLINE PaperTerm paper_term(const Vectors& center, const Vectors& nearest, V a, V half_depth, V own, V to_nearest,
                                 V whole, V softness) {
-  const V squared = dot(nearest, nearest), distance = hn::Sqrt(squared);
-  const V inverse = hn::Div(set(1), hn::Max(distance, set(1e-300)));
-  const Projection p =
-      project(center, {hn::Mul(nearest.x, inverse), hn::Mul(nearest.y, inverse), hn::Mul(nearest.z, inverse)});
-  const V base = Erf_<kind>(d, hn::Mul(a, p.middle));
+  const V squared = dot(nearest, nearest), distance = Sqrt(squared);
+  const V inverse = set(1) / Max(distance, set(1e-300));
+  const Projection p = project(center, {nearest.x * inverse, nearest.y * inverse, nearest.z * inverse});
+  const V base = Erf_<kind>(d, a * p.middle);
   const V light_depth =
-      hn::Mul(hn::Mul(half_depth, exp_of(peak_exponent(a, p.squared))), share_up_to<kind>(distance, a, p.middle, base));
+      half_depth * exp_of(peak_exponent(a, p.squared)) * share_up_to<kind>(distance, a, p.middle, base);
   // Exponents are added before the exponential: each alone may overflow.
-  return {hn::Div(whole, hn::Mul(set(4 * pi), hn::Add(squared, softness))),
-          hn::Sub(hn::Sub(own, light_depth), to_nearest)};
+  return {whole / (set(4 * pi) * (squared + softness)), own - light_depth - to_nearest};
 }
 
 }  // namespace airlight::fogshop::HWY_NAMESPACE

@@ -29,14 +29,14 @@ void EvenAngles(double lo, double hi, double along, double h, double span, int s
   }
   const std::size_t lanes = hn::Lanes(d);
   const V step_cosine = set(cosine[lanes - 1]), step_sine = set(sine[lanes - 1]);
-  V x = hn::Sub(hn::Mul(set(h), hn::Load(d, cosine)), hn::Mul(set(xa), hn::Load(d, sine)));
-  V y = hn::Add(hn::Mul(set(h), hn::Load(d, sine)), hn::Mul(set(xa), hn::Load(d, cosine)));
+  V x = set(h) * hn::Load(d, cosine) - set(xa) * hn::Load(d, sine);
+  V y = set(h) * hn::Load(d, sine) + set(xa) * hn::Load(d, cosine);
   for (int k = 0; k < steps; k += int(lanes)) {
-    const auto ahead = hn::Gt(x, hn::Zero(d));
-    const V t = hn::MulAdd(set(h), hn::Div(y, hn::IfThenElse(ahead, x, set(1))), set(along));
-    hn::StoreU(hn::IfThenElse(ahead, hn::Min(hn::Max(t, set(lo)), set(hi)), set(hi)), d, nodes + k);
-    const V turned = hn::Sub(hn::Mul(x, step_cosine), hn::Mul(y, step_sine));
-    y = hn::Add(hn::Mul(x, step_sine), hn::Mul(y, step_cosine));
+    const auto ahead = x > hn::Zero(d);
+    const V t = MulAdd(set(h), y / IfThenElse(ahead, x, set(1)), set(along));
+    hn::StoreU(IfThenElse(ahead, Min(Max(t, set(lo)), set(hi)), set(hi)), d, nodes + k);
+    const V turned = x * step_cosine - y * step_sine;
+    y = x * step_sine + y * step_cosine;
     x = turned;
   }
 }
@@ -46,12 +46,12 @@ void EvenAngles(double lo, double hi, double along, double h, double span, int s
 double BoxRamps(const Crossings& c, double* weight, double* slope, double* offset) {
   V sum = hn::Zero(d);
   for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
-    const V opacity = hn::Sub(set(1), exp_of(hn::Mul(set(-2), load(c.depth, i))));
-    const V w = hn::IfThenElseZero(hn::FirstN(d, c.count - i), opacity), g = hn::Mul(load(c.a, i), set(1 / 3.2));
+    const V opacity = set(1) - exp_of(set(-2) * load(c.depth, i));
+    const V w = IfThenElseZero(hn::FirstN(d, c.count - i), opacity), g = load(c.a, i) * set(1 / 3.2);
     hn::StoreU(w, d, weight + i);
-    hn::StoreU(hn::Mul(w, g), d, slope + i);
-    hn::StoreU(hn::Mul(w, hn::NegMulAdd(load(c.middle, i), g, set(0.5))), d, offset + i);
-    sum = hn::Add(sum, w);
+    hn::StoreU(w * g, d, slope + i);
+    hn::StoreU(w * NegMulAdd(load(c.middle, i), g, set(0.5)), d, offset + i);
+    sum = sum + w;
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -65,10 +65,9 @@ void BoxShares(const double* node, int count, const EdgeScratch& boxes, int n, d
     for (int j = 0; j < 4; ++j) sum[j] = hn::Zero(d), t[j] = hn::LoadU(d, node + k + j * lanes);
     for (int i = 0; i < n; ++i) {
       const V weight = set(boxes.weight[i]), slope = set(boxes.slope[i]), offset = set(boxes.offset[i]);
-      for (int j = 0; j < 4; ++j)
-        sum[j] = hn::Add(sum[j], hn::Min(hn::Max(hn::MulAdd(t[j], slope, offset), hn::Zero(d)), weight));
+      for (int j = 0; j < 4; ++j) sum[j] = sum[j] + Min(Max(MulAdd(t[j], slope, offset), hn::Zero(d)), weight);
     }
-    for (int j = 0; j < 4; ++j) hn::StoreU(hn::Mul(set(scale), sum[j]), d, share + k + j * lanes);
+    for (int j = 0; j < 4; ++j) hn::StoreU(set(scale) * sum[j], d, share + k + j * lanes);
   }
 }
 
@@ -77,10 +76,10 @@ void AddShares(const double* node, int count, double lo, double weight, const An
                double* share) {
   for (int k = 0; k < count; k += int(hn::Lanes(d))) {
     const V t = hn::LoadU(d, node + k);
-    V sum = hn::MulAdd(hn::Sub(t, set(lo)), set(weight), hn::LoadU(d, share + k));
+    V sum = MulAdd(t - set(lo), set(weight), hn::LoadU(d, share + k));
     for (std::size_t l = 0; l < n; ++l) {
-      const V angle = hn::Atan(d, hn::Mul(hn::Sub(t, set(lights[l].along)), set(1 / lights[l].h)));
-      sum = hn::MulAdd(set(lights[l].weight), hn::Sub(angle, set(lights[l].first)), sum);
+      const V angle = hn::Atan(d, (t - set(lights[l].along)) * set(1 / lights[l].h));
+      sum = MulAdd(set(lights[l].weight), angle - set(lights[l].first), sum);
     }
     hn::StoreU(sum, d, share + k);
   }
@@ -89,8 +88,8 @@ void AddShares(const double* node, int count, double lo, double weight, const An
 // rank[k]: how many steps of 1/scale node k lies above `first`, rounded up to a whole number in [0, last].
 void Ranks(const double* share, int count, double first, double scale, int last, int* rank) {
   for (int k = 0; k < count; k += int(hn::Lanes(d))) {
-    const V r = hn::Ceil(hn::Mul(hn::Sub(hn::LoadU(d, share + k), set(first)), set(scale)));
-    hn::StoreU(hn::DemoteTo(integers, hn::Min(hn::Max(r, hn::Zero(d)), set(last))), integers, rank + k);
+    const V r = hn::Ceil((hn::LoadU(d, share + k) - set(first)) * set(scale));
+    hn::StoreU(hn::DemoteTo(integers, Min(Max(r, hn::Zero(d)), set(last))), integers, rank + k);
   }
 }
 
@@ -101,9 +100,9 @@ void Invert(const double* node, const double* share, const int* before, int slic
     const auto place = hn::PromoteTo(long_integers, hn::LoadU(integers, before + i));
     const V n0 = hn::GatherIndex(d, node, place), n1 = hn::GatherIndex(d, node + 1, place);
     const V s0 = hn::GatherIndex(d, share, place), s1 = hn::GatherIndex(d, share + 1, place);
-    const V wanted = hn::MulAdd(hn::Iota(d, double(i)), set(step), set(first));
-    const V s = hn::Div(hn::Sub(wanted, s0), hn::Max(hn::Sub(s1, s0), set(1e-300)));
-    hn::StoreU(hn::MulAdd(hn::Min(hn::Max(s, hn::Zero(d)), set(1)), hn::Sub(n1, n0), n0), d, t + i);
+    const V wanted = MulAdd(hn::Iota(d, double(i)), set(step), set(first));
+    const V s = (wanted - s0) / Max(s1 - s0, set(1e-300));
+    hn::StoreU(MulAdd(Min(Max(s, hn::Zero(d)), set(1)), n1 - n0, n0), d, t + i);
   }
 }
 

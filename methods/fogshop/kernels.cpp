@@ -30,13 +30,12 @@ void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
   const auto iota = hn::Iota(d, 0.0);
   std::size_t n = 0;
   for (std::size_t i = 0; i < g.x.size(); i += hn::Lanes(d)) {
-    const Vectors q{hn::Sub(load(g.x, i), ox), hn::Sub(load(g.y, i), oy), hn::Sub(load(g.z, i), oz)};
+    const Vectors q{load(g.x, i) - ox, load(g.y, i) - oy, load(g.z, i) - oz};
     const auto [m, pp] = project(q, direction);
-    const V chord_squared = hn::Sub(load(g.radius_squared, i), pp);
-    if (hn::AllFalse(d, hn::Ge(chord_squared, zero))) continue;
-    const V chord = hn::Sqrt(hn::Max(chord_squared, zero));
-    const auto met = hn::And(hn::Ge(chord_squared, zero),
-                             hn::And(hn::Ge(hn::Add(m, chord), zero), hn::Le(hn::Sub(m, chord), length)));
+    const V chord_squared = load(g.radius_squared, i) - pp;
+    if (hn::AllFalse(d, chord_squared >= zero)) continue;
+    const V chord = Sqrt(Max(chord_squared, zero));
+    const auto met = And(chord_squared >= zero, And(m + chord >= zero, m - chord <= length));
     if (hn::AllFalse(d, met)) continue;
     // Whole vectors are stored, the next ones over their rest: a compressing store is many times slower on some
     // processors.
@@ -53,15 +52,15 @@ void Cross(const GaussianArrays& g, const Line& line, Crossings& out) {
     const auto keep_number = [&](V v, std::vector<int>& to) {
       hn::StoreU(hn::DemoteTo(integers, compress(v, met)), integers, to.data() + n);
     };
-    keep_number(hn::Add(iota, set(double(i))), out.place);
+    keep_number(iota + set(double(i)), out.place);
     keep_number(hn::PromoteTo(d, hn::LoadU(integers, g.index.data() + i)), out.index);
     n += hn::CountTrue(d, met);
   }
   for (std::vector<int>* v : {&out.place, &out.index}) hn::StoreU(hn::Zero(integers), integers, v->data() + n);
   // Only now, with all lanes in use, what is costly.
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
-    hn::StoreU(hn::Mul(load(out.half_depth, i), exp_of(load(out.base, i))), d, out.depth.data() + i);
-    hn::StoreU(Erf_<kind>(d, hn::Mul(load(out.a, i), load(out.middle, i))), d, out.base.data() + i);
+    hn::StoreU(load(out.half_depth, i) * exp_of(load(out.base, i)), d, out.depth.data() + i);
+    hn::StoreU(Erf_<kind>(d, load(out.a, i) * load(out.middle, i)), d, out.base.data() + i);
   }
   out.count = int(n);
 }
@@ -72,8 +71,8 @@ double TotalDepth(const Crossings& c, double length) {
   const V end = set(length);
   for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
     const V share = share_up_to<kind>(end, load(c.a, i), load(c.middle, i), load(c.base, i));
-    const V depth = hn::Mul(load(c.depth, i), share);
-    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), depth));
+    const V depth = load(c.depth, i) * share;
+    sum = sum + IfThenElseZero(hn::FirstN(d, c.count - i), depth);
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -84,12 +83,12 @@ double WholeDepths(Crossings& c, double length) {
   const V end = set(length), zero = hn::Zero(d);
   for (std::size_t i = 0; i < std::size_t(c.count); i += hn::Lanes(d)) {
     const V m = load(c.middle, i), scale = load(c.depth, i), base = load(c.base, i);
-    const V whole = hn::Mul(scale, share_up_to<kind>(end, load(c.a, i), m, base));
+    const V whole = scale * share_up_to<kind>(end, load(c.a, i), m, base);
     // At the middle itself the first error function is that of 0.
-    const V within = hn::IfThenElse(hn::Le(m, end), hn::Mul(scale, base), whole);
+    const V within = IfThenElse(m <= end, scale * base, whole);
     hn::StoreU(whole, d, c.whole.data() + i);
-    hn::StoreU(hn::Max(within, zero), d, c.to_nearest.data() + i);
-    sum = hn::Add(sum, hn::IfThenElseZero(hn::FirstN(d, c.count - i), whole));
+    hn::StoreU(Max(within, zero), d, c.to_nearest.data() + i);
+    sum = sum + IfThenElseZero(hn::FirstN(d, c.count - i), whole);
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -101,7 +100,7 @@ void DepthsAt(const Crossings& c, const double* t, int count, double* depth) {
     V sum = hn::Zero(d);
     for (int i = 0; i < c.count; ++i) {
       const V share = share_up_to<kind>(end, set(c.a[i]), set(c.middle[i]), set(c.base[i]));
-      sum = hn::MulAdd(set(c.depth[i]), share, sum);
+      sum = MulAdd(set(c.depth[i]), share, sum);
     }
     hn::StoreU(sum, d, depth + k);
   }
@@ -115,12 +114,12 @@ void ScatteringDepthsAt(const Crossings& c, const GaussianArrays& g, const doubl
     V sum = hn::Zero(d), red = sum, green = sum, blue = sum;
     for (int i = 0; i < c.count; ++i) {
       const V share = share_up_to<kind>(end, set(c.a[i]), set(c.middle[i]), set(c.base[i]));
-      const V part = hn::Mul(set(c.depth[i]), share);
+      const V part = set(c.depth[i]) * share;
       const int place = c.place[i];
-      sum = hn::Add(sum, part);
-      red = hn::MulAdd(set(g.colour[0][place]), part, red);
-      green = hn::MulAdd(set(g.colour[1][place]), part, green);
-      blue = hn::MulAdd(set(g.colour[2][place]), part, blue);
+      sum = sum + part;
+      red = MulAdd(set(g.colour[0][place]), part, red);
+      green = MulAdd(set(g.colour[1][place]), part, green);
+      blue = MulAdd(set(g.colour[2][place]), part, blue);
     }
     hn::StoreU(sum, d, depth + k);
     hn::StoreU(red, d, scattering[0] + k);
@@ -135,17 +134,17 @@ void DepthsFromPoint(const GaussianArrays& g, const Point3& from, const Line& ra
   const Vec3 offset = ray.origin - from;
   for (int k = 0; k < count; k += int(hn::Lanes(d))) {
     const V tk = hn::LoadU(d, t + k);
-    const Vectors to{hn::MulAdd(tk, set(ray.direction.x()), set(offset.x())),
-                     hn::MulAdd(tk, set(ray.direction.y()), set(offset.y())),
-                     hn::MulAdd(tk, set(ray.direction.z()), set(offset.z()))};
-    const V length = hn::Sqrt(dot(to, to)), inverse = hn::Div(set(1), hn::Max(length, set(1e-300)));
-    const Vectors direction{hn::Mul(to.x, inverse), hn::Mul(to.y, inverse), hn::Mul(to.z, inverse)};
+    const Vectors to{MulAdd(tk, set(ray.direction.x()), set(offset.x())),
+                     MulAdd(tk, set(ray.direction.y()), set(offset.y())),
+                     MulAdd(tk, set(ray.direction.z()), set(offset.z()))};
+    const V length = Sqrt(dot(to, to)), inverse = set(1) / Max(length, set(1e-300));
+    const Vectors direction{to.x * inverse, to.y * inverse, to.z * inverse};
     V sum = hn::Zero(d);
     for (int i = 0; i < g.count; ++i) {
       const V a = set(g.a[i]);
       const auto [m, pp] = project({set(g.x[i] - from.x()), set(g.y[i] - from.y()), set(g.z[i] - from.z())}, direction);
-      const V scale = hn::Mul(set(g.half_depth[i]), exp_of(peak_exponent(a, pp)));
-      sum = hn::MulAdd(scale, share_up_to<kind>(length, a, m, Erf_<kind>(d, hn::Mul(a, m))), sum);
+      const V scale = set(g.half_depth[i]) * exp_of(peak_exponent(a, pp));
+      sum = MulAdd(scale, share_up_to<kind>(length, a, m, Erf_<kind>(d, a * m)), sum);
     }
     hn::StoreU(sum, d, depth + k);
   }
@@ -155,14 +154,12 @@ void DepthsFromPoint(const GaussianArrays& g, const Point3& from, const Line& ra
 void NearPrism(const GaussianArrays& g, const double planes[4][4], std::vector<int>& places) {
   places.clear();
   const auto distance = [&](std::size_t i, const double* p) {
-    return hn::MulAdd(load(g.x, i), set(p[0]),
-                      hn::MulAdd(load(g.y, i), set(p[1]), hn::MulAdd(load(g.z, i), set(p[2]), set(p[3]))));
+    return MulAdd(load(g.x, i), set(p[0]), MulAdd(load(g.y, i), set(p[1]), MulAdd(load(g.z, i), set(p[2]), set(p[3]))));
   };
   for (std::size_t i = 0; i < g.x.size(); i += hn::Lanes(d)) {
-    V farthest = hn::Abs(distance(i, planes[0]));
-    for (int e = 1; e < 4; ++e) farthest = hn::Max(farthest, distance(i, planes[e]));
-    const auto near =
-        hn::Le(hn::Mul(hn::Max(farthest, hn::Zero(d)), hn::Max(farthest, hn::Zero(d))), load(g.radius_squared, i));
+    V farthest = Abs(distance(i, planes[0]));
+    for (int e = 1; e < 4; ++e) farthest = Max(farthest, distance(i, planes[e]));
+    const auto near = Max(farthest, hn::Zero(d)) * Max(farthest, hn::Zero(d)) <= load(g.radius_squared, i);
     if (hn::AllFalse(d, near)) continue;
     alignas(64) double place[GaussianArrays::padding];
     hn::Store(compress(hn::Iota(d, double(i)), near), d, place);

@@ -33,12 +33,12 @@ HWY_INLINE Pair load_pair(const float* depths, VI place) {
   return {hn::PromoteTo(d, hn::BitCast(single, low)), hn::PromoteTo(d, hn::BitCast(single, high))};
 }
 
-HWY_INLINE V lerp(V a, V b, V s) { return hn::MulAdd(hn::Sub(b, a), s, a); }
+HWY_INLINE V lerp(V a, V b, V s) { return MulAdd(b - a, s, a); }
 
 // x = whole + rest with whole in [0, last]; the whole number is returned.
 HWY_INLINE V split(V x, int last, V& rest) {
-  const V whole = hn::Min(hn::Max(hn::Floor(x), hn::Zero(d)), set(last));
-  rest = hn::Sub(x, whole);
+  const V whole = Min(Max(Floor(x), hn::Zero(d)), set(last));
+  rest = x - whole;
   return whole;
 }
 
@@ -50,45 +50,45 @@ void LookUp(const MapLookup& map, const double* start, const double* step, const
   const V to_edge = set(map.far > map.near ? 1 / (map.far - map.near) : 0);
   for (int n = 0; n < count; n += int(hn::Lanes(d))) {
     const V tn = hn::LoadU(d, t + n);
-    const V x = hn::MulAdd(tn, set(step[0]), set(start[0])), y = hn::MulAdd(tn, set(step[1]), set(start[1])),
-            z = hn::MulAdd(tn, set(step[2]), set(start[2]));
-    const V distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    const V x = MulAdd(tn, set(step[0]), set(start[0])), y = MulAdd(tn, set(step[1]), set(start[1])),
+            z = MulAdd(tn, set(step[2]), set(start[2]));
+    const V distance = Sqrt(MulAdd(x, x, MulAdd(y, y, z * z)));
     V px, py;
-    auto seen = hn::Gt(distance, set(map.near));
+    auto seen = distance > set(map.near);
     if (map.tangent > 0) {
-      seen = hn::And(seen, hn::Gt(z, zero));
-      const V scale = hn::Div(set(1 / map.tangent), hn::IfThenElse(hn::Gt(z, zero), z, one));
-      px = hn::Mul(x, scale);
-      py = hn::Mul(y, scale);
-      seen = hn::And(seen, hn::Le(hn::Max(hn::Abs(px), hn::Abs(py)), one));
+      seen = And(seen, z > zero);
+      const V scale = set(1 / map.tangent) / IfThenElse(z > zero, z, one);
+      px = x * scale;
+      py = y * scale;
+      seen = And(seen, Max(Abs(px), Abs(py)) <= one);
     } else {
-      const V sum = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
-      const V scale = hn::Div(one, hn::Max(sum, set(1e-300)));
-      px = hn::Mul(x, scale);
-      py = hn::Mul(y, scale);
+      const V sum = Abs(x) + Abs(y) + Abs(z);
+      const V scale = one / Max(sum, set(1e-300));
+      px = x * scale;
+      py = y * scale;
       // The lower half is folded over the diagonals.
-      const auto lower = hn::Lt(z, zero);
-      const V fx = hn::CopySign(hn::Sub(one, hn::Abs(py)), px), fy = hn::CopySign(hn::Sub(one, hn::Abs(px)), py);
-      px = hn::IfThenElse(lower, fx, px);
-      py = hn::IfThenElse(lower, fy, py);
+      const auto lower = z < zero;
+      const V fx = hn::CopySign(one - Abs(py), px), fy = hn::CopySign(one - Abs(px), py);
+      px = IfThenElse(lower, fx, px);
+      py = IfThenElse(lower, fy, py);
     }
-    const V share = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(map.near)), to_edge), zero), one);
+    const V share = Min(Max((distance - set(map.near)) * to_edge, zero), one);
     const V half = set(0.5 * map.directions);
     V fu, fv, fe;
-    const V i = split(hn::MulAdd(hn::Add(px, one), half, set(0.5)), side - 2, fu);
-    const V j = split(hn::MulAdd(hn::Add(py, one), half, set(0.5)), side - 2, fv);
-    const V k = split(hn::Mul(set(map.edges), even ? share : hn::Sqrt(share)), map.edges - 1, fe);
+    const V i = split(MulAdd(px + one, half, set(0.5)), side - 2, fu);
+    const V j = split(MulAdd(py + one, half, set(0.5)), side - 2, fv);
+    const V k = split(set(map.edges) * (even ? share : Sqrt(share)), map.edges - 1, fe);
     // Linear in the distance, not in its root: from edge k to k + 1 the square grows by 2 k + 1.
-    if (!even) fe = hn::Div(hn::Mul(fe, hn::Add(hn::Add(k, k), fe)), hn::MulAdd(set(2), k, one));
+    if (!even) fe = fe * (k + k + fe) / MulAdd(set(2), k, one);
     // Places are exact in floating point, and multiplied there.
-    const V number = hn::MulAdd(j, set(double(row)), hn::MulAdd(i, set(double(stride)), k));
-    const VI place = hn::ConvertTo(di, hn::IfThenElseZero(seen, number));
+    const V number = MulAdd(j, set(double(row)), MulAdd(i, set(double(stride)), k));
+    const VI place = hn::ConvertTo(di, IfThenElseZero(seen, number));
     const auto along = [&](int64_t offset) {
-      const Pair pair = load_pair(map.depths, hn::Add(place, hn::Set(di, offset)));
+      const Pair pair = load_pair(map.depths, place + hn::Set(di, offset));
       return lerp(pair.first, pair.second, fe);
     };
     const V value = lerp(lerp(along(0), along(stride), fu), lerp(along(row), along(row + stride), fu), fv);
-    hn::StoreU(hn::IfThenElseZero(seen, value), d, depth + n);
+    hn::StoreU(IfThenElseZero(seen, value), d, depth + n);
   }
 }
 

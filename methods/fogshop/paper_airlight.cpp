@@ -31,27 +31,31 @@ double paper_airlight(const scene::GaussianSum& medium, const Point3& s, double 
   double airlight = 0;
 
   // Gaussian terms, Eqs. 9 to 13.
-  for (const scene::Gaussian& g : medium.gaussians) {
+  for (const scene::Gaussian& gaussian : medium.gaussians) {
+    const Point3& b = gaussian.center;
     // Eq. 10; the projection is restricted to the segment, here and in all of f^0.
-    const Point3 x = ray.at(std::clamp((g.center - v).dot(ray.direction), 0.0, d_r));
+    const Point3 b_r = ray.at(std::clamp((b - v).dot(ray.direction), 0.0, d_r));
     // The exponents of f^0 (Eq. 12) and f^1 (Eq. 13) are added before the exponential: each alone may overflow.
-    const double exponent = -optical_depth(g, s, x) - optical_depth(g, v, x) + optical_depth(g, s, g.center) +
-                            optical_depth(g, v, g.center) - optical_depth(medium, s, g.center) -
-                            optical_depth(medium, v, g.center);
-    const double depth = scene::line_integral(g, ray, d_r);  // Eq. 31
-    const double phase = relative_phase(options.g, -(x - s).normalized().dot(ray.direction));
+    const double exponent = -optical_depth(gaussian, s, b_r) - optical_depth(gaussian, v, b_r) +
+                            optical_depth(gaussian, s, b) + optical_depth(gaussian, v, b) -
+                            optical_depth(medium, s, b) - optical_depth(medium, v, b);
+    const double depth = scene::line_integral(gaussian, ray, d_r);  // Eq. 31
+    // Of the angle by which light turns: the text's alpha has the other sign.
+    const double phase = relative_phase(options.g, -(b_r - s).normalized().dot(ray.direction));
+    // A light at b_r makes the next factor infinite, and 0 times that is no number.
     if (depth > 0)
-      airlight += intensity * phase / (4 * pi * ((x - s).squaredNorm() + soft2)) * std::exp(exponent) * depth;
+      airlight += intensity * phase / (4 * pi * ((b_r - s).squaredNorm() + soft2)) * std::exp(exponent) * depth;
   }
 
   // Homogeneous term, Eqs. 14 to 17.
   if (medium.constant > 0) {
     const Vec3 to_light = s - v;
-    const LightFromRay light{to_light.dot(ray.direction), ray.direction.cross(to_light).norm()};
+    // d_sv cos gamma and d_sv sin gamma of the text.
+    const LightFromRay seen{to_light.dot(ray.direction), ray.direction.cross(to_light).norm()};
     const double c_sv = std::exp(-optical_depth(medium, s, v) + medium.constant * to_light.norm());
     const double homogeneous = options.f_table
-                                   ? options.f_table->homogeneous_airlight(light, d_r, medium.constant)
-                                   : softened_homogeneous_airlight(light, d_r, medium.constant, options.source_radius);
+                                   ? options.f_table->homogeneous_airlight(seen, d_r, medium.constant)
+                                   : softened_homogeneous_airlight(seen, d_r, medium.constant, options.source_radius);
     airlight += intensity * c_sv * homogeneous;
   }
   return airlight;

@@ -21,8 +21,9 @@ struct PaperOptions {
 // 4 pi times Henyey-Greenstein's phase function, k(alpha) of Eq. 2: 1 where g is 0. `cosine`: of the angle by which light turns.
 double relative_phase(double g, double cosine);
 
-// Airlight [W/m^2/sr] over [0, d_r] of the ray from an isotropic point light of `intensity` [W/sr], albedo 1. d_r may be infinite. Infinite where the formula is: a light on the ray in a constant medium, or at the camera.
-double paper_airlight(const scene::GaussianSum&, const Point3& light, double intensity, const Ray&, double d_r,
+// Airlight [W/m^2/sr] over [0, d_r] of the ray from an isotropic point light at s of `intensity` [W/sr], albedo 1. d_r may be
+// infinite. The airlight is infinite where the formula is: a light on the ray in a constant medium, or at the camera.
+double paper_airlight(const scene::GaussianSum&, const Point3& s, double intensity, const Ray&, double d_r,
                       const PaperOptions& = {});
 
 }  // namespace airlight::fogshop

@@ -26,30 +26,26 @@ void GaussianTerms(const GaussianArrays& g, const Crossings& c, const Line& view
       return hn::GatherIndex(d, from.data(), hn::PromoteTo(long_integers, hn::LoadU(integers, &places[first])));
     };
     const V own = gather(light.exponent, c.index);
-    const Vectors center{hn::Sub(load(c.x, first), set(light.position.x())),
-                         hn::Sub(load(c.y, first), set(light.position.y())),
-                         hn::Sub(load(c.z, first), set(light.position.z()))};
+    const Vectors center{load(c.x, first) - set(light.position.x()), load(c.y, first) - set(light.position.y()),
+                         load(c.z, first) - set(light.position.z())};
     // Eq. 10: b_i^r restricted to the segment.
-    const V t = hn::Min(hn::Max(load(c.middle, first), zero), length);
-    const Vectors nearest{hn::MulAdd(t, set(view.direction.x()), set(from_light.x())),
-                          hn::MulAdd(t, set(view.direction.y()), set(from_light.y())),
-                          hn::MulAdd(t, set(view.direction.z()), set(from_light.z()))};
+    const V t = Min(Max(load(c.middle, first), zero), length);
+    const Vectors nearest{MulAdd(t, set(view.direction.x()), set(from_light.x())),
+                          MulAdd(t, set(view.direction.y()), set(from_light.y())),
+                          MulAdd(t, set(view.direction.z()), set(from_light.z()))};
     const PaperTerm p = paper_term<kind>(center, nearest, load(c.a, first), load(c.half_depth, first), own,
                                          load(c.to_nearest, first), load(c.whole, first), softness);
     V weight = p.weight;
     if (light.g != 0) {  // k(alpha) of Eq. 12
-      const V along =
-          hn::MulAdd(nearest.x, set(view.direction.x()),
-                     hn::MulAdd(nearest.y, set(view.direction.y()), hn::Mul(nearest.z, set(view.direction.z()))));
-      weight =
-          hn::Mul(weight, phase_of(light.g, hn::Div(along, hn::Max(hn::Sqrt(dot(nearest, nearest)), set(1e-300)))));
+      const V along = MulAdd(nearest.x, set(view.direction.x()),
+                             MulAdd(nearest.y, set(view.direction.y()), nearest.z * set(view.direction.z())));
+      weight = weight * phase_of(light.g, along / Max(Sqrt(dot(nearest, nearest)), set(1e-300)));
     }
     const auto valid = hn::FirstN(d, c.count - first);
     for (int k = 0; k < channels; ++k) {
-      V term =
-          hn::Mul(hn::Mul(set(extinction_ratio[k]), weight), exp_of(hn::Mul(set(extinction_ratio[k]), p.exponent)));
-      if (g.has_colours()) term = hn::Mul(term, gather(g.colour[k], c.place));
-      sum[k] = hn::Add(sum[k], hn::IfThenElseZero(valid, term));
+      V term = set(extinction_ratio[k]) * weight * exp_of(set(extinction_ratio[k]) * p.exponent);
+      if (g.has_colours()) term = term * gather(g.colour[k], c.place);
+      sum[k] = sum[k] + IfThenElseZero(valid, term);
     }
   }
   for (int k = 0; k < channels; ++k) sums[k] += hn::GetLane(hn::SumOfLanes(d, sum[k]));

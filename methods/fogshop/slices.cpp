@@ -17,48 +17,45 @@ namespace airlight::fogshop::HWY_NAMESPACE {
 // Angle of (x, y) for y >= 0, in [0, pi].
 HWY_INLINE V angle_of(V y, V x) {
   const V zero = hn::Zero(d);
-  const V slope = hn::Div(y, hn::IfThenElse(hn::Eq(x, zero), set(1e-300), x));
-  const V angle = hn::Atan(d, hn::Min(hn::Max(slope, set(-1e300)), set(1e300)));
-  return hn::IfThenElse(hn::Lt(x, zero), hn::Add(angle, set(pi)), angle);
+  const V slope = y / IfThenElse(x == zero, set(1e-300), x);
+  const V angle = hn::Atan(d, Min(Max(slope, set(-1e300)), set(1e300)));
+  return IfThenElse(x < zero, angle + set(pi), angle);
 }
 
 struct Direction {
   V x, h;
 };
 HWY_INLINE Direction normalized(V x, V h) {
-  const V inverse = hn::Div(set(1), hn::Max(hn::Sqrt(hn::MulAdd(x, x, hn::Mul(h, h))), set(1e-300)));
-  return {hn::Mul(x, inverse), hn::Mul(h, inverse)};
+  const V inverse = set(1) / Max(Sqrt(MulAdd(x, x, h * h)), set(1e-300));
+  return {x * inverse, h * inverse};
 }
-HWY_INLINE Direction halfway(const Direction& a, const Direction& b) {
-  return normalized(hn::Add(a.x, b.x), hn::Add(a.h, b.h));
-}
+HWY_INLINE Direction halfway(const Direction& a, const Direction& b) { return normalized(a.x + b.x, a.h + b.h); }
 
 // Mean of the phase function, times 4 pi, over the angle between two places beside a light that passes at h: Boole's rule.
 HWY_INLINE V mean_phase(double g, V xa, V xb, double h) {
   const Direction a = normalized(xa, set(h)), b = normalized(xb, set(h)), middle = halfway(a, b);
-  const V ends = hn::Add(phase_of(g, a.x), phase_of(g, b.x));
-  const V quarters = hn::Add(phase_of(g, halfway(a, middle).x), phase_of(g, halfway(middle, b).x));
-  return hn::MulAdd(set(7. / 90), ends,
-                    hn::MulAdd(set(32. / 90), quarters, hn::Mul(set(12. / 90), phase_of(g, middle.x))));
+  const V ends = phase_of(g, a.x) + phase_of(g, b.x);
+  const V quarters = phase_of(g, halfway(a, middle).x) + phase_of(g, halfway(middle, b).x);
+  return MulAdd(set(7. / 90), ends, MulAdd(set(32. / 90), quarters, set(12. / 90) * phase_of(g, middle.x)));
 }
 
-// What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, times the phase function, depths and transmittances of
-// the whole way from the light at the edges.
+// What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, times the phase function; depths and transmittances of
+// the whole way from the light over an edge to the viewer, at every edge. h: distance of the light from the ray, softened by the source's
+// radius for 1/d^2; beside: the distance itself, for the phase function's angle.
 void Prepare(const SliceEdges& e, int slices, double along, double h, double beside, double g,
              const double* extinction_ratio, int channels, SliceScratch& out) {
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {
     const V t0 = hn::LoadU(d, e.t + k), t1 = hn::LoadU(d, e.t + k + 1);
-    const V xa = hn::Sub(t0, set(along)), xb = hn::Sub(t1, set(along));
+    const V xa = t0 - set(along), xb = t1 - set(along);
     // From the angle between the ends, which does not cancel.
-    V angle = angle_of(hn::Mul(set(h), hn::Sub(t1, t0)), hn::MulAdd(xa, xb, set(h * h)));
-    if (g != 0) angle = hn::Mul(angle, mean_phase(g, xa, xb, beside));
-    hn::StoreU(angle, d, out.angle.data() + k);
+    const V angle = angle_of(set(h) * (t1 - t0), MulAdd(xa, xb, set(h * h)));
+    hn::StoreU(g == 0 ? angle : angle * mean_phase(g, xa, xb, beside), d, out.weighted_angle.data() + k);
   }
   for (int k = 0; k <= slices; k += int(hn::Lanes(d))) {
-    const V whole = hn::Add(hn::LoadU(d, e.view_depth + k), hn::LoadU(d, e.light_depth + k));
+    const V whole = hn::LoadU(d, e.view_depth + k) + hn::LoadU(d, e.light_depth + k);
     hn::StoreU(whole, d, out.depth.data() + k);
     for (int c = 0; c < channels; ++c)
-      hn::StoreU(exp_of(hn::Mul(set(-extinction_ratio[c]), whole)), d, out.transmittance[c].data() + k);
+      hn::StoreU(exp_of(set(-extinction_ratio[c]) * whole), d, out.transmittance[c].data() + k);
   }
 }
 
@@ -75,40 +72,41 @@ HWY_INLINE Ends ends(const double* values, int k) {
   return {near, far};
 }
 
+// A slice's airlight is what it scatters, times the mean of e^-depth, times the mean of 1/d^2:
+//   mean of e^-depth = (e^-depth0 - e^-depth1) / (depth1 - depth0), mean of 1/d^2 = angle / (h length).
+// The depth of the whole way goes linearly from one edge to the other: that from the light may fall as that from the view grows.
 template <int stride>
-void Sum(const SliceEdges& e, const SliceScratch& s, int slices, double h, const double* extinction_ratio, int channels,
-         double* sums) {
+void Sum(const SliceEdges& e, const SliceScratch& scratch, int slices, double h, const double* extinction_ratio,
+         int channels, double* sums) {
   const V zero = hn::Zero(d), one = set(1);
   V sum[3] = {zero, zero, zero};
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {
     const auto [t0, t1] = ends<stride>(e.t, k);
-    const auto [a0, a1] = ends<stride>(e.view_depth, k);
-    const auto [s0, s1] = ends<stride>(s.depth.data(), k);
-    V angle = hn::LoadU(d, s.angle.data() + k);
+    const auto [view0, view1] = ends<stride>(e.view_depth, k);
+    const auto [depth0, depth1] = ends<stride>(scratch.depth.data(), k);
+    V angle = hn::LoadU(d, scratch.weighted_angle.data() + k);
     if constexpr (stride == 2) {
       V second;
-      hn::LoadInterleaved2(d, s.angle.data() + 2 * k, angle, second);
-      angle = hn::Add(angle, second);
+      hn::LoadInterleaved2(d, scratch.weighted_angle.data() + 2 * k, angle, second);
+      angle = angle + second;
     }
-    const V length = hn::Sub(t1, t0);
-    const auto used = hn::And(hn::FirstN(d, std::size_t(slices - k)), hn::Gt(length, zero));
+    const V length = t1 - t0;
+    const auto used = And(hn::FirstN(d, std::size_t(slices - k)), length > zero);
     for (int c = 0; c < channels; ++c) {
-      const auto [e0, e1] = ends<stride>(s.transmittance[c].data(), k);
-      // Mean of e^-s where s goes from s0 to s1 linearly: the depth from the light may fall as that from the view
-      // grows. Its divisor is that of the mean of 1/d^2, too.
-      const V q = hn::Mul(set(extinction_ratio[c]), hn::Sub(s1, s0));
-      const auto small = hn::Lt(hn::Abs(q), set(1e-3));
-      const V series = hn::MulAdd(q, hn::MulAdd(q, hn::MulAdd(q, set(-1.0 / 24), set(1.0 / 6)), set(-0.5)), one);
-      const V mean = hn::IfThenElse(small, hn::Mul(e0, series), hn::Sub(e0, e1));
-      const V divisor = hn::Mul(hn::Mul(set(h), length), hn::IfThenElse(small, one, q));
-      V scattered = hn::Sub(a1, a0);
+      const auto [e0, e1] = ends<stride>(scratch.transmittance[c].data(), k);
+      const V q = set(extinction_ratio[c]) * (depth1 - depth0);
+      const auto small = Abs(q) < set(1e-3);
+      const V series = MulAdd(q, MulAdd(q, MulAdd(q, set(-1.0 / 24), set(1.0 / 6)), set(-0.5)), one);
+      const V mean = IfThenElse(small, e0 * series, e0 - e1);
+      // One division by both divisors.
+      const V divisor = set(h) * length * IfThenElse(small, one, q);
+      V scattered = view1 - view0;
       if (e.scattering) {
-        const auto [c0, c1] = ends<stride>(e.scattering[c], k);
-        scattered = hn::Sub(c1, c0);
+        const auto [before, after] = ends<stride>(e.scattering[c], k);
+        scattered = after - before;
       }
-      const V slice =
-          hn::Div(hn::Mul(hn::Mul(angle, hn::Mul(set(extinction_ratio[c]), hn::Max(scattered, zero))), mean), divisor);
-      sum[c] = hn::Add(sum[c], hn::IfThenElseZero(used, slice));
+      const V slice = angle * (set(extinction_ratio[c]) * Max(scattered, zero)) * mean / divisor;
+      sum[c] = sum[c] + IfThenElseZero(used, slice);
     }
   }
   for (int c = 0; c < channels; ++c) sums[c] += hn::GetLane(hn::SumOfLanes(d, sum[c])) / (4 * pi);
@@ -134,7 +132,7 @@ void sum_slices(const SliceEdges& edges, int slices, const LightFromRay& light, 
   constexpr double least_h = 1e-9;  // [m]
   const double h = std::max(std::hypot(light.h, source_radius), least_h);
   const std::size_t room = slice_room(slices);
-  for (auto* v : {&scratch.angle, &scratch.depth, &scratch.transmittance[0], &scratch.transmittance[1],
+  for (auto* v : {&scratch.weighted_angle, &scratch.depth, &scratch.transmittance[0], &scratch.transmittance[1],
                   &scratch.transmittance[2]})
     v->resize(room);
   HWY_DYNAMIC_DISPATCH(SumSlices)

@@ -28,12 +28,13 @@ constexpr std::size_t slice_room(int slices) {
 
 // Working memory of one thread.
 struct SliceScratch {
-  std::vector<double> angle, depth;
+  std::vector<double> weighted_angle, depth;
   std::array<std::vector<double>, 3> transmittance;
 };
 
 // Adds to `all`, per channel, the airlight of the slices from one light of 1 W/sr and albedo 1; to `pairs`, unless it
-// is null, that of half as many slices between every other edge: the same placement with K/2 slices, K even. Three
+// is null, that of half as many slices between every other edge: the same placement with K/2 slices, K even, from which
+// ray_airlight.cpp extrapolates: (4 L_K - L_K/2) / 3. Three
 // channels if `coloured`, else the first only. source_radius softens 1/d^2 [m]. g: of the phase function, whose mean over
 // the angle of a slice is taken by Boole's rule.
 void sum_slices(const SliceEdges&, int slices, const LightFromRay&, double source_radius, double g,

@@ -89,8 +89,8 @@ class Pass {
           V sum = hn::Zero(d);
           for (int a = 0; a < d_; ++a) {
             V w = carrier[a] ? hn::LoadU(d, carrier[a] + i * block + v * lanes) : hn::Zero(d);
-            if (wind[a]) w = hn::Add(w, l.load(wind[a] + std::ptrdiff_t(i) * q_ + at, v));
-            sum = hn::NegMulAdd(w, hn::LoadU(d, scratch(f, a) + i * block + v * lanes), sum);
+            if (wind[a]) w = w + l.load(wind[a] + std::ptrdiff_t(i) * q_ + at, v);
+            sum = NegMulAdd(w, hn::LoadU(d, scratch(f, a) + i * block + v * lanes), sum);
           }
           hn::StoreU(sum, d, change + i * block + v * lanes);
         }

@@ -62,7 +62,7 @@ HWY_INLINE void PointsOf(const double* matrix, int count, int even, const Rows& 
     for (int v = 0; v < vectors; ++v) b[v] = l.load(in.data + k * in.stride, v);
     for (int p = 0; p < P; ++p) {
       const V a = hn::Set(d, rows[p * count + k]);
-      for (int v = 0; v < vectors; ++v) sum[p][v] = hn::MulAdd(a, b[v], sum[p][v]);
+      for (int v = 0; v < vectors; ++v) sum[p][v] = MulAdd(a, b[v], sum[p][v]);
     }
   };
   int k = 0;
@@ -75,8 +75,8 @@ HWY_INLINE void PointsOf(const double* matrix, int count, int even, const Rows& 
   }
   for (int p = 0; p < P; ++p)
     for (int v = 0; v < vectors; ++v) {
-      l.store(hn::Add(e[p][v], o[p][v]), out.data + (i + p) * out.stride, v);
-      if (half + i + p < points) l.store(hn::Sub(e[p][v], o[p][v]), out.data + (half + i + p) * out.stride, v);
+      l.store(e[p][v] + o[p][v], out.data + (i + p) * out.stride, v);
+      if (half + i + p < points) l.store(e[p][v] - o[p][v], out.data + (half + i + p) * out.stride, v);
     }
 }
 
@@ -112,8 +112,8 @@ HWY_INLINE void FunctionsOf(const Tables& t, int first_even, int first_odd, cons
     for (int p = 0; p < P; ++p) {
       const V a = hn::Set(d, even_rows[2 * p * t.half + i]), b = hn::Set(d, odd_rows[2 * p * t.half + i]);
       for (int v = 0; v < vectors; ++v) {
-        e[p][v] = hn::MulAdd(a, s[v], e[p][v]);
-        o[p][v] = hn::MulAdd(b, r[v], o[p][v]);
+        e[p][v] = MulAdd(a, s[v], e[p][v]);
+        o[p][v] = MulAdd(b, r[v], o[p][v]);
       }
     }
   }
@@ -148,7 +148,7 @@ HWY_INLINE void RowsOf(const double* matrix, int padded, int from, int to, const
       for (int v = 0; v < vectors; ++v) b[v] = hn::LoadU(d, matrix + k * padded + c + v * lanes);
       for (int r = 0; r < R; ++r) {
         const V a = hn::Set(d, in[r * from + k]);
-        for (int v = 0; v < vectors; ++v) sum[r][v] = hn::MulAdd(a, b[v], sum[r][v]);
+        for (int v = 0; v < vectors; ++v) sum[r][v] = MulAdd(a, b[v], sum[r][v]);
       }
     }
     const Lanes l(std::min(block, to - c));
@@ -174,8 +174,8 @@ HWY_INLINE void Fold(const Tables& t, const Rows& in, double* sums, const Lanes&
       const V a = l.load(in.data + i * in.stride, v);
       const bool pair = t.half + i < t.points;
       const V b = pair ? l.load(in.data + (t.half + i) * in.stride, v) : hn::Zero(d);
-      hn::StoreU(hn::Add(a, b), d, sums + i * block + v * lanes);
-      hn::StoreU(pair ? hn::Sub(a, b) : b, d, sums + (t.half + i) * block + v * lanes);
+      hn::StoreU(a + b, d, sums + i * block + v * lanes);
+      hn::StoreU(pair ? a - b : b, d, sums + (t.half + i) * block + v * lanes);
     }
 }
 

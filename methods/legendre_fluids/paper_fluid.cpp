@@ -71,7 +71,7 @@ void PaperFluid::project() {
     velocity.setZero();
   else
     from_confined(confined_->project(to_confined()));
-  projects_ = false;
+  needs_projection_ = false;
 }
 
 void PaperFluid::begin(const VelocityFunction& u) {
@@ -88,16 +88,18 @@ void PaperFluid::require_tame() const {
                                     confined_ ? "smaller steps are needed" : "the paper's equations know no walls"));
 }
 
+// Advection, Eq. 14, and diffusion, Eq. 16. LegendreFlow::move then calls push (forces, Eq. 17) and finish (projection, Eqs. 19 and 20).
 void PaperFluid::advance(double dt) {
   advection_.set_velocity(parts());
   const double before = energy();
   if (material_.moves) {
     Components u = parts();
-    for (int a = 0; a < space_.dimensions(); ++a) u[a] = advection_.exponential(u[a], dt);
+    for (int a = 0; a < space_.dimensions(); ++a) u[a] = advection_.advected(u[a], dt);
     const double amount = material_.viscosity * dt;
-    for (int a = 0; a < space_.dimensions() && amount > 0 && !confined_; ++a) u[a] = laplacian_.diffused(u[a], amount);
+    if (amount > 0 && !confined_)
+      for (int a = 0; a < space_.dimensions(); ++a) u[a] = laplacian_.diffused(u[a], amount);
     set_parts(u);
-    projects_ = true;
+    needs_projection_ = true;
     if (confined_) {
       project();
       if (amount > 0 && confined_->size() > 0)
@@ -108,7 +110,7 @@ void PaperFluid::advance(double dt) {
     require_tame();
   }
   for (Array* r : carried()) {
-    *r = advection_.exponential(*r, dt);
+    *r = advection_.advected(*r, dt);
     if (r->size() == 0 || !(material_.diffusivity > 0)) continue;
     const double amount = material_.diffusivity * dt;
     *r = confined_ ? space_.scalar_diffused(*r, amount) : laplacian_.diffused(*r, amount);
@@ -119,11 +121,11 @@ void PaperFluid::push(const Components& change) {
   Components u = parts();
   for (int a = 0; a < space_.dimensions(); ++a) u[a] += change[a];
   set_parts(u);
-  projects_ = true;
+  needs_projection_ = true;
 }
 
 void PaperFluid::finish(double) {
-  if (!projects_) return;
+  if (!needs_projection_) return;
   const double before = energy();
   project();
   if (before > 0) growth_ *= energy() / before;

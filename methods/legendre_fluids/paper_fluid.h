@@ -42,9 +42,11 @@ class PaperFluid : public Fluid {
   PaperAdvection advection_;
   PaperLaplacian laplacian_;
   std::optional<ConfinedSpace> confined_;  // of the repaired variant
-  Eigen::MatrixXd to_wall_, to_free_;      // coefficients of L to those of the confined space
-  double growth_ = 1;                      // of the energy in this step so far
-  bool projects_ = false;                  // the velocity is what advection or forces left
+  // Coefficients of L to those of the confined space. Across walls: the L2 projection (phi^T phi)^-1 phi^T; along the other axes the last
+  // coefficient is left out.
+  Eigen::MatrixXd to_wall_, to_free_;
+  double growth_ = 1;              // of the energy in this step so far
+  bool needs_projection_ = false;  // the velocity is what advection or forces left
 };
 
 }  // namespace airlight::legendre_fluids

@@ -60,7 +60,7 @@ Array PaperAdvection::operator()(const Array& c) const {
   return sum;
 }
 
-Array PaperAdvection::exponential(const Array& c, double dt) const {
+Array PaperAdvection::advected(const Array& c, double dt) const {
   if (c.size() == 0) return c;
   const double parts = std::ceil(dt * rate_);
   if (!(parts <= most_parts))
@@ -92,6 +92,7 @@ Array PaperLaplacian::operator()(const Array& c) const {
 
 Array PaperLaplacian::diffused(const Array& c, double amount) const {
   Array result = c, term = c;
+  // 1 + amount D^2 + (amount D^2)^2 + ...: each term is two degrees lower.
   for (int degree = d_ * (n_ - 1); degree >= 2; degree -= 2) {
     term = amount * (*this)(term);
     result += term;
@@ -104,7 +105,7 @@ const scene::LeastNormFactors& PaperLaplacian::decomposition() const {
   const int size = scene::tensor_size(shape_);
   MatrixXd matrix(size, size);
   for (int i = 0; i < size; ++i) matrix.col(i) = (*this)(Array::Unit(size, i));
-  return decomposition_.emplace(matrix, 1e-11);
+  return decomposition_.emplace(matrix, 1e-11);  // what is smaller is the null space: D^2 is nilpotent
 }
 
 Components PaperLaplacian::projected(const Components& u) const {
@@ -112,6 +113,7 @@ Components PaperLaplacian::projected(const Components& u) const {
   for (int a = 1; a < d_; ++a) divergence += gradient(a, u[a]);
   const Array q = decomposition().solve(divergence);
   Components result;
+  // A velocity's component is counted in halves of the box, and so is D: Eq. 20's gradient is D_a Q over half^2 in those units.
   for (int a = 0; a < d_; ++a) result[a] = u[a] - gradient(a, q) / (half_[a] * half_[a]);
   return result;
 }

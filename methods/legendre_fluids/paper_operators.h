@@ -19,9 +19,9 @@ class PaperAdvection {
   // U: one array per axis. What follows advects with it.
   void set_velocity(const Components& u);
   Array operator()(const Array& c) const;  // A c
-  // exp(-dt A) c: equation 14 with the right sign, by its series, since A need not have an eigenbasis. Throws scene::Unstable where the
+  // Equation 14, exp(-dt A) c with the right sign, by its series, since A need not have an eigenbasis. Throws scene::Unstable where the
   // velocity is so great that it has no end.
-  Array exponential(const Array& c, double dt) const;
+  Array advected(const Array& c, double dt) const;
 
  private:
   Array along(const std::array<const Eigen::MatrixXd*, 3>&, const Array&, TensorShape) const;

@@ -52,11 +52,10 @@ void Basis(const Recurrence& r, int n, const double* x, V* values) {
   for (int v = 0; v < vectors; ++v) {
     const V at = hn::LoadU(d, x + v * width);
     values[v] = hn::Set(d, std::sqrt(0.5));
-    if (n > 1) values[vectors + v] = hn::Mul(hn::Set(d, std::sqrt(1.5)), at);
+    if (n > 1) values[vectors + v] = hn::Set(d, std::sqrt(1.5)) * at;
     for (int k = 1; k + 1 < n; ++k)
-      values[(k + 1) * vectors + v] =
-          hn::MulSub(hn::Mul(hn::Set(d, r.a[std::size_t(k)]), at), values[k * vectors + v],
-                     hn::Mul(hn::Set(d, r.b[std::size_t(k)]), values[(k - 1) * vectors + v]));
+      values[(k + 1) * vectors + v] = MulSub(hn::Set(d, r.a[std::size_t(k)]) * at, values[k * vectors + v],
+                                             hn::Set(d, r.b[std::size_t(k)]) * values[(k - 1) * vectors + v]);
   }
 }
 
@@ -65,14 +64,14 @@ template <int R>
 HWY_INLINE void AddRows(const double* c, int count, const V* of_z, const V* of_y, V* plane) {
   V row[R][vectors];
   for (int r = 0; r < R; ++r)
-    for (int v = 0; v < vectors; ++v) row[r][v] = hn::Mul(hn::Set(d, c[r * count]), of_z[v]);
+    for (int v = 0; v < vectors; ++v) row[r][v] = hn::Set(d, c[r * count]) * of_z[v];
   for (int k = 1; k < count; ++k)
     for (int r = 0; r < R; ++r) {
       const V factor = hn::Set(d, c[r * count + k]);
-      for (int v = 0; v < vectors; ++v) row[r][v] = hn::MulAdd(factor, of_z[k * vectors + v], row[r][v]);
+      for (int v = 0; v < vectors; ++v) row[r][v] = MulAdd(factor, of_z[k * vectors + v], row[r][v]);
     }
   for (int r = 0; r < R; ++r)
-    for (int v = 0; v < vectors; ++v) plane[v] = hn::MulAdd(row[r][v], of_y[r * vectors + v], plane[v]);
+    for (int v = 0; v < vectors; ++v) plane[v] = MulAdd(row[r][v], of_y[r * vectors + v], plane[v]);
 }
 
 // One order of sums, of products that are added without rounding in between, whatever the width: the same bits by AVX2 and AVX-512.
@@ -100,7 +99,7 @@ void SeriesValues(const scene::TensorShape& shape, const double* c, const double
       AddRows<1>(c, shape[2], of_z, of_y + j * vectors, plane);
       c += shape[2];
     }
-    for (int v = 0; v < vectors; ++v) sum[v] = hn::MulAdd(plane[v], of_x[i * vectors + v], sum[v]);
+    for (int v = 0; v < vectors; ++v) sum[v] = MulAdd(plane[v], of_x[i * vectors + v], sum[v]);
   }
   for (int v = 0; v < vectors; ++v) hn::StoreU(sum[v], d, values + v * width);
 }

@@ -191,6 +191,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   }
   counts.crossings += double(work.crossings.size());
   seconds.scene += watch.lap();
+  // Stage 4, before 2 and 3, since it needs nothing of them.
   for (std::size_t i = 0; i < pixels.size() && !shadows_.empty(); ++i)
     orders_[l].sort(pixels[i].ray, work.crossings.data() + work.first[i], work.crossings.data() + work.first[i + 1]);
   seconds.sort += watch.lap();
@@ -204,7 +205,7 @@ void PaperStages::draw(std::size_t l, const EdgeFan* fan, std::optional<int> cou
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].airlight = work.sum[i];
 }
 
-// Stage 3: where the ray leaves the air, or ends, if the stencil is 0 there.
+// Stage 2: the stencil at the ray's end. Stage 3: light up to where the ray leaves the air, or ends, if the stencil is 0 there.
 void PaperStages::draw_ends(std::size_t l, std::size_t a, const std::vector<Pixel>& pixels, Work& work,
                             Counts& counts) const {
   work.domain.resize(pixels.size());
@@ -235,13 +236,14 @@ Rgb PaperStages::to_end(std::size_t l, std::size_t a, const Pixel& pixel, Interv
   return airlight(airlight_terms_[a], lights_[l], pixel.ray, {0, domain.hi});
 }
 
-// Stage 5, with the stencil's rules put right: each plane adds or takes away all light in front of it.
+// Stage 5: each plane adds or takes away all light in front of it. Sections 4 and 6 of the paper contradict each other: there, front faces
+// increment the stencil; by its Figure 6 they subtract from it. The latter is right from back to front: a front face is where shadow ends.
 void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pixel>& pixels, Work& work,
                               Counts& counts) const {
   const Part& part = parts_[l][a];
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (work.domain[i].empty() || work.first[i] == work.first[i + 1]) continue;
-    // Where the ray enters a medium the stencil becomes 255: nothing that is sorted in front of it is drawn. Light is
+    // Where the ray enters a medium the stencil becomes 255 (end of section 5.2): nothing that is sorted in front of it is drawn. Light is
     // counted from there, so that there is none to take away.
     double entry = infinity;
     if (part.medium && work.domain[i].lo > 0)
@@ -250,6 +252,8 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
     for (std::size_t k = work.first[i]; k < work.first[i + 1] && work.crossings[k].order < entry; ++k) {
       const Crossing& crossing = work.crossings[k];
       if (crossing.x >= work.domain[i].hi || (crossing.edge >= 0 && part.left_out[crossing.edge])) continue;
+      // A front face, where the ray enters a shadow, is drawn where nothing else shades what lies behind it (the paper's stencil of 1); a back
+      // face where that is lit. Closed meshes change the count by 2. The order is the paper's, not the ray's: counts below 0 may come out.
       const double sign = crossing.change > 0 && stencil == crossing.change ? 1
                           : crossing.change < 0 && stencil == 0             ? -1
                                                                             : 0;
@@ -268,6 +272,7 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
 
 void PaperStages::add(Rgb& sum, const Rgb& value) const {
   sum += value;
+  // Of 8 bits, which end at 1 (section 6).
   if (options_.frame_buffer) sum = ((sum * 255).round() / 255).max(0.0).min(1.0);
 }
 

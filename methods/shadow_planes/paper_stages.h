@@ -38,13 +38,13 @@ class PaperStages {
   std::size_t planes() const { return planes_; }
 
  private:
-  // One air as one light shows it.
+  // One airlight term as one light shows it.
   struct Part {
     const PaperMedium* medium;              // null: it fills all space, or its regions are exact
     std::optional<MediaBoundary> boundary;  // of the medium
     std::vector<double> triangle_key;       // order of its triangles
-    bool planes_end = false;     // planes at vertices are drawn within the exact regions of media, all of which end
-    std::vector<char> left_out;  // edges whose planes cannot cut the medium's box
+    bool planes_end = false;                // planes count only between the first entry into media and the last exit
+    std::vector<char> left_out;             // edges whose planes cannot cut the medium's box
     std::optional<VertexAirlight> at_vertices;  // else by pixel
   };
   struct Work;

@@ -15,7 +15,7 @@ Series product(const Series& a, const Series& b) {
   return c;
 }
 
-// v^alpha for v_0 > 0.
+// v^alpha for v_0 > 0, by v b' = alpha v' b.
 Series power(const Series& v, double alpha) {
   Series b(v.size());
   b[0] = std::pow(v[0], alpha);
@@ -62,7 +62,7 @@ Series plain_tangent(int degree, double centre) {
   return t;
 }
 
-// e^(-a (q - q_0)).
+// e^(-a (q - q_0)), by e' = -a q' e.
 Series decay(const Series& q, double a) {
   Series e(q.size(), 0.0);
   e[0] = 1;

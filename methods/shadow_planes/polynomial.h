@@ -1,5 +1,7 @@
-// The same integral as the paper evaluates it: the integrand's Taylor polynomial in theta (Biri et al. 2006,
-// section 4.1 and annex), of any degree about any centre, integrated term by term.
+// A point light's airlight as the paper evaluates it (Biri et al. 2006, Eq. 2, section 4.1 and annex):
+//   L = albedo k / (4 pi h) e^(-k T) I  integral of e^(-a q(theta)) p(-sin theta) d theta, a = k h, q = tan(pi/4 + theta/2),
+// k: extinction, h: distance of the light from the ray. The integrand's Taylor polynomial in theta, of any degree about any centre, is
+// integrated term by term; mapped_rule.h integrates the same by a rule.
 //
 // It converges within pi/2 of theta = 0 and needs exp(a |theta|) times the digits of the result: useful for
 // a = extinction * h up to about 3 and away from +-pi/2.
@@ -21,7 +23,7 @@ std::vector<double> bounded_coefficients(const PhaseForm&, double a, int degree,
 // printed. Throws Error for Henyey-Greenstein, which it has not.
 std::vector<double> printed_coefficients(const PhaseForm&, double a);
 
-// The first two (`bounded`: the second) and the annex's, about theta = 0: each coefficient is a polynomial in a of its
+// taylor_coefficients (`bounded`: bounded_coefficients) and printed_coefficients, about theta = 0: each coefficient is a polynomial in a of its
 // own, [n][power of a], for many values of a.
 std::vector<std::vector<double>> coefficients_in_a(const PhaseForm&, int degree, bool bounded = false);
 std::vector<std::vector<double>> printed_in_a(const PhaseForm&);

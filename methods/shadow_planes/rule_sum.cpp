@@ -21,25 +21,25 @@ HWY_INLINE V set(double x) { return hn::Set(d, x); }
 
 // phase_of_halves.
 HWY_INLINE V phase_of(const PhaseForm& phase, V v, V w) {
-  const auto eighth = [](V x) { return x = hn::Mul(x, x), x = hn::Mul(x, x), hn::Mul(x, x); };
+  const auto eighth = [](V x) { return x = x * x, x = x * x, x * x; };
   switch (phase.kind) {
     case PhaseForm::Kind::isotropic:
       break;
     case PhaseForm::Kind::rayleigh: {
-      const V c = hn::Sub(v, w);
-      return hn::Mul(set(0.75), hn::MulAdd(c, c, set(1)));
+      const V c = v - w;
+      return set(0.75) * MulAdd(c, c, set(1));
     }
     case PhaseForm::Kind::hazy:
-      return hn::Mul(set(phase.scale), hn::MulAdd(set(9), eighth(v), set(1)));
+      return set(phase.scale) * MulAdd(set(9), eighth(v), set(1));
     case PhaseForm::Kind::murky: {
-      const V v8 = eighth(v), v16 = hn::Mul(v8, v8);
-      return hn::Mul(set(phase.scale), hn::MulAdd(set(50), hn::Mul(v16, v16), set(1)));
+      const V v8 = eighth(v), v16 = v8 * v8;
+      return set(phase.scale) * MulAdd(set(50), v16 * v16, set(1));
     }
     case PhaseForm::Kind::henyey_greenstein: {
       const double g = phase.g;
-      const V r = g > 0 ? hn::MulAdd(set(4 * g), w, set((1 - g) * (1 - g)))
-                        : hn::MulAdd(set(-4 * g), v, set((1 + g) * (1 + g)));
-      return hn::Div(set((1 - g) * (1 + g)), hn::Mul(r, hn::Sqrt(r)));
+      const V r =
+          g > 0 ? MulAdd(set(4 * g), w, set((1 - g) * (1 - g))) : MulAdd(set(-4 * g), v, set((1 + g) * (1 + g)));
+      return set((1 - g) * (1 + g)) / (r * Sqrt(r));
     }
   }
   return set(1);
@@ -52,17 +52,17 @@ double SumOfNodes(const MappedRule<double>& rule, const PhaseForm& phase, double
   const std::size_t lanes = hn::Lanes(d), count = rule.node.size();
   for (std::size_t i = 0; i < count; i += lanes) {
     const auto inside = hn::FirstN(d, std::min(lanes, count - i));
-    const V s = hn::Mul(set(map.s1), hn::MaskedLoad(inside, d, rule.node.data() + i)), t = hn::Sub(one, s);
+    const V s = set(map.s1) * hn::MaskedLoad(inside, d, rule.node.data() + i), t = one - s;
     V power = one, series = hn::Zero(d);  // t^m, 1 + t + ... + t^(m-1)
     for (int k = 0; k < rule.m; ++k) {
-      series = hn::Add(series, power);
-      power = hn::Mul(power, t);
+      series = series + power;
+      power = power * t;
     }
-    const V inverse = hn::Div(one, hn::Mul(power, t));
-    const V further = hn::Mul(hn::Mul(hn::Mul(c, s), hn::Mul(series, t)), inverse);  // q - q0
-    const V q = hn::Add(q0, further), q2 = hn::Mul(q, q), v = hn::Div(one, hn::Add(one, q2)), w = hn::Mul(q2, v);
-    const V factor = hn::Mul(hn::Exp(d, hn::Mul(set(-a), further)), phase_of(phase, v, w));
-    sum = hn::MulAdd(hn::Mul(hn::MaskedLoad(inside, d, rule.weight.data() + i), factor), hn::Mul(v, inverse), sum);
+    const V inverse = one / (power * t);
+    const V further = c * s * (series * t) * inverse;  // q - q0
+    const V q = q0 + further, q2 = q * q, v = one / (one + q2), w = q2 * v;
+    const V factor = hn::Exp(d, set(-a) * further) * phase_of(phase, v, w);
+    sum = MulAdd(hn::MaskedLoad(inside, d, rule.weight.data() + i) * factor, v * inverse, sum);
   }
   return 2 * map.c * rule.m * hn::GetLane(hn::SumOfLanes(d, sum));
 }

@@ -14,7 +14,7 @@ int floor_half(int i) { return i >= 0 ? i / 2 : -((1 - i) / 2); }
 // Indices k that a filter reaches from [lo, lo + size).
 std::pair<int, int> reached(int lo, int size, const Taps& taps) {
   const int length = int(taps.values.size());
-  const int first = floor_half(lo - taps.first - length + 2);  // ceil((lo - o - L + 1) / 2)
+  const int first = floor_half(lo - taps.first - length + 2);  // ceil((lo - taps.first - length + 1) / 2)
   return {first, floor_half(lo + size - 1 - taps.first) - first + 1};
 }
 
@@ -67,7 +67,7 @@ Coefficients filter_down(const Coefficients& c, const Taps& along_u, const Taps&
   const IndexRange range = coarse_range(c.range, along_u, along_v);
   const int u_first = range.lo[0], u_count = range.size[0], v_first = range.lo[1], v_count = range.size[1];
   Coefficients out{range, std::vector<double>(std::size_t(u_count) * v_count)};
-  // Rows are filtered along u as those along v need them: as many are kept as the filter has taps.
+  // Rows are filtered along u as those along v need them. As many are kept as the filter has taps: row `at` in rows[at % size].
   const int length = int(along_v.values.size());
   std::vector<std::vector<double>> rows(std::size_t(length) + 1, std::vector<double>(u_count));
   int made = c.range.lo[1];
@@ -152,10 +152,11 @@ Coefficients difference(const Coefficients& fine, const Coefficients& coarse, in
   r.values.assign(std::size_t(r.range.size[0]) * r.range.size[1], 0);
   filter_up(coarse, p, p, r);
   for (double& value : r.values) value = -value;
+  const int right = fine.range.lo[0] - r.range.lo[0], down = fine.range.lo[1] - r.range.lo[1];
   for (int j = 0; j < fine.range.size[1]; ++j)
     for (int i = 0; i < fine.range.size[0]; ++i)
-      r.values[std::size_t(j + fine.range.lo[1] - r.range.lo[1]) * r.range.size[0] + i + fine.range.lo[0] -
-               r.range.lo[0]] += fine.values[std::size_t(j) * fine.range.size[0] + i];
+      r.values[std::size_t(j + down) * r.range.size[0] + i + right] +=
+          fine.values[std::size_t(j) * fine.range.size[0] + i];
   return r;
 }
 

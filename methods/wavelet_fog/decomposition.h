@@ -24,7 +24,7 @@ Coefficients filter_down(const Coefficients&, const Taps& along_u, const Taps& a
 // sum_k taps_{i-2k} a_k added to `fine`, along both.
 void filter_up(const Coefficients& coarse, const Taps& along_u, const Taps& along_v, Coefficients& fine);
 
-// One level: first letter along u, second along v; a is coarse, d detail.
+// One level: first letter along u, second along v; a is coarse (phi), d detail (psi). ad, da and dd are details 1 to 3 of Algorithm 1.
 struct Bands {
   Coefficients aa, ad, da, dd;
 };

@@ -18,7 +18,7 @@ struct Family {
   Taps p, q, p_tilde, q_tilde;
 };
 
-// "haar" (degree 0), "cdf22" (1), "cdf33" (2), and "cdf31" (2), whose iterated low-pass grows without end: for the table
+// "haar" (degree 0); of Cohen, Daubechies and Feauveau 1992 "cdf22" (1), "cdf33" (2), and "cdf31" (2), whose iterated low-pass grows without end: for the table
 // that shows it. Throws Error for another name.
 const Family& family(const std::string& name);
 

@@ -67,7 +67,8 @@ void LeveledFog::lay_bands() {
   if (options_.table > 0) table_.emplace(bands_.back().pieces(), options_.table, options_.lookup, needs_moments());
 }
 
-// Of the paper's sum, with tables or wavelets: band 0 is complete, m counts up to its distance.
+// Algorithm 1's loop over levels, with tables or wavelets: band 0 is complete, m counts up to its distance. Its walk over the cells of a level
+// is BandGrid::integral.
 double LeveledFog::summed_bands(const scene::HeightProfile& profile, const scene::MapLine& line, Interval inside,
                                 double length, Visits& visits) const {
   double sum = 0;
@@ -91,11 +92,11 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
   const Interval way = scene::extent(*medium_, ray, {0, length});
   const Interval inside = scene::clip(medium_->region, ray, {0, length});
   if (inside.empty() || (way.empty() && !uses_levels(o.variant))) return 0;
-  const double reach = length_in_box(levels_, line, length);
+  const double eye_to_end = length_in_box(levels_, line, length);  // |OP|
   const auto part = [&](int level, double from, double to) {
     return integral_of_level(levels_.grid[level], level, profile, line, intersect(inside, {from, to}), visits);
   };
-  if (!bands_.empty()) return summed_bands(profile, line, inside, reach, visits);
+  if (!bands_.empty()) return summed_bands(profile, line, inside, eye_to_end, visits);
   switch (o.variant) {
     case Variant::pre:
     case Variant::direct:
@@ -104,9 +105,9 @@ double LeveledFog::column(const Ray& ray, double length, Visits& visits) const {
     case Variant::skip:
       return skipped_depth(levels_, *blocks_, profile, line, way, enough_, visits);
     case Variant::paper:
-      return summed_depth(levels_, profile, line, inside, reach, o.mu, visits);
+      return summed_depth(levels_, profile, line, inside, eye_to_end, o.mu, visits);
     case Variant::tele:
-      return telescoped_depth(levels_, profile, line, inside, reach, o.mu, visits);
+      return telescoped_depth(levels_, profile, line, inside, eye_to_end, o.mu, visits);
     case Variant::bound: {
       // The error is shared out over the way in the fog, in the thickest channel.
       const double thickest = medium_->sigma_t.maxCoeff();

@@ -64,6 +64,7 @@ void require_share(double mu) {
 
 double reach_of(int m, double length, double mu) { return m == 0 ? length : length * std::pow(mu, m); }
 
+// Algorithm 1's loop over levels, after deconstruction. Its walk over the cells of a level is walk_cells (scene/media/spline_map.h).
 double summed_depth(const Levels& levels, const HeightProfile& profile, const MapLine& line, Interval inside,
                     double length, double mu, Visits& visits) {
   const int L = levels.count();

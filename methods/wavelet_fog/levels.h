@@ -1,6 +1,6 @@
 // A map at several resolutions, and the optical depth of a ray by levels of detail. Giroud and Biri 2010, sections 4.2
-// and 4.3, in the one reading of Algorithm 1 that its tables allow: level 0 is the coarsest approximation, complete;
-// details m = 1 to L, of which L is the finest, count up to the distance |OP| mu^m from the eye.
+// and 4.3. Algorithm 1 can be read in two ways; Table 2 allows one: m = 0 is the coarsest approximation, complete; details m = 1 to L, of
+// which L is the finest, count up to the distance |OP| mu^m from the eye. Grids are numbered the other way: l = L - m, from the map, l = 0.
 #pragma once
 #include <string>
 
@@ -29,7 +29,7 @@ Levels make_levels(const scene::SplineMap&, const std::string& family, Coarse, i
 // (for the sky |OP| is infinite). Height is not clipped. 0 if it misses the box.
 double length_in_box(const Levels&, const scene::MapLine&, double length);
 
-// Eq. 4: radiance from behind through the depth, and the fog's own. Opacity by expm1: 1 - exp loses all digits of thin fog.
+// Eq. 4, whose exp Eq. 11 and Algorithm 1's last line leave out: radiance from behind through the depth, and the fog's own. Opacity by expm1: 1 - exp loses all digits of thin fog.
 double composite(double depth, double behind, double fog);
 
 // Throws Error unless mu is in [0, 1].

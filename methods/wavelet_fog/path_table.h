@@ -14,8 +14,10 @@ struct UnitPieces {
   Taps q;  // no values: no wavelet
 
   int scaling() const { return degree + 1; }
-  int wavelet() const { return q.values.empty() ? 0 : int(q.values.size() + degree + 1) / 2; }  // its support
-  int wavelet_first() const { return q.first / 2; }                                             // where that begins
+  int wavelet() const {
+    return q.values.empty() ? 0 : int(q.values.size() + degree + 1) / 2;
+  }                                                  // its support, in whole cells
+  int wavelet_first() const { return q.first / 2; }  // where that begins
   int count() const { return scaling() + wavelet(); }
   // Of scaling function and wavelet in turn: piece m is phi(u + m), or psi(u + wavelet_first + m); u in [0, 1], closed.
   void at(double u, double* values) const;

@@ -15,6 +15,11 @@ namespace {
 using scene::Scene;
 using scene::SettingSpec;
 
+void bind(scene::SettingBinder& b, Accuracy& a) {
+  b.real("relative_tolerance", a.relative_tolerance, 1e-14, 0.1, "of each pixel's airlight, per channel");
+  b.integer("max_evaluations", a.max_evaluations, 15, 1e7, "of the integrand, per pixel");
+}
+
 const char* const no_finite_answer =
     "a point or spot light of radius 0 sits on the camera inside a medium: its airlight is infinite";
 
@@ -45,7 +50,7 @@ class DeterministicPrepared final : public scene::Prepared {
   DeterministicPrepared(std::shared_ptr<const Scene> scene, const scene::Settings& settings)
       : scene_(std::move(scene)),
         settings_(settings.canonical()),
-        integrator_(*scene_, {settings.real("relative_tolerance"), long(settings.integer("max_evaluations"))}) {}
+        integrator_(*scene_, scene::read_settings(bind, settings)) {}
 
   std::vector<scene::Stage> stages() const override {
     const bool delta = any(*scene_, true), scattering = any_scattering(*scene_);
@@ -144,10 +149,7 @@ class DeterministicRenderer final : public scene::Renderer {
   std::string about() const override {
     return "noise-free single scattering by adaptive Gauss-Kronrod quadrature (reference)";
   }
-  std::vector<SettingSpec> settings() const override {
-    return {scene::real_setting("relative_tolerance", "1e-10", 1e-14, 0.1, "of each pixel's airlight, per channel"),
-            scene::integer_setting("max_evaluations", "200000", 15, 1e7, "of the integrand, per pixel")};
-  }
+  std::vector<SettingSpec> settings() const override { return scene::list_settings(bind); }
   std::vector<std::string> supports(const Scene& scene, const scene::Settings&) const override {
     if (scene.camera.kind == scene::Camera::Kind::perspective && light_on_camera(scene, scene.camera.position))
       return {no_finite_answer};

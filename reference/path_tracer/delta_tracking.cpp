@@ -9,6 +9,7 @@
 namespace airlight::path_tracer {
 namespace {
 
+// Which random numbers a flight takes; tracking itself begins at track().
 // Flights of one vertex share 2^24 random blocks: 2^18 for each of up to 64 media. So do the transmittances of its four
 // branches (light, and three segments of a connection): 2^16 for each medium.
 // The second to eighth tries of a first collision have 2^15 each, later ones 2^11.
@@ -94,11 +95,13 @@ double majorant_column(const TrackedMedium& tracked, const Ray& ray, Interval ra
 }  // namespace
 
 std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const SampleRandom& random,
-                                    std::uint32_t vertex, int attempt, double some, Counters& counters) const {
+                                    std::uint32_t vertex, int attempt, double any_tentative, Counters& counters) const {
   const Tries tries = tries_of(attempt);
   std::optional<Collision> nearest;
-  enum { not_drawn, drawn, past } forced = some < 1 ? not_drawn : past;
-  double ahead = 0;  // majorant depth to the forced collision
+  enum { not_drawn, drawn, past } forced = any_tentative < 1 ? not_drawn : past;
+  // A forced collision lies `ahead` in majorant depth. Medium after medium takes its own off, until it falls into one; the last takes the rest.
+  // Media after that are flown through freely.
+  double ahead = 0;
   for (std::size_t m = 0; m < tracked_.size(); ++m) {
     const TrackedMedium& tracked = tracked_[m];
     const Interval range = scene::extent(*tracked.medium, ray, {0, nearest ? nearest->t : tmax});
@@ -112,7 +115,7 @@ std::optional<Collision> Media::fly(const Ray& ray, double tmax, int hero, const
     if (forced == past) {
       depth = -elementary::log(uniforms.next());
     } else {
-      if (forced == not_drawn) ahead = truncated_exponential(uniforms.next(), some);
+      if (forced == not_drawn) ahead = truncated_exponential(uniforms.next(), any_tentative);
       forced = drawn;
       const double column = m + 1 < tracked_.size() ? sigma * majorant_column(tracked, ray, range) : infinity;
       if (ahead >= column) {

@@ -58,9 +58,11 @@ Flight force(const Media& media, const Ray& ray, double tmax, double boost, Coun
   Rgb real, wanted;
   for_each_channel(real, [&](int c) { return some_collision(depth[c]); });
   const bool collides_anyway = real.mean() >= 1 - most_missed;
-  for_each_channel(flight.chance, [&](int c) { return real[c] > 0 ? std::min(1.0, boost * real[c]) : 0; });
-  if (!collides_anyway) for_each_channel(flight.some, [&](int c) { return some_collision(tentative[c]); });
-  for_each_channel(wanted, [&](int c) { return flight.some[c] > 0 ? std::min(1.0, real[c] / flight.some[c]) : 1; });
+  for_each_channel(flight.flight_probability, [&](int c) { return real[c] > 0 ? std::min(1.0, boost * real[c]) : 0; });
+  if (!collides_anyway) for_each_channel(flight.any_tentative, [&](int c) { return some_collision(tentative[c]); });
+  for_each_channel(wanted, [&](int c) {
+    return flight.any_tentative[c] > 0 ? std::min(1.0, real[c] / flight.any_tentative[c]) : 1;
+  });
   if (real.maxCoeff() < alike) {
     flight.tries = tries_where_alike((real > 0).select(wanted, 1).minCoeff());
   } else {
@@ -69,7 +71,7 @@ Flight force(const Media& media, const Ray& ray, double tmax, double boost, Coun
   }
   for_each_channel(flight.gain, [&](int c) {
     const double success = wanted[c] < 1 ? -expm1(flight.tries * log1p(-wanted[c])) : 1.0;
-    return real[c] > 0 ? flight.chance[c] * success / real[c] : 1.0;
+    return real[c] > 0 ? flight.flight_probability[c] * success / real[c] : 1.0;
   });
   return flight;
 }

@@ -16,9 +16,10 @@ namespace airlight::path_tracer {
 struct Flight {
   bool forced = false;
   int tries = 1;
-  Rgb chance = Rgb::Ones();  // of trying at all, in [0, 1], where the path follows this channel's extinction
-  Rgb some = Rgb::Ones();    // probability of a collision, null ones counted, which is given where it is below 1
-  Rgb gain = Rgb::Ones();    // how much denser collisions are on the segment than an analog flight's, per channel
+  Rgb flight_probability =
+      Rgb::Ones();                  // of trying at all, in [0, 1], where the path follows this channel's extinction
+  Rgb any_tentative = Rgb::Ones();  // probability of a collision, null ones counted, which is given where it is below 1
+  Rgb gain = Rgb::Ones();  // how much denser collisions are on the segment than an analog flight's, per channel
   Rgb transmittance = Rgb::Ones();  // of the whole segment; known where forced
 };
 

@@ -51,7 +51,7 @@ class Media {
   // nothing if there is none. Other attempts, below `most_attempts`, are independent flights. `some` < 1: given that there is a collision,
   // null ones counted, which has this probability.
   std::optional<Collision> fly(const Ray&, double tmax, int hero, const SampleRandom&, std::uint32_t vertex,
-                               int attempt, double some, Counters&) const;
+                               int attempt, double any_tentative, Counters&) const;
   // Mean number of collisions on [0, tmax], null ones counted, for each channel's extinction.
   Rgb majorant_depth(const Ray&, double tmax) const;
   // The part of [0, tmax] from the first to the last point where any medium is met.

@@ -26,7 +26,7 @@ Vec3 Walk::sample_scatter(const Vertex& v, double u_lobe, double u, double turns
   return turned(v.w, scene::sample_phase_cosine(medium(v.medium).phase, u), turns);
 }
 
-// One light.
+// Next-event estimation: one light, picked by what it would send.
 void Walk::next_event(const Path& path, const Vertex& v) const {
   if (!lights_.any()) return;
   const RandomBlock numbers = block(path, Purpose::light);
@@ -45,8 +45,7 @@ void Walk::next_event_delta(const Path& path, const Vertex& v, const Pick& pick)
   if (!(value.maxCoeff() > 0)) return;
   double weight = 1 / pick.probability;
   if (!v.hit && lights_.connected(pick.light)) {
-    // Both densities are relative to the mean of the channels before the segment that led here; the throughput already
-    // stands on the mean after it, analog_pdf's.
+    // The balance heuristic's share. collide() has divided the throughput by the mean of analog_pdf already.
     const double analog = pick.probability * v.analog_pdf.mean();
     const double t = (v.x - path.segment->ray.origin).dot(path.segment->ray.direction);
     weight *= analog / (analog + connection_pdf(path, pick.light, t));
@@ -69,6 +68,7 @@ void Walk::next_event_environment(const Path& path, const Vertex& v, const Pick&
   const Ray shadow{origin(v, out), out};
   if (!world_.visible(shadow, infinity, -1)) return;
   const Rgb T = transmittance(path, shadow, infinity, 0);
+  // 1 / pdf, times the balance heuristic's pdf / (pdf + scatter_pdf).
   sample_.add(path.scatterings, path.reflections + (v.hit != nullptr),
               path.throughput * value * radiance * T / (pdf + scatter_pdf(v, out)));
 }

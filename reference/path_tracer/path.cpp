@@ -33,7 +33,7 @@ void Walk::run(const CameraRay& camera) const {
 // The main loop. A branch of a path begins with its collision.
 void Walk::follow(Path& path, std::optional<Collision> collision) const {
   Segment next;
-  for (;; collision.reset()) {
+  while (true) {
     // Free flight: to a collision, or else to the end of the segment.
     if (!collision) {
       ++counters_.rays;
@@ -64,6 +64,7 @@ void Walk::follow(Path& path, std::optional<Collision> collision) const {
     const Vec3 out = draw_direction(path, v, random);
     if (!(path.throughput.maxCoeff() > 0)) return;
     aim(path, {origin(v, out), out}, next);
+    collision.reset();
   }
 }
 
@@ -87,11 +88,12 @@ Flight Walk::flight_on(const Path& path, const Ray& ray, const scene::RayEnd& en
 std::optional<Collision> Walk::fly(const Path& path) const {
   const auto& [ray, end, hull, flight] = *path.segment;
   if (hull.empty()) return {};
-  const double chance = flight.chance[path.hero];
-  if (chance < 1 && !(block(path, Purpose::camera, 2).fine(0) < chance)) return {};
+  const double probability = flight.flight_probability[path.hero];
+  if (probability < 1 && !(block(path, Purpose::camera, 2).fine(0) < probability)) return {};
   std::optional<Collision> collision;
   for (int k = 0; k < flight.tries && !collision; ++k)
-    collision = media_.fly(ray, end.t, path.hero, random_, path.dimension(), k, flight.some[path.hero], counters_);
+    collision =
+        media_.fly(ray, end.t, path.hero, random_, path.dimension(), k, flight.any_tentative[path.hero], counters_);
   return collision;
 }
 
@@ -100,7 +102,7 @@ std::optional<Collision> Walk::fly(const Path& path) const {
 bool Walk::attenuate(Path& path) const {
   if (path.segment->hull.empty() || media_.grey()) return true;
   const Rgb T = media_.transmittance(path.segment->ray, path.segment->end.t, counters_);
-  const Rgb arriving = path.density * T;  // unnormalised
+  const Rgb arriving = path.density * T;  // p_c T_c: densities of the channels, up to a factor
   if (!(arriving.mean() > 0)) return false;
   path.throughput *= T / arriving.mean();
   path.density = arriving / arriving.mean();
@@ -115,7 +117,7 @@ void Walk::split(Path& path, std::optional<Collision>& collision) const {
   if (path.segment->end.hit) {
     if (collision) {
       Path scattered = path;
-      scattered.branch = 1 + path.vertex % 15;
+      scattered.branch = 1 + path.vertex % 15;  // four bits of the random numbers' place; 0 is the path itself
       follow(scattered, collision);
       collision.reset();
     }
@@ -145,7 +147,9 @@ bool Walk::collide(Path& path, const Collision& collision, Vertex& v) const {
   const bool need_T = !grey || (exact() && lights_.any_connected());
   const Rgb T = need_T ? media_.transmittance(segment.ray, collision.t, counters_) : Rgb(Rgb::Ones());
   const Rgb factor = T * medium.sigma_t * collision.density;
-  const Rgb arriving = path.density * factor * segment.flight.gain;  // unnormalised
+  // p_c T_c sigma_c density gain_c: densities of the channels, up to a factor. The throughput is multiplied by what the flight has over their
+  // mean; in grey scenes by 1 / gain.
+  const Rgb arriving = path.density * factor * segment.flight.gain;
   const double mean = arriving.mean();
   if (!(mean > 0)) return false;  // underflow: optical depths beyond 700
   const double forced = grey ? 1 / segment.flight.gain[0] : (path.density * factor).mean() / mean;
@@ -184,7 +188,7 @@ bool Walk::meet_surface(Path& path, Vertex& v) const {
 
 bool Walk::survive(Path& path, double u) const {
   if (path.scatterings + path.reflections < options_.roulette_order) return true;
-  const double q = std::min(options_.roulette_cap, path.throughput.maxCoeff() / path.forced);
+  const double q = std::min(options_.roulette_cap, path.throughput.maxCoeff() / path.forced);  // thinness ends no path
   if (q >= 1) return true;
   if (!(u < q)) return false;
   path.throughput /= q;
@@ -194,6 +198,7 @@ bool Walk::survive(Path& path, double u) const {
 // The throughput is zero where a reflection's lobe reaches below the surface.
 Vec3 Walk::draw_direction(Path& path, const Vertex& v, const RandomBlock& random) const {
   if (!v.hit) {
+    // As sample_scatter does: of a phase function value and density cancel.
     const scene::PhaseFunction& phase = medium(v.medium).phase;
     const double c = scene::sample_phase_cosine(phase, random.fine(0));
     path.direction_pdf = scene::phase_value(phase, c);

@@ -38,9 +38,9 @@ inline double log1p(double x) {
   return sum == 1 ? x : elementary::log(sum) * x / (sum - 1);
 }
 
-// An exponential variate of mean 1, given that it is below -ln(1 - some), however small that is; for the uniform u.
-inline double truncated_exponential(double u, double some) {
-  return some < 0.25 ? -log1p(-u * some) : -elementary::log(1 - u * some);
+// An exponential variate of mean 1, given that it is below -ln(1 - probability), however small that is; for the uniform u.
+inline double truncated_exponential(double u, double probability) {
+  return probability < 0.25 ? -log1p(-u * probability) : -elementary::log(1 - u * probability);
 }
 
 // Distances along a ray so that the angles seen from a light are uniform (equiangular sampling: Kulla and Fajardo

@@ -20,7 +20,7 @@ using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 using Mask = hn::Mask<F>;
 
-HWY_INLINE VF squared(VF x, VF y, VF z) { return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))); }
+HWY_INLINE VF squared(VF x, VF y, VF z) { return MulAdd(x, x, MulAdd(y, y, z * z)); }
 
 // Sphere around up to Lanes points.
 struct Neighbourhood {
@@ -30,12 +30,12 @@ HWY_INLINE Neighbourhood around(Mask used, VF x, VF y, VF z) {
   const F f;
   const VF big = hn::Set(f, 1e30f), small = hn::Set(f, -1e30f);
   const auto middle = [&](VF v) HWY_ATTR {
-    return 0.5f * (hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(used, v, big))) +
-                   hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElse(used, v, small))));
+    return 0.5f * (hn::GetLane(hn::MinOfLanes(f, IfThenElse(used, v, big))) +
+                   hn::GetLane(hn::MaxOfLanes(f, IfThenElse(used, v, small))));
   };
   Neighbourhood s{middle(x), middle(y), middle(z), 0};
-  const VF d2 = squared(hn::Sub(x, hn::Set(f, s.x)), hn::Sub(y, hn::Set(f, s.y)), hn::Sub(z, hn::Set(f, s.z)));
-  s.radius = std::sqrt(hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElseZero(used, d2)))) * 1.0001f;
+  const VF d2 = squared(x - hn::Set(f, s.x), y - hn::Set(f, s.y), z - hn::Set(f, s.z));
+  s.radius = std::sqrt(hn::GetLane(hn::MaxOfLanes(f, IfThenElseZero(used, d2)))) * 1.0001f;
   return s;
 }
 
@@ -52,14 +52,13 @@ long long GaussianDensity(const GaussianField& field, std::size_t n, const float
       const float apart = field.reach[g] + s.radius;
       if (gx * gx + gy * gy + gz * gz > apart * apart) continue;
       const VF scale = hn::Set(f, field.inverse_width[g]);
-      const VF d2 = squared(hn::Mul(scale, hn::Sub(x, hn::Set(f, field.x[g]))),
-                            hn::Mul(scale, hn::Sub(y, hn::Set(f, field.y[g]))),
-                            hn::Mul(scale, hn::Sub(z, hn::Set(f, field.z[g]))));
+      const VF d2 = squared(scale * (x - hn::Set(f, field.x[g])), scale * (y - hn::Set(f, field.y[g])),
+                            scale * (z - hn::Set(f, field.z[g])));
       const VF reach = hn::Set(f, field.reach[g] * field.inverse_width[g]);
-      const VF value = hn::Mul(hn::Set(f, field.amplitude[g]), hn::Exp(f, hn::Neg(d2)));
-      sum = hn::Add(sum, hn::IfThenElseZero(hn::Le(d2, hn::Mul(reach, reach)), value));
+      const VF value = hn::Set(f, field.amplitude[g]) * hn::Exp(f, Neg(d2));
+      sum = sum + IfThenElseZero(d2 <= reach * reach, value);
     }
-    if (field.any_negative) sum = hn::Max(sum, hn::Set(f, -field.constant));
+    if (field.any_negative) sum = Max(sum, hn::Set(f, -field.constant));
     hn::StoreU(sum, f, density + i);
   }
   return static_cast<long long>(n);
@@ -78,10 +77,9 @@ struct RayGroup {
     t0 = hn::LoadU(f, rays.t0 + i), t1 = hn::LoadU(f, rays.t1 + i);
     dx = hn::LoadU(f, rays.dx + i), dy = hn::LoadU(f, rays.dy + i), dz = hn::LoadU(f, rays.dz + i);
     ox = hn::LoadU(f, rays.ox + i), oy = hn::LoadU(f, rays.oy + i), oz = hn::LoadU(f, rays.oz + i);
-    used = hn::And(hn::FirstN(f, n - i), hn::Lt(t0, t1));
-    const auto at = [&](VF t) HWY_ATTR {
-      return around(used, hn::MulAdd(t, dx, ox), hn::MulAdd(t, dy, oy), hn::MulAdd(t, dz, oz));
-    };
+    used = And(hn::FirstN(f, n - i), t0 < t1);
+    const auto at = [&](VF t)
+                        HWY_ATTR { return around(used, MulAdd(t, dx, ox), MulAdd(t, dy, oy), MulAdd(t, dz, oz)); };
     a = at(t0);
     const Neighbourhood b = at(t1);
     sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
@@ -106,18 +104,17 @@ struct Profile {
   Profile(const GaussianField& field, std::size_t g, const RayGroup& rays) {
     const F f;
     const VF scale = hn::Set(f, field.inverse_width[g]);
-    const VF qx = hn::Mul(scale, hn::Sub(hn::Set(f, field.x[g]), rays.ox)),
-             qy = hn::Mul(scale, hn::Sub(hn::Set(f, field.y[g]), rays.oy)),
-             qz = hn::Mul(scale, hn::Sub(hn::Set(f, field.z[g]), rays.oz));
-    const VF wx = hn::Mul(scale, rays.dx), wy = hn::Mul(scale, rays.dy), wz = hn::Mul(scale, rays.dz);
+    const VF qx = scale * (hn::Set(f, field.x[g]) - rays.ox), qy = scale * (hn::Set(f, field.y[g]) - rays.oy),
+             qz = scale * (hn::Set(f, field.z[g]) - rays.oz);
+    const VF wx = scale * rays.dx, wy = scale * rays.dy, wz = scale * rays.dz;
     const VF rate2 = squared(wx, wy, wz);
-    rate = hn::Sqrt(rate2);
-    middle = hn::Div(hn::MulAdd(qx, wx, hn::MulAdd(qy, wy, hn::Mul(qz, wz))), rate2);
-    near2 = squared(hn::NegMulAdd(middle, wx, qx), hn::NegMulAdd(middle, wy, qy), hn::NegMulAdd(middle, wz, qz));
+    rate = Sqrt(rate2);
+    middle = MulAdd(qx, wx, MulAdd(qy, wy, qz * wz)) / rate2;
+    near2 = squared(NegMulAdd(middle, wx, qx), NegMulAdd(middle, wy, qy), NegMulAdd(middle, wz, qz));
     const float reach = field.reach[g] * field.inverse_width[g];
     limit = hn::Set(f, reach * reach);
-    spread = hn::Div(hn::Sqrt(hn::Max(hn::Zero(f), hn::Sub(limit, near2))), rate);
-    met = hn::And(rays.used, hn::Le(near2, limit));
+    spread = Sqrt(Max(hn::Zero(f), limit - near2)) / rate;
+    met = And(rays.used, near2 <= limit);
   }
 };
 
@@ -130,12 +127,11 @@ long long GaussianColumns(const GaussianField& field, const StepRule& rule, std:
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     const RayGroup group(i, n, rays);
     if (hn::AllFalse(f, group.used)) continue;
-    const VF length = hn::IfThenElseZero(group.used, hn::Sub(group.t1, group.t0));
+    const VF length = IfThenElseZero(group.used, group.t1 - group.t0);
     VF steps = hn::Set(f, float(rule.count));
-    if (rule.length > 0)
-      steps = hn::Min(hn::Max(one, hn::Ceil(hn::Div(length, hn::Set(f, rule.length)))), hn::Set(f, 1048576.0f));
-    const VF h = hn::Div(length, steps);
-    steps = hn::IfThenElseZero(group.used, steps);
+    if (rule.length > 0) steps = Min(Max(one, hn::Ceil(length / hn::Set(f, rule.length))), hn::Set(f, 1048576.0f));
+    const VF h = length / steps;
+    steps = IfThenElseZero(group.used, steps);
     const int most = int(hn::GetLane(hn::MaxOfLanes(f, steps)));
     sums.assign(field.any_negative ? most * hn::Lanes(f) : 0, 0.0f);
     VF total = zero;
@@ -144,32 +140,30 @@ long long GaussianColumns(const GaussianField& field, const StepRule& rule, std:
       const Profile p(field, g, group);
       if (hn::AllFalse(f, p.met)) continue;
       // Steps within reach, of any ray of the group.
-      const VF first = hn::Div(hn::Sub(hn::Sub(p.middle, p.spread), group.t0), h);
-      const VF last = hn::Div(hn::Sub(hn::Add(p.middle, p.spread), group.t0), h);
-      const float least = hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(p.met, first, hn::Set(f, 1e9f))));
-      const float greatest = hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElse(p.met, last, hn::Set(f, -2.0f))));
+      const VF first = (p.middle - p.spread - group.t0) / h;
+      const VF last = (p.middle + p.spread - group.t0) / h;
+      const float least = hn::GetLane(hn::MinOfLanes(f, IfThenElse(p.met, first, hn::Set(f, 1e9f))));
+      const float greatest = hn::GetLane(hn::MaxOfLanes(f, IfThenElse(p.met, last, hn::Set(f, -2.0f))));
       const int from = int(std::clamp(least - 1, 0.0f, 1e9f)), to = std::min(most, int(std::min(greatest, 1e9f)) + 2);
       const VF peak = hn::Set(f, field.amplitude[g]);
-      const VF u0 = hn::Mul(p.rate, hn::Sub(hn::MulAdd(half, h, group.t0), p.middle)), du = hn::Mul(p.rate, h);
+      const VF u0 = p.rate * (MulAdd(half, h, group.t0) - p.middle), du = p.rate * h;
       for (int j = from; j < to; ++j) {
-        const VF step = hn::Set(f, float(j)), u = hn::MulAdd(step, du, u0), d2 = hn::MulAdd(u, u, p.near2);
-        const VF value = hn::IfThenElseZero(hn::And(hn::Le(d2, p.limit), hn::Lt(step, steps)),
-                                            hn::Mul(peak, hn::Exp(f, hn::Neg(d2))));
+        const VF step = hn::Set(f, float(j)), u = MulAdd(step, du, u0), d2 = MulAdd(u, u, p.near2);
+        const VF value = IfThenElseZero(And(d2 <= p.limit, step < steps), peak * hn::Exp(f, Neg(d2)));
         if (field.any_negative) {
           float* at = sums.data() + j * hn::Lanes(f);
-          hn::StoreU(hn::Add(hn::LoadU(f, at), value), f, at);
+          hn::StoreU(hn::LoadU(f, at) + value, f, at);
         } else {
-          total = hn::Add(total, value);
+          total = total + value;
         }
       }
     }
     // The clamp at zero density acts on the sum of all Gaussians at each step.
     for (int j = 0; field.any_negative && j < most; ++j)
-      total = hn::Add(total, hn::IfThenElseZero(
-                                 hn::Lt(hn::Set(f, float(j)), steps),
-                                 hn::Max(hn::LoadU(f, sums.data() + j * hn::Lanes(f)), hn::Set(f, -field.constant))));
+      total = total + IfThenElseZero(hn::Set(f, float(j)) < steps,
+                                     Max(hn::LoadU(f, sums.data() + j * hn::Lanes(f)), hn::Set(f, -field.constant)));
     evaluations += static_cast<long long>(hn::GetLane(hn::SumOfLanes(f, steps)));
-    hn::StoreU(hn::MulAdd(total, h, hn::LoadU(f, column + i)), f, column + i);
+    hn::StoreU(MulAdd(total, h, hn::LoadU(f, column + i)), f, column + i);
   }
   return evaluations;
 }
@@ -177,14 +171,14 @@ long long GaussianColumns(const GaussianField& field, const StepRule& rule, std:
 // erf, absolute error 1.5e-7: Abramowitz and Stegun, formula 7.1.26. Absolute is what counts, in optical depths.
 HWY_INLINE VF error_function(VF x) {
   const F f;
-  const VF size = hn::Abs(x);
-  const VF t = hn::Div(hn::Set(f, 1.0f), hn::MulAdd(hn::Set(f, 0.3275911f), size, hn::Set(f, 1.0f)));
-  VF sum = hn::MulAdd(hn::Set(f, 1.061405429f), t, hn::Set(f, -1.453152027f));
-  sum = hn::MulAdd(sum, t, hn::Set(f, 1.421413741f));
-  sum = hn::MulAdd(sum, t, hn::Set(f, -0.284496736f));
-  sum = hn::MulAdd(sum, t, hn::Set(f, 0.254829592f));
-  const VF tail = hn::Mul(hn::Mul(sum, t), hn::Exp(f, hn::Neg(hn::Mul(size, size))));
-  return hn::CopySign(hn::Sub(hn::Set(f, 1.0f), tail), x);
+  const VF size = Abs(x);
+  const VF t = hn::Set(f, 1.0f) / MulAdd(hn::Set(f, 0.3275911f), size, hn::Set(f, 1.0f));
+  VF sum = MulAdd(hn::Set(f, 1.061405429f), t, hn::Set(f, -1.453152027f));
+  sum = MulAdd(sum, t, hn::Set(f, 1.421413741f));
+  sum = MulAdd(sum, t, hn::Set(f, -0.284496736f));
+  sum = MulAdd(sum, t, hn::Set(f, 0.254829592f));
+  const VF tail = sum * t * hn::Exp(f, Neg(size * size));
+  return hn::CopySign(hn::Set(f, 1.0f) - tail, x);
 }
 
 // Zhou et al. 2007, Eq. 31: sqrt(pi)/2 * amplitude * exp(-near^2) / rate * (erf(u1) - erf(u0)).
@@ -199,16 +193,13 @@ void GaussianIntegrals(const GaussianField& field, std::size_t n, const LocalRay
       const Profile p(field, g, group);
       if (hn::AllFalse(f, p.met)) continue;
       // Where it is cut off, or as good as zero, is outside.
-      const VF reach = hn::Mul(p.rate, p.spread);
-      const auto edge = [&](VF t) HWY_ATTR {
-        return hn::Min(reach, hn::Max(hn::Neg(reach), hn::Mul(p.rate, hn::Sub(t, p.middle))));
-      };
-      const VF between = hn::Sub(error_function(edge(group.t1)), error_function(edge(group.t0)));
-      const VF height =
-          hn::Div(hn::Mul(hn::Set(f, 0.886226925f * field.amplitude[g]), hn::Exp(f, hn::Neg(p.near2))), p.rate);
-      total = hn::Add(total, hn::IfThenElseZero(p.met, hn::Mul(height, between)));
+      const VF reach = p.rate * p.spread;
+      const auto edge = [&](VF t) HWY_ATTR { return Min(reach, Max(Neg(reach), p.rate * (t - p.middle))); };
+      const VF between = error_function(edge(group.t1)) - error_function(edge(group.t0));
+      const VF height = hn::Set(f, 0.886226925f * field.amplitude[g]) * hn::Exp(f, Neg(p.near2)) / p.rate;
+      total = total + IfThenElseZero(p.met, height * between);
     }
-    hn::StoreU(hn::Add(total, hn::LoadU(f, column + i)), f, column + i);
+    hn::StoreU(total + hn::LoadU(f, column + i), f, column + i);
   }
 }
 

@@ -67,8 +67,8 @@ HWY_INLINE void row_ends(const float* base, const std::uint32_t* at, VF fz, VF& 
            far_left = hn::BitCast(f, hn::InterleaveUpper(wide, a, c));
   const VF near_right = hn::BitCast(f, hn::InterleaveLower(wide, b, d)),
            far_right = hn::BitCast(f, hn::InterleaveUpper(wide, b, d));
-  left = hn::MulAdd(fz, hn::Sub(far_left, near_left), near_left);
-  right = hn::MulAdd(fz, hn::Sub(far_right, near_right), near_right);
+  left = MulAdd(fz, far_left - near_left, near_left);
+  right = MulAdd(fz, far_right - near_right, near_right);
 }
 
 HWY_INLINE VF trilinear(const View& view, VF x, VF y, VF z) {
@@ -76,16 +76,15 @@ HWY_INLINE VF trilinear(const View& view, VF x, VF y, VF z) {
   const I i;
   // Local coordinates are positive, so that truncation is the floor.
   const VI ix = hn::ConvertTo(i, x), iy = hn::ConvertTo(i, y), iz = hn::ConvertTo(i, z);
-  const VF fx = hn::Sub(x, hn::ConvertTo(f, ix)), fy = hn::Sub(y, hn::ConvertTo(f, iy)),
-           fz = hn::Sub(z, hn::ConvertTo(f, iz));
+  const VF fx = x - hn::ConvertTo(f, ix), fy = y - hn::ConvertTo(f, iy), fz = z - hn::ConvertTo(f, iz);
   const hn::RebindToUnsigned<F> u;
   HWY_ALIGN std::uint32_t at[HWY_MAX_BYTES / sizeof(std::uint32_t)];
-  hn::Store(hn::BitCast(u, hn::Add(ix, hn::Add(hn::Mul(iy, view.row), hn::Mul(iz, view.slice)))), u, at);
+  hn::Store(hn::BitCast(u, ix + (iy * view.row + iz * view.slice)), u, at);
   VF a, b, c, d;
   row_ends(view.pairs, at, fz, a, b);
   row_ends(view.pairs + view.next_row, at, fz, c, d);
-  const VF left = hn::MulAdd(fy, hn::Sub(c, a), a), right = hn::MulAdd(fy, hn::Sub(d, b), b);
-  return hn::MulAdd(fx, hn::Sub(right, left), left);
+  const VF left = MulAdd(fy, c - a, a), right = MulAdd(fy, d - b, b);
+  return MulAdd(fx, right - left, left);
 }
 
 HWY_INLINE VF free_distance(const View& view, VF x, VF y, VF z) {
@@ -94,7 +93,7 @@ HWY_INLINE VF free_distance(const View& view, VF x, VF y, VF z) {
   constexpr int shift = GridField::brick_shift;
   const VI bx = hn::ShiftRight<shift>(hn::ConvertTo(i, x)), by = hn::ShiftRight<shift>(hn::ConvertTo(i, y)),
            bz = hn::ShiftRight<shift>(hn::ConvertTo(i, z));
-  const VI at = hn::Add(bx, hn::Add(hn::Mul(by, view.brick_row), hn::Mul(bz, view.brick_slice)));
+  const VI at = bx + (by * view.brick_row + bz * view.brick_slice);
   return hn::GatherIndex(f, view.free_distance, at);
 }
 
@@ -104,7 +103,7 @@ void GridDensity(const GridField& field, std::size_t n, const float* x, const fl
   const View view = view_of(field);
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     const auto used = hn::FirstN(f, n - i);
-    const auto load = [&](const float* p) HWY_ATTR { return hn::IfThenElseZero(used, hn::LoadU(f, p + i)); };
+    const auto load = [&](const float* p) HWY_ATTR { return IfThenElseZero(used, hn::LoadU(f, p + i)); };
     hn::StoreU(trilinear(view, load(x), load(y), load(z)), f, density + i);
   }
 }
@@ -117,38 +116,37 @@ long long GridColumns(const GridField& field, const StepRule& rule, bool skip, s
   long long evaluations = 0;
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     const VF t0 = hn::LoadU(f, rays.t0 + i);
-    const VF length = hn::Max(zero, hn::Sub(hn::LoadU(f, rays.t1 + i), t0));
+    const VF length = Max(zero, hn::LoadU(f, rays.t1 + i) - t0);
     VF steps = hn::Set(f, float(rule.count));
-    if (rule.length > 0)
-      steps = hn::Min(hn::Max(one, hn::Ceil(hn::Div(length, hn::Set(f, rule.length)))), hn::Set(f, 1048576.0f));
-    const VF h = hn::Div(length, steps);
-    auto running = hn::And(hn::Gt(length, zero), hn::FirstN(f, n - i));
-    const auto delta = [&](const float* d) HWY_ATTR { return hn::Mul(h, hn::LoadU(f, d + i)); };
+    if (rule.length > 0) steps = Min(Max(one, hn::Ceil(length / hn::Set(f, rule.length))), hn::Set(f, 1048576.0f));
+    const VF h = length / steps;
+    auto running = And(length > zero, hn::FirstN(f, n - i));
+    const auto delta = [&](const float* d) HWY_ATTR { return h * hn::LoadU(f, d + i); };
     const VF dx = delta(rays.dx), dy = delta(rays.dy), dz = delta(rays.dz);
     // Midpoint of the first step. Lanes that do not run stay there, and it must be within the grid.
-    const VF start = hn::MulAdd(half, h, t0);
+    const VF start = MulAdd(half, h, t0);
     const auto first = [&](const float* o, const float* d) HWY_ATTR {
-      return hn::IfThenElseZero(running, hn::MulAdd(start, hn::LoadU(f, d + i), hn::LoadU(f, o + i)));
+      return IfThenElseZero(running, MulAdd(start, hn::LoadU(f, d + i), hn::LoadU(f, o + i)));
     };
     const VF ox = first(rays.ox, rays.dx), oy = first(rays.oy, rays.dy), oz = first(rays.oz, rays.dz);
     // Steps per cell of the largest component: how many steps a free distance is worth.
-    const VF pace = hn::Div(one, hn::Max(hn::Abs(dx), hn::Max(hn::Abs(dy), hn::Abs(dz))));
+    const VF pace = one / Max(Abs(dx), Max(Abs(dy), Abs(dz)));
     VF step = zero, sum = zero;
     while (!hn::AllFalse(f, running)) {
-      const VF at = hn::IfThenElseZero(running, step);
-      const VF x = hn::MulAdd(at, dx, ox), y = hn::MulAdd(at, dy, oy), z = hn::MulAdd(at, dz, oz);
-      const VF value = hn::IfThenElseZero(running, trilinear(view, x, y, z));
-      sum = hn::Add(sum, value);
+      const VF at = IfThenElseZero(running, step);
+      const VF x = MulAdd(at, dx, ox), y = MulAdd(at, dy, oy), z = MulAdd(at, dz, oz);
+      const VF value = IfThenElseZero(running, trilinear(view, x, y, z));
+      sum = sum + value;
       evaluations += hn::CountTrue(f, running);
-      step = hn::Add(step, one);
+      step = step + one;
       // The map is asked only when all lanes have come to where there is nothing: within the smoke it costs nothing.
-      if (skip && hn::AllTrue(f, hn::Eq(value, zero))) {
+      if (skip && hn::AllTrue(f, value == zero)) {
         const VF free = free_distance(view, x, y, z);
-        step = hn::Add(step, hn::Floor(hn::Mul(hn::Max(free, zero), pace)));
+        step = step + Floor(Max(free, zero) * pace);
       }
-      running = hn::And(running, hn::Lt(step, steps));
+      running = And(running, step < steps);
     }
-    hn::StoreU(hn::MulAdd(sum, h, hn::LoadU(f, column + i)), f, column + i);
+    hn::StoreU(MulAdd(sum, h, hn::LoadU(f, column + i)), f, column + i);
   }
   return evaluations;
 }

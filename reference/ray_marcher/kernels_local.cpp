@@ -25,9 +25,8 @@ void ToLocal(const Frame& frame, std::size_t n, const double* x, const double* y
     const auto px = hn::LoadU(d, x + i), py = hn::LoadU(d, y + i), pz = hn::LoadU(d, z + i);
     for (int k = 0; k < 3; ++k) {
       const double* m = frame.m + 3 * k;
-      const auto sum =
-          hn::MulAdd(hn::Set(d, m[2]), pz,
-                     hn::MulAdd(hn::Set(d, m[1]), py, hn::MulAdd(hn::Set(d, m[0]), px, hn::Set(d, frame.b[k]))));
+      const auto sum = MulAdd(hn::Set(d, m[2]), pz,
+                              MulAdd(hn::Set(d, m[1]), py, MulAdd(hn::Set(d, m[0]), px, hn::Set(d, frame.b[k]))));
       hn::StoreU(hn::DemoteTo(h, sum), h, out[k] + i);
     }
   }
@@ -41,8 +40,7 @@ void RotateToLocal(const Frame& frame, std::size_t n, const float* x, const floa
     const VF vx = hn::LoadU(f, x + i), vy = hn::LoadU(f, y + i), vz = hn::LoadU(f, z + i);
     for (int k = 0; k < 3; ++k) {
       const double* m = frame.m + 3 * k;
-      hn::StoreU(hn::MulAdd(hn::Set(f, float(m[2])), vz,
-                            hn::MulAdd(hn::Set(f, float(m[1])), vy, hn::Mul(hn::Set(f, float(m[0])), vx))),
+      hn::StoreU(MulAdd(hn::Set(f, float(m[2])), vz, MulAdd(hn::Set(f, float(m[1])), vy, hn::Set(f, float(m[0])) * vx)),
                  f, out[k] + i);
     }
   }
@@ -52,14 +50,14 @@ void RotateToLocal(const Frame& frame, std::size_t n, const float* x, const floa
 HWY_INLINE VF reciprocal(VF v) {
   const F f;
   const VF tiny = hn::Set(f, 1e-30f);
-  return hn::Div(hn::Set(f, 1.0f), hn::IfThenElse(hn::Lt(hn::Abs(v), tiny), tiny, v));
+  return hn::Set(f, 1.0f) / IfThenElse(Abs(v) < tiny, tiny, v);
 }
 
 HWY_INLINE void clip_slab(VF o, VF d, VF lo, VF hi, VF& t0, VF& t1) {
   const VF r = reciprocal(d);
-  const VF a = hn::Mul(hn::Sub(lo, o), r), b = hn::Mul(hn::Sub(hi, o), r);
-  t0 = hn::Max(t0, hn::Min(a, b));
-  t1 = hn::Min(t1, hn::Max(a, b));
+  const VF a = (lo - o) * r, b = (hi - o) * r;
+  t0 = Max(t0, Min(a, b));
+  t1 = Min(t1, Max(a, b));
 }
 
 void ClipBox(const float* lo, const float* hi, int axes, std::size_t n, const LocalRays& rays) {
@@ -82,13 +80,13 @@ void ClipSphere(std::size_t n, const LocalRays& rays) {
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     const VF ox = hn::LoadU(f, rays.ox + i), oy = hn::LoadU(f, rays.oy + i), oz = hn::LoadU(f, rays.oz + i);
     const VF dx = hn::LoadU(f, rays.dx + i), dy = hn::LoadU(f, rays.dy + i), dz = hn::LoadU(f, rays.dz + i);
-    const VF dd = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    const VF nearest = hn::Neg(hn::Div(hn::MulAdd(ox, dx, hn::MulAdd(oy, dy, hn::Mul(oz, dz))), dd));
-    const VF qx = hn::MulAdd(nearest, dx, ox), qy = hn::MulAdd(nearest, dy, oy), qz = hn::MulAdd(nearest, dz, oz);
-    const VF inside = hn::Sub(one, hn::MulAdd(qx, qx, hn::MulAdd(qy, qy, hn::Mul(qz, qz))));
-    const VF half = hn::Sqrt(hn::Div(hn::Max(inside, hn::Zero(f)), dd));
-    hn::StoreU(hn::Max(hn::LoadU(f, rays.t0 + i), hn::Sub(nearest, half)), f, rays.t0 + i);
-    hn::StoreU(hn::Min(hn::LoadU(f, rays.t1 + i), hn::Add(nearest, half)), f, rays.t1 + i);
+    const VF dd = MulAdd(dx, dx, MulAdd(dy, dy, dz * dz));
+    const VF nearest = Neg(MulAdd(ox, dx, MulAdd(oy, dy, oz * dz)) / dd);
+    const VF qx = MulAdd(nearest, dx, ox), qy = MulAdd(nearest, dy, oy), qz = MulAdd(nearest, dz, oz);
+    const VF inside = one - MulAdd(qx, qx, MulAdd(qy, qy, qz * qz));
+    const VF half = Sqrt(Max(inside, hn::Zero(f)) / dd);
+    hn::StoreU(Max(hn::LoadU(f, rays.t0 + i), nearest - half), f, rays.t0 + i);
+    hn::StoreU(Min(hn::LoadU(f, rays.t1 + i), nearest + half), f, rays.t1 + i);
   }
 }
 

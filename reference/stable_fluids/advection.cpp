@@ -40,8 +40,8 @@ class Transport {
     const Sampler<Real, D> samples(arrived);
     each([&](const Block& b) {
       const V returned = read(samples, arrived, samples.foot(forth_.feet(b.i, b.j, b.k, b.p)), b);
-      const V first = load(b, arrived), change = hn::Mul(all(Real(0.5)), hn::Sub(load(b, from_), returned));
-      store(b, limited(hn::Add(first, change), first, range, b), to);
+      const V first = load(b, arrived), change = all(Real(0.5)) * (load(b, from_) - returned);
+      store(b, limited(first + change, first, range, b), to);
     });
   }
 
@@ -50,7 +50,7 @@ class Transport {
     const Sampler<Real, D> samples(arrived);
     each([&](const Block& b) {
       const V now = load(b, from_), returned = read(samples, arrived, samples.foot(forth_.feet(b.i, b.j, b.k, b.p)), b);
-      store(b, hn::Add(now, hn::Mul(all(Real(0.5)), hn::Sub(now, returned))), to);
+      store(b, now + all(Real(0.5)) * (now - returned), to);
     });
   }
   // And the second, limited as MacCormack is.
@@ -97,8 +97,8 @@ class Transport {
     if (how_.limiter == Limiter::none) return value;
     const V least = hn::LoadU(Lanes<Real>(), range.least.data() + b.place);
     const V greatest = hn::LoadU(Lanes<Real>(), range.greatest.data() + b.place);
-    if (how_.limiter == Limiter::clamp) return hn::Min(hn::Max(value, least), greatest);
-    return hn::IfThenElse(hn::Or(hn::Lt(value, least), hn::Gt(value, greatest)), first, value);
+    if (how_.limiter == Limiter::clamp) return Min(Max(value, least), greatest);
+    return IfThenElse(Or(value > greatest, value < least), first, value);
   }
 
   V read(const Sampler<Real, D>& samples, const Field<Real>& source, const typename Sampler<Real, D>::Foot& foot,

@@ -26,7 +26,7 @@ Vector<Real> all(Real x) {
 // a + t (b - a): a where t is 0, and where both are the same.
 template <class V>
 V between(V a, V b, V t) {
-  return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+  return a + t * (b - a);
 }
 
 // Cubic through b and c with slopes limited so that it stays between them: Fedkiw et al. 2001, appendix B, and the
@@ -34,14 +34,12 @@ V between(V a, V b, V t) {
 template <class Real>
 Vector<Real> monotone_cubic(Vector<Real> a, Vector<Real> b, Vector<Real> c, Vector<Real> d, Vector<Real> t) {
   const auto zero = all(Real(0)), half = all(Real(0.5)), two = all(Real(2)), three = all(Real(3));
-  const auto rise = hn::Sub(c, b), most = hn::Mul(three, rise);
-  const auto limited = [&](Vector<Real> slope) {
-    return hn::Max(hn::Min(slope, hn::Max(most, zero)), hn::Min(most, zero));
-  };
-  const auto before = limited(hn::Mul(half, hn::Sub(c, a))), after = limited(hn::Mul(half, hn::Sub(d, b)));
-  const auto cube = hn::Sub(hn::Add(before, after), hn::Mul(two, rise));
-  const auto square = hn::Sub(hn::Sub(most, hn::Mul(two, before)), after);
-  return hn::Add(b, hn::Mul(t, hn::Add(before, hn::Mul(t, hn::Add(square, hn::Mul(t, cube))))));
+  const auto rise = c - b, most = three * rise;
+  const auto limited = [&](Vector<Real> slope) { return Max(Min(slope, Max(most, zero)), Min(most, zero)); };
+  const auto before = limited(half * (c - a)), after = limited(half * (d - b));
+  const auto cube = before + after - two * rise;
+  const auto square = most - two * before - after;
+  return b + t * (before + t * (square + t * cube));
 }
 
 // Interpolated values, and the least and greatest of the samples around.
@@ -114,27 +112,27 @@ class Sampler {
 
  private:
   Read<Real> combined(const Read<Real>& first, const Read<Real>& second, V share) const {
-    const auto weightless = hn::Eq(share, all(Real(0)));
+    const auto weightless = share == all(Real(0));
     Read<Real> both;
     both.value = between(first.value, second.value, share);
-    both.least = hn::IfThenElse(weightless, first.least, hn::Min(first.least, second.least));
-    both.greatest = hn::IfThenElse(weightless, first.greatest, hn::Max(first.greatest, second.greatest));
+    both.least = IfThenElse(weightless, first.least, Min(first.least, second.least));
+    both.greatest = IfThenElse(weightless, first.greatest, Max(first.greatest, second.greatest));
     return both;
   }
   std::pair<V, V> split(V x, int axis) const {
-    const V from = hn::Sub(x, all(offset_[axis])), floor = hn::Floor(from);
-    return {floor, hn::Sub(from, floor)};
+    const V from = x - all(offset_[axis]), floor = Floor(from);
+    return {floor, from - floor};
   }
   // Whole numbers of samples: exact in double, and as integers where a float would not be.
   auto index(V x, V y, V z) const {
     const hn::RebindToSigned<Lanes<Real>> integers;
     if constexpr (sizeof(Real) == 8) {
-      const V rows = hn::Mul(y, all(Real(stride_[1]))), slabs = hn::Mul(z, all(Real(stride_[2])));
-      return hn::ConvertTo(integers, hn::Add(x, hn::Add(rows, slabs)));
+      const V rows = y * all(Real(stride_[1])), slabs = z * all(Real(stride_[2]));
+      return hn::ConvertTo(integers, x + (rows + slabs));
     } else {
       const auto of = [&](V v) { return hn::ConvertTo(integers, v); };
       const auto step = [&](int a) { return hn::Set(integers, std::int32_t(stride_[a])); };
-      return hn::Add(of(x), hn::Add(hn::Mul(of(y), step(1)), hn::Mul(of(z), step(2))));
+      return of(x) + (of(y) * step(1) + of(z) * step(2));
     }
   }
   // Two neighbours along x, as one load a lane: half as many as gathers, which some processors are slow at besides.
@@ -186,8 +184,8 @@ class Tracer {
       const Places<Real> third = way(inside(minus(p, second, half)));
       const Places<Real> fourth = way(inside(minus(p, third, one)));
       for (int a = 0; a < D; ++a) {
-        const V middle = hn::Mul(all(Real(2)), hn::Add(second[a], third[a]));
-        total[a] = hn::Mul(all(Real(1) / 6), hn::Add(hn::Add(first[a], middle), fourth[a]));
+        const V middle = all(Real(2)) * (second[a] + third[a]);
+        total[a] = all(Real(1) / 6) * (first[a] + middle + fourth[a]);
       }
     }
     Places<Real> q = minus(p, total, one);
@@ -207,25 +205,24 @@ class Tracer {
       if (a == axis_) {
         v[a] = load(0);
       } else if (axis_ == at_centers) {
-        v[a] = hn::Mul(all(Real(0.5)), hn::Add(load(0), load(along)));
+        v[a] = all(Real(0.5)) * (load(0) + load(along));
       } else {
         const std::ptrdiff_t before = -f.stride[axis_];
-        v[a] = hn::Mul(all(Real(0.25)),
-                       hn::Add(hn::Add(load(0), load(along)), hn::Add(load(before), load(before + along))));
+        v[a] = all(Real(0.25)) * (load(0) + load(along) + (load(before) + load(before + along)));
       }
-      v[a] = hn::Mul(cells_, v[a]);
+      v[a] = cells_ * v[a];
     }
     return v;
   }
 
   Places<Real> way(const Places<Real>& p) const {
-    Places<Real> v{hn::Mul(cells_, u_[0].linear(p)), hn::Mul(cells_, u_[1].linear(p)), all(Real(0))};
-    if constexpr (D == 3) v[2] = hn::Mul(cells_, u_[2].linear(p));
+    Places<Real> v{cells_ * u_[0].linear(p), cells_ * u_[1].linear(p), all(Real(0))};
+    if constexpr (D == 3) v[2] = cells_ * u_[2].linear(p);
     return v;
   }
   Places<Real> minus(const Places<Real>& p, const Places<Real>& v, V share) const {
     Places<Real> q = p;
-    for (int a = 0; a < D; ++a) q[a] = hn::Sub(p[a], hn::Mul(share, v[a]));
+    for (int a = 0; a < D; ++a) q[a] = p[a] - share * v[a];
     return q;
   }
 
@@ -236,10 +233,10 @@ class Tracer {
     for (int a = 0; a < D; ++a) {
       const V n = all(Real(l_.n[a]));
       if (l_.periodic(a)) {
-        const V wrapped = hn::Sub(p[a], hn::Mul(n, hn::Floor(hn::Div(p[a], n))));
-        q[a] = hn::IfThenElseZero(hn::And(hn::Ge(wrapped, zero), hn::Lt(wrapped, n)), wrapped);
+        const V wrapped = p[a] - n * Floor(p[a] / n);
+        q[a] = IfThenElseZero(And(wrapped >= zero, wrapped < n), wrapped);
       } else {
-        q[a] = hn::IfThenElseZero(hn::Gt(p[a], zero), hn::Min(p[a], n));
+        q[a] = IfThenElseZero(p[a] > zero, Min(p[a], n));
       }
     }
     return q;

@@ -227,11 +227,6 @@ bool Settings::flag(const std::string& name) const { return values_.at(spec(name
 
 const std::string& Settings::text(const std::string& name) const { return values_.at(spec(name).name); }
 
-int Settings::place_of_choice(const std::string& name) const {
-  const std::vector<std::string>& choices = spec(name).choices;
-  return int(std::find(choices.begin(), choices.end(), text(name)) - choices.begin());
-}
-
 std::map<std::string, std::string> Settings::given(const std::vector<SettingSpec>& specs) const {
   std::map<std::string, std::string> some;
   for (const SettingSpec& spec : specs)

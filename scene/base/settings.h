@@ -55,6 +55,23 @@ inline SettingSpec choice_setting(std::string name, std::string fallback, std::v
   return {std::move(name), SettingSpec::Type::choice, std::move(fallback), std::move(doc), 0, 0, std::move(choices)};
 }
 
+// What a choice may say, and what each means.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+template <class Value>
+SettingSpec choice_setting(const std::string& name, const std::type_identity_t<Value>& fallback,
+                           const Choices<Value>& choices, std::string doc) {
+  std::string said;
+  std::vector<std::string> texts;
+  for (const auto& [text, value] : choices) {
+    texts.push_back(text);
+    if (value == fallback) said = text;
+  }
+  if (said.empty()) throw std::logic_error("no choice of " + name + " is its default");
+  return choice_setting(name, said, std::move(texts), std::move(doc));
+}
+
 // Values for all specs of one renderer.
 class Settings {
  public:
@@ -67,10 +84,11 @@ class Settings {
   double real(const std::string& name) const;
   bool flag(const std::string& name) const;
   const std::string& text(const std::string& name) const;
-  // The value of a choice as an enumerator: the n-th text of the choice is the n-th enumerator. Probes use it.
-  template <class Enum>
-  Enum choice(const std::string& name) const {
-    return Enum(place_of_choice(name));
+  template <class Value>
+  Value choice(const std::string& name, const Choices<Value>& choices) const {
+    for (const auto& [said, value] : choices)
+      if (said == text(name)) return value;
+    throw std::logic_error("the choices of " + name + " are others");
   }
 
   // What was given of these specs, without defaults: the settings of a renderer among those of a probe.
@@ -80,7 +98,6 @@ class Settings {
   std::string canonical() const;
 
  private:
-  int place_of_choice(const std::string& name) const;
   const SettingSpec& spec(const std::string& name) const;
   std::vector<SettingSpec> specs_;
   std::map<std::string, std::string> given_, values_;
@@ -106,19 +123,10 @@ class SettingBinder {
   SettingSpec& real(const std::string& name, double& variable, double least, double greatest, std::string doc);
   SettingSpec& flag(const std::string& name, bool& variable, std::string doc);
   template <class Value>
-  SettingSpec& choice(const std::string& name, Value& variable,
-                      const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices,
+  SettingSpec& choice(const std::string& name, Value& variable, const Choices<std::type_identity_t<Value>>& choices,
                       std::string doc) {
-    std::string fallback;
-    std::vector<std::string> texts;
-    for (const auto& [text, value] : choices) {
-      texts.push_back(text);
-      if (value == variable) fallback = text;
-    }
-    if (fallback.empty()) throw std::logic_error("no choice of " + name + " is its default");
-    for (const auto& [text, value] : choices)
-      if (values_ && values_->text(name) == text) variable = value;
-    specs.push_back(choice_setting(name, fallback, std::move(texts), std::move(doc)));
+    specs.push_back(choice_setting<Value>(name, variable, choices, std::move(doc)));
+    if (values_) variable = values_->choice<Value>(name, choices);
     return specs.back();
   }
 

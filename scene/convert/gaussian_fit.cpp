@@ -193,17 +193,25 @@ class Frame {
 
 }  // namespace
 
-std::vector<std::string> teleport_names() { return {"none", "greatest", "alternating"}; }
+const Choices<Teleport>& teleports() {
+  static const Choices<Teleport> choices{
+      {"none", Teleport::none}, {"greatest", Teleport::greatest}, {"alternating", Teleport::alternating}};
+  return choices;
+}
 
-std::vector<std::string> fit_method_names() { return {"gauss_newton", "lbfgs"}; }
+const Choices<FitMethod>& fit_methods() {
+  static const Choices<FitMethod> choices{{"gauss_newton", FitMethod::gauss_newton}, {"lbfgs", FitMethod::lbfgs}};
+  return choices;
+}
 
 FitMethod fit_method_from(const std::string& name) {
-  const std::vector<std::string> names = fit_method_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end())
-    throw Error(
-        fmt::format("method '{}'{}, expected one of {}", name, nearest_hint(name, names), fmt::join(names, ", ")));
-  return FitMethod(found - names.begin());
+  std::vector<std::string> names;
+  for (const auto& [said, method] : fit_methods()) {
+    if (said == name) return method;
+    names.push_back(said);
+  }
+  throw Error(
+      fmt::format("method '{}'{}, expected one of {}", name, nearest_hint(name, names), fmt::join(names, ", ")));
 }
 
 void check_fit_options(const FitOptions& o) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/base/settings.h"
 #include "scene/convert/fit_objective.h"
 #include "scene/media/gaussian_sum.h"
 #include "scene/media/voxel_grid.h"
@@ -22,13 +23,13 @@ inline constexpr double least_fit_width = 0.7;
 
 // gauss_newton: closed-form normal matrix, ours; lbfgs: Ceres' line search (fit_lbfgs.h), there to be compared with.
 enum class FitMethod { gauss_newton, lbfgs };
-std::vector<std::string> fit_method_names();         // in the order of the enumeration
+const Choices<FitMethod>& fit_methods();
 FitMethod fit_method_from(const std::string& name);  // throws Error
 
 // Where the least significant Gaussians are sent between rounds: nowhere; where density is missing most; there and to random filled
 // voxels by turns, as Zhou et al. 2008, section 5.1, have it.
 enum class Teleport { none, greatest, alternating };
-std::vector<std::string> teleport_names();  // in the order of the enumeration
+const Choices<Teleport>& teleports();
 
 struct FitOptions {
   int gaussians = 1000;  // 1 to most_fit_gaussians; fewer where fewer voxels are filled

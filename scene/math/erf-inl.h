@@ -19,21 +19,21 @@ template <class P, class D, class V = hn::Vec<D>>
 HWY_INLINE V ErfBy(D d, V x) {
   constexpr int n = sizeof(P::coefficient) / sizeof(P::coefficient[0]);
   const auto c = [&](int i) { return hn::Set(d, P::coefficient[i]); };
-  const V magnitude = hn::Abs(x);
-  const V xc = hn::Min(magnitude, hn::Set(d, P::cut));
-  const V z = hn::MulSub(hn::Mul(xc, xc), hn::Set(d, P::scale), hn::Set(d, 1.0));
+  const V magnitude = Abs(x);
+  const V xc = Min(magnitude, hn::Set(d, P::cut));
+  const V z = MulSub(xc * xc, hn::Set(d, P::scale), hn::Set(d, 1.0));
   // Even and odd powers apart: two chains of half the length.
-  const V zz = hn::Mul(z, z);
+  const V zz = z * z;
   V upper = c(n - 1), lower = c(n - 2);
   for (int i = n - 3; i >= 0; i -= 2) {
-    upper = hn::MulAdd(upper, zz, c(i));
-    if (i > 0) lower = hn::MulAdd(lower, zz, c(i - 1));
+    upper = MulAdd(upper, zz, c(i));
+    if (i > 0) lower = MulAdd(lower, zz, c(i - 1));
   }
   constexpr bool even = (n - 1) % 2 == 0;  // of the power that `upper` began with
-  const V sum = even ? hn::MulAdd(lower, z, upper) : hn::MulAdd(upper, z, lower);
+  const V sum = even ? MulAdd(lower, z, upper) : MulAdd(upper, z, lower);
   const V one = hn::Set(d, 1.0);
-  const V value = hn::Min(hn::Mul(xc, sum), one);
-  return hn::CopySign(hn::IfThenElse(hn::Gt(magnitude, hn::Set(d, P::cut)), one, value), x);
+  const V value = Min(xc * sum, one);
+  return hn::CopySign(IfThenElse(magnitude > hn::Set(d, P::cut), one, value), x);
 }
 
 }  // namespace airlight::HWY_NAMESPACE

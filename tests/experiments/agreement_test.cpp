@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiments/application/probes.h"
+#include "experiments/driver/kind.h"
 #include "experiments/driver/tables.h"
 #include "tests/experiments/worked_row.h"
 #include "tests/temporary_folder.h"
@@ -88,7 +89,7 @@ TEST_CASE("rows that one table lacks are counted, and those of another device no
   CHECK(a.agrees());
   CHECK(text(a, "t") ==
         "agrees with t: 1 of 1 figure; 2 rows only here; 1 row only there; "
-        "2 rows of another device not compared");
+        "2 rows not compared, unavailable here or of another device");
 }
 
 TEST_CASE("metrics that the committed table lacks are not compared", "[agreement]") {
@@ -141,6 +142,7 @@ TEST_CASE("probes say which of their figures depend on speed", "[agreement]") {
 TEST_CASE("a record is read back as the rows that it is of", "[agreement]") {
   Outcome outcome;
   outcome.experiment.id = "g/e";
+  outcome.experiment.kind = &find_kind("images");
   outcome.experiment.profile = "quick";
   outcome.rows = {row("m", {1, 0.8, 1.2}), exact("n", 0.3)};
   outcome.rows[1].seconds = {2, 1, 3};

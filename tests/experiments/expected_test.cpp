@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "experiments/application/json_value.h"
+#include "experiments/driver/kind.h"
 #include "experiments/driver/tables.h"
 #include "scene/base/error.h"
 #include "tests/experiments/worked_row.h"
@@ -39,7 +40,7 @@ Row timed(const std::string& method, double seconds, const Estimate& error) {
 // At equal error the first curve of two points takes 10 times as long as the second at all errors.
 Outcome two_curves() {
   Outcome outcome;
-  outcome.experiment.kind = "images";
+  outcome.experiment.kind = &find_kind("images");
   outcome.experiment.metrics = {"bias", "rel_l2"};
   for (const auto& [method, times] : {std::pair("slow", 10.0), {"fast", 1.0}})
     for (const double error : {0.1, 0.01})
@@ -49,7 +50,7 @@ Outcome two_curves() {
 
 std::string said(const Estimate& error, const ExpectedCase& e) {
   Outcome outcome;
-  outcome.experiment.kind = "images";
+  outcome.experiment.kind = &find_kind("images");
   outcome.rows = {timed("m", 0.0021, error)};
   return figure_text(outcome, e);
 }

@@ -7,7 +7,6 @@
 #include "experiments/driver/plan.h"
 #include "experiments/driver/run.h"
 #include "experiments/verify/check.h"
-#include "methods/fogshop/fogshop.h"
 #include "tests/experiments/run_program.h"
 #include "tests/temporary_folder.h"
 #include "tests/texts.h"
@@ -128,33 +127,6 @@ sweep = { key = "precision", values = ["single", "double"] }
   fs::remove_all(project.path() / "results/g");
   project.run(true);
   CHECK(project.result("plots/stability.csv") == data);
-}
-
-// The figures are the machine's; what was counted is not.
-TEST_CASE("rate of kernels", "[driver]") {
-  const std::string scene_file = airlight::test::scenes + "fogshop/a30.toml";
-  const std::map<std::string, std::string> small{{"film.width", "8"}, {"film.height", "6"}};
-  const auto scene = std::make_shared<const airlight::scene::Scene>(airlight::scene::load_scene(scene_file, small));
-  const airlight::fogshop::Fogshop method;
-  const auto counters =
-      method.prepare(scene, {method.settings(), {}}, {})->render(airlight::scene::view_of(*scene), {}).counters;
-  const Probe& probe = find_probe("kernel_rate", "test");
-  const auto run = [&](std::map<std::string, std::string> settings, const std::string& file) {
-    settings["runs"] = "1";
-    return probe.run({file, small}, {probe.settings(), settings}, {2, {}});
-  };
-  using Given = std::map<std::string, std::string>;
-  for (const Given& settings : {Given{{"variant", "paper"}}, Given{{"K", "8"}}}) {
-    const Findings found = run(settings, scene_file);
-    REQUIRE(found.figures.size() == probe.figures().size());
-    CHECK(found.figures[0].value == Approx(counters.at("gaussians_crossed") / 48));
-    for (const Measure& m : found.figures) CHECK(m.value > 0);
-  }
-  CHECK(run({{"variant", "paper"}, {"clock", "processor"}}, scene_file).counters.at("threads") == 1);
-  CHECK_THROWS_WITH(run({}, airlight::test::scenes + "fogshop/colours.toml"),
-                    Contains("expected grey fog of Gaussians"));
-  CHECK_THROWS_WITH(run({{"noise_scale", "0.5"}}, scene_file), Contains("measures variant = paper, and S"));
-  CHECK_THROWS_WITH(run({}, ""), Contains("needs a [[scene]]"));
 }
 
 // A kind of vectors that is read and can be computed is a row of the experiment; one that compares nothing fails its

@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "experiments/driver/check.h"
 #include "experiments/driver/run.h"
 #include "scene/base/error.h"
 #include "tests/experiments/small_project.h"

@@ -149,39 +149,4 @@ TEST_CASE("pressure_solvers: iterations and what is left", "[stable_fluids][prob
   CHECK_THROWS_WITH(solved("transforms", "8", true, "noise", true), Contains("without obstacles"));
 }
 
-TEST_CASE("transforms_rate: the library's plans are those of a pressure", "[stable_fluids][probes]") {
-  for (const char* sides : {"walls", "periodic", "open"})
-    for (const bool fine : {false, true}) {
-      const Findings found = run(
-          "transforms_rate", {{"n", "12"}, {"sides", sides}, {"precision", fine ? "double" : "float"}, {"runs", "3"}});
-      CAPTURE(sides, fine);
-      CHECK(figure(found, "library_error") < (fine ? 1e-14 : 3e-6));
-      CHECK(figure(found, "share") > 0);
-      CHECK(figure(found, "share") < 3 * figure(found, "library_ns_per_cell") / figure(found, "ns_per_cell"));
-    }
-}
-
-TEST_CASE("advection_rate: bytes that are counted", "[stable_fluids][probes]") {
-  const auto found = [](const char* scheme, const char* of, const char* limiter, const char* precision) {
-    return run(
-        "advection_rate",
-        {{"scheme", scheme}, {"of", of}, {"limiter", limiter}, {"precision", precision}, {"n", "12"}, {"runs", "3"}});
-  };
-  const auto bytes = [&](const char* scheme, const char* of, const char* limiter, const char* precision) {
-    return figure(found(scheme, of, limiter, precision), "bytes_per_cell");
-  };
-  // Three velocities are read and a field is written, for each of three fields; a scalar is read too.
-  CHECK(bytes("semi_lagrangian", "velocity", "clamp", "float") == 3 * 4 * 4);
-  CHECK(bytes("semi_lagrangian", "scalar", "clamp", "float") == 5 * 4);
-  // And the range; then three velocities, what arrived, the range, and what is corrected.
-  CHECK(bytes("maccormack", "velocity", "clamp", "float") == 3 * (6 + 7) * 4);
-  CHECK(bytes("maccormack", "velocity", "none", "float") == 3 * (6 + 5) * 4);
-  CHECK(bytes("maccormack", "scalar", "clamp", "double") == (7 + 8) * 8);
-  CHECK(bytes("bfecc", "scalar", "clamp", "float") == (7 + 6 + 5 + 5) * 4);
-  const Findings one = found("maccormack", "velocity", "clamp", "float");
-  CHECK(figure(one, "rate") == Approx(156 / figure(one, "ns_per_cell")).epsilon(1e-6));
-  CHECK(figure(one, "share") > 0);
-  CHECK_THROWS_WITH(run("advection_rate", {{"trace", "3"}}), Contains("expected 1, 2 or 4"));
-}
-
 }  // namespace stable_fluids_probes_test

@@ -5,7 +5,7 @@
 //
 // It writes doubles: n, the 5 n variables of the start, 5 least and 5 greatest values of a Gaussian's, sum D^2. Then it answers, until its input
 // ends, to doubles: 0 and 5 n variables by the objective and its 5 n derivatives; M, a number of iterations and 5 n variables by the
-// objective at the end, seconds, evaluations and iterations of our minimiser M (1 or 2, as fit_method_names()).
+// objective at the end, seconds, evaluations and iterations of our minimiser M (1 or 2, as fit_methods()).
 #include <cstdio>
 #include <cstdlib>
 

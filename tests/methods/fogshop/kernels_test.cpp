@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "methods/fogshop/bare_loop.h"
 #include "methods/fogshop/paper_airlight.h"
 #include "tests/methods/fogshop/vectors.h"
 
@@ -149,18 +148,6 @@ TEST_CASE("Gaussians far from the triangle are left out", "[fogshop]") {
   std::vector<int> places;
   near_triangle(arrays, Point3(4, 0, 5), {Point3(0, 0, 0), Vec3(0, 0, 1), 10}, 0, 10, places);
   CHECK(places == std::vector<int>{0});
-}
-
-// What bare loops compute depends on their input, and `count` of it is done: twice as many evaluations sum to twice as
-// much, but for the small steps between them.
-TEST_CASE("bare loops compute", "[fogshop]") {
-  for (const BareLoop what : {BareLoop::error_function, BareLoop::crossing, BareLoop::depth, BareLoop::paper_term})
-    for (const Erf erf : {Erf::precise, Erf::erf10, Erf::paper}) {
-      const double once = bare_loop(what, erf, 4096, 0), twice = bare_loop(what, erf, 8192, 0);
-      CHECK(once != 0);
-      CHECK(relative_error(twice, 2 * once) <= 1e-4);
-      CHECK(bare_loop(what, erf, 4096, 1) != once);
-    }
 }
 
 }  // namespace kernels_test

@@ -62,7 +62,7 @@ TEST_CASE("legendre fluids, paper: A is the advection of a product cut to n", "[
   Array fine = r;
   for (int step = 0; step < 500; ++step)
     fine = runge_kutta_4(fine, 1e-3, [&](const Array& c) { return Array(-advection(c)); });
-  CHECK(error(advection.exponential(r, 0.5), fine) < 1e-11);
+  CHECK(error(advection.advected(r, 0.5), fine) < 1e-11);
 }
 
 TEST_CASE("legendre fluids, paper: what its Laplacian lacks", "[legendre_fluids]") {

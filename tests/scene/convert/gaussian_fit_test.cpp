@@ -325,8 +325,7 @@ TEST_CASE("what is no density is refused with its voxel, and so are absurd numbe
   o.least_voxels = 0;
   CHECK_THROWS_WITH(fit_gaussians(smoke(4), o), Catch::Contains("voxels above 0"));
   CHECK_THROWS_WITH(fit_method_from("lbgfs"), Catch::Contains("lbfgs"));
-  for (const std::string& name : fit_method_names())
-    CHECK(fit_method_names()[std::size_t(fit_method_from(name))] == name);
+  for (const auto& [name, method] : fit_methods()) CHECK(fit_method_from(name) == method);
 }
 
 TEST_CASE("a fit's table is a medium's table", "[gaussian_fit][convert]") {

@@ -1,4 +1,4 @@
-#include "experiments/driver/check.h"
+#include "experiments/driver/trial.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,9 @@
 #include <set>
 
 #include "experiments/application/interrupt.h"
-#include "experiments/driver/flows.h"
 #include "experiments/driver/journal.h"
-#include "experiments/driver/numbers.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
-#include "experiments/driver/sequences.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments {
@@ -89,21 +86,10 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
 
 }  // namespace
 
-void check_experiment(const Experiment& e, const RunOptions& options) {
-  try {
-    for (const std::string& name : e.sequences)  // scenes cannot be looked at without
-      make_sequence(options.folders, name, e.profile, e.timing.threads);
-    if (e.kind == "numbers") {
-      for (const SceneCase& c : e.scenes) input_key(c);
-      return;
-    }
-    if (e.kind == "flow") return check_flows(e);
-    const Journal finished(journal_file(options.folders, e), options.resume);
-    std::set<const MethodCase*> tried;
-    for (const SceneCase& c : e.scenes) check_scene(e, c, finished, options.trials, tried);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", e.id, error.what()), error.exit_code());
-  }
+void try_pictures(const Experiment& e, const RunOptions& options) {
+  const Journal finished(journal_file(options.folders, e), options.resume);
+  std::set<const MethodCase*> tried;
+  for (const SceneCase& c : e.scenes) check_scene(e, c, finished, options.trials, tried);
 }
 
 }  // namespace airlight::experiments

@@ -1,0 +1,25 @@
+// The list of kinds.
+#include <fmt/format.h>
+
+#include "experiments/driver/flows.h"
+#include "experiments/driver/images.h"
+#include "experiments/driver/numbers.h"
+#include "scene/base/error.h"
+
+namespace airlight::experiments {
+
+const std::vector<const ExperimentKind*>& all_kinds() {
+  static const Images images;
+  static const Numbers numbers;
+  static const Flows flows;
+  static const std::vector<const ExperimentKind*> kinds{&images, &numbers, &flows};
+  return kinds;
+}
+
+const ExperimentKind& find_kind(const std::string& name) {
+  for (const ExperimentKind* kind : all_kinds())
+    if (kind->name() == name) return *kind;
+  throw Error(fmt::format("unknown kind of experiment '{}'", name));
+}
+
+}  // namespace airlight::experiments
