@@ -17,6 +17,9 @@ struct ShaderSource {
 // (file, line, what was found) where an include leads nowhere.
 ShaderSource shader_source(const std::string& file, const std::map<std::string, std::string>& definitions);
 
+// The relative error that AIRLIGHT_GPU_ULPS puts into exp, log, sqrt, sin and cos; 0 without it. For bounds close to rounding.
+double injected_error();
+
 // Where the variable AIRLIGHT_DUMP_SHADERS names a folder: writes the text there, once for each variant, under the name
 // of its file, what of its content tells variants apart, and the ending of its stage (scripts/check_shaders reads them).
 // Throws Error if it cannot.

@@ -7,8 +7,8 @@ namespace airlight::experiments {
 
 const std::vector<std::unique_ptr<Probe>>& all_probes() { throw NeedsStudies(); }
 
-int verify(const std::vector<std::string>&, const std::string&, VerifyProfile, std::ostream&,
-           std::vector<VerifyKind>*) {
+int verify(const std::vector<std::string>&, const std::string&, VerifyProfile, std::ostream&, std::vector<VerifyKind>*,
+           VerifyOn) {
   throw NeedsStudies();
 }
 

@@ -14,6 +14,7 @@ namespace {
 struct VerifyOptions {
   std::vector<std::string> files;
   std::string kind, profile = "quick";
+  bool device = false;
 };
 
 }  // namespace
@@ -24,12 +25,17 @@ void add_verify(Commands& commands) {
   c->add_option("FILE", options->files, "JSON files");
   c->add_option("--kind", options->kind, "only vectors of this kind");
   c->add_option("--profile", options->profile, "quick (default) or paper");
-  commands.on(c, [options] {
+  c->add_flag("--device", options->device,
+              "compute the vectors by the device code; list vectors that it does not compute");
+  commands.add_gpu(c);
+  commands.on(c, [options, &commands] {
     if (options->files.empty()) throw Error("FILE is missing; see --help");
     if (options->profile != "quick" && options->profile != "paper")
       throw Error(fmt::format("--profile '{}': expected quick or paper", options->profile));
+    if (commands.gpu && !options->device) throw Error("--gpu: the processor computes the vectors; add --device");
     return verify(options->files, options->kind,
-                  options->profile == "quick" ? VerifyProfile::quick : VerifyProfile::paper, std::cout);
+                  options->profile == "quick" ? VerifyProfile::quick : VerifyProfile::paper, std::cout, nullptr,
+                  options->device ? VerifyOn::device : VerifyOn::processor);
   });
 }
 

@@ -29,15 +29,19 @@ Comparison statistical(std::string what, double expected, double expected_se, do
 Comparison truth(std::string what, bool got);
 
 struct Outcome {
+  void add(Comparison c) { comparisons.push_back(std::move(c)); }
   std::vector<Comparison> comparisons{};
   int left_out = 0;  // numbers that the profile does not reach
   std::string left_out_because{};
 };
 
-// Made by reading a vector completely; run later. `not_yet` names what is missing: then there is no job.
+// Made by reading a vector completely; run later. `not_yet` names what is missing: then there is no job. `on_device` computes the vector by
+// the shaders that draw pictures, while the context of this process is in use; where there is none, `not_on_device` says why.
 struct Check {
   std::string not_yet{};
   std::function<Outcome(VerifyProfile)> job{};
+  std::function<Outcome(VerifyProfile)> on_device{};
+  std::string not_on_device = "no device code computes this";
 };
 inline Check not_yet(std::string what) { return {std::move(what), nullptr}; }
 

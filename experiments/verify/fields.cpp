@@ -225,7 +225,7 @@ Check read_phase_function(const Value& v) {
               // The lobe vanishes at c = -1, which leaves K / (4 pi); the printed form is the normalised one over K.
               const double k = 4 * pi * scene::phase_value(r.phase, -1);
               const auto add = [&](const char* what, double e, double got) {
-                out.comparisons.push_back(relative(r.name + " " + what, e, got, accuracy));
+                out.add(relative(r.name + " " + what, e, got, accuracy));
               };
               add("K", r.k, k);
               add("g", r.g, scene::mean_cosine(r.phase));

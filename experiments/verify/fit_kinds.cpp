@@ -61,11 +61,10 @@ Check read_fit_objective(const Value& v) {
             scene::FitObjective<double> fit({n, n, n}, values.data(), 1, cut, 0);
             std::vector<double> got(gradient.size());
             Outcome out;
-            out.comparisons.push_back(relative("objective", objective, fit.value(gaussians, got.data()), rtol, atol));
-            out.comparisons.push_back(relative("sum D^2", squares, fit.sum_of_squares(), rtol, atol));
+            out.add(relative("objective", objective, fit.value(gaussians, got.data()), rtol, atol));
+            out.add(relative("sum D^2", squares, fit.sum_of_squares(), rtol, atol));
             for (std::size_t i = 0; i < gradient.size(); ++i)
-              out.comparisons.push_back(
-                  relative(fmt::format("gradient {}", i), gradient[i], got[i] * (i % 5 == 4 ? 1 : n), rtol, atol));
+              out.add(relative(fmt::format("gradient {}", i), gradient[i], got[i] * (i % 5 == 4 ? 1 : n), rtol, atol));
             return out;
           }};
 }

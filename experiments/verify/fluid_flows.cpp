@@ -43,9 +43,8 @@ void compare_taylor_green(const Row& row, Outcome& out) {
         norm += start * start;
       }
   const std::string name = fmt::format("{}, trace {}, {}", row.scheme, row.whole(0), n);
-  out.comparisons.push_back(
-      relative(name + ", lost energy", 1 - row.numbers[3], 1 - flow->totals().energy / before, 0.05));
-  out.comparisons.push_back(relative(name + ", error", row.numbers[4], std::sqrt(error / norm), 0.05));
+  out.add(relative(name + ", lost energy", 1 - row.numbers[3], 1 - flow->totals().energy / before, 0.05));
+  out.add(relative(name + ", error", row.numbers[4], std::sqrt(error / norm), 0.05));
 }
 
 Check read_taylor_green(const Value& v) {
@@ -72,8 +71,8 @@ Check read_rest(const Value& v) {
               const auto flow = start(problem, {{"n", "16"}, {"precision", fine ? "double" : "float"}});
               const double dt = 0.04;
               for (int i = 0; i < steps; ++i) flow->step(dt);
-              out.comparisons.push_back(absolute(fine ? "speed over g dt, double" : "speed over g dt, float", expected,
-                                                 flow->totals().greatest_speed / (9.81 * dt), fine ? 1e-12 : 1e-5));
+              out.add(absolute(fine ? "speed over g dt, double" : "speed over g dt, float", expected,
+                               flow->totals().greatest_speed / (9.81 * dt), fine ? 1e-12 : 1e-5));
             }
             return out;
           }};
@@ -86,8 +85,8 @@ void compare_cavity(const CavityTable& table, const CavityProfiles& known, bool 
   const auto compare = [&](const char* what, const std::vector<double>& places, const std::vector<double>& expected,
                            auto at, int axis) {
     for (std::size_t i = 0; i < expected.size(); ++i)
-      out.comparisons.push_back(absolute(fmt::format("Re {}, {}^2, {}{}", known.reynolds, n, what, places[i]),
-                                         expected[i], flow->velocity(at(places[i]))[axis], tolerance));
+      out.add(absolute(fmt::format("Re {}, {}^2, {}{}", known.reynolds, n, what, places[i]), expected[i],
+                       flow->velocity(at(places[i]))[axis], tolerance));
   };
   compare("u at y = ", table.y, known.u, on_vertical, 0);
   compare("v at x = ", table.x, known.v, on_horizontal, 1);

@@ -66,7 +66,7 @@ void compare_amplification(const Row& row, double tolerance, Outcome& out) {
       advect({Scheme(s), Interpolation::linear, Limiter::none, 1}, l, {}, u, cfl * l.h, Quantity::density, f, to, work);
       std::swap(f, to);
     }
-    out.comparisons.push_back(
+    out.add(
         absolute(fmt::format("{}, CFL {}, {} of {}, {}", names[s], cfl, k, n, sizeof(Real) == 8 ? "double" : "float"),
                  row.numbers[3 + s], std::pow(squares(f) / before, 0.05), tolerance));
   }
@@ -98,8 +98,8 @@ Check read_diffusion(const Value& v) {
               auto f = wave;
               Diffusion<double>(l, {}, at_centers, 1e-12, 100)(f, Quantity::density, nu * dt);
               // The wave's share of it: what rounding puts into the mean does not decay.
-              out.comparisons.push_back(relative(fmt::format("nu {}, dt {}", nu, dt), row.numbers[4],
-                                                 product(f, wave) / product(wave, wave), tolerance));
+              out.add(relative(fmt::format("nu {}, dt {}", nu, dt), row.numbers[4],
+                               product(f, wave) / product(wave, wave), tolerance));
             }
             return out;
           }};
@@ -145,11 +145,11 @@ Check read_poisson(const Value& v) {
               const auto& [i, j, k] = cell.at;
               const double got =
                   p[std::size_t(i) + std::size_t(l.n[0]) * (std::size_t(j) + std::size_t(l.n[1]) * std::size_t(k))];
-              out.comparisons.push_back(absolute(cell.name, cell.value, got, tolerance));
+              out.add(absolute(cell.name, cell.value, got, tolerance));
             }
             double square = 0;
             for (const double value : p) square += value * value;
-            out.comparisons.push_back(absolute("l2", l2, std::sqrt(square / double(p.size())), tolerance));
+            out.add(absolute("l2", l2, std::sqrt(square / double(p.size())), tolerance));
             return out;
           }};
 }
@@ -182,13 +182,13 @@ void compare_rotation(const Row& row, double tolerance, Outcome& out) {
     }
   const std::string name = fmt::format("{}, {}", row.scheme, n);
   const auto add = [&](const char* what, double expected, double got) {
-    out.comparisons.push_back(relative(name + ", " + what, expected, got, tolerance));
+    out.add(relative(name + ", " + what, expected, got, tolerance));
   };
   add("energy", row.numbers[2], squares(f) / squares(first));
   add("mass", row.numbers[3], mass / mass_before);
   add("greatest", row.numbers[4], greatest);
   // The least value may be 0, so its tolerance is a share of the greatest value at the start, which is 1.
-  out.comparisons.push_back(absolute(name + ", least", row.numbers[5], least, tolerance));
+  out.add(absolute(name + ", least", row.numbers[5], least, tolerance));
   add("error", row.numbers[6], std::sqrt(error / squares(first)));
 }
 
@@ -231,10 +231,9 @@ Check read_confinement(const Value& v) {
             for (std::size_t i = 0; i < radii.size(); ++i) {
               const double r = radii[i];
               const Vec3 cells = (Point3(r, 0, 0) - l.low) / l.h;
-              out.comparisons.push_back(
-                  relative(fmt::format("around, r = {}", r), expected[i], interpolate(u[1], l, cells), 0.02));
-              out.comparisons.push_back(absolute(fmt::format("outwards, r = {}", r), 0, interpolate(u[0], l, cells),
-                                                 0.02 * std::abs(expected[i])));
+              out.add(relative(fmt::format("around, r = {}", r), expected[i], interpolate(u[1], l, cells), 0.02));
+              out.add(absolute(fmt::format("outwards, r = {}", r), 0, interpolate(u[0], l, cells),
+                               0.02 * std::abs(expected[i])));
             }
             return out;
           }};

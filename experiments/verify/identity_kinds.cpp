@@ -70,15 +70,14 @@ Check read_furnace(const Value& v) {
             const Ray ray{Point3(0.1, -0.2, -3), Vec3(0.05, 0.08, 1).normalized()};
             std::vector<scene::Medium> all;
             for (const Fog& f : furnace_media()) {
-              out.comparisons.push_back(mean_one(f.name, expected, furnace({f.medium}, false), ray, effort));
+              out.add(mean_one(f.name, expected, furnace({f.medium}, false), ray, effort));
               if (!std::holds_alternative<scene::Slab>(f.medium.region)) all.push_back(f.medium);
             }
-            out.comparisons.push_back(mean_one("all at once", expected, furnace(all, false), ray, effort));
-            out.comparisons.push_back(mean_one("all, white ball", expected, furnace(all, true), ray, effort));
+            out.add(mean_one("all at once", expected, furnace(all, false), ray, effort));
+            out.add(mean_one("all, white ball", expected, furnace(all, true), ray, effort));
             if (profile == VerifyProfile::paper) {
               scene::Medium thick = fog(scene::Sphere{Point3::Zero(), 1}, 500, 1, scene::Isotropic{});
-              out.comparisons.push_back(
-                  mean_one("optical depth 1000", expected, furnace({thick}, false), ray, fixed(1 << 14, profile)));
+              out.add(mean_one("optical depth 1000", expected, furnace({thick}, false), ray, fixed(1 << 14, profile)));
             } else {
               out.left_out = 1;
               out.left_out_because = "optical depth 1000 is for the paper profile";
@@ -152,15 +151,11 @@ Check read_collisions(const Value& v) {
             const auto ball = [&](const scene::PhaseFunction& p) {
               return fog(scene::Sphere{Point3::Zero(), 1}, radius, 1, p);
             };
-            out.comparisons.push_back(
-                collisions("sphere isotropic", sphere, ball(scene::Isotropic{}), sphere_entry(), effort));
-            out.comparisons.push_back(
-                collisions("sphere HG 0.8", sphere, ball(scene::HenyeyGreenstein{0.8}), sphere_entry(), effort));
+            out.add(collisions("sphere isotropic", sphere, ball(scene::Isotropic{}), sphere_entry(), effort));
+            out.add(collisions("sphere HG 0.8", sphere, ball(scene::HenyeyGreenstein{0.8}), sphere_entry(), effort));
             const scene::Region layer = scene::Slab{Vec3::UnitZ(), 0, 1};
-            out.comparisons.push_back(
-                collisions("slab tau 3", 3 * per_tau, fog(layer, 3, 1, scene::Murky{}), slab, effort));
-            out.comparisons.push_back(
-                collisions("cube edge 4", 4 * per_edge, fog(cube, 4, 1, scene::Rayleigh{}), cube_entry(), effort));
+            out.add(collisions("slab tau 3", 3 * per_tau, fog(layer, 3, 1, scene::Murky{}), slab, effort));
+            out.add(collisions("cube edge 4", 4 * per_edge, fog(cube, 4, 1, scene::Rayleigh{}), cube_entry(), effort));
             // The law 4 int sigma dV / S for a field that varies: the grid's tent functions have the volume h^3 each.
             scene::Medium grid = fog(scene::Unbounded{}, 0.5, 1, scene::Hazy{});
             auto field = std::make_shared<scene::VoxelGrid>(*lumpy_grid());
@@ -170,7 +165,7 @@ Check read_collisions(const Value& v) {
             double integral = 0;
             for (const float value : field->values) integral += value * std::pow(field->voxel_size, 3);
             grid.field = std::shared_ptr<const scene::VoxelGrid>(field);
-            out.comparisons.push_back(collisions("cube grid", 4 * 0.5 * integral / 6, grid, cube_entry(), effort));
+            out.add(collisions("cube grid", 4 * 0.5 * integral / 6, grid, cube_entry(), effort));
             return out;
           }};
 }
@@ -197,8 +192,7 @@ Check read_reciprocity(const Value& v) {
               const Vec3 a = Vec3(0.3, 0.1, 0.9).normalized(), b = Vec3(-0.6, 0.7, 0.4).normalized();
               const auto [one, one_se] = kernel(a, b);
               const auto [two, two_se] = kernel(b, a);
-              out.comparisons.push_back(
-                  statistical(std::string("slab kernel ") + name, expected, one_se, one - two, two_se, accept_se));
+              out.add(statistical(std::string("slab kernel ") + name, expected, one_se, one - two, two_se, accept_se));
             }
             return out;
           }};
@@ -225,8 +219,7 @@ Check read_limits(const Value& v) {
           scene::finish(slab);
           const std::string name = "R tau " + std::to_string(int(tau));
           const auto got = Measurement(slab, Ray{Point3(0, 0, -1), Vec3::UnitZ()}, 1, name).run(aim(2.7e-4, profile));
-          out.comparisons.push_back(
-              statistical(name, expected, 0, got.total.mean[0], got.total.error[0], accept_se, accuracy));
+          out.add(statistical(name, expected, 0, got.total.mean[0], got.total.error[0], accept_se, accuracy));
         }
         return out;
       }};

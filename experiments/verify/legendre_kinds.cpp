@@ -93,14 +93,13 @@ Check read_legendre_phi_mass(const Value& v) {
   const Check matrix = compare_matrices("M", v["M"], mass);
   const std::vector<double> expected = v["eigenvalues"].numbers();
   if (int(expected.size()) != n - 1) v["eigenvalues"].complain(fmt::format("{} numbers", n - 1));
-  return {
-      "", [=](VerifyProfile profile) {
-        Outcome out = matrix.job(profile);
-        const Eigen::VectorXd got = scene::symmetric_modes(mass).values;
-        for (int i = 0; i < n - 1; ++i)
-          out.comparisons.push_back(relative(fmt::format("eigenvalue {}", i), expected[std::size_t(i)], got[i], gate));
-        return out;
-      }};
+  return {"", [=](VerifyProfile profile) {
+            Outcome out = matrix.job(profile);
+            const Eigen::VectorXd got = scene::symmetric_modes(mass).values;
+            for (int i = 0; i < n - 1; ++i)
+              out.add(relative(fmt::format("eigenvalue {}", i), expected[std::size_t(i)], got[i], gate));
+            return out;
+          }};
 }
 
 Check read_legendre_product(const Value& v) {
@@ -121,8 +120,7 @@ Check read_legendre_product(const Value& v) {
               t[axis] = int(axis) < d ? scene::chebyshev_truncation(f.shape[axis]) : Eigen::MatrixXd::Ones(1, 1);
             Outcome out;
             const auto add = [&](const char* name, const Eigen::VectorXd& expected, const Eigen::VectorXd& got) {
-              for (Comparison& c : largest_differences(name, expected, got, gate))
-                out.comparisons.push_back(std::move(c));
+              for (const Comparison& c : largest_differences(name, expected, got, gate)) out.add(c);
             };
             if (whole) add("H", whole->values, h);
             add("H_trunc_cheb", cut.values, scene::along_axes(t[0], t[1], t[2], h, full));

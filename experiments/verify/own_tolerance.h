@@ -18,9 +18,9 @@ inline Comparison compare(std::string what, double expected, double got, OwnTole
 // Number by number. One more or fewer than expected is a number out.
 inline void compare_all(Outcome& out, const std::string& what, const std::vector<double>& expected,
                         const std::vector<double>& got, OwnTolerance t) {
-  if (got.size() != expected.size()) out.comparisons.push_back(truth(what + ": as many numbers", false));
+  if (got.size() != expected.size()) out.add(truth(what + ": as many numbers", false));
   for (std::size_t i = 0; i < std::min(got.size(), expected.size()); ++i)
-    out.comparisons.push_back(compare(fmt::format("{} {}", what, i), expected[i], got[i], t));
+    out.add(compare(fmt::format("{} {}", what, i), expected[i], got[i], t));
 }
 
 }  // namespace airlight::experiments::verification

@@ -34,8 +34,8 @@ Outcome equiangular(const std::vector<Row>& rows, double accuracy) {
   for (const Row& r : rows) {
     const path_tracer::Equiangular sampler({Point3::Zero(), Vec3::UnitZ()}, Point3(r[1], 0, r[0]), {r[2], r[3]});
     const std::string name = joined(r, 2);
-    out.comparisons.push_back(relative(name + " t", r[5], sampler.sample(r[4]), accuracy));
-    out.comparisons.push_back(relative(name + " pdf", r[6], sampler.pdf(sampler.sample(r[4])), accuracy));
+    out.add(relative(name + " t", r[5], sampler.sample(r[4]), accuracy));
+    out.add(relative(name + " pdf", r[6], sampler.pdf(sampler.sample(r[4])), accuracy));
   }
   return out;
 }
@@ -86,8 +86,8 @@ Check read_sampling(const Value& v) {
             Outcome out;
             for (const Row& r : rows) {
               const double expected = r[inputs], got = sample(r);
-              out.comparisons.push_back(is_relative ? relative(joined(r, inputs), expected, got, accuracy)
-                                                    : absolute(joined(r, inputs), expected, got, accuracy));
+              out.add(is_relative ? relative(joined(r, inputs), expected, got, accuracy)
+                                  : absolute(joined(r, inputs), expected, got, accuracy));
             }
             return out;
           }};
@@ -103,16 +103,16 @@ Check read_random_numbers(const Value& v) {
   const Value rows = v["expected"]["rows"];
   for (std::size_t i = 0; i < rows.size(); ++i)
     answers.push_back({words<4>(rows[i][0]), words<2>(rows[i][1]), words<4>(rows[i][2])});
-  return {"", [=](VerifyProfile) {
-            Outcome out;
-            for (std::size_t i = 0; i < answers.size(); ++i) {
-              const PhiloxCounter got = philox4x32_10(answers[i].counter, answers[i].key);
-              for (int w = 0; w < 4; ++w)
-                out.comparisons.push_back(
-                    absolute("row " + std::to_string(i) + " word " + std::to_string(w), answers[i].out[w], got[w], 0));
-            }
-            return out;
-          }};
+  return {
+      "", [=](VerifyProfile) {
+        Outcome out;
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          const PhiloxCounter got = philox4x32_10(answers[i].counter, answers[i].key);
+          for (int w = 0; w < 4; ++w)
+            out.add(absolute("row " + std::to_string(i) + " word " + std::to_string(w), answers[i].out[w], got[w], 0));
+        }
+        return out;
+      }};
 }
 
 }  // namespace airlight::experiments::verification

@@ -88,9 +88,9 @@ Check read_single_scattering_gaussians(const Value& v) {
             for (std::size_t i = 0; i < rows.size(); ++i) {
               const Row& r = rows[i];
               const std::string ray = "ray " + std::to_string(i);
-              out.comparisons.push_back(order_one(ray + " L1", r.radiance, scene, r.ray, r.length, accuracy));
-              out.comparisons.push_back(relative(ray + " depth", r.depth,
-                                                 scene::optical_depth(scene.media, r.ray, {0, r.length})[0], accuracy));
+              out.add(order_one(ray + " L1", r.radiance, scene, r.ray, r.length, accuracy));
+              out.add(relative(ray + " depth", r.depth, scene::optical_depth(scene.media, r.ray, {0, r.length})[0],
+                               accuracy));
             }
             return out;
           }};

@@ -89,7 +89,7 @@ Outcome compare_table(const std::string& id, const std::vector<TableRow>& rows, 
   Outcome out;
   const auto add = [&](const TableNumber& n) {
     const auto got = n.measurement.run(aim(table_se, profile)).total;
-    out.comparisons.push_back(statistical(n.what, n.expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
+    out.add(statistical(n.what, n.expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
   };
   if (profile == VerifyProfile::paper) {
     for (const TableRow& r : rows)
@@ -167,7 +167,7 @@ Check read_slab_point(const Value& v) {
             Outcome out;
             const auto add = [&](const std::string& what, bool reflection, double mu0, double expected) {
               const auto got = share(id + what, layer, reflection, mu0).run(aim(table_se, profile)).total;
-              out.comparisons.push_back(statistical(what, expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
+              out.add(statistical(what, expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
             };
             add("R", true, 1, r);
             add("T", false, 1, t);
@@ -179,7 +179,7 @@ Check read_slab_point(const Value& v) {
               c.what += " as published";
               c.expected = published;
               c.tolerance += 5e-6;
-              out.comparisons.push_back(c);
+              out.add(c);
             }
             return out;
           }};
@@ -198,7 +198,7 @@ Check read_slab_exit_radiance(const Value& v) {
             const auto add = [&](const std::string& what, double expected, const Ray& ray) {
               const double part = profile == VerifyProfile::quick ? 0.01 : 0.002;
               const auto got = Measurement(scene, ray, 1, id + what).run(aim(part * expected, profile)).total;
-              out.comparisons.push_back(statistical(what, expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
+              out.add(statistical(what, expected, 0, got.mean[0], got.error[0], accept_se, accuracy));
             };
             for (const auto& [mu, value] : reflected) add(at("reflected", mu), value, {front, slanted(mu)});
             for (const auto& [mu, value] : transmitted)
@@ -215,22 +215,22 @@ Check read_slab_orders(const Value& v) {
   if (orders < 1 || orders > path_tracer::most_orders) v["expected"].complain("1 to 12 orders");
   const double accuracy = v["accuracy"]["abs"].number();
   const std::string id = v["id"].text();
-  return {"", [=](VerifyProfile profile) {
-            const scene::Scene scene = sunlit(layer, 1);
-            // Flux out per flux in: pi times the mean radiance, irradiance 1 at normal incidence.
-            const std::uint64_t samples = std::uint64_t(1) << (profile == VerifyProfile::quick ? 18 : 22);
-            Outcome out;
-            const auto add = [&](const char* name, const std::vector<double>& expected, const Detector& detector) {
-              const auto got = Measurement(scene, detector, orders, id + name).run(fixed(samples, profile));
-              for (std::size_t m = 0; m < expected.size(); ++m)
-                out.comparisons.push_back(statistical(std::string(name) + " order " + std::to_string(m + 1),
-                                                      expected[m], 0, pi * got.orders[m + 1].mean[0],
-                                                      pi * got.orders[m + 1].error[0], accept_se, accuracy));
-            };
-            add("R", r, cosine_detector(front, Vec3::UnitZ()));
-            add("T", t, cosine_detector(Point3(0, 0, layer.tau + margin), -Vec3::UnitZ()));
-            return out;
-          }};
+  return {
+      "", [=](VerifyProfile profile) {
+        const scene::Scene scene = sunlit(layer, 1);
+        // Flux out per flux in: pi times the mean radiance, irradiance 1 at normal incidence.
+        const std::uint64_t samples = std::uint64_t(1) << (profile == VerifyProfile::quick ? 18 : 22);
+        Outcome out;
+        const auto add = [&](const char* name, const std::vector<double>& expected, const Detector& detector) {
+          const auto got = Measurement(scene, detector, orders, id + name).run(fixed(samples, profile));
+          for (std::size_t m = 0; m < expected.size(); ++m)
+            out.add(statistical(std::string(name) + " order " + std::to_string(m + 1), expected[m], 0,
+                                pi * got.orders[m + 1].mean[0], pi * got.orders[m + 1].error[0], accept_se, accuracy));
+        };
+        add("R", r, cosine_detector(front, Vec3::UnitZ()));
+        add("T", t, cosine_detector(Point3(0, 0, layer.tau + margin), -Vec3::UnitZ()));
+        return out;
+      }};
 }
 
 Check read_half_space(const Value& v) {
@@ -275,8 +275,7 @@ Check read_half_space(const Value& v) {
                 scale = 1 / std::sqrt(1 - n.albedo);
                 value = (1 - value) * scale;
               }
-              out.comparisons.push_back(
-                  statistical(n.what, n.expected, 0, value, scale * got.error[0], accept_se, scale * accuracy));
+              out.add(statistical(n.what, n.expected, 0, value, scale * got.error[0], accept_se, scale * accuracy));
             }
             return out;
           }};

@@ -27,6 +27,13 @@ scene::GaussianSum gaussians_of(const Value& input, const std::string& field) {
   return sum;
 }
 
+std::vector<double> numbers_of(const std::vector<scene::Gaussian>& gaussians) {
+  std::vector<double> numbers;
+  for (const scene::Gaussian& g : gaussians)
+    numbers.insert(numbers.end(), {g.center[0], g.center[1], g.center[2], g.width, g.amplitude});
+  return numbers;
+}
+
 std::vector<Rgb> grey_harmonics(const Value& list) {
   std::vector<Rgb> all;
   for (const double c : list.numbers()) all.push_back(Rgb::Constant(c));
@@ -56,6 +63,12 @@ std::vector<double> evaluated(const std::vector<Rgb>& harmonics, const std::vect
   std::vector<double> values;
   for (const Vec3& w : directions) values.push_back(scene::evaluate_sh(harmonics, w)[0]);
   return values;
+}
+
+double distance(const crm::Harmonics& a, const crm::Harmonics& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(a[i] - b.at(i), 2);
+  return std::sqrt(sum / (4 * pi));
 }
 
 std::vector<double> powers_of(double g) { return {1, g, g * g, g * g * g}; }

@@ -72,18 +72,16 @@ Check read_sphere_environment(const Value& v) {
         const scene::Scene scene = one_medium(isotropic_sphere(radius, albedo), uniform_sky());
         const Effort effort = effort_for(profile, 17);
         Outcome out;
-        out.comparisons.push_back(
-            of("J at the centre", centre, 0,
-               Measurement(scene, isotropic_detector(Point3::Zero()), 1, id + "J").run(effort).total, accuracy));
+        out.add(of("J at the centre", centre, 0,
+                   Measurement(scene, isotropic_detector(Point3::Zero()), 1, id + "J").run(effort).total, accuracy));
         for (const auto& [b, value] : chords) {
           const std::string name = "L b " + std::to_string(b).substr(0, 4);
-          out.comparisons.push_back(of(
-              name, value, 0, Measurement(scene, chord(b * radius, radius), 1, id + name).run(effort).total, accuracy));
+          out.add(of(name, value, 0, Measurement(scene, chord(b * radius, radius), 1, id + name).run(effort).total,
+                     accuracy));
         }
         const auto got = Measurement(scene, chord(0.5 * radius, radius), int(orders.size()), id + "orders").run(effort);
         for (std::size_t m = 0; m < orders.size(); ++m)
-          out.comparisons.push_back(
-              of("b 0.5 order " + std::to_string(m + 1), orders[m], 0, got.orders[m + 1], accuracy));
+          out.add(of("b 0.5 order " + std::to_string(m + 1), orders[m], 0, got.orders[m + 1], accuracy));
         return out;
       }};
 }
@@ -108,9 +106,9 @@ Check read_sphere_central_point(const Value& v) {
             for (const Chord& c : chords) {
               const std::string name = "b " + std::to_string(c.b).substr(0, 4);
               const auto got = Measurement(scene, chord(c.b * radius, radius), 2, id + name).run(effort);
-              out.comparisons.push_back(of(name + " order 1", c.first, 0, got.orders[1], accuracy));
-              out.comparisons.push_back(of(name + " order 2", c.second, 0, got.orders[2], accuracy));
-              out.comparisons.push_back(of(name + " all", c.all, 0, got.total, accuracy));
+              out.add(of(name + " order 1", c.first, 0, got.orders[1], accuracy));
+              out.add(of(name + " order 2", c.second, 0, got.orders[2], accuracy));
+              out.add(of(name + " all", c.all, 0, got.total, accuracy));
             }
             return out;
           }};
@@ -166,22 +164,21 @@ Check read_multiple_scattering(const Value& v) {
   const std::string id = v["id"].text();
   // What CI runs: no sharp phase functions, in dense fog or under a near light, which take minutes.
   const bool paper_only = std::abs(in["g"].number()) >= 0.9;
-  return {
-      "", [=](VerifyProfile profile) {
-        if (paper_only && profile == VerifyProfile::quick)
-          return Outcome{{}, int(numbers.size()) + 1, "for the paper profile"};
-        const auto got = Measurement(one_medium(medium, light), ray, 4, id).run(effort_for(profile, 20));
-        Outcome out;
-        for (const Number& n : numbers)
-          out.comparisons.push_back(of(n.name, n.mean, n.error, n.order < 0 ? got.total : got.orders[n.order], 0, 4));
-        // The vector does not tell the error of its count: it is ours, scaled by the numbers of histories. Sixteen
-        // repeats make a Student's t of 15 degrees: 5.5 standard errors are as rare as 4 of a known one.
-        const Effort half = effort_for(profile, 19);
-        const auto count = Measurement(one_medium(medium, light), ray, 4, id + "collisions").collisions(half);
-        const double error = count.error[0] * std::sqrt(double(half.least) / histories);
-        out.comparisons.push_back(of("analog collisions", collisions, error, count, 0, 5.5));
-        return out;
-      }};
+  return {"", [=](VerifyProfile profile) {
+            if (paper_only && profile == VerifyProfile::quick)
+              return Outcome{{}, int(numbers.size()) + 1, "for the paper profile"};
+            const auto got = Measurement(one_medium(medium, light), ray, 4, id).run(effort_for(profile, 20));
+            Outcome out;
+            for (const Number& n : numbers)
+              out.add(of(n.name, n.mean, n.error, n.order < 0 ? got.total : got.orders[n.order], 0, 4));
+            // The vector does not tell the error of its count: it is ours, scaled by the numbers of histories. Sixteen
+            // repeats make a Student's t of 15 degrees: 5.5 standard errors are as rare as 4 of a known one.
+            const Effort half = effort_for(profile, 19);
+            const auto count = Measurement(one_medium(medium, light), ray, 4, id + "collisions").collisions(half);
+            const double error = count.error[0] * std::sqrt(double(half.least) / histories);
+            out.add(of("analog collisions", collisions, error, count, 0, 5.5));
+            return out;
+          }};
 }
 
 }  // namespace airlight::experiments::verification

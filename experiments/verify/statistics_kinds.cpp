@@ -26,7 +26,7 @@ Outcome squared_errors(const std::vector<double>& a, const std::vector<double>& 
     return peak_signal_to_noise(e.unbiased, 2);
   };
   Outcome out;
-  for (const auto& [name, number] : expected) out.comparisons.push_back(relative(name, number, value(name), accuracy));
+  for (const auto& [name, number] : expected) out.add(relative(name, number, value(name), accuracy));
   return out;
 }
 
@@ -71,13 +71,13 @@ Check read_sidak(const Value& v, double accuracy) {
     list[i][0].integer_in(1, 1000000000);
     list[i][1].number_in(1e-300, 0.999);
   }
-  return {"", [=](VerifyProfile) {
-            Outcome out;
-            for (const auto& r : rows)
-              out.comparisons.push_back(
-                  relative("m " + std::to_string(int(r[0])), r[2], sidak_threshold(std::size_t(r[0]), r[1]), accuracy));
-            return out;
-          }};
+  return {
+      "", [=](VerifyProfile) {
+        Outcome out;
+        for (const auto& r : rows)
+          out.add(relative("m " + std::to_string(int(r[0])), r[2], sidak_threshold(std::size_t(r[0]), r[1]), accuracy));
+        return out;
+      }};
 }
 
 Check read_median(const Value& v, double accuracy) {
@@ -95,13 +95,13 @@ Check read_median(const Value& v, double accuracy) {
             for (const auto& r : rows) {
               const RankInterval ranks = median_ranks(int(r[0]));
               const std::string n = "n " + std::to_string(int(r[0]));
-              out.comparisons.push_back(absolute(n + " lower", r[1], ranks.lower, 0));
-              out.comparisons.push_back(absolute(n + " upper", r[2], ranks.upper, 0));
+              out.add(absolute(n + " lower", r[1], ranks.lower, 0));
+              out.add(absolute(n + " upper", r[2], ranks.upper, 0));
             }
             const double deviation = median_absolute_deviation(x);
-            out.comparisons.push_back(absolute("median", middle, median(x), accuracy));
-            out.comparisons.push_back(absolute("mad", mad, deviation, accuracy));
-            out.comparisons.push_back(absolute("sigma", sigma, sigma_per_mad * deviation, accuracy));
+            out.add(absolute("median", middle, median(x), accuracy));
+            out.add(absolute("mad", mad, deviation, accuracy));
+            out.add(absolute("sigma", sigma, sigma_per_mad * deviation, accuracy));
             return out;
           }};
 }
@@ -121,13 +121,13 @@ Check read_hypervolume(const Value& v, double accuracy) {
   return {"", [=](VerifyProfile) {
             Outcome out;
             const std::vector<std::size_t> found = front(all);
-            out.comparisons.push_back(absolute("points on the front", double(best.size()), double(found.size()), 0));
+            out.add(absolute("points on the front", double(best.size()), double(found.size()), 0));
             for (std::size_t i = 0; i < std::min(best.size(), found.size()); ++i) {
               const std::string name = "front " + std::to_string(i);
-              out.comparisons.push_back(absolute(name + " time", best[i].time.value, all[found[i]].time.value, 0));
-              out.comparisons.push_back(absolute(name + " error", best[i].error.value, all[found[i]].error.value, 0));
+              out.add(absolute(name + " time", best[i].time.value, all[found[i]].time.value, 0));
+              out.add(absolute(name + " error", best[i].error.value, all[found[i]].error.value, 0));
             }
-            out.comparisons.push_back(absolute("area", area, hypervolume(all, time, error), accuracy));
+            out.add(absolute("area", area, hypervolume(all, time, error), accuracy));
             return out;
           }};
 }

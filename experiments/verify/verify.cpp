@@ -12,6 +12,7 @@
 #include "experiments/application/json.h"
 #include "experiments/application/json_value.h"
 #include "experiments/verify/check.h"
+#include "gpu/context.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest.h"
 #include "scene/base/settings.h"
@@ -60,8 +61,10 @@ std::vector<Vector> read_file(const std::string& path) {
 }
 
 // What a job refuses is told with the vector's place.
-Outcome computed(const Vector& w, const std::string& path, VerifyProfile profile) try {
-  return w.check.job(profile);
+Outcome computed(const Vector& w, const std::string& path, VerifyProfile profile, VerifyOn on) try {
+  if (on == VerifyOn::processor) return w.check.job(profile);
+  const gpu::Use use(gpu::Context::get());
+  return w.check.on_device(profile);
 } catch (const Error& e) {
   throw Error(fmt::format("{}: vector '{}': {}", path, w.id, e.what()), e.exit_code());
 }
@@ -112,16 +115,18 @@ struct Totals {
   }
 };
 
-std::string text(const Totals& t) {
+std::string text(const Totals& t, VerifyOn on) {
   return fmt::format(
-      "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors not known yet",
-      t.vectors, t.numbers, t.numbers - t.out, t.out, t.left_out, t.not_yet);
+      "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors {}", t.vectors,
+      t.numbers, t.numbers - t.out, t.out, t.left_out, t.not_yet,
+      on == VerifyOn::device ? "that no device code computes" : "not known yet");
 }
 
 }  // namespace
 
 int verify(const std::vector<std::string>& files, const std::string& kind, VerifyProfile profile, std::ostream& out,
-           std::vector<VerifyKind>* table) {
+           std::vector<VerifyKind>* table, VerifyOn on) {
+  if (on == VerifyOn::device) out << "device: " << gpu::Context::get().description() << "\n";
   std::vector<std::pair<std::string, std::vector<Vector>>> all;
   std::set<std::string> kinds;
   for (const std::string& path : files) {
@@ -142,15 +147,16 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     for (const Vector& w : vectors) {
       if (!kind.empty() && w.kind != kind) continue;
       VerifyKind& line = line_of(kinds_found, path, w.kind);
-      if (!w.check.job) {
-        out << fmt::format("{:<42} {:<32} not yet: {}\n", w.id, w.kind, w.check.not_yet);
-        ++waiting[w.check.not_yet];
+      if (!(on == VerifyOn::device ? w.check.on_device : w.check.job)) {
+        const std::string why = on == VerifyOn::device ? w.check.not_on_device : "not yet: " + w.check.not_yet;
+        out << fmt::format("{:<42} {:<32} {}\n", w.id, w.kind, why);
+        ++waiting[why];
         ++line.not_yet;
         continue;
       }
       check_interrupted();
       const auto start = std::chrono::steady_clock::now();
-      const Outcome outcome = computed(w, path, profile);
+      const Outcome outcome = computed(w, path, profile, on);
       line.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       count(line, w.id, outcome);
       for (const Comparison& c : outcome.comparisons) {
@@ -164,7 +170,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
       out.flush();
     }
   }
-  for (const auto& [what, count] : waiting) out << fmt::format("not yet: {} of {}\n", count, what);
+  for (const auto& [what, count] : waiting) out << fmt::format("{} vectors: {}\n", count, what);
   for (const std::string& f : failures) out << "OUT: " << f << "\n";
   Totals totals;
   for (const VerifyKind& line : kinds_found) totals.add(line);
@@ -172,9 +178,9 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     Totals of_file;
     for (const VerifyKind& line : kinds_found)
       if (line.file == path) of_file.add(line);
-    out << path << ": " << text(of_file) << "\n";
+    out << path << ": " << text(of_file, on) << "\n";
   }
-  if (all.size() > 1) out << "all files: " << text(totals) << "\n";
+  if (all.size() > 1) out << "all files: " << text(totals, on) << "\n";
   if (totals.numbers == 0) out << "FAILED: no number was compared\n";
   if (table) *table = kinds_found;
   return totals.out || totals.numbers == 0 ? 1 : 0;

@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "experiments/application/json_value.h"
+#include "experiments/verify/one_ray.h"
 #include "experiments/verify/readers.h"
+#include "gpu/wavelet_fog/grids.h"
+#include "gpu/wavelet_fog/wavelet_fog.h"
 #include "methods/wavelet_fog/levels.h"
 #include "methods/wavelet_fog/projection.h"
 #include "scene/base/error.h"
@@ -24,9 +27,9 @@ constexpr double rounding = 1e-15;
 
 void compare(Outcome& outcome, const std::string& what, const std::vector<double>& expected,
              const std::vector<double>& got) {
-  outcome.comparisons.push_back(absolute(what + ": how many", double(expected.size()), double(got.size()), 0));
+  outcome.add(absolute(what + ": how many", double(expected.size()), double(got.size()), 0));
   for (std::size_t i = 0; i < std::min(expected.size(), got.size()); ++i)
-    outcome.comparisons.push_back(relative(fmt::format("{} {}", what, i), expected[i], got[i], rounding, rounding));
+    outcome.add(relative(fmt::format("{} {}", what, i), expected[i], got[i], rounding, rounding));
 }
 
 constexpr int most = 4096;  // indices and sizes of maps; more of them are no test
@@ -51,17 +54,17 @@ Listed grid(const Value& v) {
   const Value lo = v["lo"];
   return {map_of(v, "values", {lo[0].integer_in(-most, most), lo[1].integer_in(-most, most)})};
 }
-void compare(Outcome& outcome, const std::string& what, const Coefficients& expected, const Coefficients& got) {
+void compare(Outcome& outcome, const std::string& what, const Coefficients& expected, const Coefficients& got,
+             double share = 4e-15, double floor = 4e-15) {
   const scene::SplineMap e(0, expected.range, expected.values), g(0, got.range, got.values);
   for (int a = 0; a < 2; ++a)
-    if (got.range.size[a] > expected.range.size[a] + 4)
-      outcome.comparisons.push_back(truth(what + ": no more than it needs", false));
+    if (got.range.size[a] > expected.range.size[a] + 4) outcome.add(truth(what + ": no more than it needs", false));
   for (int j = std::min(expected.range.lo[1], got.range.lo[1]);
        j < std::max(expected.range.lo[1] + expected.range.size[1], got.range.lo[1] + got.range.size[1]); ++j)
     for (int i = std::min(expected.range.lo[0], got.range.lo[0]);
          i < std::max(expected.range.lo[0] + expected.range.size[0], got.range.lo[0] + got.range.size[0]); ++i)
-      outcome.comparisons.push_back(
-          relative(fmt::format("{} {} {}", what, i, j), e.coefficient(i, j), g.coefficient(i, j), 4e-15, 4e-15));
+      outcome.add(
+          relative(fmt::format("{} {} {}", what, i, j), e.coefficient(i, j), g.coefficient(i, j), share, floor));
 }
 
 // A sequence as a map of one row: along v a filter of one tap leaves it alone, but halves indices; so the row is 0.
@@ -98,6 +101,54 @@ Segment segment_of(const Value& v) {
   const Point3 a = upright(v["A"].vector()), b = upright(v["B"].vector());
   const double length = (b - a).stableNorm();
   return {{a, length > 0 ? Vec3((b - a) / length) : Vec3(0, 1, 0)}, length};
+}
+
+// Adds to a check of optical depths those of a film of one pixel, which the device draws from A towards a wall at B, once for each settings.
+Check drawn_too(Check check, const Value& v, const std::vector<Given>& settings) {
+  const Segment s = segment_of(v);
+  const double depth = v["expected"]["optical_depth"].number();
+  const Fogmap fog = fogmap_of(v);
+  const std::vector<double> c = v["coef"].numbers();
+  if (!v.has("rtol_f32") || v["rtol_f32"].json().is_null())
+    check.not_on_device = "the vector has no tolerance of single precision";
+  else if (!(s.length > 0))
+    check.not_on_device = "no pixel shows a ray without length";
+  else if (!(*std::min_element(c.begin(), c.end()) >= 0 && v["sigma"].number() >= 0))
+    check.not_on_device = "no renderer draws densities below 0";
+  else if (depth > 60)
+    check.not_on_device = "nothing is left of the transmittance in single precision";
+  if (check.not_on_device != Check{}.not_on_device) return check;
+  auto drawn = std::make_shared<scene::Scene>();
+  drawn->width = drawn->height = 1;
+  drawn->camera = view_along(s.ray, 1).camera;
+  drawn->ambient_in_scatter = Rgb::Ones();
+  scene::Medium medium;
+  medium.field = std::make_shared<const Fogmap>(fog);
+  medium.sigma_t = Rgb::Constant(v["sigma"].number());
+  drawn->media = {medium};
+  scene::Surface wall;
+  wall.shape = scene::Plane{s.ray.at(s.length), -s.ray.direction};
+  drawn->surfaces = {wall};
+  finish(*drawn);
+  const gpu::wavelet_fog::WaveletFog method;
+  const std::vector<std::string> refused = method.supports(*drawn, {method.settings(), {}});
+  if (!refused.empty()) {
+    check.not_on_device = refused.front();
+    return check;
+  }
+  const double rtol = v["rtol_f32"].number_in(0, 1);
+  check.on_device = [=](VerifyProfile) {
+    Outcome out;
+    for (const auto& given : settings) {
+      const scene::Film film = OneRay(gpu::wavelet_fog::WaveletFog(), drawn, given)(s.ray, 1);
+      // From the opacity where that has more digits. Around a transmittance of 1 or 0 the film's own rounding is added.
+      const double opacity = film.layer("ambient")[0], clear = film.layer("transmittance")[0];
+      out.add(relative(given.at("variant"), depth, opacity < 0.5 ? -std::log1p(-opacity) : -std::log(clear), rtol,
+                       (depth == 0 ? rtol : 0) + 1.2e-7));
+    }
+    return out;
+  };
+  return check;
 }
 
 // The scene file that a user would have written, of what a vector has.
@@ -158,11 +209,11 @@ Check read_family(const Value& v) {
   return {"", [=](VerifyProfile) {
             const Family& f = family(name);
             Outcome outcome;
-            outcome.comparisons.push_back(absolute("degree", degree, f.degree, 0));
+            outcome.add(absolute("degree", degree, f.degree, 0));
             const Taps* got[4] = {&f.p, &f.q, &f.p_tilde, &f.q_tilde};
             for (int i = 0; i < 4; ++i) {
               compare(outcome, fmt::format("filter {}", i), taps[i], got[i]->values);
-              outcome.comparisons.push_back(absolute(fmt::format("offset {}", i), offsets[i], got[i]->first, 0));
+              outcome.add(absolute(fmt::format("offset {}", i), offsets[i], got[i]->first, 0));
             }
             return outcome;
           }};
@@ -203,13 +254,33 @@ Check read_analysis_2d(const Value& v) {
   const std::vector<Listed> bands = {grid(e["aa"]), grid(e["ad"]), grid(e["da"]), grid(e["dd"])};
   const std::string name = v["family"].text();
   if (v["levels"].integer() != 1) v["levels"].complain("1");
-  return {"", [=](VerifyProfile) {
-            const Bands got = split(c.c, family(name));
+  const char* names[] = {"aa", "ad", "da", "dd"};
+  return {"",
+          [=](VerifyProfile) {
+            const Bands b = split(c.c, family(name));
+            const Coefficients* got[] = {&b.aa, &b.ad, &b.da, &b.dd};
             Outcome outcome;
-            compare(outcome, "aa", bands[0].c, got.aa);
-            compare(outcome, "ad", bands[1].c, got.ad);
-            compare(outcome, "da", bands[2].c, got.da);
-            compare(outcome, "dd", bands[3].c, got.dd);
+            for (std::size_t i = 0; i < 4; ++i) compare(outcome, names[i], bands[i].c, *got[i]);
+            return outcome;
+          },
+          [=](VerifyProfile) {
+            const Family& f = family(name);
+            const Taps* along[] = {&f.p_tilde, &f.q_tilde};
+            gpu::wavelet_fog::Grids grids(gpu::Context::get());
+            grids.add(c.c.range);
+            std::vector<int> got;
+            for (std::size_t i = 0; i < 4; ++i) {
+              const Taps &u = *along[i / 2], &w = *along[i % 2];
+              got.push_back(grids.add(coarse_range(c.c.range, u, w)));
+              grids.reuse_scratch();
+              grids.down(0, u, w, got.back());
+            }
+            grids.allocate();
+            grids.upload(c.c.values);
+            grids.run();
+            Outcome outcome;
+            for (std::size_t i = 0; i < 4; ++i)
+              compare(outcome, names[i], bands[i].c, {grids.range(got[i]), grids.download(got[i])}, 0, 1e-6);
             return outcome;
           }};
 }
@@ -240,7 +311,7 @@ Check read_fogmap_depth(const Value& v) {
   const double sigma = v["sigma"].number(), tolerance = v["rtol_f64"].number();
   const Value e = v["expected"];
   const double depth = e["optical_depth"].number(), clear = e["transmittance"].number(), opaque = e["opacity"].number();
-  return {
+  const Check check{
       "", [=](VerifyProfile) {
         const double got = sigma * scene::density_integral(fog, s.ray, {0, s.length});
         const double back = sigma * scene::density_integral(fog, {s.ray.at(s.length), -s.ray.direction}, {0, s.length});
@@ -250,6 +321,7 @@ Check read_fogmap_depth(const Value& v) {
                         relative("opacity", opaque, -std::expm1(-got), tolerance, floor),
                         relative("backwards", depth, back, tolerance, floor)}};
       }};
+  return drawn_too(check, v, {{{"variant", "direct"}}, {{"variant", "skip"}}});
 }
 
 Check read_multiresolution(const Value& v) {
@@ -259,7 +331,7 @@ Check read_multiresolution(const Value& v) {
   const int L = v["levels"].integer_in(0, 12);
   const double mu = v["mu"].number(), sigma = v["sigma"].number(), tolerance = v["rtol_f64"].number();
   const double depth = v["expected"]["optical_depth"].number(), full = v["expected"]["full_optical_depth"].number();
-  return {
+  const Check check{
       "", [=](VerifyProfile) {
         const Coarse coarse = name == "restrict" ? Coarse::restricted : Coarse::wavelet;
         const Levels levels = make_levels(fog.map, name, coarse, L, true);
@@ -274,6 +346,13 @@ Check read_multiresolution(const Value& v) {
                       tolerance),
              relative("full", full, sigma * scene::density_integral(fog, s.ray, {0, s.length}), tolerance)}};
       }};
+  std::vector<Given> settings;
+  for (const char* variant : {"paper", "tele"})
+    settings.push_back({{"variant", variant},
+                        {"coarse", name == "restrict" ? "restricted" : "wavelet"},
+                        {"levels", std::to_string(L)},
+                        {"mu", fmt::format("{}", mu)}});
+  return drawn_too(check, v, settings);
 }
 
 Check read_composite(const Value& v) {

@@ -66,10 +66,11 @@ TEST_CASE("rows of a device are not taken for another's", "[cli]") {
 
 TEST_CASE("the device is chosen by --gpu, and one that is not there is one line and exit code 3", "[cli]") {
   const TemporaryFolder folder;
-  const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6";
-  for (const std::string& command :
-       {"render " + scene + " --method fogshop --out picture.exr", "explain " + scene,
-        std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1")}) {
+  const std::string scene = scenes + "fogshop/f100.toml", small = " --override film.width=8 --override film.height=6",
+                    vectors = root + "/tests/vectors/shadow_planes.json";
+  for (const std::string& command : {"render " + scene + " --method fogshop --out picture.exr", "explain " + scene,
+                                     std::string("experiment run fogshop/table1"), std::string("gates fogshop/table1"),
+                                     "verify --device " + vectors}) {
     const Result r = run(command + " --gpu 'no such device'", folder);
     CAPTURE(command, r.err);
     CHECK(r.code == 3);
@@ -85,6 +86,8 @@ TEST_CASE("the device is chosen by --gpu, and one that is not there is one line 
   const Result none = run("render " + scene + " --method fogshop_gpu --out gpu.exr --gpu None" + small, folder);
   CHECK(none.code == 3);
   CHECK(none.err == "airlight: gpu: none is to be used, as asked for\n");
+  CHECK(run("verify --device --gpu none " + vectors, folder).code == 3);
+  CHECK(run("verify --gpu none " + vectors, folder).code == 2);
   CHECK_THAT(run("doctor --gpu none", folder).out, Contains("graphics   gpu: none is to be used"));
   CHECK_THAT(run("render --help", folder).out, Contains("--gpu WHICH"));
   CHECK_THAT(run("--help", folder).out, Contains("--gpu WHICH"));

@@ -1,4 +1,4 @@
-// The oracle vectors of the fluid of Legendre coefficients.
+// Faults of oracle vectors of the fluid of Legendre coefficients.
 #include <catch2/catch.hpp>
 #include <sstream>
 
@@ -12,30 +12,6 @@ namespace legendre_fluid_vectors_test {
 using namespace airlight;
 using experiments::verify;
 using experiments::VerifyProfile;
-
-TEST_CASE("legendre fluids: oracle vectors of fields, projections, right sides and steps",
-          "[legendre_fluids][verify]") {
-  for (const auto& [kind, count] : {std::pair{"project", 3},
-                                    {"coefficients", 1},
-                                    {"evaluate", 1},
-                                    {"advect", 3},
-                                    {"diffuse", 2},
-                                    {"rk4", 2},
-                                    {"step", 1},
-                                    {"density-advect", 1},
-                                    {"energy-identity", 1},
-                                    {"taylor-green", 1}}) {
-    std::ostringstream out;
-    std::vector<experiments::VerifyKind> kinds;
-    CAPTURE(kind);
-    const int code =
-        verify({AIRLIGHT_SOURCE_DIR "/tests/vectors/legendre_fluids.json"}, kind, VerifyProfile::quick, out, &kinds);
-    CAPTURE(out.str());
-    CHECK(code == 0);
-    REQUIRE(kinds.size() == 1);
-    CHECK(kinds[0].vectors == count);
-  }
-}
 
 TEST_CASE("legendre fluids: vectors of other shapes are refused by name", "[legendre_fluids][verify]") {
   TemporaryFolder folder;

@@ -1,10 +1,9 @@
 // The device of the tests, or a test that says why it is skipped.
 #pragma once
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <cstdlib>
 
 #include "gpu/context.h"
+#include "gpu/shader_source.h"
 #include "scene/base/error.h"
 
 namespace airlight::gpu::test {
@@ -19,11 +18,7 @@ inline Context* device() {
   }
 }
 
-// Relative error that AIRLIGHT_GPU_ULPS puts into exp, log, sqrt, sin and cos; 0 without it. For bounds close to rounding.
-inline double injected_error() {
-  const char* ulps = std::getenv("AIRLIGHT_GPU_ULPS");
-  return ulps ? std::atof(ulps) * std::exp2(-23) : 0;
-}
+using gpu::injected_error;
 
 }  // namespace airlight::gpu::test
 

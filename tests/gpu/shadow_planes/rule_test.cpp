@@ -1,4 +1,4 @@
-// The mapped rule in single precision on the device: the table of its errors, and the oracle vectors.
+// The mapped rule in single precision on the device: the table of its errors, and the polynomial.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include "methods/shadow_planes/polynomial.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/shadow_planes/rule_cases.h"
-#include "tests/methods/shadow_planes/vectors.h"
 
 namespace rule_test {
 
@@ -55,30 +54,6 @@ DEVICE_TEST_CASE("shadow planes: errors of the rule on the device", "[gpu][shado
       fmt::print("kind {} g {}: 8 nodes {:.1e}, 16 nodes {:.1e}, median {:.1e}\n", int(row.phase.kind), row.phase.g,
                  worst_quick, errors.back(), errors[errors.size() / 2]);
   }
-}
-
-// The stress list and all other cases of eq. (1): Ihat, without the factor e^(-k (x0 + r0)) that no float can hold.
-DEVICE_TEST_CASE("shadow planes: airlight vectors on the device", "[gpu][shadow_planes]") {
-  const MappedRule<double> truth(128, 6);
-  int count = 0;
-  for (const auto& v : vectors_of("airlight")) {
-    const auto& in = v.at("input");
-    const std::string id = v.at("id");
-    const double k = number(in.at("k_t")), T = number(in.at("T")), h = number(in.at("h")), x0 = number(in.at("x0")),
-                 length = number(in.at("x1")) - x0;
-    const shadow_planes::PhaseForm phase = phase_of(in);
-    const gpu::shadow_planes::EvaluatorCase rounded{float(k), float(h), float(x0 - T), device_length(length)};
-    const float got = gpu::shadow_planes::integrals_on_device(context, {phase}, {rounded}).front();
-    // Of the rounded input, which is all that a float can know.
-    const LitPart<double> part{0, rounded.length < gpu::far_away ? rounded.length : infinity};
-    const double exact =
-        airlight_integral(truth, phase, double(rounded.extinction), double(-rounded.d0), double(rounded.h), part, one);
-    CAPTURE(id, got, exact);
-    CHECK(std::abs(got - exact) < 1e-4 * exact);  // the greatest error of the table: murky
-    if (phase.kind == shadow_planes::PhaseForm::Kind::isotropic) CHECK(std::abs(got - exact) < 5e-6 * exact);
-    ++count;
-  }
-  CHECK(count == 38);
 }
 
 // The paper's evaluator in single precision: the polynomial that double precision has, where it is of use.

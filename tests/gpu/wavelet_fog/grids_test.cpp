@@ -1,4 +1,4 @@
-// Decomposition on the device: reconstruction, the processor's numbers, the oracle's.
+// Decomposition on the device: reconstruction, and the processor's numbers.
 #include "gpu/wavelet_fog/grids.h"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 
 #include "methods/wavelet_fog/options.h"
 #include "tests/gpu/device.h"
-#include "tests/oracle_vectors.h"
 
 namespace grids_test {
 
@@ -61,13 +60,6 @@ double greatest_difference(const std::vector<double>& a, const std::vector<doubl
   double most = 0;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
   return most;
-}
-
-// Entries by index, zeros beyond.
-double value_at(const Coefficients& c, int i, int j) {
-  const int x = i - c.range.lo[0], y = j - c.range.lo[1];
-  if (x < 0 || y < 0 || x >= c.range.size[0] || y >= c.range.size[1]) return 0;
-  return c.values[std::size_t(y) * c.range.size[0] + x];
 }
 
 }  // namespace
@@ -126,35 +118,6 @@ DEVICE_TEST_CASE("wavelets on the GPU: restricted and clamped grids are the proc
       CHECK(greatest_difference(grids.download(clamped),
                                 wavelet_fog::clamped(approximations(c, analysis, 1)[1]).values) <= 1e-6);
     }
-}
-
-DEVICE_TEST_CASE("wavelets on the GPU: the oracle's decomposition", "[gpu][wavelet_fog]") {
-  const gpu::Use use(context);
-  int bands = 0;
-  for (const test::json& v : test::vectors_of("wavelet_fog", "analysis2d")) {
-    const Family& f = wavelet_fog::family(v.at("family").get<std::string>());
-    const auto listed = [](const test::json& g) {
-      Coefficients c{{{g.at("lo")[0], g.at("lo")[1]}, {g.at("width"), g.at("height")}}, {}};
-      for (const test::json& value : g.at("values")) c.values.push_back(test::number(value));
-      return c;
-    };
-    const Coefficients c = listed(v.at("c"));
-    Grids grids(context);
-    grids.add(c.range);
-    const Split split = add_split(grids, 0, f);
-    grids.allocate();
-    grids.upload(c.values);
-    grids.run();
-    for (const auto& [band, grid] : std::vector<std::pair<std::string, int>>{
-             {"aa", split.aa}, {"ad", split.ad}, {"da", split.da}, {"dd", split.dd}}) {
-      const Coefficients expected = listed(v.at("expected").at(band)), got{grids.range(grid), grids.download(grid)};
-      CAPTURE(v.at("id").get<std::string>(), band);
-      ++bands;
-      for (int j = -8; j < 16; ++j)
-        for (int i = -8; i < 16; ++i) CHECK(std::abs(value_at(got, i, j) - value_at(expected, i, j)) <= 1e-6);
-    }
-  }
-  CHECK(bands >= 4);
 }
 
 }  // namespace grids_test
