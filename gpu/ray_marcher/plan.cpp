@@ -26,6 +26,7 @@ bool any_layer(const airlight::ray_marcher::Plan& plan, Has has) {
 // Iterations of loops between two places where a march may stop and go on later: one light at one step.
 double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
   const airlight::ray_marcher::Options& o = plan.options;
+  const bool exact = o.shadow == airlight::ray_marcher::Shadow::exact;
   double sum = 0;
   for (const airlight::ray_marcher::Layer& layer : plan.layers) {
     if (!layer.varies) continue;
@@ -33,14 +34,14 @@ double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
     const double steps = o.shadow_step > 0 ? std::min(across / o.shadow_step, most) : o.shadow_steps;
     // Divided steps (deep_column): 20 / deepest of them on the way into the dark, twice for the halves, and the way
     // back up.
-    if (!o.exact_shadow && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
+    if (!exact && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
       sum += 4 * 20 / deepest_shadow_step(o) * (layer.gaussians ? 3 * double(layer.gaussians->count) : 1);
     if (!layer.gaussians)
       sum += steps;
     else if (layer.gaussians->any_negative)
       sum += steps * double(layer.gaussians->count);
     else
-      sum += double(layer.gaussians->count) * (o.exact_shadow ? 1 : 1 + steps / 4);
+      sum += double(layer.gaussians->count) * (exact ? 1 : 1 + steps / 4);
   }
   return sum;
 }
@@ -113,7 +114,7 @@ void PlanOnDevice::bind(Program& p) const {
   lights_.bind(at::lights);
   p.set("layer_count", int(plan_.layers.size()));
   p.set("skip_empty", o.skip_empty);
-  p.set("exact_shadow", o.exact_shadow);
+  p.set("exact_shadow", o.shadow == airlight::ray_marcher::Shadow::exact);
   p.set("shadow_steps", o.shadow_steps);
   p.set("shadow_step", o.shadow_step);
   p.set("deepest_shadow_step", deepest_shadow_step(o));

@@ -175,7 +175,9 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
         [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {},
         [](const scene::LegendrePointer&) {}, [&](const scene::FittedPointer&) { grid = true; });
   }
-  if (options.exact_shadow && (grid || negative))
+  if (options.shadow == airlight::ray_marcher::Shadow::map)
+    reasons.push_back("shadow = map is for the CPU: shaders march the depths towards lights");
+  if (options.shadow == airlight::ray_marcher::Shadow::exact && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",
                                   grid ? "voxel grids" : "Gaussians with negative amplitudes"));
   return reasons;

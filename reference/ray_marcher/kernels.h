@@ -106,9 +106,10 @@ struct Scatterer {
   const float* amount[3];  // per channel of the transport: weight * sigma_t * density
   const float* column;     // to the light, of this layer's density
 };
-// sums[c] += colour[c] * amount * phase * strength * exp(-sum of sigma_t * column), over all scatterers. With one
-// channel of transport (all sigma_t grey) that channel serves all three colours.
+// sums[c] += colour[c] * amount * phase * strength * exp(-depth[c] - sum of sigma_t * column), over all scatterers. With
+// one channel of transport (all sigma_t grey) that channel serves all three colours. `depth`: by channel of the
+// transport, an optical depth to the light beside the columns; null: none.
 void scatter(const Scatterer* scatterers, std::size_t count, int channels, std::size_t n, const Incidence&,
-             float* const sums[3]);
+             const float* const* depth, float* const sums[3]);
 
 }  // namespace airlight::ray_marcher

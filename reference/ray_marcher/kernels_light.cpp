@@ -119,14 +119,14 @@ HWY_INLINE VF phase(const PhaseShape& shape, VF minus, VF plus) {
 }
 
 void Scatter(const Scatterer* scatterers, std::size_t count, int channels, std::size_t n, const Incidence& from,
-             float* const* sums) {
+             const float* const* depths, float* const* sums) {
   const F f;
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     const VF minus = hn::LoadU(f, from.minus + i), plus = hn::LoadU(f, from.plus + i),
              strength = hn::LoadU(f, from.strength + i);
     VF light[3];
     for (int c = 0; c < channels; ++c) {
-      VF depth = hn::Zero(f);
+      VF depth = depths ? hn::LoadU(f, depths[c] + i) : hn::Zero(f);
       for (std::size_t k = 0; k < count; ++k)
         depth = MulAdd(hn::Set(f, scatterers[k].sigma_t[c]), hn::LoadU(f, scatterers[k].column + i), depth);
       light[c] = strength * hn::Exp(f, Neg(depth));
@@ -162,8 +162,8 @@ void incidence(const LightShape& light, std::size_t n, const LitSteps& steps, co
 
 HWY_EXPORT(Scatter);
 void scatter(const Scatterer* scatterers, std::size_t count, int channels, std::size_t n, const Incidence& from,
-             float* const sums[3]) {
-  HWY_DYNAMIC_DISPATCH(Scatter)(scatterers, count, channels, n, from, sums);
+             const float* const* depth, float* const sums[3]) {
+  HWY_DYNAMIC_DISPATCH(Scatter)(scatterers, count, channels, n, from, depth, sums);
 }
 
 }  // namespace airlight::ray_marcher

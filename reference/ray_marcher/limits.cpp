@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "reference/ray_marcher/layer.h"
+#include "reference/ray_marcher/light_maps.h"
 
 namespace airlight::ray_marcher {
 namespace {
@@ -64,7 +65,8 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
   out_of_range("shadow_step", options.shadow_step);
   if (!reasons.empty()) return reasons;
   const double camera = steps_per_ray(scene, options), varied = longest_varied(scene);
-  const double shadow = varied == 0               ? 0
+  const bool map = options.shadow == Shadow::map;
+  const double shadow = varied == 0 || map        ? 0
                         : options.shadow_step > 0 ? 1 + varied / options.shadow_step
                                                   : options.shadow_steps;
   const auto too_many = [&](const char* name, double metres, double steps) {
@@ -85,6 +87,14 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
   for (const scene::Light& light : scene.lights) lights += is_delta(light) ? 1 : options.environment_directions;
   const double pixels = double(scene.width) * scene.height;
   const double work = pixels * camera * (1 + lights * std::max(1.0, shadow * double(scene.media.size())));
+  if (map) {
+    if (const std::string reason = light_map::unsupported(options.map); !reason.empty()) reasons.push_back(reason);
+    if (varied > 0 && map_work(scene, options) > most_work)
+      reasons.push_back(fmt::format(
+          "maps of {:.3g} lights with {}^2 texels of {} steps in {} media are {:.2g} "
+          "evaluations, expected at most {:.0e}",
+          lights, options.map.size, options.map.steps, scene.media.size(), map_work(scene, options), most_work));
+  }
   if (work > most_work)
     reasons.push_back(
         fmt::format("{:.3g} pixels of {:.3g} steps with {:.3g} shadow rays of {:.3g} steps in {} media are "

@@ -54,8 +54,8 @@ void bind(scene::SettingBinder& b, Options& o) {
   b.choice("spacing", o.graded, {{"graded", true}, {"uniform", false}},
            "graded: steps shrink near point and spot lights and grow along unbounded media; uniform: equal "
            "steps");
-  b.choice("shadow", o.exact_shadow, {{"march", false}, {"exact", true}},
-           "optical depth of shadow rays: by steps, or exact");
+  b.choice("shadow", o.shadow, {{"march", Shadow::march}, {"exact", Shadow::exact}, {"map", Shadow::map}},
+           "optical depth of shadow rays: by steps, exact, or from a map of each light that is made once");
   b.integer("environment_directions", o.environment_directions, 1, 1 << 16,
             "directions that stand for each environment light");
   b.real("early_exit", o.early_exit, 0, 1, "a camera ray ends where its transmittance falls below this; 0: never");
@@ -63,6 +63,7 @@ void bind(scene::SettingBinder& b, Options& o) {
   b.flag("empty_space_skipping", o.skip_empty, "leave out steps where a grid is zero; the image stays the same");
   b.choice("kernel", o.simd, {{"auto", true}, {"scalar", false}},
            "auto: vector kernels in float, scalar: plain loops in double, for checks");
+  light_map::bind(b, o.map, "shadow");
 }
 
 }  // namespace

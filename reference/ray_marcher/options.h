@@ -3,10 +3,15 @@
 #include <string>
 #include <vector>
 
+#include "reference/light_map/options.h"
 #include "scene/base/settings.h"
 #include "scene/scene.h"
 
 namespace airlight::ray_marcher {
+
+// Where the optical depth between a step and a light comes from: steps along a shadow ray, the media's own integrals, or
+// a map of the light that is made once (reference/light_map).
+enum class Shadow { march, exact, map };
 
 struct Options {
   int steps = 64;          // per camera ray, over the parts of it that lie in media
@@ -14,7 +19,8 @@ struct Options {
   double step = 0;         // > 0: length of a camera ray's step instead of a count; unit below
   double shadow_step = 0;  // > 0: length of a shadow ray's step instead of a count
   bool graded = true;      // grade the steps around lights and along unbounded media
-  bool exact_shadow = false;
+  Shadow shadow = Shadow::march;
+  light_map::Options map;
   bool simd = true;
   bool skip_empty = true;
   int environment_directions = 256;

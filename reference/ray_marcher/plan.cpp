@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/ray_marcher/depth.h"
+#include "reference/ray_marcher/light_maps.h"
 #include "scene/base/place_error.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
@@ -44,8 +45,11 @@ bool only_deep_lamps(const Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
-  Plan plan{scene, options, make_layers(scene->media), {}, false};
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution) {
+  Plan plan;
+  plan.scene = scene;
+  plan.options = options;
+  plan.layers = make_layers(scene->media);
   plan.swallowed = scene::swallows_distant_light(scene->media);
   for (const scene::Light& light : scene->lights) {
     if (plan.swallowed && !scene::ball(light)) continue;
@@ -62,6 +66,7 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   if (scene::place_error(*scene) * 0x1p29 > 2e-3) plan.options.simd = false;
   // And the light of steps, where what is below 1.2e-38 becomes 0.
   if (only_deep_lamps(plan)) plan.options.simd = false;
+  if (options.shadow == Shadow::map) make_light_maps(plan, execution);
   return plan;
 }
 
@@ -98,6 +103,7 @@ void Counters::operator+=(const Counters& other) {
   steps += other.steps;
   shadow_rays += other.shadow_rays;
   shadow_steps += other.shadow_steps;
+  look_ups += other.look_ups;
   occlusion_rays += other.occlusion_rays;
   ray_seconds += other.ray_seconds;
   march_seconds += other.march_seconds;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "reference/light_map/light_map.h"
 #include "reference/ray_marcher/layer.h"
 #include "reference/ray_marcher/options.h"
 #include "reference/ray_marcher/spacing.h"
@@ -17,12 +18,16 @@ struct Plan {
   std::vector<scene::Light> lights;  // delta lights only: an environment is replaced by directional lights
   bool swallowed = false;  // fog without end takes all light from infinitely far away: such lights are left out
   bool scatters = false;   // some medium has an albedo, and there is light for it
+  std::vector<std::shared_ptr<const light_map::LightMap>>
+      maps;                // with shadow = map, one for each light; none where nothing asks
+  double map_seconds = 0;  // what they took
 };
 
 // Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
 double length_unit(const scene::Scene&);
 
-Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
+// Throws Error where the lights' maps do not fit into memory. Asks the execution for threads, and whether to stop.
+Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution& = {});
 
 // One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
 // march of its own. A light that grades the ray around itself has one.
@@ -42,6 +47,7 @@ struct Counters {
   long long steps = 0;           // density evaluations on camera rays
   long long shadow_rays = 0;     // from a step or a surface point towards a light, through media
   long long shadow_steps = 0;    // density evaluations on shadow rays
+  long long look_ups = 0;        // in maps of lights, instead of shadow rays
   long long occlusion_rays = 0;  // shadow rays tested against surfaces
   double ray_seconds = 0, march_seconds = 0, occlusion_seconds = 0, shadow_seconds = 0, scattering_seconds = 0,
          surface_seconds = 0;

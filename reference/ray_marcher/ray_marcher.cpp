@@ -1,7 +1,6 @@
 #include "reference/ray_marcher/ray_marcher.h"
 
 #include <fmt/format.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +12,7 @@
 #include "reference/ray_marcher/stages.h"
 #include "reference/ray_marcher/tile.h"
 #include "scene/base/error.h"
+#include "scene/base/flush_subnormals.h"
 #include "scene/base/place_error.h"
 #include "scene/base/stopwatch.h"
 #include "scene/light/light_on_ray.h"
@@ -22,19 +22,6 @@ namespace airlight::ray_marcher {
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// While it lives, this thread takes subnormal numbers as zero, and gives them so: libraries set that for some threads
-// of a pool and not for others, and the picture must not depend on which thread made it.
-class FlushSubnormals {
- public:
-  FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
-  ~FlushSubnormals() { _mm_setcsr(before_); }
-  FlushSubnormals(const FlushSubnormals&) = delete;
-  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
-
- private:
-  unsigned before_;
-};
 
 // The integral of 1/t^2 along every camera ray diverges there; steps would make any number of it.
 bool light_on_camera(const scene::Scene& scene) {
@@ -74,7 +61,11 @@ class PreparedMarch final : public scene::Prepared {
         prepare_seconds_(seconds) {}
 
   std::vector<scene::Stage> stages() const override { return stages_; }
-  std::vector<scene::StageTime> prepare_times() const override { return {{"prepare", prepare_seconds_}}; }
+  std::vector<scene::StageTime> prepare_times() const override {
+    std::vector<scene::StageTime> times = {{"prepare", prepare_seconds_ - plan_.map_seconds}};
+    if (plan_.map_seconds > 0) times.push_back({"light_maps", plan_.map_seconds});
+    return times;
+  }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
     require_own_camera(*plan_.scene, view);
@@ -92,7 +83,7 @@ class PreparedMarch final : public scene::Prepared {
     const auto total = scene::parallel_sum<Counters>(columns * rows, execution, [&](int tile, Counters& counters) {
       const int x0 = tile % columns * tile_side, y0 = tile / columns * tile_side;
       const int x1 = std::min(x0 + tile_side, view.width), y1 = std::min(y0 + tile_side, view.height);
-      const FlushSubnormals flush;
+      const scene::FlushSubnormals flush;
       static thread_local std::vector<Ray> rays;
       static thread_local TileMarcher marcher;
       rays.clear();
@@ -111,6 +102,7 @@ class PreparedMarch final : public scene::Prepared {
                        {"shadow_rays", double(total.shadow_rays)},
                        {"shadow_steps", double(total.shadow_steps)},
                        {"occlusion_rays", double(total.occlusion_rays)}};
+    if (plan_.options.shadow == Shadow::map) result.counters["look_ups"] = double(total.look_ups);
     result.film.metadata["seconds"] = fmt::format("{:.6f}", seconds);
     std::string& counters = result.film.metadata["counters"];
     for (const auto& [name, value] : result.counters)
@@ -166,10 +158,10 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
 
 std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Settings& settings,
-                                                               const scene::Execution&) const {
+                                                               const scene::Execution& execution) const {
   const double start = now();
   const Options options = read_options(settings, length_unit(*scene));
-  Plan plan = make_plan(std::move(scene), options);
+  Plan plan = make_plan(std::move(scene), options, execution);
   return std::make_unique<PreparedMarch>(std::move(plan), settings.canonical(), now() - start);
 }
 

@@ -68,14 +68,21 @@ struct Arrivals {
 // Integrals of every layer's density from points towards a light; scratch arrays kept between calls.
 class Columns {
  public:
-  // After this, column(k)[i] is the column of layer k from point i [m].
-  void march(const Plan&, std::size_t n, const Points&, const Arrivals&, Counters&);
+  // After this, column(k)[i] is the column of layer k from point i [m]. With shadow = map that is the column of constants
+  // alone, and the light's map has the rest.
+  void march(const Plan&, std::size_t light, std::size_t n, const Points&, const Arrivals&, Counters&);
   const std::vector<float>& column(std::size_t layer) const { return columns_[layer]; }
+  // Optical depths from the light's map by channel of the transport [-]; null without one.
+  const float* const* mapped() const { return mapped_ ? depths_ : nullptr; }
 
  private:
   void march_deep(const Plan&, const Layer&, std::size_t n, const Points&, const Arrivals&, std::vector<float>& column,
                   Counters&);
+  void look_up(const light_map::LightMap&, std::size_t n, const Points&);
   std::vector<std::vector<float>> columns_;
+  std::vector<float> depth_[3];
+  const float* depths_[3] = {};
+  bool mapped_ = false;
   std::vector<float> ox_, oy_, oz_, dx_, dy_, dz_, t0_, t1_;
 };
 

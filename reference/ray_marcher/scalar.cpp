@@ -27,8 +27,8 @@ void sample_densities(const Plan& plan, const Ray& ray, const Step& step, std::v
 }
 
 // In-scattered radiance per length at x towards -direction [W/m^3/sr], for light that comes as `from`.
-Rgb in_scattered(const Plan& plan, const std::vector<double>& densities, const Point3& x, const Vec3& direction,
-                 const scene::Incident& from, Counters& counters) {
+Rgb in_scattered(const Plan& plan, std::size_t light, const std::vector<double>& densities, const Point3& x,
+                 const Vec3& direction, const scene::Incident& from, Counters& counters) {
   if ((from.irradiance == 0).all()) return Rgb::Zero();
   const double cosine = std::clamp(from.to_light.dot(direction), -1.0, 1.0);
   Rgb scattering = Rgb::Zero();
@@ -38,7 +38,7 @@ Rgb in_scattered(const Plan& plan, const std::vector<double>& densities, const P
     scattering += medium.albedo * medium.sigma_t * (densities[k] * phase_value(medium.phase, cosine));
   }
   if ((scattering == 0).all()) return Rgb::Zero();
-  return scattering * from.irradiance * transmittance_to_light(plan, x, from, counters);
+  return scattering * from.irradiance * transmittance_to_light(plan, light, x, from, counters);
 }
 
 // What a light sends to a step: as to its midpoint, but with the mean of the inverse square over the step.
@@ -70,16 +70,21 @@ void divide_deep_steps(const Plan& plan, const Ray& ray, std::vector<Pass>& pass
 
 }  // namespace
 
-Rgb transmittance_to_light(const Plan& plan, const Point3& x, const scene::Incident& from, Counters& counters) {
+Rgb transmittance_to_light(const Plan& plan, std::size_t light, const Point3& x, const scene::Incident& from,
+                           Counters& counters) {
   const Ray ray{x, from.to_light};
   if (plan.scene->geometry) {
     ++counters.occlusion_rays;
     if (plan.scene->geometry->occluded(ray, from.distance)) return Rgb::Zero();
   }
+  if (!plan.maps.empty()) {
+    ++counters.look_ups;
+    return (-plan.maps[light]->optical_depth(x)).exp();
+  }
   Rgb depth = Rgb::Zero();
   ++counters.shadow_rays;
   for (const Layer& layer : plan.layers) {
-    const double column = plan.options.exact_shadow
+    const double column = plan.options.shadow == Shadow::exact
                               ? density_integral(*layer.medium, ray, {0, from.distance})
                               : marched_column(layer, plan.options, ray, {0, from.distance}, counters.shadow_steps);
     // An infinite column must not meet a zero coefficient.
@@ -92,14 +97,14 @@ Rgb transmittance_to_light(const Plan& plan, const Point3& x, const scene::Incid
 Rgb lit_surface(const Plan& plan, const scene::Hit& hit, const Vec3& direction, Counters& counters) {
   Rgb sum = Rgb::Zero();
   const scene::Material& material = plan.scene->surfaces[hit.surface].material;
-  for (const scene::Light& light : plan.lights) {
-    scene::Incident from = incident(light, hit.position);
+  for (std::size_t l = 0; l < plan.lights.size(); ++l) {
+    const scene::Incident from = incident(plan.lights[l], hit.position);
     const double cosine = from.to_light.dot(hit.normal);
     if (!(cosine > 0) || (from.irradiance == 0).all()) continue;
     const Rgb reflected = brdf(material, hit.normal, from.to_light, -direction) * cosine * from.irradiance;
     if ((reflected == 0).all()) continue;
     const Point3 origin = plan.scene->geometry->offset_origin(hit.position, hit.normal, from.to_light);
-    sum += reflected * transmittance_to_light(plan, origin, from, counters);
+    sum += reflected * transmittance_to_light(plan, l, origin, from, counters);
   }
   return sum;
 }
@@ -129,7 +134,7 @@ Pixel march_media(const Plan& plan, const Ray& ray, double t_end, Counters& coun
       const Point3 x = ray.at(step.t);
       for (int light = 0; plan.scatters && light < int(plan.lights.size()); ++light)
         if (serves(passes, p, light))
-          pixel.airlight += weight * in_scattered(plan, densities, x, ray.direction,
+          pixel.airlight += weight * in_scattered(plan, light, densities, x, ray.direction,
                                                   incident_on_step(plan.lights[light], ray, step), counters);
       depth += depth_of_step;
     }

@@ -21,7 +21,7 @@ Pixel march_ray(const Plan&, const Ray&, Counters&);
 // Light that reaches a surface point directly and leaves it towards -direction [W/m^2/sr], media included.
 Rgb lit_surface(const Plan&, const scene::Hit&, const Vec3& direction, Counters&);
 
-// exp(-optical depth) from x to a light, 0 behind a surface.
-Rgb transmittance_to_light(const Plan&, const Point3& x, const scene::Incident&, Counters&);
+// exp(-optical depth) from x to a light of the plan, 0 behind a surface.
+Rgb transmittance_to_light(const Plan&, std::size_t light, const Point3& x, const scene::Incident&, Counters&);
 
 }  // namespace airlight::ray_marcher

@@ -5,6 +5,19 @@
 #include "scene/light/background.h"
 
 namespace airlight::ray_marcher {
+namespace {
+
+std::string describe_maps(const Plan& plan) {
+  const light_map::Options& o = plan.options.map;
+  std::size_t bytes = 0;
+  for (const auto& map : plan.maps) bytes += map->bytes();
+  return fmt::format("{} lights: {}, {} floats a texel, {}^2 texels of {} steps, {:.3g} MB in all", plan.maps.size(),
+                     light_map::encoding_name(o.encoding), light_map::floats_per_texel(o), o.size, o.steps,
+                     1e-6 * double(bytes));
+}
+
+}  // namespace
+
 std::vector<scene::Stage> describe_stages(const Plan& plan) {
   std::vector<scene::Stage> stages;
   const auto add = [&](const char* name, bool kept, const std::string& reason) {
@@ -20,7 +33,7 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
   const bool shadows = !plan.layers.empty() && (plan.scatters || (lit && scene.geometry));
   const Options &o = plan.options, defaults;
   const bool as_stated = o.steps == defaults.steps && o.shadow_steps == defaults.shadow_steps && o.step == 0 &&
-                         o.shadow_step == 0 && o.graded && o.early_exit == 0;
+                         o.shadow_step == 0 && o.graded && o.early_exit == 0 && o.shadow != Shadow::map;
   add("camera_rays", true,
       std::string("one per pixel, and its steps") + (o.graded ? ", graded" : "") +
           (as_stated
@@ -29,12 +42,18 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
                : ""));
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
+  const bool maps = !plan.maps.empty() && varying > 0;
+  add("light_maps", maps,
+      maps                      ? describe_maps(plan)
+      : o.shadow != Shadow::map ? "shadow is not map"
+                                : "nothing to shadow");
   add("shadows", shadows,
       !lit                        ? no_light
       : plan.layers.empty()       ? "no medium with extinction"
       : !shadows                  ? "no medium scatters, no surface is lit"
       : varying == 0              ? "closed form: no medium varies"
-      : plan.options.exact_shadow ? fmt::format("exact, {} lights", plan.lights.size())
+      : maps                      ? "look-ups in the lights' maps"
+      : o.shadow == Shadow::exact ? fmt::format("exact, {} lights", plan.lights.size())
                                   : fmt::format("marched, {} varying media, {} lights", varying, plan.lights.size()));
   add("scattering", plan.scatters, plan.scatters ? "light scattered once" : !lit ? no_light : "no medium scatters");
   add("constant_media", constants,

@@ -244,7 +244,7 @@ void TileMarcher::scatter_light(int light) {
   const std::size_t n = index_.size();
   if (n == 0) return;
   end_of(&Counters::scattering_seconds);
-  columns_.march(*plan_, n, lit->at, to_, *counters_);
+  columns_.march(*plan_, std::size_t(light), n, lit->at, to_, *counters_);
   end_of(&Counters::shadow_seconds);
   scatterers_.resize(plan_->layers.size());
   const Rgb colour = light_colour(plan_->lights[light]);
@@ -264,7 +264,7 @@ void TileMarcher::scatter_light(int light) {
     for (auto& s : lit_sums_) s.assign(padded(n), 0.0f);
   auto* sums = direct ? sums_ : lit_sums_;
   float* const out[3] = {sums[0].data(), sums[1].data(), sums[2].data()};
-  scatter(scatterers_.data(), scatterers_.size(), channels_, n, to_.view(), out);
+  scatter(scatterers_.data(), scatterers_.size(), channels_, n, to_.view(), columns_.mapped(), out);
   for (int c = 0; !direct && c < 3; ++c)
     for (std::size_t i = 0; i < n; ++i) sums_[c][index_[i]] += lit_sums_[c][i];
 }
@@ -319,7 +319,8 @@ void TileMarcher::light_surfaces() {
   const scene::Geometry& geometry = *plan_->scene->geometry;
   points_.resize(hit_.size());
   to_.resize(hit_.size());
-  for (const scene::Light& light : plan_->lights) {
+  for (std::size_t l = 0; l < plan_->lights.size(); ++l) {
+    const scene::Light& light = plan_->lights[l];
     kept_.clear();
     reflected_.clear();
     for (const int r : hit_) {
@@ -343,9 +344,10 @@ void TileMarcher::light_surfaces() {
       reflected_.push_back(back);
     }
     if (kept_.empty()) continue;
-    columns_.march(*plan_, kept_.size(), points_, to_, *counters_);
+    columns_.march(*plan_, l, kept_.size(), points_, to_, *counters_);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       Rgb depth = Rgb::Zero();
+      for (int c = 0; columns_.mapped() && c < 3; ++c) depth[c] = double(columns_.mapped()[c][i]);
       for (std::size_t k = 0; k < plan_->layers.size(); ++k)
         depth += plan_->layers[k].medium->sigma_t * double(columns_.column(k)[i]);
       pixels_[kept_[i]].surface += pixels_[kept_[i]].transmittance * reflected_[i] * (-depth).exp();

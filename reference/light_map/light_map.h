@@ -1,0 +1,86 @@
+// Optical depth towards one light, prepared: a map of texels seen from the light, each with the optical depth along its
+// ray (encoding.h). It stands for shadow rays through media: a look-up costs the same however far the light is.
+//
+// The map holds what varies. A constant (homogeneous media, the constant under Gaussians) is added in closed form: that
+// is exact at its boundary, cheaper than a look-up, and goes on for ever where the medium does. What varies has an end,
+// so that a map's depths always have one.
+//
+// Texels hold optical depths of all media together, in float. Encodings approximate exp(-optical depth) of the sum, which
+// is no sum over media, and a look-up costs the same for any number of them. They hold three, one for each colour
+// channel; one where every medium is grey, or where only one varies: the channels are then multiples of each other, and
+// so are their encodings, but for avsm, which bends where its own channel does.
+//
+// Error: order 2 in a texel's side and in the steps' length where the density is smooth; order 1 where it jumps across
+// the light's rays. Encodings: README.md.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "reference/light_map/encoding.h"
+#include "reference/light_map/kernels.h"
+#include "reference/light_map/projection.h"
+#include "scene/media/medium.h"
+#include "scene/renderer.h"
+
+namespace airlight::light_map {
+
+// What varies of a medium's density: its density less its constant_part, at n points in its region, `medium` being the
+// number of the medium. Arrays have room for n rounded up to a multiple of 64. Called from several threads.
+using Densities = std::function<void(std::size_t medium, std::size_t n, const double* x, const double* y,
+                                     const double* z, float* density)>;
+
+// By the media's own functions, in double; the media must live as long.
+Densities densities_of(const std::vector<scene::Medium>&);
+
+// Optical depths of a texel, 0 (nothing varies), 1 or 3.
+int planes_of(const std::vector<scene::Medium>&, const Options&);
+
+class LightMap {
+ public:
+  // Of a light that shines from one direction (is_delta). Throws Error where `options` are unsupported. Its bits do not
+  // depend on the threads.
+  LightMap(const scene::Light&, const std::vector<scene::Medium>&, const Options&, const Densities&,
+           const scene::Execution&);
+
+  // Optical depth from x to the light [-] per channel, infinite where a constant goes on for ever. Where a spot does not
+  // shine what varies is left out. Surfaces do not count.
+  Rgb optical_depth(const Point3& x) const;
+  // The part of it that is in the map.
+  Rgb varied_depth(const Point3& x) const;
+  // The same at n points in single precision, by vector kernels: depth[c] for each of channels(). Arrays have room for n
+  // rounded up to a multiple of 64.
+  void varied_depths(std::size_t n, const double* x, const double* y, const double* z, float* const* depth) const;
+
+  // 1 where all that varies is grey, else 3.
+  int channels() const { return grey_ ? 1 : 3; }
+  bool empty() const { return planes_ == 0; }
+  std::size_t bytes() const;
+  const Projection& projection() const { return projection_; }
+  // Of texel (i, j), from -1 to size: the outermost repeat their neighbours, on the map that is.
+  const float* texel(int plane, int i, int j) const;
+
+ private:
+  struct Part;
+  struct Row;
+  struct Constant {
+    scene::Region region;
+    Rgb extinction;  // [1/m]
+  };
+  void make_texels(const std::vector<Part>&, const Densities&, const scene::Execution&);
+  void march(const std::vector<Part>&, const Densities&, int j, int begin, int end, Row&) const;
+  void make_border();
+  std::size_t offset(int i, int j) const;
+  MapView view(int plane) const;
+
+  scene::Light light_;
+  std::vector<Constant> constants_;
+  Options options_;
+  Projection projection_;
+  int planes_ = 0;
+  bool grey_ = true;
+  Rgb share_ = Rgb::Ones();  // of a channel in the plane that it is read from
+  bool negative_ = false;    // a medium may have less than its constant
+  std::vector<float> texels_[3];
+};
+
+}  // namespace airlight::light_map

@@ -1,0 +1,78 @@
+#include "reference/ray_marcher/light_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reference/ray_marcher/samples.h"
+#include "scene/base/limits.h"
+#include "scene/base/stopwatch.h"
+
+namespace airlight::ray_marcher {
+namespace {
+
+// What varies of a layer, in float.
+void kernel_densities(const Layer& layer, std::size_t n, const double* x, const double* y, const double* z,
+                      float* density) {
+  static thread_local std::vector<float> local[3];
+  for (auto& v : local) resize_padded(v, n);
+  float *lx = local[0].data(), *ly = local[1].data(), *lz = local[2].data();
+  to_local(layer.grid ? layer.grid->frame : layer.gaussians->frame, n, x, y, z, lx, ly, lz);
+  if (layer.grid)
+    grid_density(*layer.grid, n, lx, ly, lz, density);
+  else
+    gaussian_density(*layer.gaussians, n, lx, ly, lz, density);
+}
+
+light_map::Densities densities_by_kernels(const Plan& plan) {
+  const std::vector<scene::Medium>& media = plan.scene->media;
+  std::vector<const Layer*> layers(media.size(), nullptr);
+  for (const Layer& layer : plan.layers)
+    if (layer.grid || layer.gaussians) layers[std::size_t(layer.medium - media.data())] = &layer;
+  return [layers, plain = light_map::densities_of(media)](std::size_t medium, std::size_t n, const double* x,
+                                                          const double* y, const double* z, float* density) {
+    if (layers[medium])
+      kernel_densities(*layers[medium], n, x, y, z, density);
+    else
+      plain(medium, n, x, y, z, density);
+  };
+}
+
+double count_maps(const scene::Scene& scene, const Options& options) {
+  double lights = 0;
+  for (const scene::Light& light : scene.lights) lights += is_delta(light) ? 1 : options.environment_directions;
+  return lights;
+}
+
+}  // namespace
+
+double map_bytes(const scene::Scene& scene, const Options& options) {
+  return count_maps(scene, options) * light_map::planes_of(scene.media, options.map) *
+         light_map::bytes_per_plane(options.map);
+}
+
+double map_work(const scene::Scene& scene, const Options& options) {
+  return count_maps(scene, options) * options.map.size * options.map.size * options.map.steps *
+         double(scene.media.size());
+}
+
+void make_light_maps(Plan& plan, const scene::Execution& execution) {
+  if (plan.layers.empty() || !(plan.scatters || plan.scene->geometry)) return;
+  scene::Stopwatch watch;
+  scene::require_memory(map_bytes(*plan.scene, plan.options),
+                        fmt::format("ray_marcher: maps of {} lights", plan.lights.size()));
+  const std::vector<scene::Medium>& media = plan.scene->media;
+  const light_map::Densities densities =
+      plan.options.simd ? densities_by_kernels(plan) : light_map::densities_of(media);
+  scene::Execution part = execution;
+  for (const scene::Light& light : plan.lights) {
+    if (execution.progress)
+      part.progress = [&](double fraction) {
+        return execution.progress((double(plan.maps.size()) + fraction) / double(plan.lights.size()));
+      };
+    plan.maps.push_back(std::make_shared<light_map::LightMap>(light, media, plan.options.map, densities, part));
+  }
+  plan.map_seconds = watch.lap();
+}
+
+}  // namespace airlight::ray_marcher

@@ -1,0 +1,15 @@
+// The maps of a plan's lights (reference/light_map), filled by the marcher's kernels.
+#pragma once
+#include "reference/ray_marcher/plan.h"
+
+namespace airlight::ray_marcher {
+
+// One for each light, into Plan::maps; nothing where no step and no surface asks for a depth. Throws Error where they do
+// not fit into memory.
+void make_light_maps(Plan&, const scene::Execution&);
+
+// In a picture's maps: bytes, and density evaluations at most.
+double map_bytes(const scene::Scene&, const Options&);
+double map_work(const scene::Scene&, const Options&);
+
+}  // namespace airlight::ray_marcher
