@@ -42,7 +42,13 @@ struct Check {
   std::function<Outcome(VerifyProfile)> job{};
   std::function<Outcome(VerifyProfile)> on_device{};
   std::string not_on_device = "no device code computes this";
+  bool own_solver = false;  // the job asks a solver of verify's own: no renderer computes the vector on the processor
 };
+// The same, whose job asks a solver of verify's own.
+inline Check by_own_solver(Check check) {
+  check.own_solver = true;
+  return check;
+}
 inline Check not_yet(std::string what) { return {std::move(what), nullptr}; }
 
 // Reads a vector; the value is the whole entry.

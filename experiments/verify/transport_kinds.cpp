@@ -107,11 +107,12 @@ Check read_diffusion_point_source(const Value& v) {
   const double r = in["r"].number_in(1e-9, 1e9), power = in["power"].number();
   const std::vector<double> expected{e["sigma_tr"].number(), e["kappa"].number(), e["sigma_eff"].number(),
                                      e["mean_radiance"].number()};
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            Outcome o;
-            compare_all(o, "", expected, {d.sigma_tr(), d.kappa(), d.sigma_eff(), d.around_point(r, power)}, t);
-            return o;
-          }};
+  return by_own_solver(
+      {"", [=, t = tolerance_of(v)](VerifyProfile) {
+         Outcome o;
+         compare_all(o, "", expected, {d.sigma_tr(), d.kappa(), d.sigma_eff(), d.around_point(r, power)}, t);
+         return o;
+       }});
 }
 
 Check read_diffusion_uniform_source(const Value& v) {
@@ -138,14 +139,14 @@ Check read_diffusion_slab_marshak(const Value& v) {
   const double thickness = in["thickness"].number_in(1e-9, 1e9), source = in["J0"].number();
   if (in["J1"].number() != 0) return not_yet("diffusion of a source that has a direction");
   const std::vector<double> expected{e["centre"].number(), e["boundary"].number(), e["quarter"].number()};
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            Outcome o;
-            compare_all(o, "", expected,
-                        {d.in_slab(source, thickness, thickness / 2), d.in_slab(source, thickness, 0),
-                         d.in_slab(source, thickness, thickness / 4)},
-                        t);
-            return o;
-          }};
+  return by_own_solver({"", [=, t = tolerance_of(v)](VerifyProfile) {
+                          Outcome o;
+                          compare_all(o, "", expected,
+                                      {d.in_slab(source, thickness, thickness / 2), d.in_slab(source, thickness, 0),
+                                       d.in_slab(source, thickness, thickness / 4)},
+                                      t);
+                          return o;
+                        }});
 }
 
 Check read_halfspace_albedo_isotropic(const Value& v) {
@@ -156,16 +157,16 @@ Check read_halfspace_albedo_isotropic(const Value& v) {
   for (const char* name : {"H_mu1", "H_mu0p5", "plane_albedo_mu1", "plane_albedo_mu0p5", "spherical_albedo_diffuse",
                            "radiance_mu1_from_mu1_per_unit_flux"})
     expected.push_back(e[name].number());
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            const HFunction h(albedo);
-            const double root = std::sqrt(1 - albedo), one = h(1), half = h(0.5);
-            Outcome o;
-            compare_all(o, "", expected,
-                        {one, half, 1 - one * root, 1 - half * root, 1 - 2 * root * h.first_moment(),
-                         albedo / (4 * pi) * one * one / 2},
-                        t);
-            return o;
-          }};
+  return by_own_solver({"", [=, t = tolerance_of(v)](VerifyProfile) {
+                          const HFunction h(albedo);
+                          const double root = std::sqrt(1 - albedo), one = h(1), half = h(0.5);
+                          Outcome o;
+                          compare_all(o, "", expected,
+                                      {one, half, 1 - one * root, 1 - half * root, 1 - 2 * root * h.first_moment(),
+                                       albedo / (4 * pi) * one * one / 2},
+                                      t);
+                          return o;
+                        }});
 }
 
 Check read_slab_albedo(const Value& v) {
@@ -176,13 +177,13 @@ Check read_slab_albedo(const Value& v) {
   light.phase = phase_of(in["g"].number_in(-0.9, 0.9), false);
   const double mu = in["incidence_mu"].number_in(1e-3, 1);
   const std::vector<double> expected{e["reflectance"].number(), e["transmittance"].number()};
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            // By reciprocity the share of a beam that comes out is the radiance along it under even light.
-            const SlabTransport slab(light, 150);
-            Outcome o;
-            compare_all(o, "", expected, {slab.radiance(0, -mu), slab.radiance(light.thickness, mu)}, t);
-            return o;
-          }};
+  return by_own_solver({"", [=, t = tolerance_of(v)](VerifyProfile) {
+                          // By reciprocity the share of a beam that comes out is the radiance along it under even light.
+                          const SlabTransport slab(light, 150);
+                          Outcome o;
+                          compare_all(o, "", expected, {slab.radiance(0, -mu), slab.radiance(light.thickness, mu)}, t);
+                          return o;
+                        }});
 }
 
 Check read_sn_slab(const Value& v) {
@@ -200,18 +201,19 @@ Check read_sn_slab(const Value& v) {
   if (expected.has("single_scattering_moments"))
     for (std::size_t i = 0; i < places.depth.size(); ++i)
       once.push_back(expected["single_scattering_moments"][i].numbers());
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            Outcome o;
-            for (const SlabNumbers& n : numbers) compare_slab(o, light, g, n, places, t);
-            const SlabTransport slab(light);
-            for (std::size_t i = 0; i < once.size(); ++i) {
-              std::vector<double> moments;
-              for (int l = 0; l < 4; ++l)
-                moments.push_back(light.albedo * std::pow(g, l) * slab.reduced_moment(l, places.depth[i]));
-              compare_all(o, fmt::format("moments {}", i), once[i], moments, t);
-            }
-            return o;
-          }};
+  return by_own_solver({"", [=, t = tolerance_of(v)](VerifyProfile) {
+                          Outcome o;
+                          for (const SlabNumbers& n : numbers) compare_slab(o, light, g, n, places, t);
+                          const SlabTransport slab(light);
+                          for (std::size_t i = 0; i < once.size(); ++i) {
+                            std::vector<double> moments;
+                            for (int l = 0; l < 4; ++l)
+                              moments.push_back(light.albedo * std::pow(g, l) *
+                                                slab.reduced_moment(l, places.depth[i]));
+                            compare_all(o, fmt::format("moments {}", i), once[i], moments, t);
+                          }
+                          return o;
+                        }});
 }
 
 Check read_multiple_scattering_slab(const Value& v) {
@@ -230,12 +232,12 @@ Check read_multiple_scattering_slab(const Value& v) {
                                      in["radiance_z_mu"][i][1].number_in(-1, 1));
   const std::vector<SlabNumbers> numbers = slab_numbers(expected, places);
   const std::vector<double> depths = expected["optical_depth"].numbers();
-  return {"", [=, t = tolerance_of(v)](VerifyProfile) {
-            Outcome o;
-            compare_all(o, "depth", depths, places.depth, t);
-            for (const SlabNumbers& n : numbers) compare_slab(o, light, g, n, places, t);
-            return o;
-          }};
+  return by_own_solver({"", [=, t = tolerance_of(v)](VerifyProfile) {
+                          Outcome o;
+                          compare_all(o, "depth", depths, places.depth, t);
+                          for (const SlabNumbers& n : numbers) compare_slab(o, light, g, n, places, t);
+                          return o;
+                        }});
 }
 
 Check read_multiple_scattering_ball(const Value& v) {
@@ -255,83 +257,84 @@ Check read_multiple_scattering_ball(const Value& v) {
     if (i != 2 || expected.has(names[i])) numbers[i] = expected[names[i]].numbers();
   const double albedo = in["albedo"].number(), g = in["g"].number(), radiance = in["environment_radiance"].number(),
                sigma_t = in["sigma_t"].number();
-  return {"",
-          [=, t = tolerance_of(v)](VerifyProfile) {
-            const BallTransport ball(light);
-            std::array<std::vector<double>, 5> got;
-            for (const double r : radii) {
-              got[0].push_back(ball.moment(0, r));
-              got[1].push_back(ball.reduced_moment(0, r));
-              if (!numbers[2].empty()) got[2].push_back(ball.moment(1, r));
-            }
-            for (const double b : impacts) {
-              got[3].push_back(ball.exit_radiance(b));
-              got[4].push_back(ball.exit_transmittance(b));
-            }
-            Outcome o;
-            for (std::size_t i = 0; i < 5; ++i) compare_all(o, names[i], numbers[i], got[i], t);
-            return o;
-          },
-          [=](VerifyProfile) {
-            Outcome o;
-            double exit_errors[2], mean_errors[2];
-            // A node of both grids; a source that has no direction, off which mean radiance can be read.
-            const auto is_node = [](double r) { return 2 * r == std::round(2 * r); };
-            const bool with_means = g == 0 && std::any_of(radii.begin(), radii.end(), is_node);
-            const double far = std::max(1.0, 2 * smoke.cutoff * one.width);
-            for (const int cells : {2, 6}) {  // a width
-              const Given given{{"cells", std::to_string(6 * cells + 1)},
-                                {"levels", "12"},
-                                {"ordinate_levels", "4"},
-                                {"slices", "1024"},
-                                {"deepest_cell", "9"}};
-              const bool fine = cells == 6;
-              const std::string nodes = fine ? "fine" : "coarse";
-              const auto centred = std::make_shared<const scene::Scene>(AtNodes::centred(
-                  *smoke_scene(smoke, sigma_t, albedo, g, {Rgb::Constant(radiance * std::sqrt(4 * pi))}), one.center,
-                  (3 + 0.5 / cells) * one.width));
-              const OneRay there(device_renderer, centred, given);
-              std::optional<OneRay> here;
-              if (!fine) here.emplace(processor_renderer, centred, given);  // the other is compared node by node
-              std::vector<double> exits, passed, means, expected_means;
-              for (const double b : impacts) {
-                const Ray ray{one.center + Vec3(b * one.width, 0, far), -Vec3::UnitZ()};
-                const scene::Film got = there(ray);
-                exits.push_back(got.get("mean", 0, 0)[0]);
-                passed.push_back(got.get("transmittance", 0, 0)[0]);
-                if (here)
-                  o.add(relative("exit, as the processor's", (*here)(ray).get("mean", 0, 0)[0], exits.back(), parity));
-              }
-              compare_all(o, nodes + ", " + names[4], numbers[4], passed, {parity, 0});
-              exit_errors[fine] = relative_distance(exits, numbers[3]);
-              if (!with_means) continue;
-              AtNodes at(*centred, given);
-              const scene::Camera camera = camera_along(one.center + Vec3(0, 0, 2 * far), -Vec3::UnitZ());
-              o.add(at.difference(nodes, camera));
-              const auto values = at.towards(camera);
-              for (std::size_t k = 0; k < radii.size(); ++k)
-                for (int axis = 0; axis < 3 && is_node(radii[k]); ++axis) {
-                  Eigen::Vector3i place = Eigen::Vector3i::Zero();
-                  place[axis] = int(std::lround(radii[k] * cells));
-                  means.push_back(at.at(values, place) / albedo);
-                  expected_means.push_back(numbers[0][k]);
-                }
-              mean_errors[fine] = relative_distance(means, expected_means);
-            }
-            // 8 and 23 deep; cells of up to 2.2 and 0.75 depths, in the second case 6.4 and 2.1. Of second order: a ninth.
-            const auto below = [&](const char* what, double error, double bound) {
-              o.add(absolute(what, 0, error, bound));
-            };
-            const auto below_coarse = [&](const char* what, const double* errors) {
-              if (errors[0] > 0.01) below(what, errors[1] / errors[0], 0.2);
-            };
-            below("error of exit_radiance", exit_errors[1], albedo < 0.95 ? 0.003 : 0.01);
-            below_coarse("error of fine over coarse, exit_radiance", exit_errors);
-            if (!with_means) return o;
-            below("error of mean_radiance", mean_errors[1], 0.01);
-            below_coarse("error of fine over coarse, mean_radiance", mean_errors);
-            return o;
-          }};
+  return by_own_solver(
+      {"",
+       [=, t = tolerance_of(v)](VerifyProfile) {
+         const BallTransport ball(light);
+         std::array<std::vector<double>, 5> got;
+         for (const double r : radii) {
+           got[0].push_back(ball.moment(0, r));
+           got[1].push_back(ball.reduced_moment(0, r));
+           if (!numbers[2].empty()) got[2].push_back(ball.moment(1, r));
+         }
+         for (const double b : impacts) {
+           got[3].push_back(ball.exit_radiance(b));
+           got[4].push_back(ball.exit_transmittance(b));
+         }
+         Outcome o;
+         for (std::size_t i = 0; i < 5; ++i) compare_all(o, names[i], numbers[i], got[i], t);
+         return o;
+       },
+       [=](VerifyProfile) {
+         Outcome o;
+         double exit_errors[2], mean_errors[2];
+         // A node of both grids; a source that has no direction, off which mean radiance can be read.
+         const auto is_node = [](double r) { return 2 * r == std::round(2 * r); };
+         const bool with_means = g == 0 && std::any_of(radii.begin(), radii.end(), is_node);
+         const double far = std::max(1.0, 2 * smoke.cutoff * one.width);
+         for (const int cells : {2, 6}) {  // a width
+           const Given given{{"cells", std::to_string(6 * cells + 1)},
+                             {"levels", "12"},
+                             {"ordinate_levels", "4"},
+                             {"slices", "1024"},
+                             {"deepest_cell", "9"}};
+           const bool fine = cells == 6;
+           const std::string nodes = fine ? "fine" : "coarse";
+           const auto centred = std::make_shared<const scene::Scene>(
+               AtNodes::centred(*smoke_scene(smoke, sigma_t, albedo, g, {Rgb::Constant(radiance * std::sqrt(4 * pi))}),
+                                one.center, (3 + 0.5 / cells) * one.width));
+           const OneRay there(device_renderer, centred, given);
+           std::optional<OneRay> here;
+           if (!fine) here.emplace(processor_renderer, centred, given);  // the other is compared node by node
+           std::vector<double> exits, passed, means, expected_means;
+           for (const double b : impacts) {
+             const Ray ray{one.center + Vec3(b * one.width, 0, far), -Vec3::UnitZ()};
+             const scene::Film got = there(ray);
+             exits.push_back(got.get("mean", 0, 0)[0]);
+             passed.push_back(got.get("transmittance", 0, 0)[0]);
+             if (here)
+               o.add(relative("exit, as the processor's", (*here)(ray).get("mean", 0, 0)[0], exits.back(), parity));
+           }
+           compare_all(o, nodes + ", " + names[4], numbers[4], passed, {parity, 0});
+           exit_errors[fine] = relative_distance(exits, numbers[3]);
+           if (!with_means) continue;
+           AtNodes at(*centred, given);
+           const scene::Camera camera = camera_along(one.center + Vec3(0, 0, 2 * far), -Vec3::UnitZ());
+           o.add(at.difference(nodes, camera));
+           const auto values = at.towards(camera);
+           for (std::size_t k = 0; k < radii.size(); ++k)
+             for (int axis = 0; axis < 3 && is_node(radii[k]); ++axis) {
+               Eigen::Vector3i place = Eigen::Vector3i::Zero();
+               place[axis] = int(std::lround(radii[k] * cells));
+               means.push_back(at.at(values, place) / albedo);
+               expected_means.push_back(numbers[0][k]);
+             }
+           mean_errors[fine] = relative_distance(means, expected_means);
+         }
+         // 8 and 23 deep; cells of up to 2.2 and 0.75 depths, in the second case 6.4 and 2.1. Of second order: a ninth.
+         const auto below = [&](const char* what, double error, double bound) {
+           o.add(absolute(what, 0, error, bound));
+         };
+         const auto below_coarse = [&](const char* what, const double* errors) {
+           if (errors[0] > 0.01) below(what, errors[1] / errors[0], 0.2);
+         };
+         below("error of exit_radiance", exit_errors[1], albedo < 0.95 ? 0.003 : 0.01);
+         below_coarse("error of fine over coarse, exit_radiance", exit_errors);
+         if (!with_means) return o;
+         below("error of mean_radiance", mean_errors[1], 0.01);
+         below_coarse("error of fine over coarse, mean_radiance", mean_errors);
+         return o;
+       }});
 }
 
 }  // namespace airlight::experiments::verification

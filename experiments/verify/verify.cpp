@@ -139,6 +139,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
 
   std::vector<VerifyKind> kinds_found;
   std::map<std::string, int> waiting;
+  int own = 0;
   std::vector<std::string> failures;
   for (const auto& [path, vectors] : all) {
     out << path << "\n";
@@ -154,6 +155,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
         ++line.not_yet;
         continue;
       }
+      if (on == VerifyOn::processor && w.check.own_solver) ++own;
       check_interrupted();
       const auto start = std::chrono::steady_clock::now();
       const Outcome outcome = computed(w, path, profile, on);
@@ -171,6 +173,7 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     }
   }
   for (const auto& [what, count] : waiting) out << fmt::format("{} vectors: {}\n", count, what);
+  if (own > 0) out << fmt::format("{} vectors: no renderer computes this; compared is a solver of verify's own\n", own);
   for (const std::string& f : failures) out << "OUT: " << f << "\n";
   Totals totals;
   for (const VerifyKind& line : kinds_found) totals.add(line);

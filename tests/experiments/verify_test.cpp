@@ -173,6 +173,16 @@ TEST_CASE("methods to come are listed and counted, and compared with nothing the
                             Catch::Contains("FAILED: no number was compared"));
 }
 
+TEST_CASE("vectors that no renderer computes are counted", "[verify]") {
+  const auto said = [](const char* kind) {
+    std::ostringstream out;
+    CHECK(verify({vectors + "compensated_ray_marching.json"}, kind, VerifyProfile::quick, out) == 0);
+    return out.str();
+  };
+  CHECK_THAT(said("halfspace_albedo_isotropic"), Catch::Contains("3 vectors: no renderer computes this"));
+  CHECK_THAT(said("diffusion_uniform_source"), !Catch::Contains("no renderer computes this"));
+}
+
 TEST_CASE("a file without vectors is no success", "[verify]") {
   const TemporaryFile empty(fogshop_file("")), right(fogshop_file(good));
   std::ostringstream out;
