@@ -45,7 +45,7 @@ scene::Medium turned_fog(int degree, const scene::HeightProfile& profile, const 
 
 }  // namespace
 
-TEST_CASE("sun: a map's columns converge to the exact ones at every height", "[wavelet_fog][sun]") {
+TEST_CASE("sun: a map's columns converge to the exact ones at every height", "[wavelet_fog][sun][slow]") {
   const scene::Region regions[] = {scene::Unbounded{}, scene::Slab{Vec3::UnitY(), -3, 3}, Box{{-6, -2, 4}, {6, 2, 14}},
                                    scene::Sphere{{0, 0, 8}, 5}};
   for (int degree = 0; degree <= 3; ++degree)
@@ -119,7 +119,7 @@ void equal_the_path_tracer(const std::vector<SunCase>& scenes) {
 
 }  // namespace
 
-TEST_CASE("sun: pictures equal the path tracer's, with houses and without", "[wavelet_fog][sun]") {
+TEST_CASE("sun: pictures equal the path tracer's, with houses and without", "[wavelet_fog][sun][slow]") {
   equal_the_path_tracer({std::begin(sun_cases)[0], std::end(sun_cases)[-1]});
 }
 
