@@ -217,7 +217,7 @@ Check read_hg_zh(const Value& v) {
   const int order = order_of(v["input"]);
   const double g = v["input"]["g"].number_in(-1, 1);
   Check check = list_check(v, order, [=] { return crm::henyey_greenstein(order, g); });
-  // Of light from one direction the phase function about it is left.
+  // Light from one direction leaves the phase function about that direction.
   check.on_device = [=, expected = v["expected"].numbers()](VerifyProfile) {
     const Vec3 axis = Vec3(2, -1, 2) / 3;
     return compare_scattered(order, g, scene::evaluate_sh(order, axis), crm::about_axis(expected, axis));

@@ -206,7 +206,7 @@ Check read_march_compensated(const Value& v) {
   const OwnTolerance t = tolerance_of(v);
   const crm::SliceWeight weights[]{crm::SliceWeight::exact, crm::SliceWeight::printed, crm::SliceWeight::paper,
                                    crm::SliceWeight::exact};
-  // Of the march with each weight, after the integral that it tends to.
+  // Expected values: the integral first, then the march with each of its weights.
   const auto add_slices = [=](const auto& march, const Ray& ray, std::vector<std::vector<double>>& got) {
     for (std::size_t w = 0; w < 4; ++w) {
       const crm::Marched m = march.slices(ray, slices, weights[w]);
@@ -294,7 +294,7 @@ Check read_ray_march_homogeneous(const Value& v) {
         };
         return compare_sums(weighted, t, t);
       },
-      // Of `variant = grid`, by a voxel that is all the smoke.
+      // The smoke of `variant = grid` is one voxel here.
       [=](VerifyProfile) {
         gpu::Context& context = gpu::Context::get();
         const double length = slices.thickness * slices.count;

@@ -48,7 +48,7 @@ Check read_planes_airlight(const Value& v) {
   const PhaseForm phase = phase_of(in);
   const double expected = v["expect"]["log10_L"].number();
   constexpr auto one = [](double, double, double) { return 1.0; };
-  // With an integral that is `share` of the rule's.
+  // The integral is `share` of the rule's.
   const auto compare = [=](double share, double error) {
     const double shape = share * airlight_integral(rule(), phase, k, T, h, LitPart<double>{x0, x1 - x0}, one);
     const double got =

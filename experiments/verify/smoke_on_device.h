@@ -70,7 +70,7 @@ struct AtNodes {
           worst = std::abs(double(got[i][std::size_t(c)]) - truth[i][c]);
     return absolute(what + ", nodes as the processor's", 0, worst, parity);
   }
-  // By its place among the nodes, from the middle one.
+  // A node is found by its place among the nodes, counted from the middle one.
   double at(const std::vector<std::array<float, 4>>& values, const Eigen::Vector3i& place) const {
     const auto& n = grid.grid().cells.size;
     const Eigen::Vector3i p = place + Eigen::Vector3i(n[0], n[1], n[2]) / 2;

@@ -40,7 +40,7 @@ double paper_airlight(const scene::GaussianSum& medium, const Point3& s, double 
                             optical_depth(gaussian, s, b) + optical_depth(gaussian, v, b) -
                             optical_depth(medium, s, b) - optical_depth(medium, v, b);
     const double depth = scene::line_integral(gaussian, ray, d_r);  // Eq. 31
-    // Of the angle by which light turns: the text's alpha has the other sign.
+    // The phase function takes the cosine of the angle by which light turns; the text's alpha has the other sign.
     const double phase = relative_phase(options.g, -(b_r - s).normalized().dot(ray.direction));
     // A light at b_r makes the next factor infinite, and 0 times that is no number.
     if (depth > 0)

@@ -272,7 +272,7 @@ void PaperStages::draw_planes(std::size_t l, std::size_t a, const std::vector<Pi
 
 void PaperStages::add(Rgb& sum, const Rgb& value) const {
   sum += value;
-  // Of 8 bits, which end at 1 (section 6).
+  // The frame buffer has 8 bits and ends at 1 (section 6).
   if (options_.frame_buffer) sum = ((sum * 255).round() / 255).max(0.0).min(1.0);
 }
 

@@ -29,7 +29,7 @@ namespace airlight::light_map {
 using Densities = std::function<void(std::size_t medium, std::size_t n, const double* x, const double* y,
                                      const double* z, float* density)>;
 
-// By the media's own functions, in double; the media must live as long.
+// Densities by the media's own functions, in double; the media must live as long as they do.
 Densities densities_of(const std::vector<scene::Medium>&);
 
 // Optical depths of a texel, 0 (nothing varies), 1 or 3.
@@ -37,7 +37,7 @@ int planes_of(const std::vector<scene::Medium>&, const Options&);
 
 class LightMap {
  public:
-  // Of a light that shines from one direction (is_delta). Throws Error where `options` are unsupported. Its bits do not
+  // The light must shine from one direction (is_delta). Throws Error where `options` are unsupported. Its bits do not
   // depend on the threads.
   LightMap(const scene::Light&, const std::vector<scene::Medium>&, const Options&, const Densities&,
            const scene::Execution&);
@@ -47,7 +47,7 @@ class LightMap {
   Rgb optical_depth(const Point3& x) const;
   // The part of it that is in the map.
   Rgb varied_depth(const Point3& x) const;
-  // The same at n points in single precision, by vector kernels: depth[c] for each of channels(). Arrays have room for n
+  // The optical depths in the map at n points, in single precision, by vector kernels: depth[c] for each of channels(). Arrays have room for n
   // rounded up to a multiple of 64.
   void varied_depths(std::size_t n, const double* x, const double* y, const double* z, float* const* depth) const;
 
@@ -56,7 +56,7 @@ class LightMap {
   bool empty() const { return planes_ == 0; }
   std::size_t bytes() const;
   const Projection& projection() const { return projection_; }
-  // Of texel (i, j), from -1 to size: the outermost repeat their neighbours, on the map that is.
+  // The floats of texel (i, j), i and j from -1 to size; the outermost repeat their neighbours on the map.
   const float* texel(int plane, int i, int j) const;
 
  private:

@@ -22,7 +22,7 @@ constexpr int most_size = 4096, most_steps = 4096, most_slices = 1024, most_node
 std::string encoding_name(Encoding);
 // Of one optical depth.
 int floats_per_texel(const Options&);
-// With the border of one texel that interpolation reads.
+// Texels with the border of one texel that interpolation reads.
 double bytes_per_plane(const Options&);
 
 // Lists and reads the settings map_encoding, map_size, ... of a renderer, which reads them where `setting` is "map".

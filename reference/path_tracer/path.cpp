@@ -198,7 +198,7 @@ bool Walk::survive(Path& path, double u) const {
 // The throughput is zero where a reflection's lobe reaches below the surface.
 Vec3 Walk::draw_direction(Path& path, const Vertex& v, const RandomBlock& random) const {
   if (!v.hit) {
-    // As sample_scatter does: of a phase function value and density cancel.
+    // sample_scatter written out: a phase function's value and its density cancel, so the throughput stays.
     const scene::PhaseFunction& phase = medium(v.medium).phase;
     const double c = scene::sample_phase_cosine(phase, random.fine(0));
     path.direction_pdf = scene::phase_value(phase, c);

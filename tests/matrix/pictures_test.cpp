@@ -37,7 +37,7 @@ const Names more{"constant_grid",
                  "shadow_planes/media",
                  "wavelet_fog/valley"};
 
-// As little work as shows the same layers.
+// Settings that do as little work as shows the same layers.
 Given little_work(const scene::Renderer& renderer) {
   const std::string name = renderer.name();
   if (renderer.monte_carlo()) return {{"samples", "16"}};
