@@ -206,7 +206,7 @@ Check read_march_compensated(const Value& v) {
   const OwnTolerance t = tolerance_of(v);
   const crm::SliceWeight weights[]{crm::SliceWeight::exact, crm::SliceWeight::printed, crm::SliceWeight::paper,
                                    crm::SliceWeight::exact};
-  // Expected values: the integral first, then the march with each of its weights.
+  // Marches with each weight; the results stand behind those of the integral.
   const auto add_slices = [=](const auto& march, const Ray& ray, std::vector<std::vector<double>>& got) {
     for (std::size_t w = 0; w < 4; ++w) {
       const crm::Marched m = march.slices(ray, slices, weights[w]);

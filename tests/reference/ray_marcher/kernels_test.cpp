@@ -13,15 +13,6 @@ using namespace airlight::ray_marcher;
 
 namespace {
 
-scene::View small_view() {
-  scene::View view;
-  view.camera = scene::look_at(Point3(0.3, 0.4, 3.0), Point3(0.1, 0.1, 0), Vec3::UnitY());
-  view.camera.vertical_fov = 0.9;
-  view.width = 21;  // not a multiple of tiles or lanes
-  view.height = 17;
-  return view;
-}
-
 // Largest difference over the largest value, of one layer.
 double difference(const scene::Film& a, const scene::Film& b, const std::string& layer) {
   double most = 0, scale = 1e-300;

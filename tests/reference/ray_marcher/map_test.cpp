@@ -16,15 +16,6 @@ using airlight::test::relative_l2;
 
 namespace {
 
-scene::View small_view() {
-  scene::View view;
-  view.camera = scene::look_at(Point3(0.3, 0.4, 3.0), Point3(0.1, 0.1, 0), Vec3::UnitY());
-  view.camera.vertical_fov = 0.9;
-  view.width = 21;  // not a multiple of tiles or lanes
-  view.height = 17;
-  return view;
-}
-
 const char* const encodings[] = {"slices", "avsm", "fourier", "beer"};
 
 Given map_settings(const char* encoding, const char* size = "64") {

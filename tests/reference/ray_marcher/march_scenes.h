@@ -63,4 +63,13 @@ std::vector<std::pair<std::string, std::shared_ptr<const scene::Scene>>> assorte
 // The same scene with all lengths multiplied: the picture from the scaled camera is the same.
 std::shared_ptr<const scene::Scene> scaled_scene(const scene::Scene&, double scale);
 
+inline scene::View small_view() {
+  scene::View view;
+  view.camera = scene::look_at(Point3(0.3, 0.4, 3.0), Point3(0.1, 0.1, 0), Vec3::UnitY());
+  view.camera.vertical_fov = 0.9;
+  view.width = 21;  // not a multiple of tiles or lanes
+  view.height = 17;
+  return view;
+}
+
 }  // namespace airlight::ray_marcher
