@@ -312,6 +312,45 @@ TEST_CASE("environments are projected on spherical harmonics", "[environment]") 
       CHECK(projected[sh_index(l, m)][0] == Approx(bands[l] * axis[sh_index(l, m)]).margin(1e-4));
 }
 
+// Gauss points in every stretch between texel centres: the bilinear map's radiance times the harmonics.
+std::vector<Rgb> by_gauss_points(const EnvironmentLight& light, int order) {
+  const EnvironmentMap& map = *light.map;
+  const auto points = [&](double angle) { return std::min(8 + int(3 * order * angle), 64); };
+  const GaussLegendre across = gauss_legendre(points(2 * pi / map.width)),
+                      down = gauss_legendre(points(pi / map.height));
+  std::vector<Rgb> sum(std::size_t(order * order), Rgb::Zero());
+  for (int strip = 0; strip <= map.height; ++strip) {
+    const double begin = strip_begin(strip, map.height), end = strip_begin(strip + 1, map.height);
+    for (std::size_t j = 0; j < down.node.size(); ++j) {
+      const double theta = begin + (end - begin) * 0.5 * (1 + down.node[j]);
+      for (int left = 0; left < map.width; ++left)
+        for (std::size_t i = 0; i < across.node.size(); ++i) {
+          const double u = (left + 0.5 + 0.5 * (1 + across.node[i])) / map.width;
+          const Vec3 w = light.to_map.transpose() * from_lat_long(u, std::cos(theta), std::sin(theta));
+          const double weight =
+              across.weight[i] * down.weight[j] * 0.5 * (end - begin) * std::sin(theta) * pi / map.width;
+          const std::vector<double> basis = evaluate_sh(order, w);
+          for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * basis[k] * radiance(light, w);
+        }
+    }
+  }
+  return sum;
+}
+
+TEST_CASE("a map's projection is the integral over its stretches", "[environment]") {
+  std::mt19937 random(14);
+  for (const int order : {1, 2, 6, 9})
+    for (const auto& [width, height] : {std::pair(1, 1), {1, 4}, {6, 1}, {5, 3}, {16, 9}}) {
+      CAPTURE(order, width, height);
+      auto map = make_map(width, height);
+      for (float& value : map->rgb) value = std::uniform_real_distribution<float>(0, 2)(random);
+      const EnvironmentLight light = map_light(map, turned);
+      const auto projected = project_environment(light, order), expected = by_gauss_points(light, order);
+      for (std::size_t k = 0; k < expected.size(); ++k)
+        CHECK((projected[k] - expected[k]).abs().maxCoeff() < 1e-11 * expected[0].maxCoeff());
+    }
+}
+
 // Y_10 is negative on half of the sphere; with c_00 = 1 and c_10 = b, where 1 + sqrt(3) b z < 0: for b = 1 a share of
 // (1 - 1/sqrt(3)) / 2.
 TEST_CASE("negative lobes keep their sign and are reported", "[environment]") {
