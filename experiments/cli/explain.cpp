@@ -4,6 +4,7 @@
 #include "experiments/application/renderers.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/scene_option.h"
 #include "scene/base/error.h"
 #include "scene/scene.h"
 
@@ -11,7 +12,7 @@ namespace airlight::experiments::cli {
 namespace {
 
 struct ExplainOptions {
-  std::string scene, method;
+  std::string scene, method, convert;
   Pairs settings, overrides;
 };
 
@@ -60,7 +61,7 @@ void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::S
 
 int explain(const ExplainOptions& options) {
   if (!options.method.empty()) find_renderer(options.method, "--method");
-  const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
+  const auto scene = load(options.scene, options.overrides, options.convert, 0);
   fmt::print("{}: {}x{} pixels\n", scene->name, scene->width, scene->height);
   for (const scene::Light& light : scene->lights) fmt::print("  light    {}\n", scene::light_name(light));
   for (std::size_t i = 0; i < scene->media.size(); ++i)
@@ -89,6 +90,7 @@ void add_explain(Commands& commands) {
   c->add_option("--method,-m", options->method, "only this one");
   add_pairs(c, "--set", options->settings, "a setting of the method");
   add_pairs(c, "--override", options->overrides, "a value of the scene file");
+  add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);

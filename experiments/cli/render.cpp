@@ -13,6 +13,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "experiments/cli/samples.h"
+#include "experiments/cli/scene_option.h"
 #include "scene/base/content_store.h"
 #include "scene/base/error.h"
 
@@ -20,7 +21,7 @@ namespace airlight::experiments::cli {
 namespace {
 
 struct RenderOptions {
-  std::string scene, method, out, png, samples, cache;
+  std::string scene, method, out, png, samples, cache, convert;
   Pairs settings, overrides;
   int threads = 0;
   double exposure = 0;
@@ -44,6 +45,7 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   metadata["scene_hash"] = scene.hash;
   metadata["renderer"] = renderer.name();
   metadata["settings"] = settings.canonical();
+  if (!options.convert.empty()) metadata["converted"] = options.convert;
   metadata["commit"] = commit();
   metadata.try_emplace("seconds", fmt::format("{:.3f}", seconds));
   scene::write_exr(options.out, film);
@@ -65,7 +67,7 @@ int render(const RenderOptions& options) {
   const scene::Settings settings(renderer.settings(), given, options.method);
   require_output(options.out, ".exr");
   if (!options.png.empty()) require_output(options.png, ".png");
-  const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
+  const auto scene = load(options.scene, options.overrides, options.convert, options.threads);
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));
   std::optional<scene::CannotWrite> not_kept;
@@ -107,6 +109,7 @@ void add_render(Commands& commands) {
                 "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
   add_pairs(c, "--set", options->settings, "a setting of the method (airlight explain lists them)");
   add_pairs(c, "--override", options->overrides, "a value of the scene file, e.g. film.width=64");
+  add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);

@@ -28,7 +28,7 @@ std::vector<CommittedReference> committed_references(const std::vector<Experimen
   for (const Experiment& e : experiments) {
     if (e.reference.committed.empty()) continue;
     for (const SceneCase& c : e.scenes) {
-      const PlannedScene planned = plan_scene(e, c);
+      const PlannedScene planned = plan_reference(e, c);
       const auto same = [&](const CommittedReference& r) { return r.file == planned.committed; };
       if (std::any_of(all.begin(), all.end(), same)) continue;
       all.push_back({fmt::format("{}, scene '{}'", e.id, c.name), planned.scene, planned.reference,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/application/folders.h"
+#include "scene/convert/medium_form.h"
 #include "scene/scene.h"
 
 namespace airlight::experiments {
@@ -28,8 +29,9 @@ struct MethodCase {
   std::string name;
   std::string renderer;  // or the probe, or the solver
   Pairs settings;
-  std::string setting;              // the swept setting's value, as text; empty without a sweep
-  std::string layer;                // compared with the reference's layer
+  std::optional<scene::MediumConversion> convert;  // of the scene's media, before it is prepared
+  std::string setting;                             // the swept setting's value, as text; empty without a sweep
+  std::string layer;                               // compared with the reference's layer
   bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
   bool picture_only = false;        // rendered and timed, not compared
   std::string moving;               // each timed run is the next frame, of which this has moved; empty: one frame

@@ -62,19 +62,29 @@ void judge_by_reference(RowKeeper& keeper, const SceneCase& c, Judged& judged) {
 }
 
 // The median of several preparations where they are short.
-std::shared_ptr<scene::Prepared> prepare(const Experiment& e, const Judged& judged, const PlannedRow& planned,
+std::shared_ptr<scene::Prepared> prepare(const Experiment& e, const PlannedRow& planned,
                                          const scene::Execution& execution, double& seconds) {
   std::shared_ptr<scene::Prepared> prepared;
   std::vector<double> preparations;
   const double allowed = std::min(0.25, e.timing.budget / 2);
   for (double spent = 0; preparations.empty() || (preparations.size() < 5 && spent + preparations.back() < allowed);) {
     const double start = steady_seconds();
-    prepared = planned.renderer->prepare(judged.planned.scene, planned.settings, execution);
+    prepared = planned.renderer->prepare(planned.scene, planned.settings, execution);
     preparations.push_back(steady_seconds() - start);
     spent += preparations.back();
   }
   seconds = median(preparations);
   return prepared;
+}
+
+// The film of the converted media; the reference's own where nothing is converted, or nobody asks.
+Reference truth_of_converted(const RowKeeper& keeper, const Judged& judged, const PlannedRow& planned) {
+  const std::vector<std::string>& metrics = keeper.experiment().metrics;
+  if (planned.scene == judged.planned.scene || std::none_of(metrics.begin(), metrics.end(), is_of_converted))
+    return *judged.reference;
+  scene::Execution execution = quiet_execution(keeper.experiment().timing.threads);
+  execution.store = &keeper.store();
+  return reference_for(planned.scene, *judged.planned.reference, *judged.planned.reference_settings, execution);
 }
 
 // A device's frame is complete there: what is timed reads nothing back.
@@ -103,12 +113,11 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
                  const scene::Execution& execution) {
   const Experiment& e = keeper.experiment();
   const MethodCase& m = *planned.method;
-  const std::shared_ptr<scene::Prepared> prepared = prepare(e, *judged, planned, execution, row.prepare_seconds);
+  const std::shared_ptr<scene::Prepared> prepared = prepare(e, planned, execution, row.prepare_seconds);
   row.device = planned.renderer->device();
   const scene::Execution timed = as_timed(execution, row);
   if (!row.device.empty()) prepared->render(judged->view, timed);  // drivers compile shaders at first use
-  const auto moving =
-      m.moving.empty() ? nullptr : std::make_shared<NextFrames>(prepared, judged->planned.scene, m.moving);
+  const auto moving = m.moving.empty() ? nullptr : std::make_shared<NextFrames>(prepared, planned.scene, m.moving);
   double first = 0;
   const auto render = [&](const scene::Execution& how) {
     const double start = steady_seconds();
@@ -118,7 +127,7 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
     return rendering;
   };
   scene::Rendering rendering = render(execution);
-  row.counters = rendering.counters;
+  row.counters.insert(rendering.counters.begin(), rendering.counters.end());
   std::vector<scene::StageTime> stages = rendering.times;
   std::optional<double> download;
   if (!row.device.empty()) {
@@ -128,13 +137,23 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
     for (const auto& [name, value] : frame.counters) row.counters[name] = value;
   }
   if (m.layer != e.layer) rendering.film.layers[e.layer] = rendering.film.layer(m.layer);
-  if (judged->reference) row.measures = compare(e, m, rendering.film, judged->reference->film, judged->masks);
+  if (judged->reference)
+    row.measures = compare(e, m, rendering.film, judged->reference->film,
+                           truth_of_converted(keeper, *judged, planned).film, judged->masks);
   row.image = keeper.name() + "/" + file_name(row.scene) + "/" + picture_name(row.method, row.setting);
   row.exposure = judged->reference ? judged->exposure : exposure_of(rendering.film, e.layer);
   keep_picture(keeper.images(), row.image, rendering.film, m.layer, row.exposure);
   return {row, first, stages, download, [prepared, moving, judged, row](const scene::Execution& execution) {
             const scene::Execution timed = as_timed(execution, row);
             return moving ? moving->again(judged->view, timed) : prepared->render(judged->view, timed).times;
+          }};
+}
+
+// A column of a counter that only some rows have.
+RowColumn counter(const std::string& head, const std::string& name, std::function<std::string(double)> as_text) {
+  return {head, [name, as_text](const Row& row) {
+            const auto found = row.counters.find(name);
+            return found == row.counters.end() ? "" : as_text(found->second);
           }};
 }
 
@@ -175,7 +194,10 @@ void Images::check(const Experiment& e, const RunOptions& options) const { try_p
 std::vector<RowColumn> Images::time_columns() const { return {{"time of one render", time_text}}; }
 
 std::vector<RowColumn> Images::preparation_columns() const {
-  return {{"prepared once in", [](const Row& row) { return row.runs ? duration(row.prepare_seconds) : ""; }}};
+  return {{"prepared once in", [](const Row& row) { return row.runs ? duration(row.prepare_seconds) : ""; }},
+          counter("converted in", "conversion_seconds", duration),
+          counter("numbers of the density", "numbers", [](double n) { return fmt::format("{:.0f}", n); }),
+          counter("density error", "density_error", [](double e) { return fmt::format("{:.3g}", e); })};
 }
 
 std::string Images::conditions() const {
@@ -193,7 +215,7 @@ Outcome Images::run(Experiment experiment, const RunOptions& options) const {
   }
   return keeper.run([&](const SceneCase& c) {
     const auto judged = std::make_shared<Judged>();
-    judged->planned = plan_scene(keeper.experiment(), c);
+    judged->planned = plan_scene(keeper.experiment(), c, keeper.store());
     const scene::Scene& scene = *judged->planned.scene;
     judged->view = scene::view_of(scene);
     judged->masks = {scene::ball_mask(scene, judged->view), foreground_of(scene, judged->view)};

@@ -11,7 +11,9 @@ class Images : public ExperimentKind {
   const scene::Component& find_component(const std::string& name, const std::string& position) const override;
   std::vector<std::string> keys() const override { return {"stages", "reference", "layer"}; }
   void read(const TableReader& top, Experiment&) const override;
-  std::vector<std::string> method_keys() const override { return {"layer", "picture_only", "count_noise", "moving"}; }
+  std::vector<std::string> method_keys() const override {
+    return {"layer", "picture_only", "count_noise", "moving", "convert"};
+  }
   void read_method(const TableReader&, const Experiment&, MethodCase&) const override;
   // Adds root mean squares, which the publications print, beside relative errors.
   void check_metrics(Experiment&, const std::string& position) const override;

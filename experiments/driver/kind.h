@@ -46,8 +46,8 @@ class ExperimentKind {
 
   // The tables, where any row is timed.
   virtual std::vector<RowColumn> time_columns() const = 0;
-  virtual std::vector<RowColumn> preparation_columns() const { return {}; }
-  virtual std::string conditions() const = 0;  // how figures and times were taken, a line
+  virtual std::vector<RowColumn> preparation_columns() const { return {}; }  // those that no row has are left out
+  virtual std::string conditions() const = 0;                                // how figures and times were taken, a line
 };
 
 const std::vector<const ExperimentKind*>& all_kinds();

@@ -43,9 +43,15 @@ double exposure_of(const scene::Film& film, const std::string& layer) {
 }
 
 std::vector<Measure> compare(const Experiment& e, const MethodCase& m, const scene::Film& film,
-                             const scene::Film& reference, const Masks& masks) {
+                             const scene::Film& reference, const scene::Film& converted, const Masks& masks) {
   if (m.picture_only) return {};
-  return measure(e.metrics, film, reference, e.layer, masks, m.count_noise ? ImageNoise::counted : ImageNoise::removed);
+  std::vector<Measure> all;
+  for (const std::string& metric : e.metrics) {
+    const std::vector<Measure> one = measure({metric}, film, is_of_converted(metric) ? converted : reference, e.layer,
+                                             masks, m.count_noise ? ImageNoise::counted : ImageNoise::removed);
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
 }
 
 void keep_picture(const std::filesystem::path& images, const std::string& name, const scene::Film& film,

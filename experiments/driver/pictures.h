@@ -18,9 +18,10 @@ std::string picture_name(const std::string& method, const std::string& setting);
 // Powers of two that bring the 99th percentile of the luminance to 0.8.
 double exposure_of(const scene::Film&, const std::string& layer);
 
-// The metrics of a method's film, whose layer it compares is renamed to the reference's.
+// The metrics of a method's film, whose layer it compares is renamed to the reference's. Those "of converted" media are against the film
+// `converted`.
 std::vector<Measure> compare(const Experiment&, const MethodCase&, const scene::Film&, const scene::Film& reference,
-                             const Masks&);
+                             const scene::Film& converted, const Masks&);
 
 // images/name.exr, without the layers that say how noisy it is, and .png.
 void keep_picture(const std::filesystem::path& images, const std::string& name, const scene::Film&,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "experiments/application/build_info.h"
 #include "experiments/application/interrupt.h"
@@ -62,24 +63,70 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
   return content_key(parts);
 }
 
-PlannedScene plan_scene(const Experiment& e, const SceneCase& c) {
+namespace {
+
+// What conversions make of a scene, each once.
+class Conversions {
+ public:
+  Conversions(std::shared_ptr<const scene::Scene> scene, const Experiment& e, const scene::ContentStore& store)
+      : scene_(std::move(scene)), execution_(quiet_execution(e.timing.threads)) {
+    execution_.store = &store;
+  }
+
+  std::shared_ptr<const scene::Scene> of(const MethodCase& m, Row& row) {
+    if (!m.convert) return scene_;
+    auto& made = made_[canonical(*m.convert)];
+    if (!made) {
+      try {
+        made = std::make_shared<const scene::ConvertedScene>(
+            convert_media(*scene_, *m.convert, execution_, reference_id()));
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", m.position, error.what()), error.exit_code());
+      }
+    }
+    for (const scene::ConvertedMedium& medium : made->media) {
+      row.counters["numbers"] += double(medium.numbers);
+      row.counters["conversion_seconds"] += medium.seconds;
+      row.counters["density_error"] = std::max(row.counters["density_error"], medium.density_error);
+    }
+    return {made, &made->scene};
+  }
+
+ private:
+  std::shared_ptr<const scene::Scene> scene_;
+  scene::Execution execution_;
+  std::map<std::string, std::shared_ptr<const scene::ConvertedScene>> made_;
+};
+
+}  // namespace
+
+PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
   PlannedScene planned;
   planned.scene = std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides));
+  if (e.reference.renderer.empty()) return planned;
+  planned.reference = &find_renderer(e.reference.renderer, "reference");
+  planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
+  if (!e.reference.committed.empty())
+    planned.committed =
+        committed_file(e.reference.committed, *planned.scene, *planned.reference, *planned.reference_settings, e.layer);
+  return planned;
+}
+
+PlannedScene plan_scene(const Experiment& e, const SceneCase& c, const scene::ContentStore& store) {
+  PlannedScene planned = plan_reference(e, c);
   const scene::Scene& scene = *planned.scene;
   std::string reference;
-  if (!e.reference.renderer.empty()) {
-    planned.reference = &find_renderer(e.reference.renderer, "reference");
-    planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
-    if (!e.reference.committed.empty())
-      planned.committed =
-          committed_file(e.reference.committed, scene, *planned.reference, *planned.reference_settings, e.layer);
+  if (planned.reference)
     reference = reference_key(scene, *planned.reference, *planned.reference_settings, planned.committed);
-  }
+  Conversions conversions(planned.scene, e, store);
   for (const MethodCase& m : e.methods) {
     if (!is_on(m, c)) continue;
     const scene::Renderer& renderer = find_renderer(m.renderer, m.name);
-    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), {}};
-    p.row = row_of(c, m, p.settings, scene.hash);
+    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), nullptr, {}};
+    Row converted;
+    p.scene = conversions.of(m, converted);
+    p.row = row_of(c, m, p.settings, p.scene->hash);
+    p.row.counters = converted.counters;
     p.row.width = scene.width;
     p.row.height = scene.height;
     p.row.reference_key = reference;

@@ -7,6 +7,7 @@
 
 #include "experiments/driver/experiment.h"
 #include "experiments/driver/row.h"
+#include "scene/base/content_store.h"
 #include "scene/renderer.h"
 
 namespace airlight::experiments {
@@ -15,7 +16,8 @@ struct PlannedRow {
   const MethodCase* method = nullptr;  // of the experiment, which must stay where it is
   const scene::Renderer* renderer = nullptr;
   scene::Settings settings;
-  Row row;  // what is known before it is rendered, its key above all
+  std::shared_ptr<const scene::Scene> scene;  // with its media converted, where the method asks for that
+  Row row;                                    // what is known before it is rendered, its key above all
 };
 
 struct PlannedScene {
@@ -26,11 +28,15 @@ struct PlannedScene {
   std::vector<PlannedRow> rows;     // in the order of the experiment's methods
 };
 
-// Loads the scene. A row's key is the content of all that its figures and times depend on: scene, method, reference,
+// Loads the scene; no rows. Throws Error (file, line, what was found) for a scene or override that is no good.
+PlannedScene plan_reference(const Experiment&, const SceneCase&);
+
+// With the rows. A row's key is the content of all that its figures and times depend on: scene, method, reference,
 // metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the device, and its
 // shaders where they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for a scene or override that
 // is no good.
-PlannedScene plan_scene(const Experiment&, const SceneCase&);
+// What a conversion makes of its media is kept in the store.
+PlannedScene plan_scene(const Experiment&, const SceneCase&, const scene::ContentStore&);
 
 // What the file says of a row, and the content of its scene.
 Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);

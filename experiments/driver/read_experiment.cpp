@@ -205,17 +205,29 @@ void ExperimentReader::methods(const TableReader& top) {
     kind().read_method(reader, experiment_, method);
     method.scenes = strings(*table, "scenes", reader);
     for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
+    Pairs conversion = settings(*table, "convert", reader);
+    const std::string convert_position =
+        scene::load::location(table->contains("convert") ? table->get("convert")->source() : table->source());
+    const auto convert = [&](MethodCase& c) {
+      if (!conversion.empty()) c.convert = scene::read_conversion(conversion, convert_position);
+    };
+    convert(method);
     std::vector<MethodCase> cases{method};
     if (auto sweep = reader.table("sweep")) {
       sweep->allow({"key", "values"});
       cases.clear();
-      const std::string key = sweep->text("key");
+      const std::string key = sweep->text("key"), of_conversion = "convert.";
       const toml::array* values = table->get("sweep")->as_table()->get_as<toml::array>("values");
       if (!values || values->empty()) sweep->expected("values", "a list of values");
       for (const toml::node& value : *values) {
         cases.push_back(method);
         cases.back().setting = plain(value);
-        cases.back().settings[key] = cases.back().setting;
+        if (key.starts_with(of_conversion)) {
+          conversion[key.substr(of_conversion.size())] = cases.back().setting;
+          convert(cases.back());
+        } else {
+          cases.back().settings[key] = cases.back().setting;
+        }
       }
     }
     if (cases.size() > 1) leave_out_unread(method, cases);

@@ -67,7 +67,11 @@ std::vector<Cells> summary(const Outcome& outcome) {
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
   using Columns = std::vector<RowColumn>;
   const Columns times = timed ? outcome.experiment.kind->time_columns() : Columns{};
-  const Columns preparations = timed ? outcome.experiment.kind->preparation_columns() : Columns{};
+  Columns preparations = timed ? outcome.experiment.kind->preparation_columns() : Columns{};
+  std::erase_if(preparations, [&](const RowColumn& column) {
+    return std::all_of(outcome.rows.begin(), outcome.rows.end(),
+                       [&](const Row& row) { return column.text(row).empty(); });
+  });
   for (const RowColumn& column : times) head.push_back(column.head);
   const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
   if (downloads) head.push_back("download");

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "experiments/application/interrupt.h"
+#include "experiments/application/say.h"
 #include "experiments/driver/journal.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
@@ -33,7 +34,7 @@ class Trial {
     view_.width = std::min(view_.width, most_pixels);
     view_.height = std::min(view_.height, most_pixels);
     if (!planned.reference) return;
-    reference_ = render(*planned.reference, e.reference.settings, *planned.reference_settings);
+    reference_ = render(*planned.reference, planned.scene, e.reference.settings, *planned.reference_settings);
     require_finite(reference_, "reference " + planned.reference->name());
     reference_.layer(e.layer);
   }
@@ -41,7 +42,7 @@ class Trial {
   void method(const PlannedRow& p) const {
     scene::Film film;
     try {
-      film = render(*p.renderer, p.method->settings, p.settings);
+      film = render(*p.renderer, p.scene, p.method->settings, p.settings);
     } catch (const Unavailable&) {
       return;  // the row will say so
     } catch (const scene::NotSupported&) {
@@ -49,14 +50,16 @@ class Trial {
     }
     require_finite(film, p.method->name);
     film.layers[e_.layer] = film.layer(p.method->layer);
-    if (planned_.reference) compare(e_, *p.method, film, reference_, {{}, foreground_of(*planned_.scene, view_)});
+    if (planned_.reference)
+      compare(e_, *p.method, film, reference_, reference_, {{}, foreground_of(*planned_.scene, view_)});
   }
 
  private:
-  scene::Film render(const scene::Renderer& renderer, const Pairs& given, const scene::Settings& whole) const {
+  scene::Film render(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
+                     const Pairs& given, const scene::Settings& whole) const {
     check_interrupted();
     const scene::Execution execution = quiet_execution(e_.timing.threads);
-    const auto prepared = renderer.prepare(planned_.scene, short_settings(renderer, given, whole), execution);
+    const auto prepared = renderer.prepare(scene, short_settings(renderer, given, whole), execution);
     return prepared->render(view_, execution).film;
   }
 
@@ -67,8 +70,8 @@ class Trial {
 };
 
 void check_scene(const Experiment& e, const SceneCase& c, const Journal& finished, bool trials,
-                 std::set<const MethodCase*>& tried) {
-  const PlannedScene planned = plan_scene(e, c);
+                 const scene::ContentStore& store, std::set<const MethodCase*>& tried) {
+  const PlannedScene planned = plan_scene(e, c, store);
   std::vector<const PlannedRow*> open;
   for (const PlannedRow& p : planned.rows)
     if (!finished.find(p.row.key)) open.push_back(&p);
@@ -89,7 +92,8 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
 void try_pictures(const Experiment& e, const RunOptions& options) {
   const Journal finished(journal_file(options.folders, e), options.resume);
   std::set<const MethodCase*> tried;
-  for (const SceneCase& c : e.scenes) check_scene(e, c, finished, options.trials, tried);
+  const scene::ContentStore store(options.folders.cache, say);
+  for (const SceneCase& c : e.scenes) check_scene(e, c, finished, options.trials, store, tried);
 }
 
 }  // namespace airlight::experiments

@@ -19,8 +19,11 @@
 namespace airlight::experiments {
 namespace {
 
+constexpr const char* converted_prefix = "converted.";
+
 MetricName parse(std::string name) {
   MetricName parsed;
+  if (is_of_converted(name)) name.erase(0, std::string(converted_prefix).size());
   const std::string prefix = "foreground.";
   if (name.rfind(prefix, 0) == 0) {
     parsed.foreground = true;
@@ -346,6 +349,8 @@ const std::vector<std::string>& metric_names() {
       "p99",  "p999",   "wrong",          "objections", "largest_z", "detectable_bias"};
   return names;
 }
+
+bool is_of_converted(const std::string& name) { return name.starts_with(converted_prefix); }
 
 void check_metric_name(const std::string& name, const std::string& where) {
   const std::string base = parse(name).base;

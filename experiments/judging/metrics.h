@@ -17,6 +17,8 @@
 //   detectable_bias  smallest relative bias of the whole image that those tests find with probability 0.95; not defined
 //                    where samples are too skewed for the test of the whole image
 //
+// Prefix "converted.", before any other: against the picture of the media as they were converted for the method (key `convert`), which is what
+// the method itself adds. Without it: against the picture of the scene.
 // Prefix "foreground." : only pixels where 1 - transmittance > 1e-3 in some channel. Suffix ".r", ".g", ".b": one
 // channel; else all channels together. Tests of equality take neither. Pixels that touch a light's ball are left out of
 // all of them.
@@ -64,6 +66,9 @@ enum class ImageNoise {
 
 // All names without prefix and suffix.
 const std::vector<std::string>& metric_names();
+
+// Has the name the prefix "converted."?
+bool is_of_converted(const std::string& name);
 
 // Throws Error with the nearest valid name; `where` begins the message.
 void check_metric_name(const std::string& name, const std::string& where);

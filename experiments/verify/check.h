@@ -35,21 +35,18 @@ struct Outcome {
   std::string left_out_because{};
 };
 
-// Made by reading a vector completely; run later. `not_yet` names what is missing: then there is no job. `on_device` computes the vector by
-// the shaders that draw pictures, while the context of this process is in use; where there is none, `not_on_device` says why.
+// Made by reading a vector completely; run later. Where there is no job, `not_here` says why. `on_device` computes the vector by the shaders
+// that draw pictures, while the context of this process is in use; where there is none, `not_on_device` says why.
 struct Check {
-  std::string not_yet{};
+  std::string not_here{};
   std::function<Outcome(VerifyProfile)> job{};
   std::function<Outcome(VerifyProfile)> on_device{};
   std::string not_on_device = "no device code computes this";
-  bool own_solver = false;  // the job asks a solver of verify's own: no renderer computes the vector on the processor
 };
-// The same, whose job asks a solver of verify's own.
-inline Check by_own_solver(Check check) {
-  check.own_solver = true;
-  return check;
-}
-inline Check not_yet(std::string what) { return {std::move(what), nullptr}; }
+// What is missing in the program.
+inline Check not_yet(const std::string& what) { return {"not yet: " + what, nullptr}; }
+// To the accuracy of the vector.
+inline Check no_renderer() { return {"no renderer computes this", nullptr}; }
 
 // Reads a vector; the value is the whole entry.
 using Reader = std::function<Check(const Value&)>;

@@ -16,7 +16,7 @@ std::vector<scene::SettingSpec> OracleProbe::settings() const {
 }
 
 std::vector<std::string> OracleProbe::figures() const {
-  return {"worst_share", "worst_relative_error", "vectors", "numbers", "out_of_tolerance", "left_out", "not_yet"};
+  return {"worst_share", "worst_relative_error", "vectors", "numbers", "out_of_tolerance", "left_out"};
 }
 
 Findings OracleProbe::run(const ProbeInput& input, const scene::Settings& settings, const scene::Execution&) const {
@@ -28,8 +28,7 @@ Findings OracleProbe::run(const ProbeInput& input, const scene::Settings& settin
   const VerifyKind& kind = kinds.at(0);
   Findings found;
   found.figures = {exactly("vectors", kind.vectors), exactly("numbers", kind.numbers),
-                   exactly("out_of_tolerance", kind.out), exactly("left_out", kind.left_out),
-                   exactly("not_yet", kind.not_yet)};
+                   exactly("out_of_tolerance", kind.out), exactly("left_out", kind.left_out)};
   if (kind.numbers > 0) {
     found.figures.push_back(exactly("worst_share", kind.worst_share));
     if (!std::isnan(kind.worst_relative_error))

@@ -75,13 +75,8 @@ Check read_march_compensated(const Value&);
 Check read_ray_march_homogeneous(const Value&);
 
 // transport_kinds.cpp: multiple scattering that it is compared with
-Check read_diffusion_point_source(const Value&);
+Check read_without_renderer(const Value&);
 Check read_diffusion_uniform_source(const Value&);
-Check read_diffusion_slab_marshak(const Value&);
-Check read_halfspace_albedo_isotropic(const Value&);
-Check read_slab_albedo(const Value&);
-Check read_sn_slab(const Value&);
-Check read_multiple_scattering_slab(const Value&);
 Check read_multiple_scattering_ball(const Value&);
 
 // legendre_kinds.cpp: the basis

@@ -119,7 +119,7 @@ std::string text(const Totals& t, VerifyOn on) {
   return fmt::format(
       "{} vectors, {} numbers compared: {} ok, {} out; {} numbers left out by the profile; {} vectors {}", t.vectors,
       t.numbers, t.numbers - t.out, t.out, t.left_out, t.not_yet,
-      on == VerifyOn::device ? "that no device code computes" : "not known yet");
+      on == VerifyOn::device ? "that no device code computes" : "that no renderer computes");
 }
 
 }  // namespace
@@ -139,7 +139,6 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
 
   std::vector<VerifyKind> kinds_found;
   std::map<std::string, int> waiting;
-  int own = 0;
   std::vector<std::string> failures;
   for (const auto& [path, vectors] : all) {
     out << path << "\n";
@@ -149,13 +148,12 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
       if (!kind.empty() && w.kind != kind) continue;
       VerifyKind& line = line_of(kinds_found, path, w.kind);
       if (!(on == VerifyOn::device ? w.check.on_device : w.check.job)) {
-        const std::string why = on == VerifyOn::device ? w.check.not_on_device : "not yet: " + w.check.not_yet;
+        const std::string& why = on == VerifyOn::device ? w.check.not_on_device : w.check.not_here;
         out << fmt::format("{:<42} {:<32} {}\n", w.id, w.kind, why);
         ++waiting[why];
         ++line.not_yet;
         continue;
       }
-      if (on == VerifyOn::processor && w.check.own_solver) ++own;
       check_interrupted();
       const auto start = std::chrono::steady_clock::now();
       const Outcome outcome = computed(w, path, profile, on);
@@ -173,7 +171,6 @@ int verify(const std::vector<std::string>& files, const std::string& kind, Verif
     }
   }
   for (const auto& [what, count] : waiting) out << fmt::format("{} vectors: {}\n", count, what);
-  if (own > 0) out << fmt::format("{} vectors: no renderer computes this; compared is a solver of verify's own\n", own);
   for (const std::string& f : failures) out << "OUT: " << f << "\n";
   Totals totals;
   for (const VerifyKind& line : kinds_found) totals.add(line);

@@ -22,7 +22,7 @@ struct VerifyKind {
   int numbers = 0;   // compared
   int out = 0;       // beyond their tolerance
   int left_out = 0;  // numbers that the profile does not reach
-  int not_yet = 0;   // vectors of methods that are not built; on the device, that no device code computes
+  int not_yet = 0;   // vectors that no renderer computes; on the device, that no device code computes
   double worst_relative_error = std::numeric_limits<double>::quiet_NaN();  // NaN: all expected are 0
   double worst_share = 0;                                                  // largest |got - expected| / tolerance
   std::string worst;                                                       // the number with that share

@@ -4,13 +4,13 @@
 #pragma once
 #include <array>
 
+#include "gpu/compensated_ray_marching/centre_diffusion.h"
 #include "gpu/compensated_ray_marching/centre_tables.h"
 #include "gpu/compensated_ray_marching/surfaces_by_directions.h"
 #include "gpu/raster/first_hits.h"
 #include "gpu/timer.h"
 #include "methods/compensated_ray_marching/options.h"
 #include "methods/compensated_ray_marching/sphere_sets.h"
-#include "methods/compensated_ray_marching/warm_start.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu::compensated_ray_marching {
@@ -29,8 +29,12 @@ class CentreSourcesOnDevice {
   void light(const std::vector<Rgb>& harmonics, StageTimer&, const scene::Execution&);
 
   // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads.
-  void begin_with(const airlight::compensated_ray_marching::Solution&);
-  airlight::compensated_ray_marching::Solution solution() const;
+  void begin_with(const airlight::compensated_ray_marching::Solution& last) {
+    if (diffusion_) diffusion_->begin_with(last);
+  }
+  airlight::compensated_ray_marching::Solution solution() const {
+    return diffusion_ ? diffusion_->solution() : airlight::compensated_ray_marching::Solution{};
+  }
 
   // Of each centre towards the camera, of either sign, in sources() [W/m^2/sr].
   void towards(const scene::View&);
@@ -43,36 +47,18 @@ class CentreSourcesOnDevice {
   int objects() const { return objects_; }
   // Why multiple scattering is left out; empty where it is not.
   const std::string& single_only() const { return single_only_; }
-  int iterations() const { return iterations_; }             // of all channels
-  double residual() const { return residual_; }              // the greatest, relative
-  double negative_share() const { return negative_share_; }  // of the centres' scattered radiance, taken as 0
+  // Of multiple scattering, as its system says.
+  int iterations() const { return diffusion_ ? diffusion_->iterations() : 0; }
+  double residual() const { return diffusion_ ? diffusion_->residual() : 0; }
+  double negative_share() const { return diffusion_ ? diffusion_->negative_share() : 0; }
 
  private:
-  struct Group {  // channels of one extinction and albedo, which have their matrix in common
-    std::vector<int> channels;
-    int first = 0;    // of its systems, one a channel
-    int systems = 1;  // that are solved: one while all lights were without colour
-    int last = 0;     // iterations
-    std::unique_ptr<Buffer> matrix, row_scales;
-  };
-  bool is_lsqr() const {
-    using Solver = airlight::compensated_ray_marching::LeastSquaresSolver;
-    return options_.paper.solver == Solver::lsqr || options_.paper.solver == Solver::lsqr_scaled;
-  }
   Program* program_of(const char* file, int x, int y, Definitions more = {});
-  void make_diffusion_programs();
   void find_extinctions();
   void find_passed();
   std::vector<double> passed_by_directions(const scene::GaussianSum&, const std::vector<scene::Sphere>&,
                                            const scene::Execution&) const;
-  void find_groups();
   void scatter_once();
-  void scatter_again(Group&, const scene::Execution&);
-  void solve(Group&, const scene::Execution&);
-  void product(const Group&, bool transposed, int from, int to);
-  void gradients(const Group&, int stage);
-  void bind_systems(Program&, const Group&) const;
-  void bind_channels(Program&, const Group&) const;
 
   Context& context_;
   const scene::Medium& medium_;
@@ -85,17 +71,14 @@ class CentreSourcesOnDevice {
   bool scatters_ = false;
   CentreTables tables_;
   std::vector<airlight::compensated_ray_marching::Ordinate> directions_;  // of `directional`
-  std::vector<Group> groups_;
   std::vector<double> extinctions_;
   std::array<int, 3> extinction_of_{0, 0, 0};
   std::vector<double> moments_;
-  int iterations_ = 0;
-  double residual_ = 0, negative_share_ = 0;
-  Program *passed_program_ = nullptr, *single_program_ = nullptr, *matrix_program_ = nullptr, *right_program_ = nullptr,
-          *product_program_ = nullptr, *transposed_program_ = nullptr, *gradients_program_ = nullptr,
-          *again_program_ = nullptr, *towards_program_ = nullptr, *surfaces_program_ = nullptr;
+  Program *passed_program_ = nullptr, *single_program_ = nullptr, *towards_program_ = nullptr,
+          *surfaces_program_ = nullptr;
   std::unique_ptr<SurfacesByDirections> surfaces_by_directions_;
-  std::unique_ptr<Buffer> centres_, spheres_, passed_, light_bands_, single_, again_, sources_, vectors_, systems_;
+  std::unique_ptr<Buffer> centres_, spheres_, passed_, light_bands_, single_, again_, sources_;
+  std::unique_ptr<CentreDiffusion> diffusion_;
 };
 
 }  // namespace airlight::gpu::compensated_ray_marching

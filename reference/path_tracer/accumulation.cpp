@@ -11,6 +11,7 @@
 
 #include "reference/path_tracer/leaf.h"
 #include "scene/base/error.h"
+#include "scene/base/flush_subnormals.h"
 #include "scene/base/limits.h"
 #include "scene/base/threads.h"
 
@@ -135,7 +136,7 @@ bool render_range(const World& world, const scene::View& view, std::uint64_t beg
             std::vector<TallyNode> nodes;
             std::uint64_t told = 0;
             {
-              const FlushSubnormals flush;
+              const scene::FlushSubnormals flush;
               const std::uint64_t first = block.index << block.level;
               for (std::uint64_t at = 0; at < block.count && !stopped; at += leaf_samples) {
                 if (at - told == std::uint64_t(1) << item_level) {

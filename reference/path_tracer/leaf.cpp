@@ -1,7 +1,6 @@
 #include "reference/path_tracer/leaf.h"
 
 #include <fmt/format.h>
-#include <xmmintrin.h>
 
 #include "scene/base/error.h"
 
@@ -56,8 +55,5 @@ void add_samples(const World& world, const RaySource& source, std::uint32_t pixe
       },
       pixel, first, count, layout, sums, counters, where);
 }
-
-FlushSubnormals::FlushSubnormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
-FlushSubnormals::~FlushSubnormals() { _mm_setcsr(saved_); }
 
 }  // namespace airlight::path_tracer

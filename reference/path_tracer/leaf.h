@@ -18,16 +18,4 @@ void add_samples(const World&, const CameraRay&, std::uint32_t pixel, std::uint6
 void add_samples(const World&, const RaySource&, std::uint32_t pixel, std::uint64_t first, std::uint64_t count,
                  const TallyLayout&, double* sums, Counters&, const std::function<std::string()>& where);
 
-// For the time of its life this thread takes subnormal numbers as zero: threads of a pool may differ in that, and bits
-// must not.
-class FlushSubnormals {
- public:
-  FlushSubnormals();
-  ~FlushSubnormals();
-  FlushSubnormals(const FlushSubnormals&) = delete;
-
- private:
-  unsigned saved_;
-};
-
 }  // namespace airlight::path_tracer

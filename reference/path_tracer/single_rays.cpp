@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "scene/base/error.h"
+#include "scene/base/flush_subnormals.h"
 #include "scene/base/threads.h"
 
 namespace airlight::path_tracer {
@@ -43,7 +44,7 @@ RadianceEstimate run(const World& world, std::uint64_t samples, const scene::Exe
             std::vector<TallyNode> local;
             Counters counted;
             {
-              const FlushSubnormals flush;
+              const scene::FlushSubnormals flush;
               for (std::uint64_t at = 0; at < blocks[b].count; at += leaf_samples) {
                 TallyNode node{
                     leaf_level, (first + at) >> leaf_level, std::min(leaf_samples, blocks[b].count - at), {}};

@@ -3,16 +3,15 @@
 
 #include <catch2/catch.hpp>
 
-#include "experiments/verify/diffusion_solutions.h"
 #include "scene/base/error.h"
 #include "tests/oracle_vectors.h"
+#include "tests/second_opinion/diffusion_solutions.h"
 
 namespace p1_grid_test {
 
 using namespace airlight;
 using namespace airlight::test;
 using namespace airlight::compensated_ray_marching;
-using airlight::experiments::verification::Diffusion;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "experiments/verify/ball_transport.h"
+#include "tests/second_opinion/ball_transport.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,10 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
-namespace airlight::experiments::verification {
+namespace airlight::test {
 namespace {
 
 constexpr int shells = 10, points = 10, angles = 40, points_on_a_chord = 12;
-
-double legendre(int l, double x) { return std::legendre(unsigned(l), std::abs(x)) * (x < 0 && l % 2 ? -1 : 1); }
 
 }  // namespace
 
@@ -24,7 +22,7 @@ BallTransport::BallTransport(const BallLight& light) : light_(light), bands_(int
       node_.push_back(edges_[std::size_t(s)] + 0.5 * (1 + x) * (edges_[std::size_t(s) + 1] - edges_[std::size_t(s)]));
   Eigen::MatrixXd values(points, points);
   for (int i = 0; i < points; ++i)
-    for (int k = 0; k < points; ++k) values(i, k) = legendre(k, rule.node[std::size_t(i)]);
+    for (int k = 0; k < points; ++k) values(i, k) = std::legendre(unsigned(k), rule.node[std::size_t(i)]);
   interpolation_ = scene::inverse(values);
   const auto n = Eigen::Index(node_.size()) * bands_;
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
@@ -70,7 +68,8 @@ Eigen::RowVectorXd BallTransport::gathered(double impact, double along) const {
       for (int k = 1; k + 1 < points; ++k)
         polynomials[k + 1] = ((2 * k + 1) * place * polynomials[k] - k * polynomials[k - 1]) / (k + 1);
       for (int l = 0; l < bands_; ++l)
-        p[std::size_t(l)] = weight * light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * legendre(l, mu);
+        p[std::size_t(l)] =
+            weight * light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * std::legendre(unsigned(l), mu);
       const Eigen::Matrix<double, 1, points> shares = polynomials * interpolation;
       for (int i = 0; i < points; ++i)
         for (int l = 0; l < bands_; ++l) row[(shell * points + i) * bands_ + l] += shares[i] * p[std::size_t(l)];
@@ -98,7 +97,7 @@ Eigen::MatrixXd BallTransport::moment_rows(double radius) const {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(bands_, Eigen::Index(node_.size()) * bands_);
   each_cosine([&](double mu, double weight) {
     const Eigen::RowVectorXd row = gathered(radius * std::sqrt(1 - mu * mu), radius * mu);
-    for (int l = 0; l < bands_; ++l) rows.row(l) += weight * legendre(l, mu) * row;
+    for (int l = 0; l < bands_; ++l) rows.row(l) += weight * std::legendre(unsigned(l), mu) * row;
   });
   return rows;
 }
@@ -110,7 +109,7 @@ double BallTransport::moment(int l, double radius) const {
 double BallTransport::reduced_moment(int l, double radius) const {
   double reduced = 0;
   each_cosine([&](double mu, double weight) {
-    reduced += weight * legendre(l, mu) * light_.environment *
+    reduced += weight * std::legendre(unsigned(l), mu) * light_.environment *
                std::exp(-depth_from_face(radius * std::sqrt(1 - mu * mu), radius * mu));
   });
   return reduced;
@@ -125,4 +124,4 @@ double BallTransport::exit_radiance(double impact) const {
   return light_.environment * exit_transmittance(impact) + gathered(impact, half).dot(moments_);
 }
 
-}  // namespace airlight::experiments::verification
+}  // namespace airlight::test

@@ -5,7 +5,7 @@
 
 #include "scene/math/types.h"
 
-namespace airlight::experiments::verification {
+namespace airlight::test {
 
 struct Diffusion {
   double sigma_t, albedo, g = 0;
@@ -27,4 +27,4 @@ struct Diffusion {
   }
 };
 
-}  // namespace airlight::experiments::verification
+}  // namespace airlight::test

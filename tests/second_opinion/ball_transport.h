@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace airlight::experiments::verification {
+namespace airlight::test {
 
 struct BallLight {
   double extinction = 1;  // at the centre, times the width
@@ -39,4 +39,4 @@ class BallTransport {
   Eigen::VectorXd moments_;           // by node, then by band
 };
 
-}  // namespace airlight::experiments::verification
+}  // namespace airlight::test

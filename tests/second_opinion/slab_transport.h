@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace airlight::experiments::verification {
+namespace airlight::test {
 
 struct SlabLight {
   double thickness = 1;          // > 0
@@ -51,4 +51,4 @@ class HFunction {
   std::vector<double> node_, weight_, value_;
 };
 
-}  // namespace airlight::experiments::verification
+}  // namespace airlight::test

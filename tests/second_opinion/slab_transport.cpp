@@ -1,4 +1,4 @@
-#include "experiments/verify/slab_transport.h"
+#include "tests/second_opinion/slab_transport.h"
 
 #include <cmath>
 
@@ -6,10 +6,8 @@
 #include "scene/math/gauss_legendre.h"
 #include "scene/math/types.h"
 
-namespace airlight::experiments::verification {
+namespace airlight::test {
 namespace {
-
-double legendre(int l, double x) { return std::legendre(unsigned(l), std::abs(x)) * (x < 0 && l % 2 ? -1 : 1); }
 
 // (1 - exp(-x)) / x.
 double mean_left(double x) { return std::abs(x) < 1e-8 ? 1 - x / 2 : -std::expm1(-x) / x; }
@@ -32,7 +30,7 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
   for (Eigen::MatrixXd& side : sides) side = Eigen::MatrixXd::Identity(directions, directions);
   for (int l = 0; l < int(light.phase.size()); ++l) {
     Eigen::VectorXd p(directions);
-    for (int i = 0; i < directions; ++i) p[i] = legendre(l, mu_[i]) * root[i];
+    for (int i = 0; i < directions; ++i) p[i] = std::legendre(unsigned(l), mu_[i]) * root[i];
     sides[l % 2] -= light.albedo * (2 * l + 1) * light.phase[std::size_t(l)] * p * p.transpose();
   }
   const Eigen::VectorXd slowness = mu_.cwiseInverse();
@@ -48,7 +46,7 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
   moments_ = Eigen::MatrixXd::Zero(Eigen::Index(light.phase.size()), directions);
   for (int l = 0; l < int(light.phase.size()); ++l)
     for (int i = 0; i < directions; ++i)
-      moments_.row(l) += 0.5 * weight_[i] * legendre(l, mu_[i]) * (l % 2 ? difference_ : sum_).row(i);
+      moments_.row(l) += 0.5 * weight_[i] * std::legendre(unsigned(l), mu_[i]) * (l % 2 ? difference_ : sum_).row(i);
 
   // What comes in: (S + D) / 2 at the top, (S - D) / 2 at the bottom.
   const Eigen::VectorXd far = (-light.thickness * rate_).array().exp();
@@ -86,7 +84,7 @@ double SlabTransport::flux_leaving(bool top) const {
 double SlabTransport::gathered(double depth, double mu, bool turned) const {
   std::vector<double> factors;
   for (int l = 0; l < int(light_.phase.size()); ++l)
-    factors.push_back(light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * legendre(l, mu));
+    factors.push_back(light_.albedo * (2 * l + 1) * light_.phase[std::size_t(l)] * std::legendre(unsigned(l), mu));
   // Mode by mode: a source exp(-k t), and exp(-k (T - t)), with T where the modes that grow begin.
   const double rest = light_.thickness - depth;
   const Eigen::VectorXd &first = turned ? growing_ : falling_, &second = turned ? falling_ : growing_;
@@ -114,7 +112,7 @@ double SlabTransport::radiance(double depth, double mu) const {
 double SlabTransport::reduced_moment(int l, double depth) const {
   double sum = 0;
   for (Eigen::Index i = 0; i < mu_.size(); ++i)
-    sum += 0.5 * weight_[i] * legendre(l, mu_[i]) *
+    sum += 0.5 * weight_[i] * std::legendre(unsigned(l), mu_[i]) *
            (light_.top * std::exp(-depth / mu_[i]) +
             (l % 2 ? -1 : 1) * light_.bottom * std::exp(-(light_.thickness - depth) / mu_[i]));
   return sum;
@@ -154,4 +152,4 @@ double HFunction::first_moment() const {
   return sum;
 }
 
-}  // namespace airlight::experiments::verification
+}  // namespace airlight::test
