@@ -34,7 +34,8 @@ scene::MediumConversion conversion_of(const std::string& text) {
 void add_convert_option(CLI::App* command, std::string& text) {
   command->add_option(option, text,
                       "turn all media into another form first: to=gaussians,count=600, to=legendre,order=12, "
-                      "to=fogmap,cells=64, to=grid,voxels=64 or to=homogeneous");
+                      "to=fogmap,cells=64, to=grid,voxels=64 or to=homogeneous; cut=false: Gaussians without an end; "
+                      "lamps=true: directional lights as far point lights");
 }
 
 std::shared_ptr<const scene::Scene> load(const std::string& path, const Pairs& overrides, const std::string& convert,

@@ -30,9 +30,11 @@ void bind(SettingBinder& b, MediumConversion& c) {
   b.choice("to", c.to, medium_forms(), "form that all media take");
   b.integer("voxels", c.voxels, 2, 1024, "of a grid, along the longest side").where("to", {"grid"});
   b.integer("count", c.gaussians, 1, most_fit_gaussians, "of Gaussians").where("to", {"gaussians"});
+  b.flag("cut", c.cut, "Gaussians end at three widths").where("to", {"gaussians"});
   b.integer("order", c.coefficients, 1, LegendreBox::most, "coefficients of a Legendre box along each axis")
       .where("to", {"legendre"});
   b.integer("cells", c.pixels, 1, 8192, "of a fogmap, along the longer side").where("to", {"fogmap"});
+  b.flag("lamps", c.lamps, "directional lights become far point lights");
 }
 
 // The box in which a medium is sampled.
@@ -128,8 +130,10 @@ Form in_form(const Medium& medium, const Box& box, const MediumConversion& c, co
     }
     case MediumForm::gaussians: {
       const Fit made = fit(medium, box, c.gaussians, hash, execution);
-      form.medium.field = made.sum;
-      form.medium.region = Unbounded{};  // cut at their own widths
+      GaussianSum sum = made.sum;
+      if (!c.cut) sum.cutoff = infinity;
+      form.medium.field = sum;
+      form.medium.region = Unbounded{};
       form.numbers = 5 * made.sum.gaussians.size();
       form.seconds = made.seconds;
       break;
@@ -161,6 +165,21 @@ Form in_form(const Medium& medium, const Box& box, const MediumConversion& c, co
     }
   }
   return form;
+}
+
+// Their rays are parallel, and their irradiance is even, to 2 in `far_lamp`.
+void make_lamps(Scene& scene) {
+  Box all;
+  for (std::size_t i = 0; i < scene.media.size(); ++i) all = unite(all, sampled_box(scene.media, i));
+  if (scene.geometry) all = unite(all, scene.geometry->bounds());
+  const double distance = far_lamp * all.size().norm();
+  for (Light& light : scene.lights)
+    if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
+      PointLight lamp;
+      lamp.position = all.center() + distance * sun->to_light;
+      lamp.intensity = sun->irradiance * distance * distance;
+      light = lamp;
+    }
 }
 
 // Points off any grid's samples: an irrational part of a cell from its corner.
@@ -210,22 +229,26 @@ MediumConversion read_conversion(const std::map<std::string, std::string>& given
 }
 
 std::string canonical(const MediumConversion& c) {
-  std::string to;
+  std::string text;
   for (const auto& [name, form] : medium_forms())
-    if (form == c.to) to = "to=" + name;
+    if (form == c.to) text = "to=" + name;
   switch (c.to) {
     case MediumForm::grid:
-      return fmt::format("{} voxels={}", to, c.voxels);
+      text += fmt::format(" voxels={}", c.voxels);
+      break;
     case MediumForm::gaussians:
-      return fmt::format("{} count={}", to, c.gaussians);
+      text += fmt::format(" count={}{}", c.gaussians, c.cut ? "" : " cut=false");
+      break;
     case MediumForm::legendre:
-      return fmt::format("{} order={}", to, c.coefficients);
+      text += fmt::format(" order={}", c.coefficients);
+      break;
     case MediumForm::fogmap:
-      return fmt::format("{} cells={}", to, c.pixels);
+      text += fmt::format(" cells={}", c.pixels);
+      break;
     case MediumForm::homogeneous:
       break;
   }
-  return to;
+  return text + (c.lamps ? " lamps=true" : "");
 }
 
 ConvertedScene convert_media(const Scene& scene, const MediumConversion& conversion, const Execution& execution,
@@ -245,6 +268,7 @@ ConvertedScene convert_media(const Scene& scene, const MediumConversion& convers
     converted.scene.media[i] = form.medium;
     converted.media.push_back(std::move(found));
   }
+  if (conversion.lamps) make_lamps(converted.scene);
   finish(converted.scene);
   return converted;
 }

@@ -17,14 +17,17 @@ struct MediumConversion {
   MediumForm to = MediumForm::grid;
   int voxels = 64;        // of a grid, along the longest side of the medium's box
   int gaussians = 600;    // fewer where fewer voxels are filled
+  bool cut = true;        // Gaussians end at three widths, as they are fitted; else they go on, as closed forms need it
   int coefficients = 12;  // of a Legendre box, along each axis
   int pixels = 64;        // of a fogmap, along the longer side on the ground
+  bool lamps = false;     // directional lights become point lights, far_lamp times as far away as the scene is large
 };
+inline constexpr double far_lamp = 1000;
 
-// From `to = gaussians` and `count`, `to = legendre` and `order`, `to = fogmap` and `cells`, `to = grid` and `voxels`, or `to = homogeneous`.
-// Throws Error, which begins with `where`, for a key that another form has, and for a number out of range.
+// From `to = gaussians`, `count` and `cut`, `to = legendre` and `order`, `to = fogmap` and `cells`, `to = grid` and `voxels`, or
+// `to = homogeneous`; and `lamps`. Throws Error, which begins with `where`, for a key that another form has, and for a number out of range.
 MediumConversion read_conversion(const std::map<std::string, std::string>& given, const std::string& where);
-// "to=gaussians count=600"
+// "to=gaussians count=600"; what is as by default and has no size is left out.
 std::string canonical(const MediumConversion&);
 
 // What became of one medium.

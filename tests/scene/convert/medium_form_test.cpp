@@ -101,6 +101,29 @@ TEST_CASE("a fogmap keeps columns of fog that is the same at all heights", "[con
   CHECK(std::holds_alternative<Slab>(after.region));
 }
 
+TEST_CASE("Gaussians are cut as they were fitted, or go on", "[convert]") {
+  for (const bool cut : {true, false}) {
+    const ConvertedScene fitted = converted(scene_of(puffs(), Unbounded{}),
+                                            {{"to", "gaussians"}, {"count", "3"}, {"cut", cut ? "true" : "false"}});
+    CHECK(std::get<GaussianSum>(fitted.scene.media[0].field).cutoff == (cut ? 3 : infinity));
+  }
+}
+
+TEST_CASE("a far lamp shines as the sun that it stands for", "[convert]") {
+  Scene sunny = scene_of(Homogeneous{0.7}, box);
+  const DirectionalLight sun{Vec3(2, 2, 1).normalized(), Rgb(12, 11, 10)};
+  sunny.lights = {sun};
+  finish(sunny);
+  const Scene lamp = converted(sunny, {{"to", "homogeneous"}, {"lamps", "true"}}).scene;
+  REQUIRE(std::holds_alternative<PointLight>(lamp.lights.at(0)));
+  for (const Point3& x : {box.lo, box.hi, Point3(1, 0, 2)}) {
+    const Incident there = incident(lamp.lights[0], x);
+    CHECK((there.to_light - sun.to_light).norm() < 1 / far_lamp);
+    CHECK((there.irradiance / sun.irradiance - 1).abs().maxCoeff() < 2 / far_lamp);
+  }
+  CHECK(std::holds_alternative<DirectionalLight>(converted(sunny, {{"to", "homogeneous"}}).scene.lights.at(0)));
+}
+
 TEST_CASE("a fit is kept in the store, with the time that it took", "[convert]") {
   const TemporaryFolder folder;
   const ContentStore store(folder.path());
