@@ -33,6 +33,7 @@ void bind(SettingBinder& b, MediumConversion& c) {
   b.flag("cut", c.cut, "Gaussians end at three widths").where("to", {"gaussians"});
   b.integer("order", c.coefficients, 1, LegendreBox::most, "coefficients of a Legendre box along each axis")
       .where("to", {"legendre"});
+  b.flag("damped", c.damped, "waves that jumps leave in a Legendre box").where("to", {"legendre"});
   b.integer("cells", c.pixels, 1, 8192, "of a fogmap, along the longer side").where("to", {"fogmap"});
   b.flag("lamps", c.lamps, "directional lights become far point lights");
 }
@@ -142,6 +143,7 @@ Form in_form(const Medium& medium, const Box& box, const MediumConversion& c, co
       ProjectionOptions options;
       options.shape = {c.coefficients, c.coefficients, c.coefficients};
       options.box = box;
+      options.lanczos = options.limiter = c.damped;
       form.medium.field = project_to_legendre(medium, options).field;
       form.medium.region = Unbounded{};
       form.numbers = std::size_t(c.coefficients) * std::size_t(c.coefficients) * std::size_t(c.coefficients);
@@ -240,7 +242,7 @@ std::string canonical(const MediumConversion& c) {
       text += fmt::format(" count={}{}", c.gaussians, c.cut ? "" : " cut=false");
       break;
     case MediumForm::legendre:
-      text += fmt::format(" order={}", c.coefficients);
+      text += fmt::format(" order={}{}", c.coefficients, c.damped ? "" : " damped=false");
       break;
     case MediumForm::fogmap:
       text += fmt::format(" cells={}", c.pixels);

@@ -19,12 +19,13 @@ struct MediumConversion {
   int gaussians = 600;    // fewer where fewer voxels are filled
   bool cut = true;        // Gaussians end at three widths, as they are fitted; else they go on, as closed forms need it
   int coefficients = 12;  // of a Legendre box, along each axis
-  int pixels = 64;        // of a fogmap, along the longer side on the ground
-  bool lamps = false;     // directional lights become point lights, far_lamp times as far away as the scene is large
+  bool damped = true;  // by Lanczos' factors and the limiter; else the L2 projection, which swings below 0 beside jumps
+  int pixels = 64;     // of a fogmap, along the longer side on the ground
+  bool lamps = false;  // directional lights become point lights, far_lamp times as far away as the scene is large
 };
 inline constexpr double far_lamp = 1000;
 
-// From `to = gaussians`, `count` and `cut`, `to = legendre` and `order`, `to = fogmap` and `cells`, `to = grid` and `voxels`, or
+// From `to = gaussians`, `count` and `cut`, `to = legendre`, `order` and `damped`, `to = fogmap` and `cells`, `to = grid` and `voxels`, or
 // `to = homogeneous`; and `lamps`. Throws Error, which begins with `where`, for a key that another form has, and for a number out of range.
 MediumConversion read_conversion(const std::map<std::string, std::string>& given, const std::string& where);
 // "to=gaussians count=600"; what is as by default and has no size is left out.
