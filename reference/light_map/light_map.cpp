@@ -217,8 +217,11 @@ Rgb LightMap::varied_depth(const Point3& x) const {
   return planes_ == 1 ? Rgb(depth[0] * share_) : depth;
 }
 
-Rgb LightMap::optical_depth(const Point3& x) const {
-  Rgb depth = varied_depth(x);
+Rgb LightMap::optical_depth(const Point3& x) const { return varied_depth(x) + constant_depth(x); }
+
+Rgb LightMap::constant_depth(const Point3& x) const {
+  Rgb depth = Rgb::Zero();
+  if (constants_.empty()) return depth;
   const scene::Incident from = incident(light_, x);
   for (const Constant& constant : constants_) {
     const double length = clip(constant.region, {x, from.to_light}, {0, from.distance}).length();

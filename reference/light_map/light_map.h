@@ -45,8 +45,9 @@ class LightMap {
   // Optical depth from x to the light [-] per channel, infinite where a constant goes on for ever. Where a spot does not
   // shine what varies is left out. Surfaces do not count.
   Rgb optical_depth(const Point3& x) const;
-  // The part of it that is in the map.
+  // The part of it that is in the map, and the rest.
   Rgb varied_depth(const Point3& x) const;
+  Rgb constant_depth(const Point3& x) const;
   // The optical depths in the map at n points, in single precision, by vector kernels: depth[c] for each of channels(). Arrays have room for n
   // rounded up to a multiple of 64.
   void varied_depths(std::size_t n, const double* x, const double* y, const double* z, float* const* depth) const;

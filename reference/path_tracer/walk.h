@@ -68,14 +68,14 @@ class Walk {
   void follow(Path&, std::optional<Collision>) const;
   void aim(Path&, const Ray&, Segment&) const;
   Flight flight_on(const Path&, const Ray&, const scene::RayEnd&, Interval hull) const;
-  inline std::optional<Collision> fly(const Path&) const;
+  std::optional<Collision> fly(const Path&) const;
   inline bool attenuate(Path&) const;
   void split(Path&, std::optional<Collision>&) const;
   Vertex next_vertex(Path&, const Point3&) const;
   inline bool collide(Path&, const Collision&, Vertex&) const;
   inline bool meet_surface(Path&, Vertex&) const;
   inline bool survive(Path&, double u) const;
-  inline Vec3 draw_direction(Path&, const Vertex&, const RandomBlock&) const;
+  Vec3 draw_direction(Path&, const Vertex&, const RandomBlock&) const;
 
   void escape_unscattered(const Path&) const;  // path_to_surface.cpp
 

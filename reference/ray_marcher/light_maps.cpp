@@ -24,20 +24,6 @@ void kernel_densities(const Layer& layer, std::size_t n, const double* x, const 
     gaussian_density(*layer.gaussians, n, lx, ly, lz, density);
 }
 
-light_map::Densities densities_by_kernels(const Plan& plan) {
-  const std::vector<scene::Medium>& media = plan.scene->media;
-  std::vector<const Layer*> layers(media.size(), nullptr);
-  for (const Layer& layer : plan.layers)
-    if (layer.grid || layer.gaussians) layers[std::size_t(layer.medium - media.data())] = &layer;
-  return [layers, plain = light_map::densities_of(media)](std::size_t medium, std::size_t n, const double* x,
-                                                          const double* y, const double* z, float* density) {
-    if (layers[medium])
-      kernel_densities(*layers[medium], n, x, y, z, density);
-    else
-      plain(medium, n, x, y, z, density);
-  };
-}
-
 double count_maps(const scene::Scene& scene, const Options& options) {
   double lights = 0;
   for (const scene::Light& light : scene.lights) lights += is_delta(light) ? 1 : options.environment_directions;
@@ -45,6 +31,19 @@ double count_maps(const scene::Scene& scene, const Options& options) {
 }
 
 }  // namespace
+
+light_map::Densities densities_by_kernels(const std::vector<Layer>& layers, const std::vector<scene::Medium>& media) {
+  std::vector<const Layer*> of_medium(media.size(), nullptr);
+  for (const Layer& layer : layers)
+    if (layer.grid || layer.gaussians) of_medium[std::size_t(layer.medium - media.data())] = &layer;
+  return [of_medium, plain = light_map::densities_of(media)](std::size_t medium, std::size_t n, const double* x,
+                                                             const double* y, const double* z, float* density) {
+    if (of_medium[medium])
+      kernel_densities(*of_medium[medium], n, x, y, z, density);
+    else
+      plain(medium, n, x, y, z, density);
+  };
+}
 
 double map_bytes(const scene::Scene& scene, const Options& options) {
   return count_maps(scene, options) * light_map::planes_of(scene.media, options.map) *
@@ -63,7 +62,7 @@ void make_light_maps(Plan& plan, const scene::Execution& execution) {
                         fmt::format("ray_marcher: maps of {} lights", plan.lights.size()));
   const std::vector<scene::Medium>& media = plan.scene->media;
   const light_map::Densities densities =
-      plan.options.simd ? densities_by_kernels(plan) : light_map::densities_of(media);
+      plan.options.simd ? densities_by_kernels(plan.layers, media) : light_map::densities_of(media);
   scene::Execution part = execution;
   for (const scene::Light& light : plan.lights) {
     if (execution.progress)

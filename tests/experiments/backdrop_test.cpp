@@ -83,6 +83,9 @@ size = [2, 1, 3]
 coefficients = [2, 0.3, 0.2, 0.4, -0.1, 0.1]
 )";
 
+// A ray for every pixel, as the others have.
+const std::map<std::string, std::string> of_every_pixel = {{"divide", "1"}, {"jitter", "none"}, {"steps", "64"}};
+
 // With the media and lights that a renderer knows.
 const std::string& text_for(const std::string& renderer) {
   return renderer == "wavelet_fog"                          ? map
@@ -94,13 +97,14 @@ const std::string& text_for(const std::string& renderer) {
 }  // namespace
 
 TEST_CASE("renderers see a picture with depth through the medium before it", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog",
-                                    "legendre_fluids", "compensated_ray_marching");
+  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop",
+                                    "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
   CAPTURE(name);
   const auto scene = before_picture(text_for(name));
   const std::map<std::string, std::string> settings =
-      name == "path_tracer" ? std::map<std::string, std::string>{{"samples", "4"}, {"max_order", "1"}}
-                            : std::map<std::string, std::string>{};
+      name == "path_tracer"             ? std::map<std::string, std::string>{{"samples", "4"}, {"max_order", "1"}}
+      : name == "half_resolution_march" ? of_every_pixel
+                                        : std::map<std::string, std::string>{};
   const scene::Film seen = render(name, scene, settings);
   double greatest = 0;
   for (int y = 0; y < height; ++y)
@@ -111,7 +115,7 @@ TEST_CASE("renderers see a picture with depth through the medium before it", "[b
       const double t = i + 1 < width * height ? (1 + 0.5 * i) / ray.direction.dot(scene->camera.forward) : infinity;
       const Rgb clear = transmittance(scene->media, ray, {0, t});
       // Steps and slices are midpoints of a density that varies; Fogshop leaves out Gaussians where they are thin.
-      const double tolerance = name == "ray_marcher"                                     ? 0.02
+      const double tolerance = name == "ray_marcher" || name == "half_resolution_march"  ? 0.02
                                : name == "fogshop" || name == "compensated_ray_marching" ? 1e-4
                                                                                          : 1e-5;
       for (int c = 0; c < 3; ++c) {
@@ -128,7 +132,7 @@ TEST_CASE("the airlight before a picture is that before a wall at the same depth
   // A wall at z = -1 that reflects nothing and throws no shadow into what is before it, and a picture at that depth.
   const std::string wall =
       "[[surface]]\ntype = 'plane'\nnormal = [0, 0, 1]\npoint = [0, 0, -1]\nmaterial = { type = 'lambert', albedo = 0 }\n";
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop");
+  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop");
   CAPTURE(name);
   const auto behind = before_picture(gaussians + wall, false);
   scene::Scene flat = scene::parse_scene(gaussians, "s.toml", "");
@@ -137,8 +141,9 @@ TEST_CASE("the airlight before a picture is that before a wall at the same depth
   flat.backdrops.push_back(std::make_shared<const scene::Backdrop>(black));
   finish(flat);
   const std::map<std::string, std::string> settings =
-      name == "path_tracer" ? std::map<std::string, std::string>{{"samples", "512"}, {"max_order", "1"}}
-                            : std::map<std::string, std::string>{};
+      name == "path_tracer"             ? std::map<std::string, std::string>{{"samples", "512"}, {"max_order", "1"}}
+      : name == "half_resolution_march" ? of_every_pixel
+                                        : std::map<std::string, std::string>{};
   const scene::Film one = render(name, behind, settings),
                     other = render(name, std::make_shared<const scene::Scene>(flat), settings);
   for (int y = 0; y < height; ++y)
@@ -158,7 +163,8 @@ TEST_CASE("the airlight before a picture is that before a wall at the same depth
 TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous", "[backdrop]") {
   // The light shines along the view (opposite to what is scattered), or against it; the medium is 3 m thick and begins 4 m ahead.
   const double sigma = 0.7, albedo = 0.8, thick = 3, irradiance = 2, phase = 1 / (4 * pi);
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "legendre_fluids");
+  const std::string name =
+      GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "legendre_fluids");
   const bool along_view = GENERATE(true, false);
   CAPTURE(name, along_view);
   const std::string text =
@@ -171,7 +177,9 @@ TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous"
   const std::map<std::string, std::string> settings =
       name == "path_tracer"   ? std::map<std::string, std::string>{{"samples", "1024"}, {"max_order", "1"}}
       : name == "ray_marcher" ? std::map<std::string, std::string>{{"steps", "4096"}}
-                              : std::map<std::string, std::string>{};
+      : name == "half_resolution_march"
+          ? std::map<std::string, std::string>{{"steps", "4096"}, {"divide", "1"}, {"jitter", "none"}}
+          : std::map<std::string, std::string>{};
   const scene::Film seen = render(name, scene, settings);
   for (int i = 0; i < width * height; ++i) {
     CAPTURE(i);
@@ -192,6 +200,7 @@ TEST_CASE("mist over a picture agrees with closed forms where it is homogeneous"
 TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]") {
   const std::vector<std::string> know = {"ray_marcher",
                                          "ray_marcher_gpu",
+                                         "half_resolution_march",
                                          "path_tracer",
                                          "deterministic",
                                          "fogshop",
@@ -212,8 +221,8 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
 }
 
 TEST_CASE("a view through another camera than the scene's is refused where there is a backdrop", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "path_tracer", "deterministic", "fogshop", "wavelet_fog",
-                                    "legendre_fluids", "compensated_ray_marching");
+  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop",
+                                    "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
   const auto scene = before_picture(text_for(name));
   const scene::Renderer& renderer = experiments::find_renderer(name, "test");
   scene::View view = view_of(*scene);

@@ -66,7 +66,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 6);
+  CHECK(others == 7);
 }
 
 TEST_CASE(
@@ -88,6 +88,7 @@ TEST_CASE(
       {"compensated_ray_marching_gpu", "gaussians or grid or fitted"},
       {"deterministic", ""},
       {"ray_marcher", ""},
+      {"half_resolution_march", ""},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
       {"fogshop", "homogeneous or gaussians"},
       {"fogshop_gpu", "homogeneous or gaussians"},

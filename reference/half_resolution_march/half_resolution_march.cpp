@@ -1,0 +1,104 @@
+#include "reference/half_resolution_march/half_resolution_march.h"
+
+#include <fmt/format.h>
+
+#include "reference/half_resolution_march/filter.h"
+#include "reference/half_resolution_march/limits.h"
+#include "reference/half_resolution_march/stages.h"
+#include "scene/base/limits.h"
+#include "scene/base/stopwatch.h"
+
+namespace airlight::half_resolution_march {
+namespace {
+
+// A part of a picture, whose progress is that share of the whole.
+scene::Execution part_of(const scene::Execution& execution, Interval share) {
+  scene::Execution part = execution;
+  if (execution.progress)
+    part.progress = [&execution, share](double fraction) {
+      return execution.progress(share.lo + fraction * share.length());
+    };
+  return part;
+}
+
+class PreparedHalfResolutionMarch final : public scene::Prepared {
+ public:
+  PreparedHalfResolutionMarch(Plan plan, std::string settings, double seconds)
+      : plan_(std::move(plan)), settings_(std::move(settings)), prepare_seconds_(seconds) {}
+
+  std::vector<scene::Stage> stages() const override { return describe_stages(plan_); }
+
+  std::vector<scene::StageTime> prepare_times() const override {
+    if (plan_.media->map_bytes() == 0) return {{"prepare", prepare_seconds_}};
+    const double maps = plan_.media->map_seconds();
+    return {{"prepare", prepare_seconds_ - maps}, {"light_maps", maps}};
+  }
+
+  scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
+    const scene::Scene& scene = *plan_.scene;
+    require_own_camera(scene, view);
+    scene::require_memory(bytes_needed(plan_, view), "half_resolution_march: a picture of this size");
+    scene::Rendering result;
+    result.film = scene::Film(view.width, view.height);
+    const scene::PictureLayers layers(result.film, {});
+    result.film.metadata = {
+        {"method", "half_resolution_march"}, {"settings", settings_}, {"scene", scene.name}, {"hash", scene.hash}};
+    Counters counters;
+    scene::Stopwatch watch;
+    const auto lap = [&](const char* stage) { result.times.push_back({stage, watch.lap()}); };
+    Behind behind;
+    if (ends_rays(scene) || seen_behind(scene)) {
+      behind = look_behind(plan_, view, part_of(execution, {0, 0.2}), counters);
+      lap("surfaces");
+    }
+    LowFilm low(view.width, view.height, plan_.options.divide);
+    if (!plan_.media->layers().empty()) {
+      low = march_blocks(plan_, view, behind, part_of(execution, {0.2, 0.8}), counters);
+      lap("march");
+    }
+    const double edge = plan_.options.edge * counters.longest;
+    if (blurs(plan_) && edge > 0) {
+      blur(low, edge, part_of(execution, {0.8, 0.9}));
+      lap("blur");
+    }
+    compose(plan_, view, low, edge, behind, layers, part_of(execution, {0.9, 1}));
+    lap("composition");
+    result.counters = {{"rays", double(counters.rays)},
+                       {"points", double(counters.media.points)},
+                       {"look_ups", double(counters.media.look_ups)},
+                       {"occlusion_rays", double(counters.media.occlusion_rays)},
+                       {"pixels_behind", double(counters.pixels)}};
+    return result;
+  }
+
+ private:
+  Plan plan_;
+  std::string settings_;
+  double prepare_seconds_;
+};
+
+}  // namespace
+
+std::string HalfResolutionMarch::about() const {
+  return "engine fog: jittered march at half resolution, bilateral blur, upsampling by depth "
+         "(reference/half_resolution_march/README.md)";
+}
+
+std::vector<scene::SettingSpec> HalfResolutionMarch::settings() const { return option_specs(); }
+
+std::vector<std::string> HalfResolutionMarch::supports(const scene::Scene& scene,
+                                                       const scene::Settings& settings) const {
+  return unsupported(scene, read_options(settings));
+}
+
+std::unique_ptr<scene::Prepared> HalfResolutionMarch::prepare_supported(std::shared_ptr<const scene::Scene> scene,
+                                                                        const scene::Settings& settings,
+                                                                        const scene::Execution& execution) const {
+  scene::Stopwatch watch;
+  Plan plan{scene, read_options(settings), nullptr};
+  plan.media = std::make_shared<const lit_media::LitMedia>(scene, plan.options.media, execution);
+  const double seconds = watch.lap();
+  return std::make_unique<PreparedHalfResolutionMarch>(std::move(plan), settings.canonical(), seconds);
+}
+
+}  // namespace airlight::half_resolution_march

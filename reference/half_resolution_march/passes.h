@@ -1,0 +1,52 @@
+// The passes of a picture: what ends film rays, the march of the blocks, the composition.
+#pragma once
+#include <algorithm>
+#include <memory>
+
+#include "reference/half_resolution_march/low_film.h"
+#include "reference/half_resolution_march/march.h"
+#include "scene/picture.h"
+
+namespace airlight::half_resolution_march {
+
+// What is prepared once for a scene.
+struct Plan {
+  std::shared_ptr<const scene::Scene> scene;
+  Options options;
+  std::shared_ptr<const lit_media::LitMedia> media;
+};
+
+// Is there anything that can end a camera ray before infinity? And anything to be seen behind the media?
+bool ends_rays(const scene::Scene&);
+bool seen_behind(const scene::Scene&);
+
+struct Counters {
+  lit_media::Counters media;
+  long long rays = 0;    // marched
+  long long pixels = 0;  // of which it was asked what ends their rays
+  double longest = 0;    // way of a marched ray through media [m]
+  void operator+=(const Counters& other) {
+    media += other.media;
+    rays += other.rays;
+    pixels += other.pixels;
+    longest = std::max(longest, other.longest);
+  }
+};
+
+// By film pixel. Empty where there is nothing to know.
+struct Behind {
+  std::vector<double> depth;  // along the camera's axis [m], infinite where nothing ends the ray
+  std::vector<Rgb> radiance;  // of what ends the ray, without media between [W/m^2/sr]
+};
+double bytes_needed(const Plan&, const scene::View&);
+
+Behind look_behind(const Plan&, const scene::View&, const scene::Execution&, Counters&);
+
+// One ray for each block and frame, and the depth of each block.
+LowFilm march_blocks(const Plan&, const scene::View&, const Behind&, const scene::Execution&, Counters&);
+
+// `edge`: difference of depth [m] that counts as one.
+void compose(const Plan&, const scene::View&, const LowFilm&, double edge, const Behind&, const scene::PictureLayers&,
+             const scene::Execution&);
+
+}  // namespace airlight::half_resolution_march

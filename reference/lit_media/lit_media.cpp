@@ -1,0 +1,219 @@
+#include "reference/lit_media/lit_media.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/ray_marcher/light_maps.h"
+#include "scene/base/limits.h"
+#include "scene/base/stopwatch.h"
+#include "scene/light/sky_directions.h"
+
+namespace airlight::lit_media {
+namespace {
+
+constexpr double nearest_light = 0.01;       // [m]
+constexpr double nearest_share = 0.01;       // of a medium's diagonal, or of the mean free path of one without an end
+constexpr double most_evaluations = 1e12;    // of densities, in the maps
+constexpr std::size_t room_of_kernels = 64;  // entries after the last
+
+std::size_t padded(std::size_t n) { return (n + room_of_kernels - 1) / room_of_kernels * room_of_kernels; }
+
+double count_lights(const scene::Scene& scene, const Options& options) {
+  double lights = 0;
+  for (const scene::Light& light : scene.lights) lights += is_delta(light) ? 1 : options.environment_directions;
+  return lights;
+}
+
+// The part [begin, end) of ascending distances that lies within an interval.
+std::pair<std::size_t, std::size_t> within(const std::vector<double>& t, Interval inside) {
+  if (inside.empty()) return {0, 0};
+  const auto first = std::lower_bound(t.begin(), t.end(), inside.lo),
+             last = std::upper_bound(first, t.end(), inside.hi);
+  return {std::size_t(first - t.begin()), std::size_t(last - t.begin())};
+}
+
+// The distance that light comes from at least [m]: nearest_light, or less in scenes of millimetres.
+double least_distance(const std::vector<ray_marcher::Layer>& layers) {
+  double least = nearest_light;
+  for (const ray_marcher::Layer& layer : layers) {
+    const double diagonal = bounding_box(*layer.medium).size().stableNorm();
+    const double free_path = 1 / (layer.constant * layer.medium->sigma_t.maxCoeff());
+    least = std::min(least, nearest_share * (diagonal < infinity ? diagonal : free_path));
+  }
+  return least;
+}
+
+scene::Incident kept_off(const scene::Light& light, scene::Incident from, double least) {
+  if (from.distance >= least) return from;
+  from.irradiance = intensity_towards(light, -from.to_light) / (least * least);
+  return from;
+}
+
+}  // namespace
+
+void bind(scene::SettingBinder& b, Options& o) {
+  b.choice("self_shadow", o.self_shadow, {{"map", true}, {"none", false}},
+           "what media take of light on its way to a point: looked up in a map of each light, or nothing");
+  b.integer("environment_directions", o.environment_directions, 1, 1 << 12,
+            "directions that stand for each environment light, drawn as its radiance");
+  light_map::bind(b, o.map, "self_shadow");
+}
+
+std::vector<std::string> unsupported(const scene::Scene& scene, const Options& options) {
+  if (!options.self_shadow) return {};
+  std::vector<std::string> reasons;
+  if (const std::string reason = light_map::unsupported(options.map); !reason.empty()) reasons.push_back(reason);
+  const double lights = count_lights(scene, options);
+  const double work = lights * options.map.size * options.map.size * options.map.steps * double(scene.media.size());
+  if (work > most_evaluations)
+    reasons.push_back(fmt::format(
+        "maps of {:.3g} lights with {}^2 texels of {} steps in {} media are {:.2g} evaluations, expected at most {:.0e}",
+        lights, options.map.size, options.map.steps, scene.media.size(), work, most_evaluations));
+  return reasons;
+}
+
+void Counters::operator+=(const Counters& other) {
+  points += other.points;
+  look_ups += other.look_ups;
+  occlusion_rays += other.occlusion_rays;
+}
+
+LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
+    : scene_(std::move(scene)),
+      layers_(ray_marcher::make_layers(scene_->media)),
+      densities_(ray_marcher::densities_by_kernels(layers_, scene_->media)),
+      nearest_(least_distance(layers_)) {
+  const bool swallowed = scene::swallows_distant_light(scene_->media);
+  for (const scene::Light& light : scene_->lights) {
+    if (swallowed && !scene::ball(light)) continue;
+    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
+      for (const auto& one : scene::environment_as_lights(*environment, options.environment_directions))
+        lights_.emplace_back(one);
+    else
+      lights_.push_back(light);
+  }
+  for (const ray_marcher::Layer& layer : layers_)
+    if (!lights_.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) scatters_ = true;
+  if (!options.self_shadow || layers_.empty() || !(scatters_ || scene_->geometry)) return;
+  scene::Stopwatch watch;
+  scene::require_memory(double(lights_.size()) * light_map::planes_of(scene_->media, options.map) *
+                            light_map::bytes_per_plane(options.map),
+                        fmt::format("maps of {} lights", lights_.size()));
+  scene::Execution part = execution;
+  for (const scene::Light& light : lights_) {
+    if (execution.progress)
+      part.progress = [&](double fraction) {
+        return execution.progress((double(maps_.size()) + fraction) / double(lights_.size()));
+      };
+    maps_.push_back(std::make_unique<light_map::LightMap>(light, scene_->media, options.map, densities_, part));
+  }
+  map_seconds_ = watch.lap();
+}
+
+void LitMedia::add_densities(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
+  // Without an end: a single point would have no interval.
+  const Interval range{t.front(), infinity};
+  s.density.resize(layers_.size());
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    const ray_marcher::Layer& layer = layers_[k];
+    std::vector<double>& density = s.density[k];
+    density.assign(t.size(), 0.0);
+    const auto [begin, end] = within(t, varied_extent(layer, ray, range));
+    if (begin < end) {
+      s.varied.resize(padded(end - begin));
+      densities_(std::size_t(layer.medium - scene_->media.data()), end - begin, s.x.data() + begin, s.y.data() + begin,
+                 s.z.data() + begin, s.varied.data());
+      std::copy_n(s.varied.begin(), end - begin, density.begin() + std::ptrdiff_t(begin));
+      counters.points += std::int64_t(end - begin);
+    }
+    const auto [first, last] = within(t, constant_extent(layer, ray, range));
+    for (std::size_t i = first; i < last; ++i) density[i] += layer.constant;
+  }
+}
+
+void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::size_t end, Samples& s,
+                         Counters& counters) const {
+  const scene::Light& light = lights_[l];
+  const light_map::LightMap* map = maps_.empty() ? nullptr : maps_[l].get();
+  if (map) {
+    for (auto& depth : s.depth) depth.resize(padded(end - begin));
+    float* const depths[] = {s.depth[0].data(), s.depth[1].data(), s.depth[2].data()};
+    map->varied_depths(end - begin, s.x.data() + begin, s.y.data() + begin, s.z.data() + begin, depths);
+  }
+  const bool everywhere_equal = !scene::ball(light);  // a sun: as at the first point
+  scene::Incident from;
+  s.per_density.resize(layers_.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    const Point3 x(s.x[i], s.y[i], s.z[i]);
+    if (i == begin || !everywhere_equal) {
+      from = kept_off(light, incident(light, x), nearest_);
+      const double cosine = std::clamp(from.to_light.dot(ray.direction), -1.0, 1.0);
+      for (std::size_t k = 0; k < layers_.size(); ++k) {
+        const scene::Medium& medium = *layers_[k].medium;
+        s.per_density[k] = medium.albedo * medium.sigma_t * from.irradiance * phase_value(medium.phase, cosine);
+      }
+    }
+    Rgb scattered = Rgb::Zero();
+    for (std::size_t k = 0; k < layers_.size(); ++k)
+      if (s.density[k][i] != 0) scattered += s.per_density[k] * s.density[k][i];
+    if ((scattered == 0).all()) continue;
+    if (scene_->geometry) {
+      ++counters.occlusion_rays;
+      if (scene_->geometry->occluded({x, from.to_light}, from.distance)) continue;
+    }
+    if (map) {
+      ++counters.look_ups;
+      Rgb depth = map->constant_depth(x);
+      for (int c = 0; c < 3; ++c) depth[c] += double(s.depth[map->channels() == 1 ? 0 : c][i - begin]);
+      if (depth[0] == depth[1] && depth[1] == depth[2])
+        scattered *= std::exp(-depth[0]);
+      else
+        scattered *= (-depth).exp();
+    }
+    s.source[i] += scattered;
+  }
+}
+
+void LitMedia::along(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
+  const std::size_t n = t.size();
+  s.extinction.assign(n, Rgb::Zero());
+  s.source.assign(n, Rgb::Zero());
+  if (n == 0 || layers_.empty()) return;
+  for (auto* places : {&s.x, &s.y, &s.z}) places->resize(n + room_of_kernels);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point3 x = ray.at(t[i]);
+    s.x[i] = x[0], s.y[i] = x[1], s.z[i] = x[2];
+  }
+  add_densities(ray, t, s, counters);
+  std::size_t begin = n, end = 0;  // of points where there is something
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < layers_.size(); ++k) s.extinction[i] += layers_[k].medium->sigma_t * s.density[k][i];
+    if ((s.extinction[i] == 0).all()) continue;
+    begin = std::min(begin, i);
+    end = i + 1;
+  }
+  if (!scatters_ || begin >= end) return;
+  for (std::size_t l = 0; l < lights_.size(); ++l) add_light(l, ray, begin, end, s, counters);
+}
+
+Rgb LitMedia::transmittance_to_light(std::size_t l, const Point3& x) const {
+  return maps_.empty() ? Rgb::Ones() : Rgb((-maps_[l]->optical_depth(x)).exp());
+}
+
+Interval LitMedia::extent(const Ray& ray, Interval t) const {
+  Interval all{infinity, -infinity};
+  for (const ray_marcher::Layer& layer : layers_)
+    for (const Interval part : {constant_extent(layer, ray, t), varied_extent(layer, ray, t)})
+      if (!part.empty()) all = {std::min(all.lo, part.lo), std::max(all.hi, part.hi)};
+  return all;
+}
+
+std::size_t LitMedia::map_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& map : maps_) bytes += map->bytes();
+  return bytes;
+}
+
+}  // namespace airlight::lit_media
