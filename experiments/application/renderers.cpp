@@ -13,6 +13,7 @@
 #include "methods/shadow_planes/shadow_planes.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "reference/deterministic/renderer.h"
+#include "reference/froxel_fog/froxel_fog.h"
 #include "reference/half_resolution_march/half_resolution_march.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
@@ -27,6 +28,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<ray_marcher::RayMarcher>());
     list.push_back(std::make_unique<gpu::ray_marcher::RayMarcher>());
     list.push_back(std::make_unique<half_resolution_march::HalfResolutionMarch>());
+    list.push_back(std::make_unique<froxel_fog::FroxelFog>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::fogshop::Fogshop>());
     list.push_back(std::make_unique<airlight::shadow_planes::ShadowPlanes>());
@@ -43,7 +45,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
 }
 
 bool is_reference(const scene::Renderer& renderer) {
-  for (const char* name : {"deterministic", "path_tracer", "ray_marcher", "half_resolution_march"})
+  for (const char* name : {"deterministic", "path_tracer", "ray_marcher", "froxel_fog", "half_resolution_march"})
     if (renderer.name() == name) return true;
   return false;
 }

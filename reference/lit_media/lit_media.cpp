@@ -7,6 +7,7 @@
 
 #include "reference/ray_marcher/light_maps.h"
 #include "scene/base/limits.h"
+#include "scene/base/place_error.h"
 #include "scene/base/stopwatch.h"
 #include "scene/light/sky_directions.h"
 
@@ -33,6 +34,9 @@ std::pair<std::size_t, std::size_t> within(const std::vector<double>& t, Interva
              last = std::upper_bound(first, t.end(), inside.hi);
   return {std::size_t(first - t.begin()), std::size_t(last - t.begin())};
 }
+
+// Kernels compute places within media in float.
+bool too_fine_for_kernels(const scene::Scene& scene) { return scene::place_error(scene) * 0x1p29 > 2e-3; }
 
 // The distance that light comes from at least [m]: nearest_light, or less in scenes of millimetres.
 double least_distance(const std::vector<ray_marcher::Layer>& layers) {
@@ -83,9 +87,11 @@ void Counters::operator+=(const Counters& other) {
 LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
     : scene_(std::move(scene)),
       layers_(ray_marcher::make_layers(scene_->media)),
-      densities_(ray_marcher::densities_by_kernels(layers_, scene_->media)),
+      densities_(too_fine_for_kernels(*scene_) ? light_map::densities_of(scene_->media)
+                                               : ray_marcher::densities_by_kernels(layers_, scene_->media)),
       nearest_(least_distance(layers_)) {
-  const bool swallowed = scene::swallows_distant_light(scene_->media);
+  // Media that dim no light swallow none.
+  const bool swallowed = options.self_shadow && scene::swallows_distant_light(scene_->media);
   for (const scene::Light& light : scene_->lights) {
     if (swallowed && !scene::ball(light)) continue;
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
@@ -143,7 +149,7 @@ void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::
     map->varied_depths(end - begin, s.x.data() + begin, s.y.data() + begin, s.z.data() + begin, depths);
   }
   const bool everywhere_equal = !scene::ball(light);  // a sun: as at the first point
-  scene::Incident from;
+  scene::Incident from{Vec3::Zero(), 0, Rgb::Zero()};
   s.per_density.resize(layers_.size());
   for (std::size_t i = begin; i < end; ++i) {
     const Point3 x(s.x[i], s.y[i], s.z[i]);

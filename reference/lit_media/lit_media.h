@@ -57,8 +57,8 @@ class LitMedia {
   // What media leave of light l on its way to x.
   Rgb transmittance_to_light(std::size_t l, const Point3& x) const;
 
-  // Those that shine from one direction; directional lights in place of environments, and none from infinitely far away where endless fog
-  // swallows them.
+  // Those that shine from one direction; directional lights in place of environments. With self_shadow there are none from infinitely far away
+  // where endless fog swallows them.
   const std::vector<scene::Light>& lights() const { return lights_; }
   // May a point scatter light at all?
   bool scatters() const { return scatters_; }

@@ -97,13 +97,15 @@ const std::string& text_for(const std::string& renderer) {
 }  // namespace
 
 TEST_CASE("renderers see a picture with depth through the medium before it", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop",
-                                    "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
+  const std::string name =
+      GENERATE("ray_marcher", "half_resolution_march", "froxel_fog", "path_tracer", "deterministic", "fogshop",
+               "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
   CAPTURE(name);
   const auto scene = before_picture(text_for(name));
   const std::map<std::string, std::string> settings =
       name == "path_tracer"             ? std::map<std::string, std::string>{{"samples", "4"}, {"max_order", "1"}}
       : name == "half_resolution_march" ? of_every_pixel
+      : name == "froxel_fog"            ? std::map<std::string, std::string>{{"tile", "1"}, {"slices", "1024"}}
                                         : std::map<std::string, std::string>{};
   const scene::Film seen = render(name, scene, settings);
   double greatest = 0;
@@ -115,9 +117,9 @@ TEST_CASE("renderers see a picture with depth through the medium before it", "[b
       const double t = i + 1 < width * height ? (1 + 0.5 * i) / ray.direction.dot(scene->camera.forward) : infinity;
       const Rgb clear = transmittance(scene->media, ray, {0, t});
       // Steps and slices are midpoints of a density that varies; Fogshop leaves out Gaussians where they are thin.
-      const double tolerance = name == "ray_marcher" || name == "half_resolution_march"  ? 0.02
-                               : name == "fogshop" || name == "compensated_ray_marching" ? 1e-4
-                                                                                         : 1e-5;
+      const double tolerance = name == "ray_marcher" || name == "half_resolution_march" || name == "froxel_fog" ? 0.02
+                               : name == "fogshop" || name == "compensated_ray_marching"                        ? 1e-4
+                                                                                                                : 1e-5;
       for (int c = 0; c < 3; ++c) {
         CHECK(seen.get("transmittance", x, y)[c] == Approx(clear[c]).epsilon(tolerance));
         CHECK(seen.get("surface", x, y)[c] ==
@@ -132,7 +134,8 @@ TEST_CASE("the airlight before a picture is that before a wall at the same depth
   // A wall at z = -1 that reflects nothing and throws no shadow into what is before it, and a picture at that depth.
   const std::string wall =
       "[[surface]]\ntype = 'plane'\nnormal = [0, 0, 1]\npoint = [0, 0, -1]\nmaterial = { type = 'lambert', albedo = 0 }\n";
-  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop");
+  const std::string name =
+      GENERATE("ray_marcher", "half_resolution_march", "froxel_fog", "path_tracer", "deterministic", "fogshop");
   CAPTURE(name);
   const auto behind = before_picture(gaussians + wall, false);
   scene::Scene flat = scene::parse_scene(gaussians, "s.toml", "");
@@ -201,6 +204,7 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
   const std::vector<std::string> know = {"ray_marcher",
                                          "ray_marcher_gpu",
                                          "half_resolution_march",
+                                         "froxel_fog",
                                          "path_tracer",
                                          "deterministic",
                                          "fogshop",
@@ -221,8 +225,9 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
 }
 
 TEST_CASE("a view through another camera than the scene's is refused where there is a backdrop", "[backdrop]") {
-  const std::string name = GENERATE("ray_marcher", "half_resolution_march", "path_tracer", "deterministic", "fogshop",
-                                    "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
+  const std::string name =
+      GENERATE("ray_marcher", "half_resolution_march", "froxel_fog", "path_tracer", "deterministic", "fogshop",
+               "wavelet_fog", "legendre_fluids", "compensated_ray_marching");
   const auto scene = before_picture(text_for(name));
   const scene::Renderer& renderer = experiments::find_renderer(name, "test");
   scene::View view = view_of(*scene);

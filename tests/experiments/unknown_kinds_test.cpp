@@ -66,7 +66,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 7);
+  CHECK(others == 8);
 }
 
 TEST_CASE(
@@ -89,6 +89,7 @@ TEST_CASE(
       {"deterministic", ""},
       {"ray_marcher", ""},
       {"half_resolution_march", ""},
+      {"froxel_fog", ""},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
       {"fogshop", "homogeneous or gaussians"},
       {"fogshop_gpu", "homogeneous or gaussians"},

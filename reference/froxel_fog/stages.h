@@ -1,0 +1,15 @@
+// What froxel fog does for a scene seen by its own camera, and what it leaves out and why.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "reference/froxel_fog/options.h"
+#include "scene/renderer.h"
+
+namespace airlight::froxel_fog {
+
+// `settings`: the effective ones as text.
+std::vector<scene::Stage> describe_stages(const scene::Scene&, const lit_media::LitMedia&, const Options&,
+                                          const std::string& settings);
+
+}  // namespace airlight::froxel_fog
