@@ -205,7 +205,8 @@ void ExperimentReader::methods(const TableReader& top) {
     kind().read_method(reader, experiment_, method);
     method.scenes = strings(*table, "scenes", reader);
     for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
-    Pairs conversion = settings(*table, "convert", reader);
+    const bool converts = std::find(of_kind.begin(), of_kind.end(), "convert") != of_kind.end();
+    Pairs conversion = converts ? settings(*table, "convert", reader) : Pairs{};
     const std::string convert_position =
         scene::load::location(table->contains("convert") ? table->get("convert")->source() : table->source());
     const auto convert = [&](MethodCase& c) {
