@@ -47,8 +47,9 @@ std::vector<Measure> compare(const Experiment& e, const MethodCase& m, const sce
   if (m.picture_only) return {};
   std::vector<Measure> all;
   for (const std::string& metric : e.metrics) {
-    const std::vector<Measure> one = measure({metric}, film, is_of_converted(metric) ? converted : reference, e.layer,
-                                             masks, m.count_noise ? ImageNoise::counted : ImageNoise::removed);
+    const scene::Film& truth = is_of_converted(metric) ? converted : reference;
+    const auto noise = m.count_noise ? ImageNoise::counted : ImageNoise::removed;
+    const std::vector<Measure> one = measure({metric}, film, truth, e.layer, masks, noise);
     all.insert(all.end(), one.begin(), one.end());
   }
   return all;
