@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "methods/fogshop/model.h"
 #include "reference/deterministic/renderer.h"
 #include "tests/methods/fogshop/small_scene.h"
 

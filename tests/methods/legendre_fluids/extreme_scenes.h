@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/media/legendre_box.h"
 #include "tests/methods/legendre_fluids/light_scenes.h"
 
 namespace airlight::legendre_fluids::testing {

@@ -4,6 +4,7 @@
 
 #include "scene/math/legendre.h"
 #include "scene/math/random.h"
+#include "scene/media/legendre_box.h"
 #include "scene/media/medium.h"
 
 namespace airlight::test {
