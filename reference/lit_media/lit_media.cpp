@@ -92,14 +92,7 @@ LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& opt
       nearest_(least_distance(layers_)) {
   // Media that dim no light swallow none.
   const bool swallowed = options.self_shadow && scene::swallows_distant_light(scene_->media);
-  for (const scene::Light& light : scene_->lights) {
-    if (swallowed && !scene::ball(light)) continue;
-    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light))
-      for (const auto& one : scene::environment_as_lights(*environment, options.environment_directions))
-        lights_.emplace_back(one);
-    else
-      lights_.push_back(light);
-  }
+  lights_ = scene::lights_from_directions(scene_->lights, options.environment_directions, swallowed);
   for (const ray_marcher::Layer& layer : layers_)
     if (!lights_.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) scatters_ = true;
   if (!options.self_shadow || layers_.empty() || !(scatters_ || scene_->geometry)) return;

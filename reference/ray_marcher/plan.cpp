@@ -51,15 +51,7 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   plan.options = options;
   plan.layers = make_layers(scene->media);
   plan.swallowed = scene::swallows_distant_light(scene->media);
-  for (const scene::Light& light : scene->lights) {
-    if (plan.swallowed && !scene::ball(light)) continue;
-    if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
-      for (const auto& l : scene::environment_as_lights(*environment, options.environment_directions))
-        plan.lights.emplace_back(l);
-    } else {
-      plan.lights.push_back(light);
-    }
-  }
+  plan.lights = scene::lights_from_directions(scene->lights, options.environment_directions, plan.swallowed);
   for (const Layer& layer : plan.layers)
     if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
   // Kernels compute places within media in float.

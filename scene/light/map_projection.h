@@ -16,7 +16,7 @@ std::vector<double> row_weights(int order, int width, int height);
 // The projected map about its own pole, from three sums with the cosine and three with the sine for each pair.
 EnvironmentLight about_pole(int order, const std::vector<double>& sums);
 
-// The same for a map; relative error below 1e-12.
+// A map's projection on harmonics about the map's own pole; relative error below 1e-12.
 EnvironmentLight map_about_pole(const EnvironmentMap&, int order);
 
 }  // namespace airlight::scene

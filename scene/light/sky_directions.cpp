@@ -19,6 +19,18 @@ std::vector<DirectionalLight> environment_as_lights(const EnvironmentLight& envi
   return lights;
 }
 
+std::vector<Light> lights_from_directions(const std::vector<Light>& lights, int count, bool swallowed) {
+  std::vector<Light> all;
+  for (const Light& light : lights) {
+    if (swallowed && !ball(light)) continue;
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light))
+      for (const DirectionalLight& one : environment_as_lights(*environment, count)) all.emplace_back(one);
+    else
+      all.push_back(light);
+  }
+  return all;
+}
+
 Scene with_sky_as_lights(const Scene& scene, int count) {
   Scene lit = scene;
   for (const Light& light : scene.lights)

@@ -11,6 +11,10 @@ namespace airlight::scene {
 // a constant it is the spherical Fibonacci set. Directions without radiance are left out.
 std::vector<DirectionalLight> environment_as_lights(const EnvironmentLight&, int count);
 
+// A scene's lights for methods that know light from one direction alone: each environment is `count` directional lights. Lights infinitely far
+// away are left out where `swallowed`.
+std::vector<Light> lights_from_directions(const std::vector<Light>&, int count, bool swallowed);
+
 // The scene with so many directional lights for each of its environments, which stay in it as backgrounds.
 Scene with_sky_as_lights(const Scene&, int count);
 

@@ -46,7 +46,7 @@ std::vector<Given> variants() {
           {{"preset", "godot"}, {"frames", "3"}, {"volume_size", "4"}}};
 }
 
-// The same scene on a smaller film, seen by a camera that has it in view.
+// A copy of a scene with a smaller film and a camera that has the media in view.
 std::shared_ptr<scene::Scene> resized(const scene::Scene& scene, int width, int height) {
   auto small = std::make_shared<scene::Scene>(scene);
   if (small->camera.kind == scene::Camera::Kind::perspective) small->camera = wide_camera();

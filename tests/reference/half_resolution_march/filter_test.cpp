@@ -48,7 +48,7 @@ TEST_CASE("half-resolution march: the blur keeps a constant, also across edges o
   }
 }
 
-// Of a point inside: weights add up to 1, are those of a Gaussian cut at 5 pixels, and are the same for all channels.
+// A bright point inside the film shows the blur's weights: they add up to 1, are a Gaussian cut at 5 pixels, and are equal in all channels.
 TEST_CASE("half-resolution march: the blur of a point is a Gaussian of weight 1", "[half_resolution_march]") {
   LowFilm film(60, 60, 2);
   fill(film, 0);
