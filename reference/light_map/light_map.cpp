@@ -1,10 +1,13 @@
 #include "reference/light_map/light_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "scene/base/flush_subnormals.h"
+#include "scene/base/limits.h"
 
 namespace airlight::light_map {
 namespace {
@@ -251,6 +254,24 @@ void LightMap::varied_depths(std::size_t n, const double* x, const double* y, co
   if (grey_ || planes_ == 3) return;
   for (int c = 2; c >= 0; --c)
     for (std::size_t i = 0; i < n; ++i) depth[c][i] = float(share_[c]) * depth[0][i];
+}
+
+std::vector<std::shared_ptr<const LightMap>> make_maps(const std::vector<scene::Light>& lights,
+                                                       const std::vector<scene::Medium>& media, const Options& options,
+                                                       const Densities& densities, const scene::Execution& execution,
+                                                       const std::string& who) {
+  scene::require_memory(double(lights.size()) * planes_of(media, options) * bytes_per_plane(options),
+                        fmt::format("{}: maps of {} lights", who, lights.size()));
+  std::vector<std::shared_ptr<const LightMap>> maps;
+  scene::Execution part = execution;
+  for (const scene::Light& light : lights) {
+    if (execution.progress)
+      part.progress = [&](double fraction) {
+        return execution.progress((double(maps.size()) + fraction) / double(lights.size()));
+      };
+    maps.push_back(std::make_shared<LightMap>(light, media, options, densities, part));
+  }
+  return maps;
 }
 
 }  // namespace airlight::light_map

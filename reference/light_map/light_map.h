@@ -14,6 +14,8 @@
 // the light's rays. Encodings: README.md.
 #pragma once
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "reference/light_map/encoding.h"
@@ -83,5 +85,11 @@ class LightMap {
   bool negative_ = false;    // a medium may have less than its constant
   std::vector<float> texels_[3];
 };
+
+// The maps of all lights, in their order. Throws Error, which begins with `who`, where they do not fit into memory.
+std::vector<std::shared_ptr<const LightMap>> make_maps(const std::vector<scene::Light>&,
+                                                       const std::vector<scene::Medium>&, const Options&,
+                                                       const Densities&, const scene::Execution&,
+                                                       const std::string& who);
 
 }  // namespace airlight::light_map

@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "reference/ray_marcher/light_maps.h"
-#include "scene/base/limits.h"
-#include "scene/base/place_error.h"
 #include "scene/base/stopwatch.h"
 #include "scene/light/sky_directions.h"
 
@@ -34,9 +32,6 @@ std::pair<std::size_t, std::size_t> within(const std::vector<double>& t, Interva
              last = std::upper_bound(first, t.end(), inside.hi);
   return {std::size_t(first - t.begin()), std::size_t(last - t.begin())};
 }
-
-// Kernels compute places within media in float.
-bool too_fine_for_kernels(const scene::Scene& scene) { return scene::place_error(scene) * 0x1p29 > 2e-3; }
 
 // The distance that light comes from at least [m]: nearest_light, or less in scenes of millimetres.
 double least_distance(const std::vector<ray_marcher::Layer>& layers) {
@@ -87,8 +82,9 @@ void Counters::operator+=(const Counters& other) {
 LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
     : scene_(std::move(scene)),
       layers_(ray_marcher::make_layers(scene_->media)),
-      densities_(too_fine_for_kernels(*scene_) ? light_map::densities_of(scene_->media)
-                                               : ray_marcher::densities_by_kernels(layers_, scene_->media)),
+      densities_(ray_marcher::too_fine_for_kernels(*scene_)
+                     ? light_map::densities_of(scene_->media)
+                     : ray_marcher::densities_by_kernels(layers_, scene_->media)),
       nearest_(least_distance(layers_)) {
   // Media that dim no light swallow none.
   const bool swallowed = options.self_shadow && scene::swallows_distant_light(scene_->media);
@@ -97,17 +93,7 @@ LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& opt
     if (!lights_.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) scatters_ = true;
   if (!options.self_shadow || layers_.empty() || !(scatters_ || scene_->geometry)) return;
   scene::Stopwatch watch;
-  scene::require_memory(double(lights_.size()) * light_map::planes_of(scene_->media, options.map) *
-                            light_map::bytes_per_plane(options.map),
-                        fmt::format("maps of {} lights", lights_.size()));
-  scene::Execution part = execution;
-  for (const scene::Light& light : lights_) {
-    if (execution.progress)
-      part.progress = [&](double fraction) {
-        return execution.progress((double(maps_.size()) + fraction) / double(lights_.size()));
-      };
-    maps_.push_back(std::make_unique<light_map::LightMap>(light, scene_->media, options.map, densities_, part));
-  }
+  maps_ = light_map::make_maps(lights_, scene_->media, options.map, densities_, execution, "lit media");
   map_seconds_ = watch.lap();
 }
 

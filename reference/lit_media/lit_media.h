@@ -77,7 +77,7 @@ class LitMedia {
   light_map::Densities densities_;
   double nearest_;  // light comes from so far away at least [m]
   std::vector<scene::Light> lights_;
-  std::vector<std::unique_ptr<const light_map::LightMap>> maps_;  // none without self_shadow
+  std::vector<std::shared_ptr<const light_map::LightMap>> maps_;  // none without self_shadow
   bool scatters_ = false;
   double map_seconds_ = 0;
 };

@@ -1,11 +1,6 @@
 #include "reference/ray_marcher/light_maps.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "reference/ray_marcher/samples.h"
-#include "scene/base/limits.h"
 #include "scene/base/stopwatch.h"
 
 namespace airlight::ray_marcher {
@@ -45,11 +40,6 @@ light_map::Densities densities_by_kernels(const std::vector<Layer>& layers, cons
   };
 }
 
-double map_bytes(const scene::Scene& scene, const Options& options) {
-  return count_maps(scene, options) * light_map::planes_of(scene.media, options.map) *
-         light_map::bytes_per_plane(options.map);
-}
-
 double map_work(const scene::Scene& scene, const Options& options) {
   return count_maps(scene, options) * options.map.size * options.map.size * options.map.steps *
          double(scene.media.size());
@@ -58,19 +48,10 @@ double map_work(const scene::Scene& scene, const Options& options) {
 void make_light_maps(Plan& plan, const scene::Execution& execution) {
   if (plan.layers.empty() || !(plan.scatters || plan.scene->geometry)) return;
   scene::Stopwatch watch;
-  scene::require_memory(map_bytes(*plan.scene, plan.options),
-                        fmt::format("ray_marcher: maps of {} lights", plan.lights.size()));
   const std::vector<scene::Medium>& media = plan.scene->media;
   const light_map::Densities densities =
       plan.options.simd ? densities_by_kernels(plan.layers, media) : light_map::densities_of(media);
-  scene::Execution part = execution;
-  for (const scene::Light& light : plan.lights) {
-    if (execution.progress)
-      part.progress = [&](double fraction) {
-        return execution.progress((double(plan.maps.size()) + fraction) / double(plan.lights.size()));
-      };
-    plan.maps.push_back(std::make_shared<light_map::LightMap>(light, media, plan.options.map, densities, part));
-  }
+  plan.maps = light_map::make_maps(plan.lights, media, plan.options.map, densities, execution, "ray_marcher");
   plan.map_seconds = watch.lap();
 }
 

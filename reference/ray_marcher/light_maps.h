@@ -11,8 +11,7 @@ void make_light_maps(Plan&, const scene::Execution&);
 // What varies of the media, by the kernels of the layers, which must live as long, and by the media's own functions where a layer has none.
 light_map::Densities densities_by_kernels(const std::vector<Layer>&, const std::vector<scene::Medium>&);
 
-// In a picture's maps: bytes, and density evaluations at most.
-double map_bytes(const scene::Scene&, const Options&);
+// Density evaluations in a picture's maps, at most.
 double map_work(const scene::Scene&, const Options&);
 
 }  // namespace airlight::ray_marcher

@@ -12,6 +12,8 @@
 
 namespace airlight::ray_marcher {
 
+bool too_fine_for_kernels(const scene::Scene& scene) { return scene::place_error(scene) * 0x1p29 > 2e-3; }
+
 double length_unit(const scene::Scene& scene) {
   double unit = infinity;
   for (const scene::Medium& medium : scene.media)
@@ -54,9 +56,8 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   plan.lights = scene::lights_from_directions(scene->lights, options.environment_directions, plan.swallowed);
   for (const Layer& layer : plan.layers)
     if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
-  // Kernels compute places within media in float.
-  if (scene::place_error(*scene) * 0x1p29 > 2e-3) plan.options.simd = false;
-  // And the light of steps, where what is below 1.2e-38 becomes 0.
+  if (too_fine_for_kernels(*scene)) plan.options.simd = false;
+  // Kernels compute the light of steps in float, too, where what is below 1.2e-38 becomes 0.
   if (only_deep_lamps(plan)) plan.options.simd = false;
   if (options.shadow == Shadow::map) make_light_maps(plan, execution);
   return plan;

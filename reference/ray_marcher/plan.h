@@ -26,6 +26,9 @@ struct Plan {
 // Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
 double length_unit(const scene::Scene&);
 
+// Kernels compute places within media in float: is that too coarse for this scene?
+bool too_fine_for_kernels(const scene::Scene&);
+
 // Throws Error where the lights' maps do not fit into memory. Asks the execution for threads, and whether to stop.
 Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution& = {});
 
