@@ -9,6 +9,7 @@ namespace airlight::gpu::ray_marcher {
 namespace {
 
 const std::vector<Binding> bindings = {{"LAYERS", at::layers},
+                                       {"LIGHT_MAPS", at::light_maps},
                                        {"GAUSSIANS", at::gaussians},
                                        {"GRID_VALUES", at::grid_values},
                                        {"FREE_DISTANCES", at::free_distances},

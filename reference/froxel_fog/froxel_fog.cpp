@@ -50,7 +50,7 @@ class PreparedFog final : public scene::Prepared {
     prepare_seconds_ = watch_.lap();
   }
 
-  std::vector<scene::Stage> stages() const override { return describe_stages(*scene_, *lit_, options_, settings_); }
+  std::vector<scene::Stage> stages() const override { return describe_stages(lit_->plan(), options_, settings_); }
   std::vector<scene::StageTime> prepare_times() const override {
     std::vector<scene::StageTime> times = {{"prepare", prepare_seconds_ - lit_->map_seconds()}};
     if (lit_->map_seconds() > 0) times.push_back({"light_maps", lit_->map_seconds()});
@@ -68,7 +68,7 @@ class PreparedFog final : public scene::Prepared {
     Parts parts(execution, options_.frames + 4);
     Interval range = slice_range(options_, {});
     if (range.empty()) {
-      range = slice_range(options_, media_depths(*lit_, *scene_, view, parts.next()));
+      range = slice_range(options_, media_depths(lit_->plan(), view, parts.next()));
       book("fit");
     }
     std::optional<Volume> volume;

@@ -88,7 +88,7 @@ DEVICE_TEST_CASE("a warm frame stays on the device, and is the cold one", "[gpu]
     };
     const auto check = [&](const scene::Rendering& warm) {
       CHECK(warm.counters.at("syncs") == 1);
-      for (const char* counter : {"bytes_up", "allocations", "look_ups"}) {
+      for (const char* counter : {"bytes_up", "allocations", "program_look_ups"}) {
         CAPTURE(counter);
         CHECK(warm.counters.at(counter) == 0);
       }
