@@ -37,7 +37,7 @@ const std::vector<Layout> layouts = {{"layers[0].albedo", offsetof(LayerData, al
                                      {"gaussians[0].limit", offsetof(GaussianData, limit), sizeof(GaussianData)},
                                      {"lights[0].kind", offsetof(LightData, kind), sizeof(LightData)},
                                      {"lights[0].cos_outer", offsetof(LightData, cos_outer), sizeof(LightData)},
-                                     {"solids[0].normal", offsetof(SolidData, normal), sizeof(SolidData)}};
+                                     {"blockers[0].normal", offsetof(SolidData, normal), sizeof(SolidData)}};
 
 }  // namespace
 

@@ -14,11 +14,11 @@ constexpr std::size_t pixel_bytes = 64;                    // the layout of pixe
 
 }  // namespace
 
-Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevice& media, const Columns* columns,
+Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevice& media, const Columns& columns,
                  int lights, const airlight::ray_marcher::Options& options, const FirstHits* first_hits)
     : Picture(context, scene, media, columns, lights, options, first_hits, MaterialTables(scene)) {}
 
-Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevice& media, const Columns* columns,
+Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevice& media, const Columns& columns,
                  int lights, const airlight::ray_marcher::Options& options, const FirstHits* first_hits,
                  const MaterialTables& tables)
     : media_(media),
@@ -35,7 +35,7 @@ Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevic
   definitions.insert({{"LOCAL_SIZE_X", side}, {"LOCAL_SIZE_Y", side}});
   if (scene.geometry && lights > 0) {
     auto reflecting = definitions;
-    reflecting.merge(columns->definitions());
+    reflecting.merge(columns.definitions());
     // Columns alone ask for densities.
     if (reflecting.at("DEPTHS") != "1")
       for (const char* field : {"GRIDS", "TEXTURES", "GAUSSIANS"}) reflecting[field] = "0";
@@ -57,7 +57,7 @@ Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevic
 void Picture::reflect(const scene::View& view, const FilmOnDevice& film, FrameBuffers& buffers, const Band& band) {
   Program& p = *surfaces_;
   media_.bind(p);
-  columns_->bind(p, options_);
+  columns_.bind(p, options_);
   film.primitives->bind(at::primitives);
   band.pixels.bind(at::pixels);
   film.surface.bind(at::surface);
@@ -95,26 +95,26 @@ void Picture::add_environments(const scene::View& view, const FilmOnDevice& film
 }
 
 void Picture::compose(const scene::View& view, const FilmOnDevice& film, const Band& band, bool has_media,
-                      bool counts) {
+                      const Buffer* totals) {
   Program& p = *composition_;
   film.airlight.bind(at::airlight_layer);
   film.transmittance.bind(at::transmittance_layer);
   film.mean.bind(at::mean_layer);
   band.pixels.bind(at::pixels);
   film.surface.bind(at::surface);
-  film.totals.bind(at::totals);
+  if (totals) totals->bind(at::totals);
   if (film.seen) film.seen->bind(at::seen);
   p.set("has_seen", film.seen != nullptr);
   p.set("pixel_count", view.width * band.rows);
   p.set("first_pixel", view.width * band.first_row);
   p.set("has_media", has_media);
   p.set("has_surface", surfaces_ || environments_.count() > 0);
-  p.set("counts", counts && (has_media || surfaces_));
+  p.set("counts", totals && (has_media || surfaces_));
   p.dispatch(view.width * band.rows);
 }
 
 void Picture::render(const scene::View& view, const FilmOnDevice& film, Frame& frame,
-                     const std::function<void(const Band&)>& fill, bool counts, bool looks,
+                     const std::function<void(const Band&)>& fill, const Buffer* totals, bool looks,
                      const std::function<bool(double)>& progress) {
   rounds_.begin(looks, progress);
   const std::size_t row_bytes = std::size_t(view.width) * pixel_bytes;
@@ -129,7 +129,7 @@ void Picture::render(const scene::View& view, const FilmOnDevice& film, Frame& f
       add_environments(view, film, band);
     }
     frame.timer.begin("composition");
-    compose(view, film, band, bool(fill), counts);
+    compose(view, film, band, bool(fill), totals);
   }
 }
 

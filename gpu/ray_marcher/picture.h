@@ -7,19 +7,11 @@
 #include "gpu/environment_lights.h"
 #include "gpu/frame.h"
 #include "gpu/material_tables.h"
-#include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/columns.h"
+#include "gpu/ray_marcher/ray_ends.h"
 #include "gpu/ray_marcher/rounds.h"
 
 namespace airlight::gpu::ray_marcher {
-
-// Layers of a film on the device, 3 floats a pixel, and what ends its rays. Null: nothing does.
-struct FilmOnDevice {
-  const Buffer *distances = nullptr, *primitives = nullptr;
-  const Buffer* seen = nullptr;  // what backdrops send (gpu/raster/backdrops.h)
-  const Buffer &airlight, &transmittance, &surface, &mean;
-  const Buffer& totals;  // low and high words of steps, shadow rays or look-ups, shadow steps, occlusion rays
-};
 
 // Rows of the image whose pixels' state is on the device at once.
 struct Band {
@@ -29,28 +21,28 @@ struct Band {
 
 class Picture {
  public:
-  // Keeps all by reference but the lights, of which it takes the number. `columns`: null where no light has a direction. `options`
-  // of marched columns.
-  Picture(Context&, const scene::Scene&, const MediaOnDevice&, const Columns*, int lights,
+  // Keeps all by reference; `lights` is their number. `options` of marched columns.
+  Picture(Context&, const scene::Scene&, const MediaOnDevice&, const Columns&, int lights,
           const airlight::ray_marcher::Options&, const FirstHits*);
 
-  // For each band: what `fill` does to its pixels, the stages "surfaces" and "composition". `has_media`: is there a fill? `counts`:
-  // the totals are wanted. `looks` as in Rounds. Throws scene::Interrupted if `progress` says so.
+  // For each band: what `fill` does to its pixels (null: there are no media), the stages "surfaces" and "composition". `totals`:
+  // null, or where low and high words of the pixels' counters are added. `looks` as in Rounds. Throws scene::Interrupted if
+  // `progress` says so.
   void render(const scene::View&, const FilmOnDevice&, Frame&, const std::function<void(const Band&)>& fill,
-              bool counts, bool looks, const std::function<bool(double)>& progress);
+              const Buffer* totals, bool looks, const std::function<bool(double)>& progress);
   // Rounds::note and Rounds::unfinished.
   void note(Download& download) const { rounds_.note(download); }
   bool unfinished(const Download& download) const { return rounds_.unfinished(download); }
 
  private:
-  Picture(Context&, const scene::Scene&, const MediaOnDevice&, const Columns*, int lights,
+  Picture(Context&, const scene::Scene&, const MediaOnDevice&, const Columns&, int lights,
           const airlight::ray_marcher::Options&, const FirstHits*, const MaterialTables&);
   void reflect(const scene::View&, const FilmOnDevice&, FrameBuffers&, const Band&);
   void add_environments(const scene::View&, const FilmOnDevice&, const Band&);
-  void compose(const scene::View&, const FilmOnDevice&, const Band&, bool has_media, bool counts);
+  void compose(const scene::View&, const FilmOnDevice&, const Band&, bool has_media, const Buffer* totals);
 
   const MediaOnDevice& media_;
-  const Columns* columns_;
+  const Columns& columns_;
   int lights_;
   const airlight::ray_marcher::Options& options_;
   const FirstHits* first_hits_;

@@ -54,7 +54,7 @@ PlanOnDevice::PlanOnDevice(Context& context, const airlight::ray_marcher::Plan& 
                needs_maps(plan) ? Columns::Depths::maps : Columns::Depths::columns, plan.options.map, timer, progress),
       solids_(context, "spheres and planes", solid_data(*plan.scene, media_.middle())),
       march_rounds_(context, "march"),
-      picture_(context, *plan.scene, media_, &columns_, int(lights_.size()), plan.options, first_hits) {
+      picture_(context, *plan.scene, media_, columns_, int(lights_.size()), plan.options, first_hits) {
   if (context.software() && iterations_at_once(plan) > software_most)
     throw Unavailable(
         fmt::format("gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected fewer shadow steps",
@@ -98,8 +98,8 @@ void PlanOnDevice::march(const scene::View& view, const FilmOnDevice& film, Fram
   march_rounds_.run(p, buffers, columns * ((band.rows + Rounds::tile - 1) / Rounds::tile));
 }
 
-void PlanOnDevice::render(const scene::View& view, const FilmOnDevice& film, Frame& frame, bool counts, bool looks,
-                          const std::function<bool(double)>& progress) {
+void PlanOnDevice::render(const scene::View& view, const FilmOnDevice& film, Frame& frame, const Buffer* totals,
+                          bool looks, const std::function<bool(double)>& progress) {
   const Use use(context_);
   march_rounds_.begin(looks, progress);
   std::function<void(const Band&)> fill;
@@ -108,7 +108,7 @@ void PlanOnDevice::render(const scene::View& view, const FilmOnDevice& film, Fra
       frame.timer.begin("march");
       march(view, film, frame.buffers, band);
     };
-  picture_.render(view, film, frame, fill, counts, looks, progress);
+  picture_.render(view, film, frame, fill, totals, looks, progress);
 }
 
 void PlanOnDevice::note(Download& download) const {

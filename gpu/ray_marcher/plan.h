@@ -17,8 +17,8 @@ class PlanOnDevice {
   bool has_maps() const { return columns_.maps() != nullptr; }
 
   // Media, surfaces, environment and composition, the stages of frame.timer, in bands of the image whose state fits into
-  // a buffer. `counts`: the totals are wanted. `looks` as in Rounds. Throws scene::Interrupted if `progress` says so.
-  void render(const scene::View&, const FilmOnDevice&, Frame&, bool counts, bool looks,
+  // a buffer. `totals` as in Picture: of steps, shadow rays or look-ups, shadow steps, occlusion rays. `looks` as in Rounds. Throws scene::Interrupted if `progress` says so.
+  void render(const scene::View&, const FilmOnDevice&, Frame&, const Buffer* totals, bool looks,
               const std::function<bool(double)>& progress);
   // Rounds::note and Rounds::unfinished of all that takes several.
   void note(Download&) const;

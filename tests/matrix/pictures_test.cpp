@@ -45,7 +45,7 @@ Given little_work(const scene::Renderer& renderer) {
   if (name == "half_resolution_march")
     return {{"steps", "8"}, {"environment_directions", "8"}, {"map_size", "32"}, {"map_steps", "32"}};
   if (name.starts_with("ray_marcher")) return {{"steps", "8"}, {"shadow_steps", "4"}};
-  if (name == "froxel_fog")
+  if (name.starts_with("froxel_fog"))
     return {{"tile", "4"}, {"slices", "16"}, {"map_size", "32"}, {"environment_directions", "8"}};
   return {};
 }

@@ -28,8 +28,8 @@ struct Case {
 
 const Given stencil{{"shadows", "stencil"}}, vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}},
     printed{{"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}},
-    marched{{"steps", "16"}, {"shadow_steps", "4"}}, systems{{"variant", "paper"}, {"n", "6"}},
-    upwind{{"variant", "paper"}, {"n", "6"}, {"closure", "upwind"}};
+    marched{{"steps", "16"}, {"shadow_steps", "4"}}, froxels{{"environment_directions", "4"}, {"map_size", "32"}},
+    systems{{"variant", "paper"}, {"n", "6"}}, upwind{{"variant", "paper"}, {"n", "6"}, {"closure", "upwind"}};
 
 // Shadow planes bring down counters, and what is known of each light. The paper's systems of Legendre fluids say how they ended.
 const Case cases[] = {
@@ -46,6 +46,8 @@ const Case cases[] = {
     {"shadow_planes_gpu", "shadow_planes/media", printed, Moves::lights, 30, 1, 0, 48 + 32},
     {"shadow_planes_gpu", "shadow_planes/spot", {}, Moves::lights, 30, 1, 0, 48 + 32},
     {"ray_marcher_gpu", "crosscheck/mesh_in_fog", marched, Moves::camera, 57, 1, 0, 128},
+    {"froxel_fog_gpu", "crosscheck/mesh_in_fog", froxels, Moves::camera, 57, 1, 0, 32 + 12 + 48 + 48},
+    {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48},
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
     {"compensated_ray_marching_gpu", "puffs", {{"cells", "8"}}, Moves::camera, 19, 1},
     {"compensated_ray_marching_gpu", "puffs", {{"variant", "paper"}}, Moves::camera, 32, 1},
@@ -112,7 +114,7 @@ DEVICE_TEST_CASE("a warm frame stays on the device, and is the cold one", "[gpu]
     check(all);
     CHECK(all.film.layers == cold.layers);
   }
-  CHECK(renderers.size() == 6);
+  CHECK(renderers.size() == 7);
 }
 
 }  // namespace warm_frames_test
