@@ -30,7 +30,7 @@ vec2 seen_media(vec3 origin, vec3 direction, float t_end) {
       if (whole.x < whole.y) dark[c] = min(dark[c], whole.x + fitted_depth / (layers[k].sigma_t[c] * layers[k].constant));
     }
   }
-  for (int c = 0; c < 3; ++c) join(all_, vec2(max(of_channel[c].x, 0), min(of_channel[c].y, dark[c])));
+  for (int c = 0; c < 3; ++c) join(all_, vec2(max(of_channel[c].x, 0.0), min(of_channel[c].y, dark[c])));
   return all_;
 }
 

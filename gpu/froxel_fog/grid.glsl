@@ -25,7 +25,7 @@ struct Between {
   float share;
 };
 Between between(float place, int count) {
-  float inside = clamp(place, 0, float(count - 1));
+  float inside = clamp(place, 0.0, float(count - 1));
   int low = min(int(inside), max(count - 2, 0));
   return Between(low, inside - float(low));
 }

@@ -13,19 +13,21 @@ bool history_at(vec3 x, out vec3 light, out vec3 media) {
   vec3 from = x - history_position;
   float z = dot(from, history_forward);
   vec2 film = vec2(dot(from, history_right), dot(from, history_up)) / (history_perspective != 0 ? z : 1);
-  if (!(z >= range.x && z <= range.y && abs(film.x) <= 1 && abs(film.y) <= 1)) return false;
-  vec2 at = 0.5 * vec2(1 + film.x, 1 - film.y) * vec2(history_film_width, history_film_height) - 0.5;
-  Between across = between(at.x, history_columns), down = between(at.y, history_rows),
-          deep = between(encode_depth(z, range) * float(slices) - 0.5, slices);
-  for (int corner = 0; corner < 8; ++corner) {
-    ivec3 up = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-    vec3 share = mix(1 - vec3(across.share, down.share, deep.share), vec3(across.share, down.share, deep.share),
-                     equal(up, ivec3(1)));
-    float w = share.x * share.y * share.z;
-    if (w == 0) continue;  // there may be no such neighbour
-    int place = ((deep.low + up.z) * history_rows + down.low + up.y) * history_columns + across.low + up.x;
-    light += w * history_light[place].rgb;
-    media += w * history_media[place].rgb;
+  bool known = z >= range.x && z <= range.y && abs(film.x) <= 1 && abs(film.y) <= 1;
+  if (known) {
+    vec2 at = 0.5 * vec2(1 + film.x, 1 - film.y) * vec2(history_film_width, history_film_height) - 0.5;
+    Between across = between(at.x, history_columns), down = between(at.y, history_rows),
+            deep = between(encode_depth(z, range) * float(slices) - 0.5, slices);
+    vec3 shares = vec3(across.share, down.share, deep.share);
+    for (int corner = 0; corner < 8; ++corner) {
+      ivec3 up = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      vec3 share = mix(1 - shares, shares, equal(up, ivec3(1)));
+      float w = share.x * share.y * share.z;
+      if (w == 0) continue;  // there may be no such neighbour
+      int place = ((deep.low + up.z) * history_rows + down.low + up.y) * history_columns + across.low + up.x;
+      light += w * history_light[place].rgb;
+      media += w * history_media[place].rgb;
+    }
   }
-  return true;
+  return known;
 }

@@ -26,9 +26,10 @@ uniform float history_weight;  // of a froxel that the last picture knows
 uint reprojected = 0;
 
 // The frames of one froxel from where it is. False: no budget left.
-bool fill(ivec3 at, int place, inout vec3 light, inout vec3 media, inout int frame, inout int step_) {
+bool fill(ivec3 at, inout vec3 light, inout vec3 media, inout int frame, inout int step_) {
   bool moved = false;
-  for (; frame < frame_count; ++frame) {
+  // Counters advance at the ends of the loops: ray_marcher/march.comp.
+  while (frame < frame_count) {
     if (moved && work > uint(budget)) return false;
     vec4 look = frames[first_frame + frame];
     vec3 origin, direction;
@@ -40,10 +41,9 @@ bool fill(ivec3 at, int place, inout vec3 light, inout vec3 media, inout int fra
     if (seen) extinction = lit_extinction(x);
     float weight = look.w;
 #if HISTORY
-    vec3 middle_origin, middle_direction;
+    vec3 middle_origin, middle_direction, old_light, old_media;
     camera_ray(cell_size() * (vec2(at.xy) + 0.5), middle_origin, middle_direction);
     float to_middle = slice_values[middle_at(at.z)] / depth_per_metre(middle_direction);
-    vec3 old_light, old_media;
     bool known = history_at(middle_origin + to_middle * middle_direction, old_light, old_media);
     weight = known ? history_weight : 0;
     if (step_ == 0) light = old_light, media = old_media, reprojected += uint(known);
@@ -55,14 +55,16 @@ bool fill(ivec3 at, int place, inout vec3 light, inout vec3 media, inout int fra
     } else {
       lit_points = points;  // counted when the frame began
     }
-    if (seen && extinction != vec3(0))
-      for (; step_ <= lit_lights; ++step_) {
-        if (moved && work > uint(budget)) return false;
-        light += (1 - weight) * lit_source(step_ - 1, x, direction);
-        moved = true;
-      }
+    int end = extinction != vec3(0) ? lit_lights : 0;
+    while (step_ <= end) {
+      if (moved && work > uint(budget)) return false;
+      light += (1 - weight) * lit_source(step_ - 1, x, direction);
+      moved = true;
+      ++step_;
+    }
     step_ = 0;
     moved = true;
+    ++frame;
   }
   return true;
 }
@@ -80,7 +82,7 @@ void fill_froxel() {
     if (round_ > 0) frame = int(froxel_media[place].w), step_ = int(froxel_light[place].w);
   }
   if (frame >= frame_count) return;
-  if (!fill(at, place, light, media, frame, step_)) leave_to_next_round(tile);
+  if (!fill(at, light, media, frame, step_)) leave_to_next_round(tile);
   froxel_light[place] = vec4(light, float(step_));
   froxel_media[place] = vec4(media, float(frame));
 }

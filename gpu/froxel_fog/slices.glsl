@@ -31,5 +31,5 @@ float encode_depth(float z, vec2 range) {
   if (distribution == distribution_log) u = log_of_more(parameter * (z - range.x)) / log_of_more(parameter * span);
   if (distribution == distribution_power) u = raised(share, 1 / parameter);
   if (distribution == distribution_exponential) u = log(z / range.x) / log(range.y / range.x);
-  return clamp(u, 0, 1);
+  return clamp(u, 0.0, 1.0);
 }

@@ -69,7 +69,7 @@ float decode(int texel, float depth) {
 }
 #elif MAP_ENCODING == 3
 float decode(int texel, float depth) {
-  float so_far = light_maps[texel + 1] * max(depth - light_maps[texel], 0), total = light_maps[texel + 2];
+  float so_far = light_maps[texel + 1] * max(depth - light_maps[texel], 0.0), total = light_maps[texel + 2];
   return abs(so_far) < abs(total) ? so_far : total;
 }
 #elif MAP_ENCODING == 0
@@ -118,7 +118,7 @@ vec3 mapped_depth(int l, vec3 x) {
   vec3 depth = vec3(0);
   for (int c = 0; c < MAP_PLANES; ++c) {
     float sum = depth_in_plane(first + c * plane, at);
-    depth[c] = map_negative != 0 ? sum : max(sum, 0);
+    depth[c] = map_negative != 0 ? sum : max(sum, 0.0);
 #if MAP_ENCODING == 1
     work += 4u * uint(findMSB(map_entries) + 1);
 #elif MAP_ENCODING == 2

@@ -72,14 +72,17 @@ vec3 lit_source(int l, vec3 x, vec3 direction) {
     scattered += layers[k].albedo * layers[k].sigma_t *
                  (LIT_DENSITY(k) * phase_value(layers[k].phase, layers[k].g, minus, plus));
   scattered *= irradiance;
-  if (scattered == vec3(0)) return vec3(0);
 #if OCCLUDERS
-  ++lit_occlusion_rays;
-  if (occluded(x, to_light, distance_)) return vec3(0);
+  if (scattered != vec3(0)) {
+    ++lit_occlusion_rays;
+    if (occluded(x, to_light, distance_)) scattered = vec3(0);
+  }
 #endif
 #if DEPTHS == 2
-  ++lit_look_ups;
-  scattered *= exp(-depth_towards(l, x, to_light, distance_));
+  if (scattered != vec3(0)) {
+    ++lit_look_ups;
+    scattered *= exp(-depth_towards(l, x, to_light, distance_));
+  }
 #endif
   return scattered;
 }

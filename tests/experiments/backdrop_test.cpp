@@ -205,6 +205,7 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
                                          "ray_marcher_gpu",
                                          "half_resolution_march",
                                          "froxel_fog",
+                                         "froxel_fog_gpu",
                                          "path_tracer",
                                          "deterministic",
                                          "fogshop",

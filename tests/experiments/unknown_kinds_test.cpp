@@ -90,6 +90,7 @@ TEST_CASE(
       {"ray_marcher", ""},
       {"half_resolution_march", ""},
       {"froxel_fog", ""},
+      {"froxel_fog_gpu", "homogeneous or gaussians or grid or fitted"},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
       {"fogshop", "homogeneous or gaussians"},
       {"fogshop_gpu", "homogeneous or gaussians"},

@@ -47,7 +47,7 @@ const Case cases[] = {
     {"shadow_planes_gpu", "shadow_planes/spot", {}, Moves::lights, 30, 1, 0, 48 + 32},
     {"ray_marcher_gpu", "crosscheck/mesh_in_fog", marched, Moves::camera, 57, 1, 0, 128},
     {"froxel_fog_gpu", "crosscheck/mesh_in_fog", froxels, Moves::camera, 57, 1, 0, 32 + 12 + 48 + 48},
-    {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48},
+    {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48 + 48},
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
     {"compensated_ray_marching_gpu", "puffs", {{"cells", "8"}}, Moves::camera, 19, 1},
     {"compensated_ray_marching_gpu", "puffs", {{"variant", "paper"}}, Moves::camera, 32, 1},
