@@ -246,10 +246,12 @@ void ExperimentReader::leave_out_unread(const MethodCase& method, std::vector<Me
   }
   std::vector<Pairs> read;
   for (const MethodCase& c : cases) read.push_back(scene::without_unread(specs, c.settings));
-  for (const auto& [name, value] : method.settings)
+  for (const auto& setting : method.settings) {
+    const std::string& name = setting.first;
     if (std::any_of(read.begin(), read.end(), [&](const Pairs& row) { return row.count(name) > 0; }))
       for (std::size_t i = 0; i < cases.size(); ++i)
         if (read[i].count(name) == 0) cases[i].settings.erase(name);
+  }
 }
 
 Experiment read_experiment(const Folders& folders, const std::string& id, const std::string& profile) {

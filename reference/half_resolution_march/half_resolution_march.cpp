@@ -63,6 +63,8 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
     }
     compose(plan_, view, low, edge, behind, layers, part_of(execution, {0.9, 1}));
     lap("composition");
+    if (const std::string doubt = doubt_of(*plan_.media, plan_.options, scene, view); !doubt.empty())
+      result.film.metadata["warning"] = "half_resolution_march: " + doubt;
     result.counters = {{"rays", double(counters.rays)},
                        {"points", double(counters.media.points)},
                        {"look_ups", double(counters.media.look_ups)},

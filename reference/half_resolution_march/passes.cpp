@@ -2,6 +2,7 @@
 
 #include "reference/half_resolution_march/filter.h"
 #include "reference/half_resolution_march/jitter.h"
+#include "reference/lit_media/doubt.h"
 #include "scene/base/flush_subnormals.h"
 
 namespace airlight::half_resolution_march {
@@ -125,6 +126,15 @@ LowFilm march_blocks(const Plan& plan, const scene::View& view, const Behind& be
     of_row.rays += film.width() * options.frames;
   });
   return film;
+}
+
+std::string doubt_of(const lit_media::LitMedia& media, const Options& options, const scene::Scene& scene,
+                     const scene::View& view) {
+  return lit_media::doubt_of_steps(media, scene, view, [&](const Ray& ray, double t_end, std::vector<double>& ends) {
+    const Interval t = marched_stretch(media, ray, t_end, options.from_camera).t;
+    if (t.empty()) return;
+    for (int i = 0; i <= options.steps; ++i) ends.push_back(t.lo + i * (t.length() / options.steps));
+  });
 }
 
 void compose(const Plan& plan, const scene::View& view, const LowFilm& film, double edge, const Behind& behind,

@@ -45,6 +45,9 @@ Behind look_behind(const Plan&, const scene::View&, const scene::Execution&, Cou
 // One ray for each block and frame, and the depth of each block.
 LowFilm march_blocks(const Plan&, const scene::View&, const Behind&, const scene::Execution&, Counters&);
 
+// Why steps are too coarse for the view, in one line, or nothing.
+std::string doubt_of(const lit_media::LitMedia&, const Options&, const scene::Scene&, const scene::View&);
+
 // `edge`: difference of depth [m] that counts as one.
 void compose(const Plan&, const scene::View&, const LowFilm&, double edge, const Behind&, const scene::PictureLayers&,
              const scene::Execution&);

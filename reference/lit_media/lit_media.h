@@ -54,6 +54,9 @@ class LitMedia {
   // media are smaller than a metre, light nearer than a hundredth of the smallest diagonal (mean free path of endless fog).
   void along(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
 
+  // The extinction alone.
+  void extinction_along(const Ray&, const std::vector<double>& t, Samples&) const;
+
   // What media leave of light l on its way to x.
   Rgb transmittance_to_light(std::size_t l, const Point3& x) const;
 
@@ -69,6 +72,7 @@ class LitMedia {
   std::size_t map_bytes() const;
 
  private:
+  void add_extinction(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
   void add_densities(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
   void add_light(std::size_t l, const Ray&, std::size_t begin, std::size_t end, Samples&, Counters&) const;
 
