@@ -190,15 +190,20 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
 
 std::optional<std::vector<scene::StageTime>> PreparedFog::next(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Execution& execution) {
-  if (!options_.reproject || !unsupported(*scene, options_).empty()) return std::nullopt;
+  if (!options_.reproject) return std::nullopt;
+  const bool same = lit_->fits(*scene) && scene->width == scene_->width && scene->height == scene_->height;
+  if (!same && !unsupported(*scene, options_).empty()) return std::nullopt;
   watch_.lap();
-  auto lit = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution);
+  std::vector<scene::StageTime> times;
+  if (!same) {
+    lit_ = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution);
+    prepare_seconds_ = watch_.lap();
+    times = prepare_times();
+  }
   scene_ = std::move(scene);
-  lit_ = std::move(lit);
   if (last_) history_ = std::exchange(last_, std::nullopt);
   ++pictures_;
-  prepare_seconds_ = watch_.lap();
-  return prepare_times();
+  return times;
 }
 
 }  // namespace

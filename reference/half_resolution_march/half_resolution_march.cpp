@@ -99,13 +99,22 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
   // With reproject the last picture becomes the history of the next. Else a preparation keeps nothing.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
                                                     const scene::Execution& execution) override {
-    if (!plan_.options.reproject || !unsupported(*scene, plan_.options).empty()) return std::nullopt;
-    scene::Stopwatch watch;
-    plan_ = make_plan(std::move(scene), plan_.options, execution);
+    if (!plan_.options.reproject) return std::nullopt;
+    const scene::Scene& now = *plan_.scene;
+    const bool same = plan_.media->fits(*scene) && scene->width == now.width && scene->height == now.height;
+    if (!same && !unsupported(*scene, plan_.options).empty()) return std::nullopt;
+    std::vector<scene::StageTime> times;
+    if (same) {
+      plan_.scene = std::move(scene);
+    } else {
+      scene::Stopwatch watch;
+      plan_ = make_plan(std::move(scene), plan_.options, execution);
+      prepare_seconds_ = watch.lap();
+      times = prepare_times();
+    }
     if (last_) history_ = std::exchange(last_, std::nullopt);
     ++pictures_;
-    prepare_seconds_ = watch.lap();
-    return prepare_times();
+    return times;
   }
 
  private:

@@ -97,6 +97,10 @@ LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& opt
   map_seconds_ = watch.lap();
 }
 
+bool LitMedia::fits(const scene::Scene& scene) const {
+  return !scene.hash.empty() && scene.matter_hash == scene_->matter_hash && scene.light_hash == scene_->light_hash;
+}
+
 void LitMedia::add_densities(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
   // Without an end: a single point would have no interval.
   const Interval range{t.front(), infinity};

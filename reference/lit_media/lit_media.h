@@ -50,6 +50,9 @@ class LitMedia {
   // Throws Error where the lights' maps do not fit into memory. Its bits do not depend on the threads.
   LitMedia(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution&);
 
+  // Do these media and lights stand for that scene's, too?
+  bool fits(const scene::Scene&) const;
+
   // At ascending distances t [m] on a ray; direction unit. Light nearer than 0.01 m counts as if it were so far away; where
   // media are smaller than a metre, light nearer than a hundredth of the smallest diagonal (mean free path of endless fog).
   void along(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
