@@ -31,4 +31,16 @@ class CameraRays {
   double aspect_, half_;
 };
 
+// The inverse of camera_ray: where a point is on the film (x, y) [pixels], and its depth along `forward` [m]. Behind a perspective camera
+// (depth <= 0) x and y mean nothing.
+inline Vec3 film_position(const Camera& camera, const Point3& x, int width, int height) {
+  const Vec3 from = x - camera.position;
+  const double depth = from.dot(camera.forward);
+  const double half =
+      camera.kind == Camera::Kind::orthographic ? 0.5 * camera.height : depth * std::tan(0.5 * camera.vertical_fov);
+  const double aspect = double(width) / height;
+  const double right = from.dot(camera.right) / (half * aspect), up = from.dot(camera.up) / half;
+  return {0.5 * (1 + right) * width, 0.5 * (1 - up) * height, depth};
+}
+
 }  // namespace airlight::scene

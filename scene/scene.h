@@ -27,6 +27,7 @@ struct Scene {
       Rgb::Zero();          // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
   std::string hash;         // 32 hex digits of the content: equal hash, equal picture
   std::string matter_hash;  // of the media and surfaces alone
+  std::string light_hash;   // of the lights alone
 };
 
 // Changes before reading: "film.width" -> "64", "medium.0.sigma_t" -> "[1, 2, 4]"; the value is TOML text.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/application/folders.h"
+#include "experiments/driver/next_frames.h"
 #include "scene/convert/medium_form.h"
 #include "scene/scene.h"
 
@@ -34,7 +35,7 @@ struct MethodCase {
   std::string layer;                               // compared with the reference's layer
   bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
   bool picture_only = false;        // rendered and timed, not compared
-  std::string moving;               // each timed run is the next frame, of which this has moved; empty: one frame
+  std::optional<Moving> moving;     // each timed run is the next frame, of which this has moved; none: one frame
   std::vector<std::string> scenes;  // empty: all
   std::string position;             // file:line:column
 };

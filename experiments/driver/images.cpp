@@ -117,12 +117,12 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
   row.device = planned.renderer->device();
   const scene::Execution timed = as_timed(execution, row);
   if (!row.device.empty()) prepared->render(judged->view, timed);  // drivers compile shaders at first use
-  const auto moving = m.moving.empty() ? nullptr : std::make_shared<NextFrames>(prepared, planned.scene, m.moving);
+  const auto moving = m.moving ? std::make_shared<NextFrames>(prepared, planned.scene, *m.moving) : nullptr;
   double first = 0;
   const auto render = [&](const scene::Execution& how) {
     const double start = steady_seconds();
     scene::Rendering rendering = moving ? moving->render(judged->view, how) : prepared->render(judged->view, how);
-    first = (steady_seconds() - start) / (moving ? 2 : 1);
+    first = (steady_seconds() - start) / (moving ? m.moving->frames : 1);
     check_interrupted();
     return rendering;
   };
@@ -172,7 +172,6 @@ void Images::read_method(const TableReader& reader, const Experiment& e, MethodC
   method.layer = reader.text("layer", e.layer);
   method.picture_only = reader.flag("picture_only", false);
   method.count_noise = reader.flag("count_noise", false);
-  if (reader.has("moving")) method.moving = reader.choice("moving", what_may_move());
 }
 
 void Images::check_metrics(Experiment& e, const std::string& position) const {

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
+#include "scene/base/settings.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/spline_map.h"
 
@@ -49,47 +52,103 @@ bool thin_fog(Scene& scene) {
   });
 }
 
-struct Kind {
-  const char* name;
-  const char* whose;
-  bool (*move)(Scene&);  // whether there is anything to move
-};
-constexpr Kind kinds[] = {
-    {"lights", "lights", move_lights}, {"fog", "fogmap", move_fog}, {"coefficients", "fogmap", thin_fog}};
+// About the film's upward direction, around `pivot`.
+void turn(scene::Camera& camera, const Point3& pivot, double angle) {
+  const Mat3 turned = Eigen::AngleAxisd(angle, camera.up).toRotationMatrix();
+  camera.position = pivot + turned * (camera.position - pivot);
+  camera.forward = turned * camera.forward;
+  camera.right = turned * camera.right;
+}
+
+bool move_camera(Scene& scene, double angle) {
+  if (!scene.backdrops.empty()) return false;  // they are for one camera
+  Box media;
+  for (const scene::Medium& medium : scene.media) {
+    const Box box = bounding_box(medium);
+    if (!box.empty()) media = unite(media, box);
+  }
+  const bool finite = !media.empty() && media.size().allFinite();
+  turn(scene.camera, finite ? media.center() : scene.camera.position, angle);
+  return true;
+}
+
+const scene::Choices<Moving::What> kinds = {{"camera", Moving::What::camera},
+                                            {"lights", Moving::What::lights},
+                                            {"fog", Moving::What::fog},
+                                            {"coefficients", Moving::What::coefficients}};
+
+void bind(scene::SettingBinder& b, Moving& m) {
+  b.choice("what", m.what, kinds, "what differs from frame to frame");
+  b.integer("frames", m.frames, 2, 1000, "frames, of which the last is judged");
+  b.real("turn", m.turn, 0, 1, "angle by which a camera turns from frame to frame [rad]").where("what", {"camera"});
+}
+
+std::string name_of(Moving::What what) {
+  for (const auto& [name, kind] : kinds)
+    if (kind == what) return name;
+  return "";
+}
+
+// One frame back. False if the scene has nothing that moves so.
+bool move(Scene& scene, const Moving& moving) {
+  switch (moving.what) {
+    case Moving::What::camera:
+      return move_camera(scene, -moving.turn);
+    case Moving::What::lights:
+      return move_lights(scene);
+    case Moving::What::fog:
+      return move_fog(scene);
+    case Moving::What::coefficients:
+      return thin_fog(scene);
+  }
+  return false;
+}
 
 }  // namespace
 
-std::vector<std::string> what_may_move() {
-  std::vector<std::string> names;
-  for (const Kind& kind : kinds) names.push_back(kind.name);
-  return names;
+Moving read_moving(const std::map<std::string, std::string>& given, const std::string& where) {
+  return scene::read_settings(bind, scene::Settings(scene::list_settings(bind), given, where));
 }
 
-NextFrames::NextFrames(std::shared_ptr<scene::Prepared> prepared, std::shared_ptr<const Scene> here,
-                       const std::string& moving)
-    : prepared_(std::move(prepared)), here_(std::move(here)), moving_(moving) {
-  auto there = std::make_shared<Scene>(*here_);
-  for (const Kind& kind : kinds)
-    if (moving == kind.name && !kind.move(*there))
-      throw scene::NotSupported("", fmt::format("the scene has no {} that could move", kind.whose));
-  there_ = there;
+std::string canonical(const Moving& m) {
+  return fmt::format("{} {}{}", name_of(m.what), m.frames,
+                     m.what == Moving::What::camera ? fmt::format(" {}", m.turn) : "");
+}
+
+NextFrames::NextFrames(std::shared_ptr<scene::Prepared> prepared, SharedScene here, const Moving& moving)
+    : prepared_(std::move(prepared)), moving_(moving), path_{std::move(here)} {
+  while (path_.size() < std::size_t(moving.frames)) {
+    auto before = std::make_shared<Scene>(*path_.back());
+    if (!move(*before, moving))
+      throw scene::NotSupported("", fmt::format("the scene has no {} that could move", name_of(moving.what)));
+    finish(*before);
+    path_.push_back(std::move(before));
+  }
+  std::reverse(path_.begin(), path_.end());
+  here_ = path_.size() - 1;
 }
 
 scene::Rendering NextFrames::render(const scene::View& view, const scene::Execution& execution) {
-  one(there_, view, execution);
-  return one(here_, view, execution);
+  scene::Rendering last;
+  for (here_ = 0; here_ < path_.size(); ++here_) last = one(path_[here_], view, execution);
+  --here_;
+  return last;
 }
 
 std::vector<scene::StageTime> NextFrames::again(const scene::View& view, const scene::Execution& execution) {
-  std::swap(here_, there_);
-  return one(here_, view, execution).times;
+  here_ = here_ + 1 < path_.size() ? here_ + 1 : here_ - 1;
+  return one(path_[here_], view, execution).times;
 }
 
-scene::Rendering NextFrames::one(const std::shared_ptr<const Scene>& at, const scene::View& view,
-                                 const scene::Execution& execution) {
+scene::Rendering NextFrames::one(const SharedScene& at, scene::View view, const scene::Execution& execution) {
+  const bool camera = moving_.what == Moving::What::camera;
   auto times = prepared_->next(at, execution);
-  if (!times) throw scene::NotSupported("", fmt::format("its {} cannot move: every frame is prepared anew", moving_));
+  if (!times && !camera)
+    throw scene::NotSupported("",
+                              fmt::format("its {} cannot move: every frame is prepared anew", name_of(moving_.what)));
+  if (camera) view.camera = at->camera;
   scene::Rendering rendering = prepared_->render(view, execution);
+  if (!times) return rendering;
   times->insert(times->end(), rendering.times.begin(), rendering.times.end());
   rendering.times = std::move(*times);
   return rendering;

@@ -1,5 +1,6 @@
 // Frames of a scene of which something moves: a preparation becomes that of the next frame, and is rendered.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,28 +9,43 @@
 
 namespace airlight::experiments {
 
-// What a method's `moving` may say: lights to and fro by a millimetre; fogmaps likewise, turned by 1e-4 as well; or all
-// coefficients of fogmaps a thousandth less and back.
-std::vector<std::string> what_may_move();
+// An experiment's `moving`: what a frame differs by from the frame before.
+struct Moving {
+  enum class What {
+    camera,       // turns around the middle of finite media, or else on the spot, about the film's upward direction
+    lights,       // move by a millimetre and turn by a milliradian
+    fog,          // fogmaps move by a millimetre and turn by 1e-4
+    coefficients  // of fogmaps become a thousandth less
+  };
+  What what = What::lights;
+  int frames = 2;      // of which the last is judged: it shows the scene as it is given
+  double turn = 1e-3;  // [rad] of a camera, from frame to frame
+};
+
+// From its text, "what" to "camera" and so on. Throws Error, which begins with `where`.
+Moving read_moving(const std::map<std::string, std::string>& given, const std::string& where);
+std::string canonical(const Moving&);
 
 class NextFrames {
  public:
   // Throws NotSupported if nothing in the scene moves so.
-  NextFrames(std::shared_ptr<scene::Prepared>, std::shared_ptr<const scene::Scene>, const std::string& moving);
+  NextFrames(std::shared_ptr<scene::Prepared>, std::shared_ptr<const scene::Scene>, const Moving&);
 
-  // Both throw NotSupported if the preparation cannot become that of the next frame.
+  // Both throw NotSupported if the preparation cannot become that of the next frame. One without next() holds for any camera.
 
-  // Two frames, the second of the scene as it was given.
+  // All frames, the last of the scene as it was given.
   scene::Rendering render(const scene::View&, const scene::Execution&);
-  // Stages of one frame more.
+  // Stages of one frame more, between the last two.
   std::vector<scene::StageTime> again(const scene::View&, const scene::Execution&);
 
  private:
-  scene::Rendering one(const std::shared_ptr<const scene::Scene>&, const scene::View&, const scene::Execution&);
+  using SharedScene = std::shared_ptr<const scene::Scene>;
+  scene::Rendering one(const SharedScene&, scene::View, const scene::Execution&);
 
   std::shared_ptr<scene::Prepared> prepared_;
-  std::shared_ptr<const scene::Scene> here_, there_;
-  std::string moving_;
+  Moving moving_;
+  std::vector<SharedScene> path_;  // by frame
+  std::size_t here_;               // the frame that was rendered last
 };
 
 }  // namespace airlight::experiments

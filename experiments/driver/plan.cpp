@@ -56,7 +56,7 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
                                  e.layer,
                                  fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
-  parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving));
+  parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving ? canonical(*m.moving) : ""));
   const std::string device = component.device();
   parts.push_back(device);
   if (!device.empty()) parts.push_back(gpu::foreign_shaders());

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "experiments/application/renderers.h"
 #include "experiments/driver/committed_references.h"
@@ -205,30 +206,43 @@ void ExperimentReader::methods(const TableReader& top) {
     kind().read_method(reader, experiment_, method);
     method.scenes = strings(*table, "scenes", reader);
     for (const std::string& name : method.scenes) known(reader, "scenes", name, "scene");
-    const bool converts = std::find(of_kind.begin(), of_kind.end(), "convert") != of_kind.end();
-    Pairs conversion = converts ? settings(*table, "convert", reader) : Pairs{};
-    const std::string convert_position =
-        scene::load::location(table->contains("convert") ? table->get("convert")->source() : table->source());
-    const auto convert = [&](MethodCase& c) {
-      if (!conversion.empty()) c.convert = scene::read_conversion(conversion, convert_position);
+    // Tables of a method's own settings beside its renderer's: what becomes of the case when one of them is known.
+    struct Group {
+      std::string name;
+      std::function<void(MethodCase&, const Pairs&, const std::string& position)> apply;
+      Pairs values;
+      std::string position;
     };
-    convert(method);
+    std::vector<Group> groups = {
+        {"convert",
+         [](auto& c, auto& given, auto& where) { c.convert = scene::read_conversion(given, where); },
+         {},
+         {}},
+        {"moving", [](auto& c, auto& given, auto& where) { c.moving = read_moving(given, where); }, {}, {}}};
+    for (Group& group : groups) {
+      if (!table->contains(group.name)) continue;
+      group.values = settings(*table, group.name, reader);
+      group.position = scene::load::location(table->get(group.name)->source());
+      group.apply(method, group.values, group.position);
+    }
     std::vector<MethodCase> cases{method};
     if (auto sweep = reader.table("sweep")) {
       sweep->allow({"key", "values"});
       cases.clear();
-      const std::string key = sweep->text("key"), of_conversion = "convert.";
+      const std::string key = sweep->text("key");
       const toml::array* values = table->get("sweep")->as_table()->get_as<toml::array>("values");
       if (!values || values->empty()) sweep->expected("values", "a list of values");
       for (const toml::node& value : *values) {
         cases.push_back(method);
         cases.back().setting = plain(value);
-        if (key.starts_with(of_conversion)) {
-          conversion[key.substr(of_conversion.size())] = cases.back().setting;
-          convert(cases.back());
-        } else {
-          cases.back().settings[key] = cases.back().setting;
+        bool grouped = false;
+        for (Group& group : groups) {
+          if (group.values.empty() || !key.starts_with(group.name + ".")) continue;
+          group.values[key.substr(group.name.size() + 1)] = cases.back().setting;
+          group.apply(cases.back(), group.values, group.position);
+          grouped = true;
         }
+        if (!grouped) cases.back().settings[key] = cases.back().setting;
       }
     }
     if (cases.size() > 1) leave_out_unread(method, cases);
@@ -246,10 +260,12 @@ void ExperimentReader::leave_out_unread(const MethodCase& method, std::vector<Me
   }
   std::vector<Pairs> read;
   for (const MethodCase& c : cases) read.push_back(scene::without_unread(specs, c.settings));
-  for (const auto& [name, value] : method.settings)
+  for (const auto& setting : method.settings) {
+    const std::string& name = setting.first;
     if (std::any_of(read.begin(), read.end(), [&](const Pairs& row) { return row.count(name) > 0; }))
       for (std::size_t i = 0; i < cases.size(); ++i)
         if (read[i].count(name) == 0) cases[i].settings.erase(name);
+  }
 }
 
 Experiment read_experiment(const Folders& folders, const std::string& id, const std::string& profile) {

@@ -9,6 +9,7 @@
 #include "reference/froxel_fog/fit.h"
 #include "reference/froxel_fog/frames.h"
 #include "reference/froxel_fog/stages.h"
+#include "reference/lit_media/doubt.h"
 #include "scene/base/error.h"
 #include "scene/base/flush_subnormals.h"
 #include "scene/base/place_error.h"
@@ -94,6 +95,7 @@ class PreparedFog final : public scene::Prepared {
     }
     counters += draw(volume, view, parts.next(), result.film);
     book("picture");
+    if (volume) warn(*volume, view, result.film);
     const double froxels = volume ? count_froxels(options_, view.width, view.height) : 0;
     result.counters = {{"froxels", froxels},
                        {"rays", double(counters.rays)},
@@ -112,6 +114,19 @@ class PreparedFog final : public scene::Prepared {
   void keep(const Volume& volume, const scene::View& view) const {
     const std::lock_guard lock(mutex_);
     last_.emplace(volume, view);
+  }
+
+  // Slices that are too coarse for the view.
+  void warn(const Volume& volume, const scene::View& view, scene::Film& film) const {
+    const auto slice_ends = [&](const Ray& ray, double t_end, std::vector<double>& ends) {
+      const double along = depth_per_metre(view.camera, ray);
+      for (int k = 0; k <= volume.slices().count(); ++k) {
+        ends.push_back(volume.slices().decode(double(k) / volume.slices().count()) / along);
+        if (ends.back() >= t_end) break;
+      }
+    };
+    const std::string doubt = lit_media::doubt_of_steps(*lit_, *scene_, view, slice_ends);
+    if (!doubt.empty()) film.metadata["warning"] = "froxel_fog: " + doubt;
   }
 
   // Each pixel looks the volume up where its ray ends, or in the last slice.
@@ -175,15 +190,21 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
 
 std::optional<std::vector<scene::StageTime>> PreparedFog::next(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Execution& execution) {
-  if (!options_.reproject || !unsupported(*scene, options_).empty()) return std::nullopt;
+  if (!options_.reproject) return std::nullopt;
+  const bool same =
+      lit_media::fits(lit_->plan(), *scene) && scene->width == scene_->width && scene->height == scene_->height;
+  if (!same && !unsupported(*scene, options_).empty()) return std::nullopt;
   watch_.lap();
-  auto lit = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution);
+  std::vector<scene::StageTime> times;
+  if (!same) {
+    lit_ = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution);
+    prepare_seconds_ = watch_.lap();
+    times = prepare_times();
+  }
   scene_ = std::move(scene);
-  lit_ = std::move(lit);
   if (last_) history_ = std::exchange(last_, std::nullopt);
   ++pictures_;
-  prepare_seconds_ = watch_.lap();
-  return prepare_times();
+  return times;
 }
 
 }  // namespace

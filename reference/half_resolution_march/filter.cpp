@@ -50,9 +50,11 @@ void blur(LowFilm& film, double edge, const scene::Execution& execution) {
   pass(false);
 }
 
-Neighbours neighbours(const Blocks& blocks, int pixel) {
-  const double x = pixel + 0.5;
-  const int block = pixel / blocks.divide, first = x < blocks.center(block) ? block - 1 : block;
+Neighbours neighbours(const Blocks& blocks, int pixel) { return neighbours_at(blocks, pixel + 0.5); }
+
+Neighbours neighbours_at(const Blocks& blocks, double x) {
+  const int block = std::min(int(std::clamp(x, 0.0, double(blocks.pixels))) / blocks.divide, blocks.count() - 1);
+  const int first = x < blocks.center(block) ? block - 1 : block;
   if (first < 0) return {0, 0, 0};
   if (first + 1 >= blocks.count()) return {first, first, 0};
   const double center = blocks.center(first);

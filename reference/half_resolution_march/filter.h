@@ -19,6 +19,8 @@ struct Neighbours {
   double share;
 };
 Neighbours neighbours(const Blocks&, int pixel);
+// The same at a film position [film pixels].
+Neighbours neighbours_at(const Blocks&, double x);
 
 // At a film pixel of this depth: bilinear; but, if `nearest_depth`, the neighbour of nearest depth where the four differ from it by more
 // than upsample_edges * edge together. Of several that are equally near the one that weighs most.

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+#include <utility>
+
 #include "reference/half_resolution_march/filter.h"
+#include "reference/half_resolution_march/history.h"
 #include "reference/half_resolution_march/limits.h"
 #include "reference/half_resolution_march/stages.h"
 #include "scene/base/limits.h"
@@ -19,6 +23,11 @@ scene::Execution part_of(const scene::Execution& execution, Interval share) {
       return execution.progress(share.lo + fraction * share.length());
     };
   return part;
+}
+
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution) {
+  auto media = std::make_shared<const lit_media::LitMedia>(scene, options.media, execution);
+  return {std::move(scene), options, std::move(media)};
 }
 
 class PreparedHalfResolutionMarch final : public scene::Prepared {
@@ -53,28 +62,75 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
     }
     LowFilm low(view.width, view.height, plan_.options.divide);
     if (!plan_.media->layers().empty()) {
-      low = march_blocks(plan_, view, behind, part_of(execution, {0.2, 0.8}), counters);
+      const History* last = history_ && history_->fits(view) ? &*history_ : nullptr;
+      Marched marched = march_blocks(plan_, view, behind, pictures_, last ? &last->view : nullptr,
+                                     part_of(execution, {0.2, 0.8}), counters);
+      low = std::move(marched.film);
       lap("march");
+      if (last) {
+        blend(plan_.options, *last, marched.traces, plan_.options.edge * counters.longest, low,
+              part_of(execution, {0.8, 0.85}), counters);
+        lap("history");
+      }
     }
+    if (plan_.options.reproject) keep(low, view);
     const double edge = plan_.options.edge * counters.longest;
     if (blurs(plan_) && edge > 0) {
-      blur(low, edge, part_of(execution, {0.8, 0.9}));
+      blur(low, edge, part_of(execution, {0.85, 0.9}));
       lap("blur");
     }
     compose(plan_, view, low, edge, behind, layers, part_of(execution, {0.9, 1}));
     lap("composition");
+    if (const std::string doubt = doubt_of(*plan_.media, plan_.options, scene, view); !doubt.empty())
+      result.film.metadata["warning"] = "half_resolution_march: " + doubt;
     result.counters = {{"rays", double(counters.rays)},
                        {"points", double(counters.media.points)},
                        {"look_ups", double(counters.media.look_ups)},
                        {"occlusion_rays", double(counters.media.occlusion_rays)},
                        {"pixels_behind", double(counters.pixels)}};
+    if (plan_.options.reproject) {
+      result.counters["history_used"] = double(counters.history_used);
+      result.counters["history_rejected"] = double(counters.history_rejected);
+    }
+    if (plan_.options.clamp) result.counters["history_clamped"] = double(counters.history_clamped);
     return result;
   }
 
+  // With reproject the last picture becomes the history of the next. Else a preparation keeps nothing.
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
+                                                    const scene::Execution& execution) override {
+    if (!plan_.options.reproject) return std::nullopt;
+    const scene::Scene& now = *plan_.scene;
+    const bool same =
+        lit_media::fits(plan_.media->plan(), *scene) && scene->width == now.width && scene->height == now.height;
+    if (!same && !unsupported(*scene, plan_.options).empty()) return std::nullopt;
+    std::vector<scene::StageTime> times;
+    if (same) {
+      plan_.scene = std::move(scene);
+    } else {
+      scene::Stopwatch watch;
+      plan_ = make_plan(std::move(scene), plan_.options, execution);
+      prepare_seconds_ = watch.lap();
+      times = prepare_times();
+    }
+    if (last_) history_ = std::exchange(last_, std::nullopt);
+    ++pictures_;
+    return times;
+  }
+
  private:
+  void keep(const LowFilm& film, const scene::View& view) const {
+    const std::lock_guard lock(mutex_);
+    last_.emplace(History{film, view});
+  }
+
   Plan plan_;
   std::string settings_;
   double prepare_seconds_;
+  int pictures_ = 0;                // before this one, by next()
+  std::optional<History> history_;  // what they left; any number of renders begins with it
+  mutable std::mutex mutex_;
+  mutable std::optional<History> last_;  // of the last render, for next()
 };
 
 }  // namespace
@@ -95,8 +151,7 @@ std::unique_ptr<scene::Prepared> HalfResolutionMarch::prepare_supported(std::sha
                                                                         const scene::Settings& settings,
                                                                         const scene::Execution& execution) const {
   scene::Stopwatch watch;
-  Plan plan{scene, read_options(settings), nullptr};
-  plan.media = std::make_shared<const lit_media::LitMedia>(scene, plan.options.media, execution);
+  Plan plan = make_plan(std::move(scene), read_options(settings), execution);
   const double seconds = watch.lap();
   return std::make_unique<PreparedHalfResolutionMarch>(std::move(plan), settings.canonical(), seconds);
 }

@@ -66,10 +66,12 @@ Fog march(const lit_media::LitMedia& media, const Options& options, const Ray& r
   steps.t.resize(std::size_t(options.steps));
   for (int i = 0; i < options.steps; ++i) steps.t[std::size_t(i)] = stretch.t.lo + (i + offset) * h;
   media.along(ray, steps.t, steps.samples, counters);
+  double weighted = 0;  // distances, by the airlight from there
   for (std::size_t i = 0; i < steps.t.size(); ++i) {
     const Rgb& extinction = steps.samples.extinction[i];
     if ((extinction == 0).all()) continue;
     const Rgb& source = steps.samples.source[i];
+    const double before = options.reproject ? fog.airlight.sum() : 0;
     Share share{1, 0};
     for (int c = 0; c < 3; ++c) {
       const double k = extinction[c];
@@ -78,6 +80,11 @@ Fog march(const lit_media::LitMedia& media, const Options& options, const Ray& r
       fog.airlight[c] += fog.transmittance[c] * source[c] * length;
       fog.transmittance[c] *= share.through;
     }
+    if (options.reproject) weighted += (fog.airlight.sum() - before) * steps.t[i];
+  }
+  if (options.reproject) {
+    const double airlight = fog.airlight.sum();
+    fog.distance = airlight > 0 ? weighted / airlight : 0.5 * (stretch.t.lo + stretch.t.hi);
   }
   fog.transmittance *= stretch.beyond;
   return fog;

@@ -8,6 +8,7 @@ namespace airlight::half_resolution_march {
 struct Fog {
   Rgb airlight = Rgb::Zero();       // [W/m^2/sr]
   Rgb transmittance = Rgb::Ones();  // from the camera to the end of the ray
+  double distance = 0;              // mean distance that airlight comes from [m]; only with reproject
 };
 
 // The part of a ray that is marched: from where media begin (or the camera) to where they end, at most to t_end. Endless media are cut
@@ -28,6 +29,7 @@ struct Steps {
 // n equal steps of length h, each sampled at the share `offset` of it, extinction k and source S there:
 //   analytic  L += T S (1 - exp(-k h)) / k,  T *= exp(-k h): exact for constant k and S
 //   riemann   T *= exp(-k h),  L += T S h: order 1, too dark, as in common shaders
+// The mean distance weighs steps by the airlight that they add to all channels. Without airlight it is the middle of the stretch.
 Fog march(const lit_media::LitMedia&, const Options&, const Ray&, const Stretch&, double offset, Steps&,
           lit_media::Counters&);
 

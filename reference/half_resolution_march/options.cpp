@@ -16,7 +16,22 @@ void bind(scene::SettingBinder& b, Options& o) {
   b.choice("integration", o.analytic, {{"analytic", true}, {"riemann", false}},
            "light of a step: analytic: its extinction integrated; riemann: source times transmittance times length");
   b.integer("frames", o.frames, 1, 4096, "frames of a still view, each with other offsets, averaged in one render")
-      .where("jitter", {"bayer", "noise"});
+      .where("jitter", {"bayer", "noise"})
+      .where("reproject", {"false"});
+  b.flag(
+      "reproject", o.reproject,
+      "every picture is one frame; the next picture of a preparation is blended into the last one, moved to its camera");
+  b.real("history_weight", o.history_weight, 0, 0.9999, "what the last picture weighs in the next one")
+      .where("reproject", {"true"});
+  b.choice("history_depth", o.airlight_depth, {{"airlight", true}, {"end", false}},
+           "by which point a ray is found in the last picture: airlight: the mean depth that its airlight comes from; "
+           "end: what ends it, or where media end")
+      .where("reproject", {"true"});
+  b.choice(
+       "clamp", o.clamp, {{"none", false}, {"neighbourhood", true}},
+       "neighbourhood: the last picture is limited to the range of the 3 x 3 new marched pixels: trails vanish, and "
+       "some of the history is lost")
+      .where("reproject", {"true"});
   b.choice("blur", o.blur, {{"bilateral", true}, {"none", false}},
            "filter of the marched pixels: bilateral: 11 x 11, separable, that stops at edges of depth");
   b.choice("depth", o.min_max, {{"min_max", true}, {"centre", false}},
@@ -31,6 +46,7 @@ void bind(scene::SettingBinder& b, Options& o) {
          "difference of depth that counts as an edge, as a share of the longest way through media in the picture: 2 of "
          "64 m in engines")
       .where("blur", {"bilateral"})
+      .or_where("reproject", {"true"})
       .or_where("divide", {"> 1"})
       .where("upsample", {"nearest_depth"});
   lit_media::bind(b, o.media);
@@ -40,6 +56,10 @@ void bind(scene::SettingBinder& b, Options& o) {
 
 std::vector<scene::SettingSpec> option_specs() { return scene::list_settings(bind); }
 
-Options read_options(const scene::Settings& settings) { return scene::read_settings(bind, settings); }
+Options read_options(const scene::Settings& settings) {
+  Options options = scene::read_settings(bind, settings);
+  if (options.reproject) options.frames = 1;
+  return options;
+}
 
 }  // namespace airlight::half_resolution_march

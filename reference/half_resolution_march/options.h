@@ -20,8 +20,12 @@ struct Options {
   int frames = 1;                 // averaged, each with offsets of its own
   bool blur = false;              // bilateral, of the marched pixels (filter.h)
   bool nearest_depth = true;      // where depths differ, upsampling takes one neighbour; else always bilinear
-  bool min_max = true;    // a marched pixel is the nearest or the farthest of its block; else the block's centre
-  double edge = 0.03125;  // depth that counts as an edge, as a share of the longest way through media
+  bool min_max = true;     // a marched pixel is the nearest or the farthest of its block; else the block's centre
+  bool reproject = false;  // the next picture is blended into the last one (history.h)
+  double history_weight = 0.9;
+  bool airlight_depth = true;  // a ray is looked for where its airlight comes from; else where it ends
+  bool clamp = false;          // the last picture, to what the 3 x 3 marched pixels around have
+  double edge = 0.03125;       // depth that counts as an edge, as a share of the longest way through media
 };
 
 constexpr double horizon = 16;  // optical depth at which an endless ray is cut

@@ -1,7 +1,9 @@
 #include "reference/half_resolution_march/passes.h"
 
 #include "reference/half_resolution_march/filter.h"
+#include "reference/half_resolution_march/history.h"
 #include "reference/half_resolution_march/jitter.h"
+#include "reference/lit_media/doubt.h"
 #include "scene/base/flush_subnormals.h"
 
 namespace airlight::half_resolution_march {
@@ -68,7 +70,8 @@ double bytes_needed(const Plan& plan, const scene::View& view) {
   const double pixels = double(view.width) * view.height, divide = plan.options.divide;
   const double blocks = std::ceil(view.width / divide) * std::ceil(view.height / divide);
   return pixels * ((ends_rays(*plan.scene) ? sizeof(double) : 0) + (seen_behind(*plan.scene) ? sizeof(Rgb) : 0)) +
-         blocks * ((plan.options.blur ? 2 : 1) * sizeof(FogPixel) + sizeof(double));
+         blocks * ((plan.options.blur ? 2 : 1) * sizeof(FogPixel) + sizeof(double)) +
+         (plan.options.reproject ? blocks * (3 * sizeof(FogPixel) + 2 * sizeof(double) + sizeof(Trace)) : 0);
 }
 
 Behind look_behind(const Plan& plan, const scene::View& view, const scene::Execution& execution, Counters& counters) {
@@ -99,10 +102,12 @@ Behind look_behind(const Plan& plan, const scene::View& view, const scene::Execu
   return behind;
 }
 
-LowFilm march_blocks(const Plan& plan, const scene::View& view, const Behind& behind, const scene::Execution& execution,
-                     Counters& counters) {
+Marched march_blocks(const Plan& plan, const scene::View& view, const Behind& behind, int first,
+                     const scene::View* last, const scene::Execution& execution, Counters& counters) {
   const Options& options = plan.options;
-  LowFilm film(view.width, view.height, options.divide);
+  Marched marched{LowFilm(view.width, view.height, options.divide), {}};
+  LowFilm& film = marched.film;
+  if (last) marched.traces.resize(film.fog.size());
   if (!behind.depth.empty()) film.depth.resize(film.fog.size());
   const scene::CameraRays rays(view.camera, view.width, view.height);
   counters += scene::parallel_sum<Counters>(film.height(), execution, [&](int y, Counters& of_row) {
@@ -113,18 +118,32 @@ LowFilm march_blocks(const Plan& plan, const scene::View& view, const Behind& be
       const Stretch stretch = marched_stretch(*plan.media, block.ray, block.t_end(view.camera), options.from_camera);
       of_row.longest = std::max(of_row.longest, stretch.in_media);
       Rgb airlight = Rgb::Zero(), transmittance = Rgb::Zero();
+      double distance = 0;
       for (int frame = 0; frame < options.frames; ++frame) {
-        const Fog fog = march(*plan.media, options, block.ray, stretch, step_offset(options.jitter, x, y, frame), steps,
-                              of_row.media);
+        const Fog fog = march(*plan.media, options, block.ray, stretch,
+                              step_offset(options.jitter, x, y, first + frame), steps, of_row.media);
         airlight += fog.airlight;
         transmittance += fog.transmittance;
+        distance = options.airlight_depth ? fog.distance : stretch.t.hi;
       }
       film.fog[film.at(x, y)] = packed(airlight / options.frames, transmittance / options.frames);
       if (!film.depth.empty()) film.depth[film.at(x, y)] = block.depth;
+      if (last && !stretch.t.empty())
+        marched.traces[film.at(x, y)] =
+            trace_of(film, x, y, block.ray, distance, block.t_end(view.camera), view, *last);
     }
     of_row.rays += film.width() * options.frames;
   });
-  return film;
+  return marched;
+}
+
+std::string doubt_of(const lit_media::LitMedia& media, const Options& options, const scene::Scene& scene,
+                     const scene::View& view) {
+  return lit_media::doubt_of_steps(media, scene, view, [&](const Ray& ray, double t_end, std::vector<double>& ends) {
+    const Interval t = marched_stretch(media, ray, t_end, options.from_camera).t;
+    if (t.empty()) return;
+    for (int i = 0; i <= options.steps; ++i) ends.push_back(t.lo + i * (t.length() / options.steps));
+  });
 }
 
 void compose(const Plan& plan, const scene::View& view, const LowFilm& film, double edge, const Behind& behind,

@@ -58,6 +58,12 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
       : !fog           ? no_fog
       : !lit           ? "no light"
                        : "no medium scatters");
+  add("history", fog && o.reproject,
+      !fog           ? no_fog
+      : !o.reproject ? "reproject = false: no picture goes on from the last one"
+                     : fmt::format("the last picture weighs {:.3g}, found by {}{}", o.history_weight,
+                                   o.airlight_depth ? "the depth of the airlight" : "the ends of rays",
+                                   o.clamp ? "; limited to 3 x 3 marched pixels" : ""));
   add("blur", blurs(plan),
       !fog               ? no_fog
       : !o.blur          ? "blur = none"

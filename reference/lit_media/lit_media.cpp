@@ -91,6 +91,11 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   return plan;
 }
 
+bool fits(const Plan& plan, const scene::Scene& scene) {
+  return !scene.hash.empty() && scene.matter_hash == plan.scene->matter_hash &&
+         scene.light_hash == plan.scene->light_hash;
+}
+
 bool needs_maps(const Plan& plan) {
   return plan.options.self_shadow && !plan.layers.empty() && !plan.lights.empty() &&
          (plan.scatters || plan.scene->geometry);
@@ -178,26 +183,36 @@ void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::
   }
 }
 
-void LitMedia::along(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
-  const std::size_t n = t.size();
-  s.extinction.assign(n, Rgb::Zero());
-  s.source.assign(n, Rgb::Zero());
-  if (n == 0 || plan_.layers.empty()) return;
-  for (auto* places : {&s.x, &s.y, &s.z}) places->resize(n + room_of_kernels);
-  for (std::size_t i = 0; i < n; ++i) {
+void LitMedia::add_extinction(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
+  s.extinction.assign(t.size(), Rgb::Zero());
+  if (t.empty() || plan_.layers.empty()) return;
+  for (auto* places : {&s.x, &s.y, &s.z}) places->resize(t.size() + room_of_kernels);
+  for (std::size_t i = 0; i < t.size(); ++i) {
     const Point3 x = ray.at(t[i]);
     s.x[i] = x[0], s.y[i] = x[1], s.z[i] = x[2];
   }
   add_densities(ray, t, s, counters);
-  std::size_t begin = n, end = 0;  // of points where there is something
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < t.size(); ++i)
     for (std::size_t k = 0; k < plan_.layers.size(); ++k)
       s.extinction[i] += plan_.layers[k].medium->sigma_t * s.density[k][i];
+}
+
+void LitMedia::extinction_along(const Ray& ray, const std::vector<double>& t, Samples& samples) const {
+  Counters unread;
+  add_extinction(ray, t, samples, unread);
+}
+
+void LitMedia::along(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
+  add_extinction(ray, t, s, counters);
+  s.source.assign(t.size(), Rgb::Zero());
+  if (!plan_.scatters) return;
+  std::size_t begin = t.size(), end = 0;  // of points where there is something
+  for (std::size_t i = 0; i < t.size(); ++i) {
     if ((s.extinction[i] == 0).all()) continue;
     begin = std::min(begin, i);
     end = i + 1;
   }
-  if (!plan_.scatters || begin >= end) return;
+  if (begin >= end) return;
   for (std::size_t l = 0; l < plan_.lights.size(); ++l) add_light(l, ray, begin, end, s, counters);
 }
 

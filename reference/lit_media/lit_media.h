@@ -37,6 +37,8 @@ struct Plan {
   double nearest = 0;     // light comes from so far away at least [m]
 };
 Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
+// Do these media and lights stand for that scene's, too, so that maps and what else is made of them serve it?
+bool fits(const Plan&, const scene::Scene&);
 // Does a point or a surface ask for what media leave of a light? And the memory of the maps that then are made.
 bool needs_maps(const Plan&);
 double map_bytes(const Plan&);
@@ -70,6 +72,9 @@ class LitMedia {
   // media are smaller than a metre, light nearer than a hundredth of the smallest diagonal (mean free path of endless fog).
   void along(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
 
+  // The extinction alone.
+  void extinction_along(const Ray&, const std::vector<double>& t, Samples&) const;
+
   // What media leave of light l on its way to x.
   Rgb transmittance_to_light(std::size_t l, const Point3& x) const;
 
@@ -83,6 +88,7 @@ class LitMedia {
   std::size_t map_bytes() const;
 
  private:
+  void add_extinction(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
   void add_densities(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
   void add_light(std::size_t l, const Ray&, std::size_t begin, std::size_t end, Samples&, Counters&) const;
 

@@ -123,9 +123,24 @@ void add_matter(ContentHash& hash, const std::vector<Medium>& media, const std::
   for (const Surface& surface : surfaces) load::add(hash, surface);
 }
 
+void add_lights(ContentHash& hash, const std::vector<Light>& lights) {
+  hash.tag("lights");
+  hash.add(std::int64_t(lights.size()));
+  for (const Light& light : lights) {
+    hash.tag(light_name(light));
+    std::visit([&](const auto& kind) { add(hash, kind); }, light);
+  }
+}
+
 std::string matter_hash(const Scene& scene) {
   ContentHash hash;
   add_matter(hash, scene.media, scene.surfaces);
+  return hash.digits();
+}
+
+std::string light_hash(const Scene& scene) {
+  ContentHash hash;
+  add_lights(hash, scene.lights);
   return hash.digits();
 }
 
@@ -134,15 +149,10 @@ std::string content_hash(const Scene& scene) {
   hash.tag("airlight scene 1");  // raised when the meaning of the values changes
   // The geometry follows from the surfaces.
   const auto& [name, camera, width, height, lights, media, surfaces, geometry, backdrops, ambient_in_scatter, whole,
-               matter] = scene;
+               of_matter, of_lights] = scene;
   hash.all(width, height, ambient_in_scatter);
   add(hash, camera);
-  hash.tag("lights");
-  hash.add(std::int64_t(lights.size()));
-  for (const Light& light : lights) {
-    hash.tag(light_name(light));
-    std::visit([&](const auto& kind) { add(hash, kind); }, light);
-  }
+  add_lights(hash, lights);
   add_matter(hash, media, surfaces);
   for (const auto& one : backdrops) {
     const auto& [columns, rows, radiance, depth, fills] = *one;
@@ -160,6 +170,7 @@ void finish(Scene& scene) {
   move_lights_off_surfaces(scene);
   scene.hash = content_hash(scene);
   scene.matter_hash = matter_hash(scene);
+  scene.light_hash = light_hash(scene);
 }
 
 }  // namespace airlight::scene

@@ -74,7 +74,8 @@ void combine(const Specs& all, std::vector<std::string> names, Given given,
 void check_conditions(const Specs& all, const SettingSpec& spec) {
   std::vector<std::string> others;
   for (const SettingSpec::Others& alternative : spec.read_where)
-    for (const auto& [other, values] : alternative) {
+    for (const auto& [name, values] : alternative) {
+      const std::string& other = name;
       CAPTURE(other);
       REQUIRE(std::any_of(all.begin(), all.end(), [&](const SettingSpec& s) { return s.name == other; }));
       if (std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);

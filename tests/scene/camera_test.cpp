@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/base/error.h"
+#include "scene/camera_rays.h"
 
 namespace camera_test {
 
@@ -57,6 +58,21 @@ TEST_CASE("orthographic rays are parallel and as far apart as the film is large"
   CHECK(bottom_right.direction == Vec3(0, 0, -1));
   CHECK((top_left.origin - Point3(-2, 4, 3)).norm() < 1e-14);
   CHECK((bottom_right.origin - Point3(4, 0, 3)).norm() < 1e-14);
+}
+
+TEST_CASE("film positions are where the rays of cameras begin", "[camera]") {
+  Camera camera = look_at({1, 2, 3}, {0.5, 1, -3}, {0, 1, 0});
+  camera.height = 4;
+  for (const Camera::Kind kind : {Camera::Kind::perspective, Camera::Kind::orthographic}) {
+    camera.kind = kind;
+    for (const double t : {0.1, 7.0}) {
+      const Ray ray = camera_ray(camera, 3.5, 17.25, 30, 20);
+      const Vec3 place = film_position(camera, ray.at(t), 30, 20);
+      CHECK(place[0] == Approx(3.5).epsilon(1e-13));
+      CHECK(place[1] == Approx(17.25).epsilon(1e-13));
+      CHECK(place[2] == Approx(t * ray.direction.dot(camera.forward)).epsilon(1e-13));
+    }
+  }
 }
 
 }  // namespace camera_test

@@ -6,6 +6,11 @@
 #include "gpu/shadow_planes/shadow_planes.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/shadow_planes/shadow_planes.h"
+#include "reference/deterministic/renderer.h"
+#include "reference/froxel_fog/froxel_fog.h"
+#include "reference/half_resolution_march/half_resolution_march.h"
+#include "reference/path_tracer/renderer.h"
+#include "reference/ray_marcher/ray_marcher.h"
 #include "tests/gpu/device.h"
 #include "tests/pictures.h"
 #include "tests/stress/shapes.h"
@@ -95,6 +100,10 @@ TEST_CASE("light on a surface: all renderers light the side of the normal", "[st
     // Steps across the shadow's edge: order 1, 1/256 of the ray.
     const Given steps{{"steps", "256"}};
     CHECK(airlight_of(ray_marcher::RayMarcher(), on, steps) == Approx(expected).epsilon(5e-3));
+    CHECK(airlight_of(half_resolution_march::HalfResolutionMarch(), on, {{"divide", "1"}, {"steps", "256"}}) ==
+          Approx(expected).epsilon(5e-3));
+    CHECK(airlight_of(froxel_fog::FroxelFog(), on, {{"tile", "1"}, {"slices", "256"}}) ==
+          Approx(expected).epsilon(5e-3));
     CHECK(airlight_of(shadow_planes::ShadowPlanes(), on) == Approx(expected).epsilon(1e-3));
     // 1024 samples on 108 pixels: the standard error of the mean is 2e-3 (four seeds); 5 of it.
     CHECK(airlight_of(path_tracer::PathTracer(), on, {{"samples", "1024"}, {"max_order", "1"}}) ==

@@ -56,8 +56,7 @@ TEST_CASE("stress 10: a light at 1e-9 from a camera ray", "[stress]") {
     check_equal(exact.radiance[0], traced.orders[1], 0.02);
     // A picture whose middle pixel looks past the light.
     scene::View view = view_from({0, 0, 0}, {0, 0, 1}, 3);
-    for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"})
-      CHECK(all_finite(picture(name, scene, view)));
+    for (const char* const name : renderers) CHECK(all_finite(picture(name, scene, view)));
   }
   // L h tends to a constant; what is left over, h times the airlight from afar, is of the order of h.
   CHECK(product[1] == Approx(product[0]).epsilon(1e-5));
@@ -68,9 +67,14 @@ TEST_CASE("stress 11: a light on the camera", "[stress]") {
   auto scene = scene_of({medium(scene::Sphere{{0, 0, 0}, 1}, 1, 0.9)}, {scene::PointLight{eye}});
   const scene::View view = view_from(eye, {1, 1, 1}, 4);
   scene->camera = view.camera;
-  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+  for (const char* const name : renderers) {
     const auto reasons = stress::refusals(name, *scene);
     CAPTURE(name);
+    if (reasons.empty()) {  // engines' fog takes a lamp to be a centimetre away at least
+      CHECK((std::string(name) == "froxel_fog" || std::string(name) == "half_resolution_march"));
+      CHECK(all_finite(picture(name, scene, view)));
+      continue;
+    }
     REQUIRE(reasons.size() == 1);
     CHECK_THAT(reasons.front(), Catch::Contains("camera") && Catch::Contains("infinite"));
     CHECK_THROWS_AS(picture(name, scene, view), Error);
@@ -78,7 +82,7 @@ TEST_CASE("stress 11: a light on the camera", "[stress]") {
   // In vacuum, or as a ball, it has an answer.
   auto vacuum = scene_of({}, {scene::PointLight{eye}});
   vacuum->camera = view.camera;
-  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+  for (const char* const name : renderers) {
     CAPTURE(name);
     CHECK(stress::refusals(name, *vacuum).empty());
     CHECK(all_finite(picture(name, vacuum, view)));
@@ -158,7 +162,7 @@ TEST_CASE("stress 27: environments with negative lobes, a texel of 1e9, all blac
   const auto black = map_of(16, 8, [](int, int) { return 0.0f; });
   const auto dark = scene_of({ball}, {black});
   const auto view = view_from({0, 0, 3}, {0, 0, 0}, 4);
-  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+  for (const char* const name : renderers) {
     const scene::Film nothing = picture(name, dark, view);
     CAPTURE(name);
     CHECK(all_finite(nothing));
@@ -181,7 +185,7 @@ TEST_CASE("stress 28: spot cones of 1e-4 rad and of 180 degrees", "[stress]") {
   view.camera.kind = scene::Camera::Kind::orthographic;
   view.camera.height = 2.4 * angle / view.width;
   const double step = 2.4 * angle / view.width;
-  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+  for (const char* const name : renderers) {
     const scene::Film film =
         picture(name, wall, view, std::string(name) == "path_tracer" ? Given{{"samples", "1"}} : Given{});
     double flux = 0;

@@ -98,7 +98,7 @@ TEST_CASE("stress 15: camera on the boundary face, ray in the face plane", "[str
 
 TEST_CASE("stress 16: a scene scaled by 1e-4, and by a power of two", "[stress]") {
   const Place one;
-  for (const char* const name : {"deterministic", "ray_marcher", "path_tracer"}) {
+  for (const char* const name : renderers) {
     const Given given = std::string(name) == "path_tracer" ? Given{{"samples", "256"}} : Given{};
     const scene::Film expected = picture(name, one.scene(), one.view(7), given);
     CAPTURE(name);
@@ -124,7 +124,7 @@ TEST_CASE("stress 17: a scene scaled by 1e6, and one moved by 1e6", "[stress]") 
   const Place one, large{1e6}, far{1, Vec3(1e6, -1e6, 1e6)};
   for (const Place& other : {large, far}) {
     CAPTURE(other.scale);
-    for (const char* const name : {"deterministic", "ray_marcher"}) {
+    for (const char* const name : biased_renderers) {
       CAPTURE(name);
       const scene::Film a = picture(name, one.scene(), one.view(7)), b = picture(name, other.scene(), other.view(7));
       // Far away positions are rounded to 1.2e-10 m, of lengths of 0.1 m and more: 1e-8 with the gradients of this
@@ -159,7 +159,7 @@ TEST_CASE("stress 20: zero-area, duplicate and sliver triangles", "[stress]") {
                     {{"box", mesh, scene::Lambert{Rgb::Constant(0.5)}}});
   };
   const auto view = view_from({1.2, 1.4, 3}, {0, 0, 0}, 15, 0.6);
-  for (const char* const name : {"deterministic", "ray_marcher", "path_tracer"}) {
+  for (const char* const name : renderers) {
     const Given given = std::string(name) == "path_tracer" ? Given{{"samples", "64"}} : Given{};
     const scene::Film a = picture(name, with(clean), view, given), b = picture(name, with(dirty), view, given);
     CAPTURE(name);

@@ -34,7 +34,7 @@ TEST_CASE("stress 07: albedo 0 scatters exactly nothing", "[stress]") {
   sum.gaussians = {{{0.2, 0, 0}, 0.5, 2}};
   const auto scene = scene_of({medium(scene::Sphere{{0, 0, 0}, 1}, 2, 0), of_field(sum, 1, 0)}, lights);
   const auto view = view_from({0.3, 0.2, -3}, {0, 0, 0}, 9);
-  for (const char* const name : {"path_tracer", "deterministic", "ray_marcher"}) {
+  for (const char* const name : renderers) {
     const scene::Film film = picture(name, scene, view);
     CAPTURE(name);
     CHECK(all_finite(film));

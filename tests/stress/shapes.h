@@ -36,8 +36,8 @@ inline std::vector<Spot> spots(const scene::TriangleMesh& mesh, std::size_t tria
 inline const char* const mesh_shapes[] = {
     "type = 'box'\nlo = [-1, -0.5, -1]\nhi = [1, 0.7, 1]\ntransform = { rotation = { euler = [0.2, 0.8, 0] } }",
     "type = 'prism'\nsides = 7\nradius = 1\nheight = 0.8",
-    "type = 'height_field'\nsize = [5, 4]\nspacing = [1, 1]\norigin = [-2, 0, -1.5]\n"
-    "waves = [{ amplitude = 0.3, wave_vector = [1, 2] }]",
+    ("type = 'height_field'\nsize = [5, 4]\nspacing = [1, 1]\norigin = [-2, 0, -1.5]\n"
+     "waves = [{ amplitude = 0.3, wave_vector = [1, 2] }]"),
     "type = 'displaced_sphere'\nradius = 1\nsize = [16, 9]\nwaves = [{ amplitude = 0.05, wave_vector = [3, 2, 1] }]",
     "type = 'torus'\nradius = 1\ntube_radius = 0.4\nsize = [16, 12]",
     "type = 'tube'\npath = [[-1, 0, 0], [0, 0.3, 0], [1, 0, 0.5]]\nradius = 0.4\nsize = [8, 8]",

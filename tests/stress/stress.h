@@ -7,10 +7,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/renderers.h"
 #include "reference/deterministic/airlight.h"
-#include "reference/deterministic/renderer.h"
-#include "reference/path_tracer/renderer.h"
-#include "reference/ray_marcher/ray_marcher.h"
 #include "scene/base/error.h"
 #include "tests/pictures.h"
 #include "tests/reference/path_tracer/scenes.h"
@@ -43,23 +41,33 @@ inline void check_equal(double expected, const Estimate& e, double resolution) {
   check_equal(expected, e.mean[0], e.error[0], resolution);
 }
 
-// A picture by name of the renderer: "path_tracer", "deterministic" or "ray_marcher".
-inline std::unique_ptr<scene::Renderer> renderer_named(const std::string& name) {
-  if (name == "path_tracer") return std::make_unique<path_tracer::PathTracer>();
-  if (name == "ray_marcher") return std::make_unique<ray_marcher::RayMarcher>();
-  return deterministic::make_renderer();
-}
 using Given = std::map<std::string, std::string>;
 
+// Renderers that take every medium and every light, and today's fog of engines beside the references.
+inline constexpr const char* renderers[] = {"path_tracer", "deterministic", "ray_marcher", "froxel_fog",
+                                            "half_resolution_march"};
+inline constexpr const char* biased_renderers[] = {"deterministic", "ray_marcher", "froxel_fog",
+                                                   "half_resolution_march"};
+
+// Films here have a few pixels: a froxel is one of them, and every pixel is marched.
+inline Given of_small_films(const std::string& name, Given given = {}) {
+  if (name == "froxel_fog") given.insert({{"tile", "1"}, {"slices", "128"}});
+  if (name == "half_resolution_march") given.insert({{"divide", "1"}, {"jitter", "none"}, {"steps", "128"}});
+  return given;
+}
+inline scene::Settings settings_of(const scene::Renderer& renderer, const Given& given) {
+  return {renderer.settings(), of_small_films(renderer.name(), given)};
+}
+
 inline std::vector<std::string> refusals(const std::string& name, const scene::Scene& scene, const Given& given = {}) {
-  const auto renderer = renderer_named(name);
-  return renderer->supports(scene, scene::Settings(renderer->settings(), given));
+  const scene::Renderer& renderer = experiments::find_renderer(name, "stress");
+  return renderer.supports(scene, settings_of(renderer, given));
 }
 
 inline scene::Film picture(const std::string& name, std::shared_ptr<const scene::Scene> scene, const scene::View& view,
                            const Given& given = {}) {
-  const auto renderer = renderer_named(name);
-  return renderer->prepare(std::move(scene), scene::Settings(renderer->settings(), given), {})->render(view, {}).film;
+  const scene::Renderer& renderer = experiments::find_renderer(name, "stress");
+  return renderer.prepare(std::move(scene), settings_of(renderer, given), {})->render(view, {}).film;
 }
 
 // A small picture from `position` towards `target`.

@@ -34,7 +34,11 @@ std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std
       if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " variant=paper multiple=none");
       continue;
     }
-    specs.push_back(name == "wavelet_fog" ? name + " sun=true" : name);
+    // Films of 3 x 3 pixels: froxels of one, every pixel marched.
+    specs.push_back(name == "wavelet_fog"             ? name + " sun=true"
+                    : name == "froxel_fog"            ? name + " tile=1 slices=256 map_size=64"
+                    : name == "half_resolution_march" ? name + " divide=1 jitter=none steps=256 map_size=64"
+                                                      : name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
     if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
     if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian") specs.push_back(name + " variant=paper");
@@ -61,8 +65,8 @@ void run(int step, const std::vector<std::string>& renderers, const char* file) 
 
 TEST_CASE("stress: a sweep of every quantity, every renderer on the processor", "[stress][sweep][slow][thorough]") {
   run(11,
-      {"deterministic", "path_tracer", "ray_marcher", "fogshop", "shadow_planes", "compensated_ray_marching",
-       "wavelet_fog", "legendre_fluids"},
+      {"deterministic", "path_tracer", "ray_marcher", "froxel_fog", "half_resolution_march", "fogshop", "shadow_planes",
+       "compensated_ray_marching", "wavelet_fog", "legendre_fluids"},
       nullptr);
 }
 

@@ -168,7 +168,8 @@ TEST_CASE("froxel fog: stages that are left out take no time", "[froxel_fog]") {
 
 // A scene of any size is the same picture, but for rounding: by a power of two all but the kernels' places.
 TEST_CASE("froxel fog: pictures do not depend on the scene's size", "[froxel_fog]") {
-  for (const auto& [name, scene] : ray_marcher::assorted_scenes()) {
+  for (const auto& [name, one] : ray_marcher::assorted_scenes()) {
+    const auto& scene = one;
     if (scene->geometry) continue;  // surfaces are not scaled
     const auto drawn = [&](double scale) {
       auto scaled = std::make_shared<scene::Scene>(*ray_marcher::scaled_scene(*scene, scale));

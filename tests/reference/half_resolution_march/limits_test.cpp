@@ -36,7 +36,9 @@ TEST_CASE("half-resolution march: settings that nothing reads are refused", "[ha
        {Given{{"jitter", "none"}, {"frames", "2"}}, Given{{"divide", "1"}, {"depth", "centre"}},
         Given{{"divide", "1"}, {"upsample", "bilinear"}}, Given{{"divide", "1"}, {"edge", "1"}},
         Given{{"upsample", "bilinear"}, {"edge", "1"}}, Given{{"self_shadow", "none"}, {"map_size", "64"}},
-        Given{{"steps", "0"}}, Given{{"divide", "65"}}})
+        Given{{"reproject", "true"}, {"frames", "2"}}, Given{{"clamp", "neighbourhood"}},
+        Given{{"history_weight", "0.5"}}, Given{{"history_depth", "end"}}, Given{{"steps", "0"}},
+        Given{{"divide", "65"}}})
     CHECK_THROWS_AS(scene::Settings(march.settings(), given), Error);
   CHECK_NOTHROW(scene::Settings(march.settings(), {{"divide", "1"}, {"blur", "bilateral"}, {"edge", "1"}}));
   CHECK_NOTHROW(scene::Settings(march.settings(), {{"edge", "1"}}));

@@ -97,9 +97,10 @@ TEST_CASE("ray marcher: look-ups by kernels agree with the plain path", "[ray_ma
 TEST_CASE("ray marcher: with maps the same bits whatever the threads and the instruction set",
           "[ray_marcher][light_map]") {
   const RayMarcher marcher;
-  for (const auto& [name, scene] : assorted_scenes())
+  for (const auto& [name, one] : assorted_scenes())
     for (const char* encoding : encodings) {
       INFO(name << ", " << encoding);
+      const auto& scene = one;
       const Given given = map_settings(encoding, "32");
       const auto drawn = [&](int threads) {
         return marcher.prepare(scene, {marcher.settings(), given}, {threads, {}})

@@ -17,7 +17,7 @@ namespace {
 
 struct Case {
   double width;
-  double origin[3], center[3], direction[3];
+  double origin_x, origin_y, origin_z, x, y, z, direction_x, direction_y, direction_z;  // x, y, z: the centre
   double lo, hi, value;
   double exponent;  // the least met within the range: the Gaussian is at most exp(-exponent) there
   double distance;  // of the centre from the origin, in widths
@@ -152,8 +152,8 @@ const Case cases[] = {
 // the square of such a position to 2 D sqrt(E) times that. The formulas may add as much again.
 TEST_CASE("Gaussian line integrals to the rounding of their input", "[media]") {
   for (const Case& c : cases) {
-    const Gaussian g{{c.center[0], c.center[1], c.center[2]}, c.width, 1};
-    const Ray ray{{c.origin[0], c.origin[1], c.origin[2]}, {c.direction[0], c.direction[1], c.direction[2]}};
+    const Gaussian g{{c.x, c.y, c.z}, c.width, 1};
+    const Ray ray{{c.origin_x, c.origin_y, c.origin_z}, {c.direction_x, c.direction_y, c.direction_z}};
     INFO(c.width << " E " << c.exponent << " D " << c.distance);
     const double tolerance = 1.5e-15 * (1 + c.exponent + c.distance * std::sqrt(c.exponent));
     const double got = integral(along(load(g), ray), {c.lo, c.hi});
