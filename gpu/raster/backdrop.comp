@@ -13,6 +13,7 @@ uniform int first, has_distances;  // 0: `seen` is of those before; rays are inf
 
 uniform int columns, rows, first_ray;    // rays, and the place of the first
 uniform double cell_width, cell_height;  // [pixels]
+uniform int cut;                         // 1: cells end at the film's edge
 uniform double cell_x, cell_y;           // where rays go through, from 0 to 1 of a cell
 uniform int keeps_seen;                  // 0: distances alone
 
@@ -20,7 +21,9 @@ void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (at.x >= columns || at.y >= rows) return;
   int place = first_ray + at.y * columns + at.x;
-  dvec2 film_at = dvec2(cell_width, cell_height) * (dvec2(at) + dvec2(cell_x, cell_y));
+  dvec2 cell = dvec2(cell_width, cell_height), begin = cell * dvec2(at);
+  if (cut != 0) cell = min(cell, dvec2(width, height) - begin);
+  dvec2 film_at = begin + dvec2(cell_x, cell_y) * cell;
   // Between two pixels, as centres of a film of half the size lie, the right and lower one, whatever the rounding.
   const double tie = 1e-6LF;
   double per_pixel = double(picture_height) / double(height);

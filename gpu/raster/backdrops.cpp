@@ -39,6 +39,7 @@ void Backdrops::find(const scene::View& view, const Buffer& distances, bool know
   program_.set("rows", grid.rows);
   program_.set("first_ray", int(grid.first));
   program_.set("keeps_seen", seen != nullptr);
+  program_.set("cut", grid.cut);
   program_.set_double("cell_width", grid.width);
   program_.set_double("cell_height", grid.height);
   program_.set_double("cell_x", grid.x);

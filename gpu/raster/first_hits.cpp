@@ -72,6 +72,7 @@ void FirstHits::trace(const scene::View& view, const Buffer& distances, const Bu
   set_view(program, view);
   program.set("columns", columns);
   program.set("rows", rows);
+  program.set("cut", grid.cut);
   program.set_double("cell_width", grid.width);
   program.set_double("cell_height", grid.height);
   program.set_double("cell_x", grid.x);

@@ -30,6 +30,7 @@ struct CellGrid {
   double width, height;   // of a cell [pixels]
   double x, y;            // the place, from 0 to 1 of a cell
   std::size_t first = 0;  // as in HitGrid
+  bool cut = false;       // cells that reach beyond the film's edge end there
 };
 
 class RasterPass {
