@@ -204,6 +204,7 @@ TEST_CASE("a renderer that knows no backdrops refuses them by name", "[backdrop]
   const std::vector<std::string> know = {"ray_marcher",
                                          "ray_marcher_gpu",
                                          "half_resolution_march",
+                                         "half_resolution_march_gpu",
                                          "froxel_fog",
                                          "froxel_fog_gpu",
                                          "path_tracer",
