@@ -29,6 +29,7 @@ struct Case {
 const Given stencil{{"shadows", "stencil"}}, vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}},
     printed{{"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}},
     marched{{"steps", "16"}, {"shadow_steps", "4"}}, froxels{{"environment_directions", "4"}, {"map_size", "32"}},
+    mapped{{"steps", "16"}, {"shadow", "map"}, {"map_size", "32"}, {"environment_directions", "4"}},
     systems{{"variant", "paper"}, {"n", "6"}}, upwind{{"variant", "paper"}, {"n", "6"}, {"closure", "upwind"}};
 
 // Shadow planes bring down counters, and what is known of each light. The paper's systems of Legendre fluids say how they ended.
@@ -46,6 +47,7 @@ const Case cases[] = {
     {"shadow_planes_gpu", "shadow_planes/media", printed, Moves::lights, 30, 1, 0, 48 + 32},
     {"shadow_planes_gpu", "shadow_planes/spot", {}, Moves::lights, 30, 1, 0, 48 + 32},
     {"ray_marcher_gpu", "crosscheck/mesh_in_fog", marched, Moves::camera, 57, 1, 0, 128},
+    {"ray_marcher_gpu", "crosscheck/mesh_in_fog", mapped, Moves::camera, 57, 1, 0, 128},
     {"froxel_fog_gpu", "crosscheck/mesh_in_fog", froxels, Moves::camera, 57, 1, 0, 32 + 12 + 48 + 48},
     {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48 + 48},
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
