@@ -5,13 +5,13 @@ layout(std430, binding = AT_LIGHT) readonly buffer FroxelLight { vec4 froxel_lig
 layout(std430, binding = AT_MEDIA) readonly buffer FroxelMedia { vec4 froxel_media[]; };
 layout(std430, binding = AT_FILTERED_LIGHT) writeonly buffer FilteredLight { vec4 filtered_light[]; };
 layout(std430, binding = AT_FILTERED_MEDIA) writeonly buffer FilteredMedia { vec4 filtered_media[]; };
-uniform int froxels, stride, count;  // in all; from one to the next along the axis, and how many there are
+uniform int cells, stride, count;  // of a slice; from one froxel to the next along the axis, and how many there are
 uniform int radius;
 uniform vec3 weights;  // of the neighbours at distance 1, 2, 3; the middle takes the rest, so that constants are kept
 
 void main() {
-  int place = int(gl_GlobalInvocationID.x);
-  if (place >= froxels) return;
+  if (int(gl_GlobalInvocationID.x) >= cells) return;
+  int place = int(gl_GlobalInvocationID.y) * cells + int(gl_GlobalInvocationID.x);
   int i = place / stride % count, first = place - i * stride;
   vec3 light = froxel_light[place].rgb, media = froxel_media[place].rgb, middle_light = light, middle_media = media;
   for (int r = 1; r <= radius; ++r) {

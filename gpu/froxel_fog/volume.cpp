@@ -29,8 +29,6 @@ std::map<std::string, std::string> of_media(const lit_media::LitMedia& lit, bool
   return definitions;
 }
 
-int froxel_count(const Froxels& froxels, int slices) { return froxels.cells.columns * froxels.cells.rows * slices; }
-
 }  // namespace
 
 Volume::Volume(Context& context, const Options& options, const lit_media::LitMedia& lit, const Ends& ends,
@@ -191,7 +189,7 @@ void Volume::make(const scene::View& view, const Buffer* distances, Froxels& fro
     const std::vector<float> weights = airlight::froxel_fog::filter_weights(options_.filter);
     Vec3 outwards = Vec3::Zero();
     for (std::size_t r = 1; r < weights.size(); ++r) outwards[int(r) - 1] = weights[r];
-    filter_->set("froxels", froxel_count(froxels, options_.slices));
+    filter_->set("cells", int(cells));
     filter_->set("radius", int(weights.size()) - 1);
     filter_->set("weights", outwards);
     const int columns = froxels.cells.columns, rows = froxels.cells.rows;
@@ -204,7 +202,7 @@ void Volume::make(const scene::View& view, const Buffer* distances, Froxels& fro
       to_media->bind(at::filtered_media);
       filter_->set("stride", stride);
       filter_->set("count", count);
-      filter_->dispatch(froxel_count(froxels, options_.slices));
+      filter_->dispatch(int(cells), options_.slices);
       light = to_light, media = to_media;
     }
   }

@@ -28,8 +28,9 @@ struct Case {
 
 const Given stencil{{"shadows", "stencil"}}, vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}},
     printed{{"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}},
-    marched{{"steps", "16"}, {"shadow_steps", "4"}}, few_steps{{"steps", "8"}, {"depth", "centre"}},
-    blurred{{"steps", "8"}, {"blur", "bilateral"}, {"map_size", "32"}},
+    marched{{"steps", "16"}, {"shadow_steps", "4"}},
+    mapped{{"steps", "16"}, {"shadow", "map"}, {"map_size", "32"}, {"environment_directions", "4"}},
+    few_steps{{"steps", "8"}, {"depth", "centre"}}, blurred{{"steps", "8"}, {"blur", "bilateral"}, {"map_size", "32"}},
     froxels{{"environment_directions", "4"}, {"map_size", "32"}}, systems{{"variant", "paper"}, {"n", "6"}},
     upwind{{"variant", "paper"}, {"n", "6"}, {"closure", "upwind"}};
 
@@ -50,6 +51,7 @@ const Case cases[] = {
     {"ray_marcher_gpu", "crosscheck/mesh_in_fog", marched, Moves::camera, 57, 1, 0, 128},
     {"half_resolution_march_gpu", "crosscheck/mesh_in_fog", few_steps, Moves::camera, 24, 1, 0, 144},
     {"half_resolution_march_gpu", "plume_sun", blurred, Moves::camera, 16, 1, 0, 96},
+    {"ray_marcher_gpu", "crosscheck/mesh_in_fog", mapped, Moves::camera, 57, 1, 0, 128},
     {"froxel_fog_gpu", "crosscheck/mesh_in_fog", froxels, Moves::camera, 57, 1, 0, 32 + 12 + 48 + 48},
     {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48 + 48},
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
