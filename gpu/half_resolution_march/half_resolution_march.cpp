@@ -6,6 +6,7 @@
 #include "gpu/half_resolution_march/passes.h"
 #include "reference/half_resolution_march/half_resolution_march.h"
 #include "reference/half_resolution_march/limits.h"
+#include "reference/half_resolution_march/passes.h"
 #include "reference/half_resolution_march/stages.h"
 #include "scene/backdrop.h"
 
@@ -50,6 +51,7 @@ class PreparedHalfResolutionMarchGpu final : public scene::Prepared {
   Context& context_;
   mutable Frame frame_;
   std::unique_ptr<Passes> passes_;
+  std::unique_ptr<const airlight::lit_media::LitMedia> on_processor_;  // for the warning alone
   std::vector<scene::StageTime> times_;
   int pictures_ = 0;      // before this one, by next()
   mutable Kept kept_[2];  // with reproject
@@ -62,6 +64,7 @@ void PreparedHalfResolutionMarchGpu::prepare(std::shared_ptr<const Scene> scene,
   passes_.reset();
   scene_ = std::move(scene);
   passes_ = std::make_unique<Passes>(context_, scene_, options_, storage_, frame_.timer, execution.progress);
+  on_processor_ = std::make_unique<airlight::lit_media::LitMedia>(passes_->media().plan());
   frame_.timer.stage("upload");
   times_ = frame_.timer.times();
 }
@@ -118,6 +121,10 @@ scene::Rendering PreparedHalfResolutionMarchGpu::render(const View& view, const 
                           {"settings", settings_},
                           {"scene", scene_->name},
                           {"hash", scene_->hash}};
+  // Some rays on the processor, which a picture that nobody reads does not need.
+  if (!execution.layers || !execution.layers->empty())
+    if (const std::string doubt = doubt_of(*on_processor_, options_, *scene_, view); !doubt.empty())
+      result.film.metadata["warning"] = "half_resolution_march_gpu: " + doubt;
   return result;
 }
 

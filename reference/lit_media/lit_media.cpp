@@ -108,11 +108,14 @@ double map_bytes(const Plan& plan) {
              : 0;
 }
 
-LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
-    : plan_(make_plan(std::move(scene), options)),
+LitMedia::LitMedia(Plan plan)
+    : plan_(std::move(plan)),
       densities_(ray_marcher::too_fine_for_kernels(*plan_.scene)
                      ? light_map::densities_of(plan_.scene->media)
-                     : ray_marcher::densities_by_kernels(plan_.layers, plan_.scene->media)) {
+                     : ray_marcher::densities_by_kernels(plan_.layers, plan_.scene->media)) {}
+
+LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
+    : LitMedia(make_plan(std::move(scene), options)) {
   if (!needs_maps(plan_)) return;
   scene::Stopwatch watch;
   maps_ = light_map::make_maps(plan_.lights, plan_.scene->media, options.map, densities_, execution, "lit media");

@@ -67,6 +67,8 @@ class LitMedia {
  public:
   // Throws Error where the lights' maps do not fit into memory. Its bits do not depend on the threads.
   LitMedia(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution&);
+  // Without maps, for extinctions alone.
+  explicit LitMedia(Plan);
 
   // At ascending distances t [m] on a ray; direction unit. Light nearer than 0.01 m counts as if it were so far away; where
   // media are smaller than a metre, light nearer than a hundredth of the smallest diagonal (mean free path of endless fog).

@@ -28,6 +28,11 @@ void agree(const std::string& name, const std::shared_ptr<const scene::Scene>& s
   const scene::Rendering cpu = test::render(processor, scene, given), gpu = test::render(device, scene, given);
   CAPTURE(name, given);
   gpu::test::agree(name, cpu.film, gpu.film, bounds);
+  const auto warning = [](const scene::Film& film) {
+    const auto found = film.metadata.find("warning");
+    return found == film.metadata.end() ? "" : found->second.substr(found->second.find(':'));
+  };
+  CHECK(warning(cpu.film) == warning(gpu.film));
   for (const char* counter : {"rays", "points"}) {
     CAPTURE(counter);
     CHECK(gpu.counters.at(counter) == Approx(cpu.counters.at(counter)).epsilon(2e-3));
