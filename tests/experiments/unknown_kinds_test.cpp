@@ -66,7 +66,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 8);
+  CHECK(others == 9);
 }
 
 TEST_CASE(
