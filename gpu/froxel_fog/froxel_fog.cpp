@@ -89,7 +89,12 @@ void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& e
   volume_.reset();
   if (next) {
     ++pictures_;
-    if (drawn_) history_ = std::make_unique<Froxels>(std::exchange(froxels_, {}));
+    // A picture that saw no medium leaves the history that it began with.
+    if (drawn_ && (options_.far > 0 || froxels_.slices->download<float>()[2] != 0)) {
+      // The buffers of the history before are those of the next picture.
+      if (!history_) history_ = std::make_unique<Froxels>();
+      std::swap(*history_, froxels_);
+    }
     drawn_ = false;
   }
   scene_ = std::move(made);
@@ -135,7 +140,8 @@ bool PreparedFogGpu::draw(const View& view, const Execution& execution, bool loo
 void PreparedFogGpu::count(const View& view, scene::Rendering& result) const {
   const std::vector<double> counted = ray_marcher::totals_of(frame_.download, "froxel totals");
   const std::vector<float> range = frame_.download.values<float>("range");
-  const bool any = scene_->lit && volume_ && range.size() == 3 && range[2] != 0;
+  if (volume_ && range.empty()) return;  // nothing came down
+  const bool any = volume_ && range[2] != 0;
   const char* const names[] = {"points", "look_ups", "occlusion_rays", "reprojected"};
   for (std::size_t i = 0; i < (options_.reproject ? 4 : 3); ++i)
     result.counters[names[i]] = any && i < counted.size() ? counted[i] : 0;
