@@ -89,21 +89,21 @@ void PreparedHalfResolutionMarchGpu::draw(const View& view, const Execution& exe
                                           scene::Rendering& result) const {
   const Kept& before = kept_[history_];
   Kept& after = kept_[1 - history_];
+  const bool keeps = options_.reproject && passes_->marches();  // a picture without media leaves the history as it is
   std::optional<History> last;
   if (options_.reproject && before.view && before.view->width == view.width && before.view->height == view.height)
     last.emplace(History{*before.film, *before.view});
   for (const bool looks : {false, true}) {
     frame_.begin(execution);
-    const Buffer& low =
-        options_.reproject ? room(after, view) : frame_.buffers.get("marched film", passes_->low_bytes(view));
-    after.view.reset();
+    const Buffer& low = keeps ? room(after, view) : frame_.buffers.get("marched film", passes_->low_bytes(view));
+    if (keeps) after.view.reset();
     passes_->draw(view, pictures_, last ? &*last : nullptr, low, frame_, looks, execution.progress);
     frame_.finish(result);
     if (passes_->finished(frame_.download)) break;
     if (looks)
       throw Unavailable("half_resolution_march_gpu: " + context_.renderer() + " reports rays as done that are not");
   }
-  if (options_.reproject) after.view = view;
+  if (keeps) after.view = view;
   result.counters.merge(passes_->counters(view, frame_.download));
 }
 
@@ -116,6 +116,8 @@ scene::Rendering PreparedHalfResolutionMarchGpu::render(const View& view, const 
   } else {
     ray_marcher::clear_film(result, execution);
     for (const char* name : {"rays", "points", "look_ups", "occlusion_rays"}) result.counters[name] = 0;
+    if (options_.reproject) result.counters["history_used"] = result.counters["history_rejected"] = 0;
+    if (options_.clamp) result.counters["history_clamped"] = 0;
   }
   result.film.metadata = {{"method", "half_resolution_march_gpu"},
                           {"settings", settings_},

@@ -26,6 +26,7 @@ class Passes {
 
   const lit_media::LitMedia& media() const { return lit_; }
   const ray_marcher::RayEnds& ends() const { return ends_; }
+  bool marches() const { return march_ != nullptr; }
   // Is there anything to be seen? Only then there is a picture to draw.
   bool draws() const { return march_ || ray_marcher::something_behind(*plan_.scene, plan_.lights.size()); }
 

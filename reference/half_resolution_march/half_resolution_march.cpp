@@ -72,8 +72,8 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
               part_of(execution, {0.8, 0.85}), counters);
         lap("history");
       }
+      if (plan_.options.reproject) keep(low, view);
     }
-    if (plan_.options.reproject) keep(low, view);
     const double edge = plan_.options.edge * counters.longest;
     if (plan_.options.blur && edge > 0) {
       blur(low, edge, part_of(execution, {0.85, 0.9}));
