@@ -103,9 +103,10 @@ struct Experiment {
   std::string layer = "mean";
   std::vector<std::string> metrics;
   TimingRule timing;
-  bool in_tests = false;  // its gates are judged by scripts/test
-  bool stages = false;    // a table of the time of every stage
-  bool orders = false;    // a table of how fast errors fall with the swept setting
+  bool in_tests = false;            // its gates are judged by scripts/test
+  bool stages = false;              // a table of the time of every stage
+  std::vector<Moving::What> moves;  // of the frame after each of these moved every row says the time
+  bool orders = false;              // a table of how fast errors fall with the swept setting
   std::vector<PlotCase> plots;
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;

@@ -19,6 +19,9 @@ class ExperimentReader {
  private:
   using TableReader = scene::load::TableReader;
 
+  // Scenes and methods of the experiment that `like` names, beside those of this file.
+  void take_over(const TableReader& top);
+
   const ExperimentKind& kind() const { return *experiment_.kind; }
   std::string position(const std::string& key) const;
   // The tables of [[key]], each with its reader.

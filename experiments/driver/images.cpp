@@ -113,6 +113,7 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
                  const scene::Execution& execution) {
   const Experiment& e = keeper.experiment();
   const MethodCase& m = *planned.method;
+  if (!planned.refused.empty()) throw scene::NotSupported("", planned.refused);
   const std::shared_ptr<scene::Prepared> prepared = prepare(e, planned, execution, row.prepare_seconds);
   row.device = planned.renderer->device();
   const scene::Execution timed = as_timed(execution, row);
@@ -136,6 +137,17 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
     stages = frame.times;
     for (const auto& [name, value] : frame.counters) row.counters[name] = value;
   }
+  for (const Moving::What what : e.moves)
+    if (e.timing.budget > 0) {
+      auto after = frame_after(what, *planned.renderer, planned.settings, planned.scene, judged->view, timed,
+                               e.timing.budget / 2);
+      if (!after) continue;
+      // Media that moved are converted again.
+      if (what == Moving::What::media && row.counters.contains("conversion_seconds"))
+        after->seconds += row.counters.at("conversion_seconds");
+      row.moved[name_of(what)] = *after;
+      check_interrupted();
+    }
   if (m.layer != e.layer) rendering.film.layers[e.layer] = rendering.film.layer(m.layer);
   if (judged->reference)
     row.measures = compare(e, m, rendering.film, judged->reference->film,
@@ -157,6 +169,15 @@ RowColumn counter(const std::string& head, const std::string& name, std::functio
           }};
 }
 
+// A column of the frame after something moved.
+RowColumn after(const std::string& what, const std::string& head) {
+  return {head, [what](const Row& row) {
+            const auto found = row.moved.find(what);
+            if (found == row.moved.end()) return std::string();
+            return duration(found->second.seconds) + (found->second.anew ? ", anew" : "");
+          }};
+}
+
 }  // namespace
 
 const scene::Component& Images::find_component(const std::string& name, const std::string& position) const {
@@ -166,6 +187,7 @@ const scene::Component& Images::find_component(const std::string& name, const st
 void Images::read(const TableReader& top, Experiment& e) const {
   e.layer = top.text("layer", "mean");
   e.stages = top.flag("stages", false);
+  if (top.flag("moves", false)) e.moves = {Moving::What::camera, Moving::What::lights, Moving::What::media};
 }
 
 void Images::read_method(const TableReader& reader, const Experiment& e, MethodCase& method) const {
@@ -190,10 +212,19 @@ void Images::check_metrics(Experiment& e, const std::string& position) const {
 
 void Images::check(const Experiment& e, const RunOptions& options) const { try_pictures(e, options); }
 
+std::vector<std::string> Images::times() const {
+  std::vector<std::string> names = ExperimentKind::times();
+  names.insert(names.end(), {"camera_seconds", "lights_seconds", "media_seconds"});
+  return names;
+}
+
 std::vector<RowColumn> Images::time_columns() const { return {{"time of one render", time_text}}; }
 
 std::vector<RowColumn> Images::preparation_columns() const {
   return {{"prepared once in", [](const Row& row) { return row.runs ? duration(row.prepare_seconds) : ""; }},
+          after("camera", "camera moves"),
+          after("lights", "lights move"),
+          after("media", "media move"),
           counter("converted in", "conversion_seconds", duration),
           counter("numbers of the density", "numbers", [](double n) { return fmt::format("{:.0f}", n); }),
           counter("density error", "density_error", [](double e) { return fmt::format("{:.3g}", e); })};

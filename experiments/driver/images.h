@@ -9,7 +9,7 @@ class Images : public ExperimentKind {
   std::string name() const override { return "images"; }
   std::string component_key() const override { return "renderer"; }
   const scene::Component& find_component(const std::string& name, const std::string& position) const override;
-  std::vector<std::string> keys() const override { return {"stages", "reference", "layer"}; }
+  std::vector<std::string> keys() const override { return {"stages", "reference", "layer", "moves"}; }
   void read(const TableReader& top, Experiment&) const override;
   std::vector<std::string> method_keys() const override {
     return {"layer", "picture_only", "count_noise", "moving", "convert"};
@@ -18,6 +18,7 @@ class Images : public ExperimentKind {
   // Adds root mean squares, which the publications print, beside relative errors.
   void check_metrics(Experiment&, const std::string& position) const override;
   bool needs_reference(const std::string&, const std::string&) const override { return true; }
+  std::vector<std::string> times() const override;
   bool draws_pictures() const override { return true; }
   void check(const Experiment&, const RunOptions&) const override;
   Outcome run(Experiment, const RunOptions&) const override;

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/driver/timing.h"
 #include "scene/base/settings.h"
+#include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 #include "scene/media/spline_map.h"
 
 namespace airlight::experiments {
@@ -52,6 +55,56 @@ bool thin_fog(Scene& scene) {
   });
 }
 
+void shift(scene::Region& region, const Vec3& by) {
+  scene::match(
+      region, [](scene::Unbounded&) {}, [&](Box& box) { box.lo += by, box.hi += by; },
+      [&](scene::Sphere& ball) { ball.center += by; },
+      [&](scene::Slab& slab) { slab.lo += slab.normal.dot(by), slab.hi += slab.normal.dot(by); });
+}
+
+void shift(scene::DensityField& field, const Vec3& by) {
+  const auto shifted = [&](const scene::GaussianSum& sum) {
+    scene::GaussianSum result = sum;
+    for (scene::Gaussian& g : result.gaussians) g.center += by;
+    return result;
+  };
+  const auto grid_shifted = [&](const scene::VoxelGrid& grid) {
+    scene::VoxelGrid result = grid;
+    result.translation += by;
+    return result;
+  };
+  scene::match(
+      field, [](scene::Homogeneous&) {}, [&](scene::GaussianSum& sum) { sum = shifted(sum); },
+      [&](scene::GridPointer& grid) { grid = std::make_shared<const scene::VoxelGrid>(grid_shifted(*grid)); },
+      [&](scene::FogmapPointer& fog) {
+        auto moved = std::make_shared<Fogmap>(*fog);
+        moved->x0 += by[0], moved->z0 += by[2];
+        fog = std::move(moved);
+      },
+      [&](scene::LegendrePointer& box) {
+        const Box& at = box->box();
+        box =
+            std::make_shared<const scene::LegendreBox>(Box{at.lo + by, at.hi + by}, box->shape(), box->coefficients());
+      },
+      [&](scene::FittedPointer& fitted) {
+        scene::Fitted moved = *fitted;
+        moved.gaussians = shifted(moved.gaussians);
+        moved.grid = grid_shifted(moved.grid);
+        fitted = std::make_shared<const scene::Fitted>(std::move(moved));
+      });
+}
+
+bool move_media(Scene& scene) {
+  const Vec3 by(1e-3, 0, 0);
+  for (scene::Medium& medium : scene.media) {
+    const bool has_place = bounding_box(medium).size().allFinite();
+    shift(medium.field, by);
+    shift(medium.region, by);
+    if (!has_place) medium.sigma_t *= 1.001;
+  }
+  return !scene.media.empty();
+}
+
 // About the film's upward direction, around `pivot`.
 void turn(scene::Camera& camera, const Point3& pivot, double angle) {
   const Mat3 turned = Eigen::AngleAxisd(angle, camera.up).toRotationMatrix();
@@ -74,6 +127,7 @@ bool move_camera(Scene& scene, double angle) {
 
 const scene::Choices<Moving::What> kinds = {{"camera", Moving::What::camera},
                                             {"lights", Moving::What::lights},
+                                            {"media", Moving::What::media},
                                             {"fog", Moving::What::fog},
                                             {"coefficients", Moving::What::coefficients}};
 
@@ -83,12 +137,6 @@ void bind(scene::SettingBinder& b, Moving& m) {
   b.real("turn", m.turn, 0, 1, "angle by which a camera turns from frame to frame [rad]").where("what", {"camera"});
 }
 
-std::string name_of(Moving::What what) {
-  for (const auto& [name, kind] : kinds)
-    if (kind == what) return name;
-  return "";
-}
-
 // One frame back. False if the scene has nothing that moves so.
 bool move(Scene& scene, const Moving& moving) {
   switch (moving.what) {
@@ -96,6 +144,8 @@ bool move(Scene& scene, const Moving& moving) {
       return move_camera(scene, -moving.turn);
     case Moving::What::lights:
       return move_lights(scene);
+    case Moving::What::media:
+      return move_media(scene);
     case Moving::What::fog:
       return move_fog(scene);
     case Moving::What::coefficients:
@@ -106,6 +156,12 @@ bool move(Scene& scene, const Moving& moving) {
 
 }  // namespace
 
+std::string name_of(Moving::What what) {
+  for (const auto& [name, kind] : kinds)
+    if (kind == what) return name;
+  return "";
+}
+
 Moving read_moving(const std::map<std::string, std::string>& given, const std::string& where) {
   return scene::read_settings(bind, scene::Settings(scene::list_settings(bind), given, where));
 }
@@ -115,14 +171,19 @@ std::string canonical(const Moving& m) {
                      m.what == Moving::What::camera ? fmt::format(" {}", m.turn) : "");
 }
 
+std::shared_ptr<const Scene> moved_back(const Scene& scene, const Moving& moving) {
+  auto before = std::make_shared<Scene>(scene);
+  if (!move(*before, moving)) return nullptr;
+  finish(*before);
+  return before;
+}
+
 NextFrames::NextFrames(std::shared_ptr<scene::Prepared> prepared, SharedScene here, const Moving& moving)
     : prepared_(std::move(prepared)), moving_(moving), path_{std::move(here)} {
   while (path_.size() < std::size_t(moving.frames)) {
-    auto before = std::make_shared<Scene>(*path_.back());
-    if (!move(*before, moving))
+    path_.push_back(moved_back(*path_.back(), moving));
+    if (!path_.back())
       throw scene::NotSupported("", fmt::format("the scene has no {} that could move", name_of(moving.what)));
-    finish(*before);
-    path_.push_back(std::move(before));
   }
   std::reverse(path_.begin(), path_.end());
   here_ = path_.size() - 1;
@@ -152,6 +213,33 @@ scene::Rendering NextFrames::one(const SharedScene& at, scene::View view, const 
   times->insert(times->end(), rendering.times.begin(), rendering.times.end());
   rendering.times = std::move(*times);
   return rendering;
+}
+
+std::optional<FrameAfter> frame_after(Moving::What what, const scene::Renderer& renderer,
+                                      const scene::Settings& settings, std::shared_ptr<const Scene> here,
+                                      const scene::View& view, const scene::Execution& execution, double budget) {
+  std::shared_ptr<const Scene> now = here, other = moved_back(*here, {what});
+  if (!other || !renderer.supports(*other, settings).empty()) return {};
+  std::unique_ptr<scene::Prepared> prepared = renderer.prepare(here, settings, execution);
+  prepared->render(view, execution);
+  FrameAfter result;
+  std::vector<double> times;
+  for (double spent = 0; times.size() < 2 || (times.size() < 6 && spent + times.back() < budget);
+       spent += times.back()) {
+    std::swap(now, other);
+    const double start = steady_seconds();
+    scene::View seen = view;
+    seen.camera = now->camera;
+    if (!prepared->next(now, execution) && what != Moving::What::camera) {
+      prepared = renderer.prepare(now, settings, execution);
+      result.anew = true;
+    }
+    prepared->render(seen, execution);
+    times.push_back(steady_seconds() - start);
+  }
+  if (times.size() > 1) times.erase(times.begin());
+  result.seconds = median(times);
+  return result;
 }
 
 }  // namespace airlight::experiments

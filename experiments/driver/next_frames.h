@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Moving {
   enum class What {
     camera,       // turns around the middle of finite media, or else on the spot, about the film's upward direction
     lights,       // move by a millimetre and turn by a milliradian
+    media,        // move by a millimetre, or where they have no place become a thousandth denser
     fog,          // fogmaps move by a millimetre and turn by 1e-4
     coefficients  // of fogmaps become a thousandth less
   };
@@ -25,6 +27,11 @@ struct Moving {
 // From its text, "what" to "camera" and so on. Throws Error, which begins with `where`.
 Moving read_moving(const std::map<std::string, std::string>& given, const std::string& where);
 std::string canonical(const Moving&);
+
+std::string name_of(Moving::What);
+
+// The scene one frame before, finished. Null if it has nothing that moves so.
+std::shared_ptr<const scene::Scene> moved_back(const scene::Scene&, const Moving&);
 
 class NextFrames {
  public:
@@ -47,5 +54,15 @@ class NextFrames {
   std::vector<SharedScene> path_;  // by frame
   std::size_t here_;               // the frame that was rendered last
 };
+
+// [s] of the frame after something moved: of next() and the render, or, where there is no next(), of a preparation anew and the render.
+struct FrameAfter {
+  double seconds = 0;
+  bool anew = false;
+};
+// The median of a few, after one that warms up, in about `budget` seconds. Nothing where nothing in the scene moves so.
+std::optional<FrameAfter> frame_after(Moving::What, const scene::Renderer&, const scene::Settings&,
+                                      std::shared_ptr<const scene::Scene>, const scene::View&, const scene::Execution&,
+                                      double budget);
 
 }  // namespace airlight::experiments

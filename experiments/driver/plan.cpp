@@ -57,6 +57,7 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
                                  fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
   parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving ? canonical(*m.moving) : ""));
+  for (const Moving::What what : e.moves) parts.push_back(name_of(what));
   const std::string device = component.device();
   parts.push_back(device);
   if (!device.empty()) parts.push_back(gpu::foreign_shaders());
@@ -73,6 +74,7 @@ class Conversions {
     execution_.store = &store;
   }
 
+  // Throws NotSupported where media cannot be converted so.
   std::shared_ptr<const scene::Scene> of(const MethodCase& m, Row& row) {
     if (!m.convert) return scene_;
     auto& made = made_[canonical(*m.convert)];
@@ -80,6 +82,8 @@ class Conversions {
       try {
         made = std::make_shared<const scene::ConvertedScene>(
             convert_media(*scene_, *m.convert, execution_, reference_id()));
+      } catch (const scene::NotSupported&) {
+        throw;
       } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", m.position, error.what()), error.exit_code());
       }
@@ -122,9 +126,13 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c, const scene::Co
   for (const MethodCase& m : e.methods) {
     if (!is_on(m, c)) continue;
     const scene::Renderer& renderer = find_renderer(m.renderer, m.name);
-    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), nullptr, {}};
+    PlannedRow p{&m, &renderer, scene::Settings(renderer.settings(), m.settings, m.name), planned.scene, "", {}};
     Row converted;
-    p.scene = conversions.of(m, converted);
+    try {
+      p.scene = conversions.of(m, converted);
+    } catch (const scene::NotSupported& objection) {
+      p.refused = objection.reason;
+    }
     p.row = row_of(c, m, p.settings, p.scene->hash);
     p.row.counters = converted.counters;
     p.row.width = scene.width;

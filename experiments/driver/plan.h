@@ -17,6 +17,7 @@ struct PlannedRow {
   const scene::Renderer* renderer = nullptr;
   scene::Settings settings;
   std::shared_ptr<const scene::Scene> scene;  // with its media converted, where the method asks for that
+  std::string refused;                        // why its media cannot be converted, if they cannot
   Row row;                                    // what is known before it is rendered, its key above all
 };
 

@@ -2,7 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
+#include <set>
 
 #include "experiments/application/renderers.h"
 #include "experiments/driver/committed_references.h"
@@ -25,6 +27,34 @@ ExperimentReader::ExperimentReader(const Folders& folders, const std::string& id
   toml_ = scene::load::parse_toml(scene::read_whole_file(file_, scene::load::most_toml_bytes), file_);
 }
 
+void ExperimentReader::take_over(const TableReader& top) {
+  auto reader = top.table("like");
+  if (!reader) return;
+  reader->allow({"experiment", "without"});
+  const std::vector<std::string> without = strings(*toml_.get("like")->as_table(), "without", *reader);
+  std::set<std::string> left(without.begin(), without.end());
+  const std::string id = reader->text("experiment");
+  const std::string path = (folders_.root / "experiments" / (id + ".toml")).string();
+  if (!std::filesystem::exists(path)) reader->expected("experiment", "an experiment, as group/name");
+  toml::table other = scene::load::parse_toml(scene::read_whole_file(path, scene::load::most_toml_bytes), path);
+  if (other.contains("like")) reader->expected("experiment", "one that is not like another itself");
+  for (const std::string list : {"scene", "method"}) {
+    toml::array* theirs = other.get_as<toml::array>(list);
+    if (!theirs) continue;
+    toml::array* ours = toml_.get_as<toml::array>(list);
+    if (!ours) ours = toml_.insert(list, toml::array()).first->second.as_array();
+    for (toml::node& node : *theirs) {
+      const auto* table = node.as_table();
+      const std::string name = table ? (*table)["name"].value_or(std::string()) : std::string();
+      if (list == "method" && std::find(without.begin(), without.end(), name) != without.end())
+        left.erase(name);
+      else
+        ours->push_back(std::move(node));
+    }
+  }
+  if (!left.empty()) reader->fail("without", fmt::format("{} has no method '{}'", id, *left.begin()));
+}
+
 Experiment ExperimentReader::read() {
   TableReader top(toml_, "");
   std::vector<std::string> kinds;
@@ -34,10 +64,11 @@ Experiment ExperimentReader::read() {
     if (toml_["kind"].value_or(std::string()) == kind->name()) experiment_.kind = kind;
   }
   std::vector<std::string> keys{"kind",   "title", "paper", "about",    "summary",  "metrics", "in_tests", "scene",
-                                "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing"};
+                                "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing",   "like"};
   const std::vector<std::string> of_kind = kind().keys();
   keys.insert(keys.end(), of_kind.begin(), of_kind.end());
   top.allow(keys);
+  take_over(top);
   top.choice("kind", kinds, kinds.front());
   experiment_.title = top.text("title");
   experiment_.paper = top.text("paper", "");

@@ -66,6 +66,7 @@ json to_json(const Row& row) {
             {"counters", row.counters},
             {"image", row.image},
             {"exposure", row.exposure}};
+  for (const auto& [what, after] : row.moved) j["moved"][what] = {{"seconds", after.seconds}, {"anew", after.anew}};
   if (row.parameter) j["parameter"] = *row.parameter;
   if (row.map) j["map"] = to_json(*row.map);
   if (!row.columns.empty()) j["columns"] = row.columns;
@@ -107,6 +108,8 @@ Row row_from_json(const json& j) {
   for (const auto& [name, value] : j.at("counters").items()) row.counters[name] = number(value);
   row.exposure = number(j.at("exposure"));
   if (j.contains("parameter")) row.parameter = j.at("parameter").get<double>();
+  if (j.contains("moved"))
+    for (const auto& [what, after] : j.at("moved").items()) row.moved[what] = {after.at("seconds"), after.at("anew")};
   if (j.contains("map")) row.map = map_from_json(j.at("map"));
   if (j.contains("columns"))
     for (const auto& [name, values] : j.at("columns").items())
@@ -139,6 +142,8 @@ std::optional<Estimate> quantity(const Row& row, const std::string& name) {
                           Estimate{before + row.seconds.value, before + row.seconds.low, before + row.seconds.high})
                     : std::nullopt;
   }
+  for (const auto& [what, after] : row.moved)
+    if (name == what + "_seconds") return plain(after.seconds);
   if (const double parts = parts_of_run(row, name); parts > 0)
     return Estimate{row.seconds.value / parts, row.seconds.low / parts, row.seconds.high / parts};
   if (name == "parameter") return row.parameter ? std::optional(plain(*row.parameter)) : std::nullopt;

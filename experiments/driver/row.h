@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/application/probe.h"
+#include "experiments/driver/next_frames.h"
 #include "experiments/judging/metrics.h"
 #include "experiments/judging/statistics.h"
 
@@ -29,6 +30,7 @@ struct Row {
   std::string group;          // rows that were timed together have the same
   double waited = 0;          // share of the threads' time in these runs in which no processor was free for them
   double prepare_seconds = 0;
+  std::map<std::string, FrameAfter> moved;             // by what moved: "camera", "lights", "media"
   std::vector<std::pair<std::string, double>> stages;  // [s] of one render, median of the runs
   std::string device;                                  // that computed it, if not the processor
   std::map<std::string, double> counters;
@@ -47,7 +49,8 @@ bool is_processor(const std::string& device);
 nlohmann::json to_json(const Row&);
 Row row_from_json(const nlohmann::json&);
 
-// A metric, "seconds", "prepare_seconds", "total_seconds" (the sum of both), "parameter", "setting" or "counter.NAME"; of a
+// A metric, "seconds", "prepare_seconds", "total_seconds" (the sum of both), "parameter", "setting" or "counter.NAME"; "camera_seconds", "lights_seconds" and
+// "media_seconds", of the frame after these moved; of a
 // flow "step_seconds" (of one step), "cell_seconds" (of one step, over its cells) and "simulated_seconds" (of one simulated
 // second). Nothing where the row has none.
 std::optional<Estimate> quantity(const Row&, const std::string& name);

@@ -163,6 +163,7 @@ std::string table_csv(const Outcome& outcome) {
   head.insert(head.end(), {"seconds", "seconds_low", "seconds_high", "seconds_mad", "runs", "prepare_seconds"});
   const bool downloads = any(outcome, [](const Row& r) { return download(r).has_value(); });
   if (downloads) head.push_back("download_seconds");
+  for (const Moving::What what : outcome.experiment.moves) head.push_back(name_of(what) + "_seconds");
   for (const std::string& counter : counters) head.push_back("counter." + counter);
   head.push_back("note");
   std::string out = csv_line(head);
@@ -184,6 +185,10 @@ std::string table_csv(const Outcome& outcome) {
       line.insert(line.end(), {number(row.seconds.value), number(row.seconds.low), number(row.seconds.high),
                                number(row.mad), std::to_string(row.runs), number(row.prepare_seconds)});
     if (downloads) line.push_back(download(row) ? number(*download(row)) : "");
+    for (const Moving::What what : outcome.experiment.moves) {
+      const auto after = row.moved.find(name_of(what));
+      line.push_back(after == row.moved.end() ? "" : number(after->second.seconds));
+    }
     for (const std::string& counter : counters) {
       const auto found = row.counters.find(counter);
       line.push_back(found == row.counters.end() ? "" : number(found->second));

@@ -40,6 +40,7 @@ class Trial {
   }
 
   void method(const PlannedRow& p) const {
+    if (!p.refused.empty()) return;
     scene::Film film;
     try {
       film = render(*p.renderer, p.scene, p.method->settings, p.settings);

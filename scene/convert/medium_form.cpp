@@ -42,8 +42,9 @@ void bind(SettingBinder& b, MediumConversion& c) {
 Box sampled_box(const std::vector<Medium>& media, std::size_t i) {
   const Box box = bounding_box(media[i]);
   if (!box.empty() && box.size().allFinite() && (box.size().array() > 0).all()) return box;
-  throw Error(fmt::format("{} {}: a conversion needs one with an end in all directions", label(media, i),
-                          box.empty() ? "is empty" : "has no end"));
+  const std::string reason = fmt::format("{} {}: a conversion needs one with an end in all directions",
+                                         label(media, i), box.empty() ? "is empty" : "has no end");
+  throw NotSupported(reason, reason);
 }
 
 GridPointer sample(const Medium& medium, const Box& box, int voxels, const Execution& execution) {

@@ -121,4 +121,41 @@ TEST_CASE("render and explain convert media, and say what that lost", "[cli][con
   }
 }
 
+TEST_CASE("media that cannot be converted are a row that says why", "[driver][convert]") {
+  std::string endless = puff_scene(8, 6);
+  endless += "[[medium]]\ntype = \"homogeneous\"\nname = \"haze\"\nsigma_t = 0.1\nalbedo = 0.5\n";
+  const SmallProject project(endless, experiment_file);
+  const Outcome outcome =
+      run_experiment(read_experiment(project.path(), "g/e", "quick"), {project.path(), false, 1, false});
+  REQUIRE(outcome.rows.size() == 3);
+  CHECK(outcome.rows[0].note.empty());
+  for (int i : {1, 2})
+    CHECK(outcome.rows[std::size_t(i)].note ==
+          "not supported: medium 'haze' has no end: a conversion needs one with an end in all directions");
+}
+
+TEST_CASE("an experiment takes over scenes and methods of another", "[driver]") {
+  const SmallProject project(puff_scene(8, 6), experiment_file);
+  const std::string top = R"(title = "Alike"
+layer = "transmittance"
+metrics = ["rel_l2"]
+[reference]
+renderer = "deterministic"
+[[method]]
+name = "own"
+renderer = "ray_marcher"
+)";
+  project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/e\"\nwithout = [\"as it was\"]\n");
+  const Experiment e = read_experiment(project.path(), "g/like", "quick");
+  REQUIRE(e.scenes.size() == 1);
+  REQUIRE(e.methods.size() == 3);
+  CHECK((e.methods[0].name == "own" && e.methods[1].name == "grid" && e.methods[2].setting == "24"));
+  CHECK(e.layer == "transmittance");
+  project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/e\"\nwithout = [\"nobody\"]\n");
+  CHECK_THROWS_WITH(read_experiment(project.path(), "g/like", "quick"),
+                    Catch::Contains("like.toml:11:11") && Catch::Contains("g/e has no method 'nobody'"));
+  project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/none\"\n");
+  CHECK_THROWS_WITH(read_experiment(project.path(), "g/like", "quick"), Catch::Contains("g/none"));
+}
+
 }  // namespace conversion_test

@@ -121,4 +121,53 @@ TEST_CASE("next frames: what cannot move is told", "[experiments]") {
   CHECK_THROWS_WITH(read_moving({{"what", "lights"}, {"turn", "0.1"}}, "file:3:1"), Catch::Contains("turn"));
 }
 
+TEST_CASE("next frames: media of every form move by a millimetre", "[experiments]") {
+  // A picture of what moved is that of a camera which moved the other way.
+  for (
+      const char* const medium :
+      {"type = \"gaussians\"\ngaussians = [{ center = [0.3, 0, 0], width = 0.4, amplitude = 2 }]",
+       "type = \"homogeneous\"\nregion = { type = \"sphere\", center = [0, 0, 0], radius = 0.8 }",
+       "type = \"homogeneous\"\nregion = { type = \"box\", lo = [-0.8, -1, -1], hi = [0.7, 1, 1] }",
+       "type = \"grid\"\nsize = [2, 2, 2]\nvoxel_size = 0.7\norigin = [-0.5, -0.5, -0.5]\nvalues = [1, 2, 3, 4, 5, 6, 7, 8]",
+       "type = \"legendre\"\nlo = [-1, -1, -1]\nhi = [1, 1, 1]\nsize = [2, 1, 1]\ncoefficients = [3, 1]"}) {
+    CAPTURE(medium);
+    const auto scene = [&](double x) {
+      return std::make_shared<const scene::Scene>(
+          scene::parse_scene("film = { width = 6, height = 6 }\n[camera]\nposition = [" + std::to_string(x) +
+                                 ", 0.2, 4]\nlook_at = [" + std::to_string(x) +
+                                 ", 0, 0]\n[[light]]\ntype = \"directional\"\nto_light = [1, 1, 1]\nirradiance = 3\n"
+                                 "[[medium]]\nsigma_t = 0.7\n" +
+                                 medium + "\n",
+                             "moved", "."));
+    };
+    const scene::Renderer& quadrature = find_renderer("deterministic", "next_frames_test");
+    const auto drawn = [&](const std::shared_ptr<const scene::Scene>& of) {
+      return test::picture(quadrature, of, {{"relative_tolerance", "1e-8"}});
+    };
+    const scene::Film still = drawn(scene(0)), moved = drawn(moved_back(*scene(0), {Moving::What::media})),
+                      aside = drawn(scene(-1e-3));
+    CHECK(test::relative_l2(moved, aside, "airlight") < 1e-6);
+    CHECK(test::relative_l2(moved, still, "airlight") > 1e-5);
+  }
+}
+
+TEST_CASE("next frames: the time after something moved, and whether all was prepared anew", "[experiments]") {
+  const auto scene = ball();
+  const auto after = [&](const char* renderer, Moving::What what, const Given& given) {
+    const scene::Renderer& found = find_renderer(renderer, "next_frames_test");
+    return frame_after(what, found, {found.settings(), given}, scene, view_of(*scene), {1, {}}, 0.05);
+  };
+  const Given steps{{"steps", "4"}}, map{{"steps", "4"}, {"shadow", "map"}, {"map_size", "256"}};
+  const auto camera = after("ray_marcher", Moving::What::camera, map),
+             light = after("ray_marcher", Moving::What::lights, map);
+  REQUIRE(camera);
+  REQUIRE(light);
+  CHECK((!camera->anew && camera->seconds > 0));
+  CHECK((light->anew && light->seconds > camera->seconds));     // the map is made again
+  CHECK_FALSE(after("ray_marcher", Moving::What::fog, steps));  // there is no fogmap
+  const auto kept = after("compensated_ray_marching", Moving::What::lights, {{"cells", "8"}});
+  REQUIRE(kept);
+  CHECK_FALSE(kept->anew);
+}
+
 }  // namespace next_frames_test
