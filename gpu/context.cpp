@@ -209,14 +209,14 @@ void Context::end_group() {
 }
 
 Program& Context::program(const std::string& file, const std::map<std::string, std::string>& definitions) {
-  ++traffic_.look_ups;
+  ++traffic_.program_look_ups;
   auto& program = programs_[key_of(file, definitions)];
   if (!program) program = std::make_unique<Program>(*this, file, definitions);
   return *program;
 }
 
 RasterProgram& Context::raster_program(const std::string& name, const std::map<std::string, std::string>& definitions) {
-  ++traffic_.look_ups;
+  ++traffic_.program_look_ups;
   auto& program = raster_programs_[key_of(name, definitions)];
   if (!program) program = std::make_unique<RasterProgram>(*this, name, definitions);
   return *program;

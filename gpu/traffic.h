@@ -10,20 +10,28 @@ struct Traffic {
   long syncs = 0;                     // waits of the host for the device
   long allocations = 0;               // buffers, textures, queries, framebuffers
   long dispatches = 0, draws = 0;
-  long look_ups = 0;  // of programs by file and definitions
+  long program_look_ups = 0;  // of programs by file and definitions
 
   // As a Rendering's counters name them.
   std::map<std::string, double> counters() const {
-    return {{"bytes_up", double(bytes_up)},       {"bytes_down", double(bytes_down)}, {"syncs", double(syncs)},
-            {"allocations", double(allocations)}, {"dispatches", double(dispatches)}, {"draws", double(draws)},
-            {"look_ups", double(look_ups)}};
+    return {{"bytes_up", double(bytes_up)},
+            {"bytes_down", double(bytes_down)},
+            {"syncs", double(syncs)},
+            {"allocations", double(allocations)},
+            {"dispatches", double(dispatches)},
+            {"draws", double(draws)},
+            {"program_look_ups", double(program_look_ups)}};
   }
 };
 
 inline Traffic operator-(const Traffic& a, const Traffic& b) {
-  return {a.bytes_up - b.bytes_up,       a.bytes_down - b.bytes_down, a.syncs - b.syncs,
-          a.allocations - b.allocations, a.dispatches - b.dispatches, a.draws - b.draws,
-          a.look_ups - b.look_ups};
+  return {a.bytes_up - b.bytes_up,
+          a.bytes_down - b.bytes_down,
+          a.syncs - b.syncs,
+          a.allocations - b.allocations,
+          a.dispatches - b.dispatches,
+          a.draws - b.draws,
+          a.program_look_ups - b.program_look_ups};
 }
 
 }  // namespace airlight::gpu

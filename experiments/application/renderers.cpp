@@ -3,6 +3,8 @@
 #include "experiments/application/find_component.h"
 #include "gpu/compensated_ray_marching/compensated_ray_marching.h"
 #include "gpu/fogshop/fogshop.h"
+#include "gpu/froxel_fog/froxel_fog.h"
+#include "gpu/half_resolution_march/half_resolution_march.h"
 #include "gpu/legendre_fluids/light.h"
 #include "gpu/ray_marcher/ray_marcher.h"
 #include "gpu/shadow_planes/shadow_planes.h"
@@ -28,7 +30,9 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     list.push_back(std::make_unique<ray_marcher::RayMarcher>());
     list.push_back(std::make_unique<gpu::ray_marcher::RayMarcher>());
     list.push_back(std::make_unique<half_resolution_march::HalfResolutionMarch>());
+    list.push_back(std::make_unique<gpu::half_resolution_march::HalfResolutionMarch>());
     list.push_back(std::make_unique<froxel_fog::FroxelFog>());
+    list.push_back(std::make_unique<gpu::froxel_fog::FroxelFog>());
     list.push_back(std::make_unique<fogshop::Fogshop>());
     list.push_back(std::make_unique<gpu::fogshop::Fogshop>());
     list.push_back(std::make_unique<airlight::shadow_planes::ShadowPlanes>());

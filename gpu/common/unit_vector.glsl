@@ -6,3 +6,11 @@ dvec2 unit_vector(double angle) {
   int turns = int(quarters) & 3;
   return turns == 0 ? dvec2(c, s) : turns == 1 ? dvec2(-s, c) : turns == 2 ? dvec2(-c, -s) : dvec2(s, -c);
 }
+// (cosine, sine) of a number of turns in [0, 1], to 1e-7.
+vec2 unit_vector(float turns) {
+  float quarters = floor(turns * 4 + 0.5), x = (turns - 0.25 * quarters) * 6.283185307, w = x * x;
+  float c = 1 - w / 2 * (1 - w / 12 * (1 - w / 30 * (1 - w / 56 * (1 - w / 90))));
+  float s = x * (1 - w / 6 * (1 - w / 20 * (1 - w / 42 * (1 - w / 72))));
+  int q = int(quarters) & 3;
+  return q == 0 ? vec2(c, s) : q == 1 ? vec2(-s, c) : q == 2 ? vec2(-c, -s) : vec2(s, -c);
+}

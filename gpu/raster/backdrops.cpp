@@ -5,7 +5,6 @@
 #include "gpu/view_uniforms.h"
 
 namespace airlight::gpu {
-namespace {}  // namespace
 
 Backdrops::Picture::Picture(Context& context, const scene::Backdrop& backdrop)
     : width(backdrop.width),
@@ -23,10 +22,28 @@ Backdrops::Backdrops(Context& context, const scene::Scene& scene)
 }
 
 void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer& seen) const {
+  find(view, distances, known, &seen, {view.width, view.height, 1, 1, 0.5, 0.5});
+}
+
+void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const CellGrid& grid) const {
+  find(view, distances, known, nullptr, grid);
+}
+
+void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer* seen,
+                     const CellGrid& grid) const {
   require_own_camera(scene_, view);
   set_camera(program_, view);
   distances.bind(0);
-  seen.bind(1);
+  (seen ? *seen : distances).bind(1);
+  program_.set("columns", grid.columns);
+  program_.set("rows", grid.rows);
+  program_.set("first_ray", int(grid.first));
+  program_.set("keeps_seen", seen != nullptr);
+  program_.set("cut", grid.cut);
+  program_.set_double("cell_width", grid.width);
+  program_.set_double("cell_height", grid.height);
+  program_.set_double("cell_x", grid.x);
+  program_.set_double("cell_y", grid.y);
   for (std::size_t i = 0; i < pictures_.size(); ++i) {
     const Picture& picture = *pictures_[i];
     program_.set("first", i == 0);
@@ -36,7 +53,7 @@ void Backdrops::find(const scene::View& view, const Buffer& distances, bool know
     program_.set("fills", picture.fills);
     picture.depth.bind(2);
     picture.radiance.bind(3);
-    program_.dispatch(view.width, view.height);
+    program_.dispatch(grid.columns, grid.rows);
   }
 }
 

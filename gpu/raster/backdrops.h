@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gpu/program.h"
+#include "gpu/raster/raster_pass.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu {
@@ -13,12 +14,15 @@ class Backdrops {
   // Uploads. Throws Unavailable where the device has no room for them.
   Backdrops(Context&, const scene::Scene&);
 
-  // Row 0 first, x fastest. `distances` [m along the rays], which end what surfaces do (`known`) or nothing, become those of backdrops
+  // For every pixel centre. Row 0 first, x fastest. `distances` [m along the rays], which end what surfaces do (`known`) or nothing, become those of backdrops
   // where these are nearer; `seen`, 3 floats a pixel, what they send from there [W/m^2/sr], -1 where none is seen. Throws Error for a
   // view that is not through the scene's own camera.
   void find(const scene::View&, const Buffer& distances, bool known, const Buffer& seen) const;
+  // Distances alone, for the rays of a grid.
+  void find(const scene::View&, const Buffer& distances, bool known, const CellGrid&) const;
 
  private:
+  void find(const scene::View&, const Buffer& distances, bool known, const Buffer* seen, const CellGrid&) const;
   struct Picture {
     int width, height;
     bool fills;

@@ -7,7 +7,10 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 
 layout(std430, binding = 0) buffer Distances { float distances[]; };
 layout(std430, binding = 1) writeonly buffer Primitives { int primitives[]; };
-uniform int columns, rows, block, first_ray, keeps_primitives;
+uniform int columns, rows, first_ray, keeps_primitives;
+uniform double cell_width, cell_height;  // [pixels]
+uniform int cut;                         // 1: cells end at the film's edge
+uniform double cell_x, cell_y;           // where rays go through, from 0 to 1 of a cell
 #if RESUMES
 // Groups of each dispatch; then of each ray its next node and what it has met so far.
 layout(std430, binding = 2) buffer Unfinished { int unfinished[]; };
@@ -63,7 +66,9 @@ void main() {
   ivec2 at = 8 * ivec2(gl_WorkGroupID.xy) + ivec2(i & 3 | i >> 1 & 4, i >> 2 & 1 | i >> 3 & 6);
   if (at.x >= columns || at.y >= rows) return;
   dvec3 origin, direction, normal;
-  view_ray(double(block) * (dvec2(at) + 0.5LF), origin, direction);
+  dvec2 cell = dvec2(cell_width, cell_height), begin = cell * dvec2(at);
+  if (cut != 0) cell = min(cell, dvec2(view_width, view_height) - begin);
+  view_ray(begin + dvec2(cell_x, cell_y) * cell, origin, direction);
   int place = at.y * columns + at.x, node = 0;
   First best = First(1e37, -1);
 #if RESUMES

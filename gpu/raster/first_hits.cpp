@@ -14,6 +14,12 @@ constexpr int leaves_at_once = 2150, most_solids = 5000;
 // A ray is at a node once at most, and after 16 nodes it has met a leaf or not.
 constexpr int most_leaves(int nodes) { return (nodes + 1) / 2 + nodes / 16 + 1; }
 
+void require_room(const Buffer& distances, const Buffer* primitives, int columns, int rows, std::size_t first) {
+  const std::size_t rays = std::size_t(columns) * rows, bytes = (first + rays) * 4;
+  if (bytes > distances.bytes() || (primitives && bytes > primitives->bytes()))
+    throw Error(fmt::format("gpu: {} rays from place {} do not fit into {} bytes", rays, first, distances.bytes()));
+}
+
 }  // namespace
 
 void FirstHits::bind(scene::SettingBinder& b, Way& way) {
@@ -41,25 +47,36 @@ FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_ball
 
 void FirstHits::find(const scene::View& view, const Buffer& distances, const Buffer* primitives,
                      const HitGrid& grid) const {
-  const std::size_t rays = std::size_t(grid.columns(view)) * grid.rows(view), bytes = (grid.first + rays) * 4;
-  if (bytes > distances.bytes() || (primitives && bytes > primitives->bytes()))
-    throw Error(
-        fmt::format("gpu: {} rays from place {} do not fit into {} bytes", rays, grid.first, distances.bytes()));
+  const int columns = grid.columns(view), rows = grid.rows(view);
+  if (!raster_) {
+    const double side = grid.block;
+    trace(view, distances, primitives, {columns, rows, side, side, 0.5, 0.5, grid.first});
+    return;
+  }
+  require_room(distances, primitives, columns, rows, grid.first);
   const Use use(context_);
-  if (raster_)
-    raster_->find(surfaces_, view, distances, primitives, grid);
-  else
-    trace(view, distances, primitives, grid);
+  raster_->find(surfaces_, view, distances, primitives, grid);
+}
+
+void FirstHits::find(const scene::View& view, const Buffer& distances, const CellGrid& grid) const {
+  if (raster_) throw Error("gpu: first hits by the rasteriser know no cells");
+  trace(view, distances, nullptr, grid);
 }
 
 void FirstHits::trace(const scene::View& view, const Buffer& distances, const Buffer* primitives,
-                      const HitGrid& grid) const {
-  const int columns = grid.columns(view), rows = grid.rows(view);
+                      const CellGrid& grid) const {
+  const int columns = grid.columns, rows = grid.rows;
+  require_room(distances, primitives, columns, rows, grid.first);
+  const Use use(context_);
   Program& program = *program_;
   set_view(program, view);
   program.set("columns", columns);
   program.set("rows", rows);
-  program.set("block", grid.block);
+  program.set("cut", grid.cut);
+  program.set_double("cell_width", grid.width);
+  program.set_double("cell_height", grid.height);
+  program.set_double("cell_x", grid.x);
+  program.set_double("cell_y", grid.y);
   program.set("first_ray", int(grid.first));
   program.set("triangle_count", surfaces_.triangles());
   program.set("ball_count", int(surfaces_.solids().size()) - tree_.solids());

@@ -31,9 +31,11 @@ class FirstHits {
   // Row 0 first, x fastest: distances along the rays [m] as floats, far_away where nothing is hit, and, unless null,
   // primitives as ints: triangles in their order, then solids, then balls; -1: nothing. Throws Error if they do not fit.
   void find(const scene::View&, const Buffer& distances, const Buffer* primitives = nullptr, const HitGrid& = {}) const;
+  // Distances alone, for Way::tree.
+  void find(const scene::View&, const Buffer& distances, const CellGrid&) const;
 
  private:
-  void trace(const scene::View&, const Buffer& distances, const Buffer* primitives, const HitGrid&) const;
+  void trace(const scene::View&, const Buffer& distances, const Buffer* primitives, const CellGrid&) const;
 
   Context& context_;
   SurfacesOnDevice surfaces_;

@@ -24,6 +24,15 @@ struct HitGrid {
   int rows(const scene::View& view) const { return (view.height + block - 1) / block; }
 };
 
+// Rays through one place of each cell of a grid over the film of a view.
+struct CellGrid {
+  int columns, rows;
+  double width, height;   // of a cell [pixels]
+  double x, y;            // the place, from 0 to 1 of a cell
+  std::size_t first = 0;  // as in HitGrid
+  bool cut = false;       // cells that reach beyond the film's edge end there
+};
+
 class RasterPass {
  public:
   // Throws Unavailable where the device's vertex shaders read no storage buffers.

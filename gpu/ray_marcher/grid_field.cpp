@@ -8,8 +8,15 @@
 
 namespace airlight::gpu::ray_marcher {
 
-GridsOnDevice::GridsOnDevice(Context& context, const airlight::ray_marcher::Plan& plan, GridStorage storage) {
-  for (const airlight::ray_marcher::Layer& layer : plan.layers)
+void bind_storage(scene::SettingBinder& b, GridStorage& storage) {
+  b.choice("grid_storage", storage,
+           {{"auto", GridStorage::automatic}, {"buffer", GridStorage::buffer}, {"texture", GridStorage::texture}},
+           "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough");
+}
+
+GridsOnDevice::GridsOnDevice(Context& context, const std::vector<airlight::ray_marcher::Layer>& layers,
+                             GridStorage storage) {
+  for (const airlight::ray_marcher::Layer& layer : layers)
     if (layer.grid) {
       ++grids_;
       samples_ += std::size_t(layer.grid->size[0]) * layer.grid->size[1] * layer.grid->size[2];
@@ -20,13 +27,13 @@ GridsOnDevice::GridsOnDevice(Context& context, const airlight::ray_marcher::Plan
   if (grids_ == 0 || storage == GridStorage::buffer) {
     // Asked for by its size first: a list that the device will not take need not be made.
     if (!fits) Buffer(context, "voxel grids", samples_ * sizeof(float));
-    buffer_ = std::make_unique<Buffer>(context, "voxel grids", grid_data(plan));
+    buffer_ = std::make_unique<Buffer>(context, "voxel grids", grid_data(layers));
     return;
   }
   if (grids_ > std::size_t(context.limits().texture_units))
     throw Unavailable(fmt::format("gpu: {} voxel grids, {} offers {} textures to a shader", grids_, context.renderer(),
                                   context.limits().texture_units));
-  for (const airlight::ray_marcher::Layer& layer : plan.layers) {
+  for (const airlight::ray_marcher::Layer& layer : layers) {
     if (!layer.grid) continue;
     const int* size = layer.grid->size;
     textures_.push_back(

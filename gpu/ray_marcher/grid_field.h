@@ -1,4 +1,4 @@
-// The voxel grids of a plan on the device: 3D textures, or one storage buffer for all.
+// The voxel grids of media on the device: 3D textures, or one storage buffer for all.
 #pragma once
 #include <memory>
 #include <string>
@@ -6,17 +6,18 @@
 
 #include "gpu/buffer.h"
 #include "gpu/texture_3d.h"
-#include "reference/ray_marcher/plan.h"
+#include "reference/ray_marcher/layer.h"
 
 namespace airlight::gpu::ray_marcher {
 
 // automatic: textures on a GPU; on a software renderer, which reads buffers faster, a buffer where it is large enough.
 enum class GridStorage { automatic, buffer, texture };
+void bind_storage(scene::SettingBinder&, GridStorage&);  // the setting grid_storage
 
 class GridsOnDevice {
  public:
   // Throws Unavailable in one line where the device has no room.
-  GridsOnDevice(Context&, const airlight::ray_marcher::Plan&, GridStorage);
+  GridsOnDevice(Context&, const std::vector<airlight::ray_marcher::Layer>&, GridStorage);
 
   int textures() const { return int(textures_.size()); }  // 0: the buffer has the values
   std::string description() const;                        // one line; empty without grids

@@ -9,6 +9,7 @@ namespace airlight::gpu::ray_marcher {
 namespace {
 
 const std::vector<Binding> bindings = {{"LAYERS", at::layers},
+                                       {"LIGHT_MAPS", at::light_maps},
                                        {"GAUSSIANS", at::gaussians},
                                        {"GRID_VALUES", at::grid_values},
                                        {"FREE_DISTANCES", at::free_distances},
@@ -36,7 +37,7 @@ const std::vector<Layout> layouts = {{"layers[0].albedo", offsetof(LayerData, al
                                      {"gaussians[0].limit", offsetof(GaussianData, limit), sizeof(GaussianData)},
                                      {"lights[0].kind", offsetof(LightData, kind), sizeof(LightData)},
                                      {"lights[0].cos_outer", offsetof(LightData, cos_outer), sizeof(LightData)},
-                                     {"solids[0].normal", offsetof(SolidData, normal), sizeof(SolidData)}};
+                                     {"blockers[0].normal", offsetof(SolidData, normal), sizeof(SolidData)}};
 
 }  // namespace
 

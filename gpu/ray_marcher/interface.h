@@ -8,10 +8,11 @@
 namespace airlight::gpu::ray_marcher {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9 (values of an
-// environment). What no shader has at the same time shares a number. `layers` is a uniform block.
+// environment). What no shader has at the same time shares a number. `layers` is a uniform block, beside a storage block 0.
 namespace at {
 enum Binding {
   layers = 0,
+  light_maps = 0,  // storage
   gaussians = 1,
   grid_values = 2,
   free_distances = 3,

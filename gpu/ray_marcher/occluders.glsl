@@ -10,7 +10,7 @@ struct Solid {
   float unused;
 };
 
-layout(std430, binding = AT_SOLIDS) readonly buffer Solids { Solid solids[]; };
+layout(std430, binding = AT_SOLIDS) readonly buffer Solids { Solid blockers[]; };
 uniform vec3 middle_in_tree;  // [m] of the marcher's places, from the tree's middle
 
 bool solid_between(Solid s, vec3 origin, vec3 direction, float t_end) {
@@ -43,7 +43,7 @@ bool triangle_between(TreeRay ray, int place, float along, float t_end) {
 bool occluded(vec3 origin, vec3 direction, float t_end) {
   work += uint(solid_count);
   for (int i = 0; i < solid_count; ++i)
-    if (solid_between(solids[i], origin, direction, t_end)) return true;
+    if (solid_between(blockers[i], origin, direction, t_end)) return true;
   TreeRay ray = tree_ray_of(origin + middle_in_tree, direction);
   float along = direction[ray.axis.z];
   for (int node = 0; node < tree_nodes;) {

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 
-#include "gpu/raster/backdrops.h"
-#include "gpu/raster/first_hits.h"
 #include "gpu/ray_marcher/plan.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "reference/ray_marcher/stages.h"
 #include "scene/base/error.h"
-#include "scene/light/background.h"
 #include "scene/light/light_on_ray.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
@@ -26,26 +23,17 @@ using scene::Execution;
 using scene::Scene;
 using scene::View;
 
-// Surfaces, or balls of lights.
-bool something_ends_rays(const Scene& scene) {
-  return scene.geometry || std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
-           const auto ball = scene::ball(light);
-           return ball && ball->radius > 0;
-         });
-}
-
 class PreparedMarchGpu final : public scene::Prepared {
  public:
-  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage, FirstHits::Way way)
-      : plan_(std::move(plan)), settings_(std::move(settings)), context_(Context::get()), frame_(context_) {
-    frame_.timer.restart();
-    const bool ends = something_ends_rays(*plan_.scene);
-    if (ends) first_hits_ = std::make_unique<FirstHits>(context_, *plan_.scene, true, way);
-    if (!plan_.scene->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *plan_.scene);
-    const bool seen =
-        (plan_.scene->geometry && !plan_.lights.empty()) || has_environment(*plan_.scene) || bool(backdrops_);
-    if (!plan_.layers.empty() || seen)
-      device_ = std::make_unique<PlanOnDevice>(context_, plan_, storage, first_hits_.get());
+  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage, FirstHits::Way way, const Execution& execution)
+      : plan_(std::move(plan)),
+        settings_(std::move(settings)),
+        context_(Context::get()),
+        frame_(context_),
+        ends_(context_, *plan_.scene, way) {
+    if (!plan_.layers.empty() || something_behind(*plan_.scene, plan_.lights.size()))
+      device_ =
+          std::make_unique<PlanOnDevice>(context_, plan_, storage, ends_.surfaces(), frame_.timer, execution.progress);
     frame_.timer.stage("upload");
     times_ = frame_.timer.times();
   }
@@ -62,55 +50,37 @@ class PreparedMarchGpu final : public scene::Prepared {
   std::string settings_;
   Context& context_;
   mutable Frame frame_;
-  std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
-  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
-  std::unique_ptr<PlanOnDevice> device_;   // null: no medium with extinction, and nothing that shines
+  RayEnds ends_;
+  std::unique_ptr<PlanOnDevice> device_;  // null: no medium with extinction, and nothing that shines
   std::vector<scene::StageTime> times_;
 };
 
 std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   std::vector<scene::Stage> stages = describe_stages(plan_);
   const std::string grids = device_ ? device_->grids().description() : "";
-  stages.insert(stages.begin(),
-                {{"distances", bool(first_hits_), first_hits_ ? "where camera rays end" : "nothing ends a ray"},
-                 {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
-                 {"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids}});
+  std::vector<scene::Stage> first = ends_.stages();
+  first.push_back({"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids});
+  stages.insert(stages.begin(), first.begin(), first.end());
   return stages;
 }
 
 bool PreparedMarchGpu::draw(const View& view, const Execution& execution, bool looks, scene::Rendering& result) const {
-  const std::size_t pixels = result.film.pixels();
-  const char* const names[] = {"airlight", "transmittance", "surface", "mean"};
   frame_.begin(execution);
-  const auto layer = [&](const char* name) -> Buffer& { return frame_.buffers.get(name, 12 * pixels); };
   Buffer& totals = frame_.buffers.get("totals", 8 * sizeof(unsigned));
-  MarchedFilm film{nullptr,         nullptr,         nullptr,         layer(names[0]),
-                   layer(names[1]), layer(names[2]), layer(names[3]), totals};
-  if (first_hits_) {
-    film.distances = &frame_.buffers.get("distances", 4 * pixels);
-    film.primitives = &frame_.buffers.get("primitives", 4 * pixels);
-    frame_.timer.begin("distances");
-    first_hits_->find(view, *film.distances, film.primitives);
-  }
-  if (backdrops_) {
-    film.distances = &frame_.buffers.get("distances", 4 * pixels);
-    film.seen = &frame_.buffers.get("seen", 12 * pixels);
-    frame_.timer.begin("backdrops");
-    backdrops_->find(view, *film.distances, bool(first_hits_), *film.seen);
-  }
+  const FilmOnDevice film = ends_.begin_film(view, frame_);
   const bool counts = frame_.download.wants_any();
   if (counts) totals.clear();
-  device_->render(view, film, frame_, counts, looks, execution.progress);
-  const Buffer* const buffers[] = {&film.airlight, &film.transmittance, &film.surface, &film.mean};
-  for (int i = 0; i < 4; ++i) frame_.download.add(names[i], *buffers[i], 12 * pixels);
+  device_->render(view, film, frame_, counts ? &totals : nullptr, looks, execution.progress);
   frame_.download.add_values("totals", totals, totals.bytes());
   device_->note(frame_.download);
   frame_.finish(result);
   if (device_->unfinished(frame_.download)) return false;
-  const std::vector<unsigned> words = frame_.download.values<unsigned>("totals");
-  const char* const counters[] = {"steps", "shadow_rays", "shadow_steps", "occlusion_rays"};
-  for (std::size_t i = 0; 2 * i < words.size(); ++i)
-    result.counters[counters[i]] = double(words[2 * i]) + 4294967296.0 * double(words[2 * i + 1]);
+  const std::vector<double> counted = totals_of(frame_.download, "totals");
+  const bool maps = device_->has_maps();  // of which shaders count look-ups
+  if (plan_.options.shadow == airlight::ray_marcher::Shadow::map)
+    for (const char* counter : {"shadow_rays", "look_ups"}) result.counters[counter] = 0;
+  const char* const counters[] = {"steps", maps ? "look_ups" : "shadow_rays", "shadow_steps", "occlusion_rays"};
+  for (std::size_t i = 0; i < counted.size(); ++i) result.counters[counters[i]] = counted[i];
   return true;
 }
 
@@ -119,11 +89,9 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
   const Use use(context_);
   if (!device_) {  // no medium, and nothing that shines
-    const auto wants = [&](const char* layer) { return !execution.layers || execution.layers->count(layer) != 0; };
-    for (const char* name : {"mean", "airlight", "surface", "transmittance"})
-      if (wants(name)) result.film.layers[name].assign(3 * result.film.pixels(), name[0] == 't' ? 1.0f : 0.0f);
-    result.counters = Traffic().counters();
+    clear_film(result, execution);
     for (const char* name : {"steps", "shadow_rays", "shadow_steps", "occlusion_rays"}) result.counters[name] = 0;
+    if (plan_.options.shadow == airlight::ray_marcher::Shadow::map) result.counters["look_ups"] = 0;
   } else if (!draw(view, execution, false, result) && !draw(view, execution, true, result)) {
     throw Unavailable("ray_marcher_gpu: " + context_.renderer() + " reports rays as done that are not");
   }
@@ -133,12 +101,6 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
                           {"scene", plan_.scene->name},
                           {"hash", plan_.scene->hash}};
   return result;
-}
-
-void bind_storage(scene::SettingBinder& b, GridStorage& storage) {
-  b.choice("grid_storage", storage,
-           {{"auto", GridStorage::automatic}, {"buffer", GridStorage::buffer}, {"texture", GridStorage::texture}},
-           "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough");
 }
 
 }  // namespace
@@ -158,25 +120,17 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
   std::vector<std::string> reasons = airlight::ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const airlight::ray_marcher::Options options = airlight::ray_marcher::read_options(settings, 1);
-  if (scene.media.size() > most_layers)
-    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_layers));
+  for (const std::string& reason : unknown_media(scene.media)) reasons.push_back(reason);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   bool grid = false, negative = false;
-  for (std::size_t i = 0; i < scene.media.size(); ++i) {
-    const std::string why =
-        scene::unknown_field<scene::Homogeneous, scene::GaussianSum, scene::GridPointer, scene::FittedPointer>(
-            scene.media, i);
-    if (!why.empty()) reasons.push_back(why);
+  for (const scene::Medium& medium : scene.media)
     scene::match(
-        scene.media[i].field, [](const scene::Homogeneous&) {},
+        medium.field, [](const scene::Homogeneous&) {},
         [&](const scene::GaussianSum& sum) {
           for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
         },
         [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {},
         [](const scene::LegendrePointer&) {}, [&](const scene::FittedPointer&) { grid = true; });
-  }
-  if (options.shadow == airlight::ray_marcher::Shadow::map)
-    reasons.push_back("shadow = map is for the CPU: shaders march the depths towards lights");
   if (options.shadow == airlight::ray_marcher::Shadow::exact && (grid || negative))
     reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",
                                   grid ? "voxel grids" : "Gaussians with negative amplitudes"));
@@ -185,12 +139,12 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
 
 std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                const scene::Settings& settings,
-                                                               const Execution&) const {
+                                                               const Execution& execution) const {
   const airlight::ray_marcher::Options options =
       airlight::ray_marcher::read_options(settings, airlight::ray_marcher::length_unit(*scene));
   return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical(),
                                             scene::read_settings(bind_storage, settings),
-                                            scene::read_settings(FirstHits::bind, settings));
+                                            scene::read_settings(FirstHits::bind, settings), execution);
 }
 
 }  // namespace airlight::gpu::ray_marcher

@@ -33,9 +33,9 @@ std::size_t samples(const airlight::ray_marcher::GridField& grid) {
 
 }  // namespace
 
-Point3 middle_of(const airlight::ray_marcher::Plan& plan) {
+Point3 middle_of(const Layers& layers, const Point3& otherwise) {
   Box box;
-  for (const Layer& layer : plan.layers) {
+  for (const Layer& layer : layers) {
     const Box own = bounding_box(*layer.medium), varied = layer.varies ? support(layer.medium->field) : own;
     for (const Box& b : {own, varied})
       if (!b.empty() && b.size().allFinite()) box = unite(box, b);
@@ -47,13 +47,13 @@ Point3 middle_of(const airlight::ray_marcher::Plan& plan) {
       box = unite(box, {center + Vec3(lo[0], lo[1], lo[2]), center + Vec3(hi[0], hi[1], hi[2])});
     }
   }
-  return box.empty() ? plan.scene->camera.position : box.center();
+  return box.empty() ? otherwise : box.center();
 }
 
-std::vector<LayerData> layer_data(const airlight::ray_marcher::Plan& plan, const Point3& middle, bool textures) {
+std::vector<LayerData> layer_data(const Layers& layers, const Point3& middle, bool textures) {
   std::vector<LayerData> data;
   std::size_t gaussians = 0, values = 0, bricks = 0, grids = 0;
-  for (const Layer& layer : plan.layers) {
+  for (const Layer& layer : layers) {
     LayerData d{};
     d.sigma_t = float3(Vec3(layer.medium->sigma_t));
     d.albedo = float3(Vec3(layer.medium->albedo));
@@ -98,9 +98,9 @@ std::vector<LayerData> layer_data(const airlight::ray_marcher::Plan& plan, const
   return data;
 }
 
-std::vector<GaussianData> gaussian_data(const airlight::ray_marcher::Plan& plan) {
+std::vector<GaussianData> gaussian_data(const Layers& layers) {
   std::vector<GaussianData> data;
-  for (const Layer& layer : plan.layers) {
+  for (const Layer& layer : layers) {
     if (!layer.gaussians) continue;
     const airlight::ray_marcher::GaussianField& f = *layer.gaussians;
     for (std::size_t i = 0; i < f.count; ++i) {
@@ -111,9 +111,9 @@ std::vector<GaussianData> gaussian_data(const airlight::ray_marcher::Plan& plan)
   return data;
 }
 
-std::vector<float> brick_data(const airlight::ray_marcher::Plan& plan) {
+std::vector<float> brick_data(const Layers& layers) {
   std::vector<float> data;
-  for (const Layer& layer : plan.layers)
+  for (const Layer& layer : layers)
     if (layer.grid) data.insert(data.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
   return data;
 }
@@ -125,9 +125,9 @@ void grid_slice(const airlight::ray_marcher::GridField& grid, int z, std::vector
   for (float& value : values) value = *pair, pair += 2;
 }
 
-std::vector<float> grid_data(const airlight::ray_marcher::Plan& plan) {
+std::vector<float> grid_data(const Layers& layers) {
   std::vector<float> data, slice;
-  for (const Layer& layer : plan.layers)
+  for (const Layer& layer : layers)
     for (int z = 0; layer.grid && z < layer.grid->size[2]; ++z) {
       grid_slice(*layer.grid, z, slice);
       data.insert(data.end(), slice.begin(), slice.end());
@@ -135,9 +135,9 @@ std::vector<float> grid_data(const airlight::ray_marcher::Plan& plan) {
   return data;
 }
 
-std::vector<SolidData> solid_data(const airlight::ray_marcher::Plan& plan, const Point3& middle) {
+std::vector<SolidData> solid_data(const scene::Scene& scene, const Point3& middle) {
   std::vector<SolidData> data;
-  for (const scene::Surface& surface : plan.scene->surfaces) {
+  for (const scene::Surface& surface : scene.surfaces) {
     if (const auto* sphere = std::get_if<scene::Sphere>(&surface.shape))
       data.push_back({float3(Vec3(sphere->center - middle)), float(sphere->radius), {0, 0, 0}, 0});
     if (const auto* plane = std::get_if<scene::Plane>(&surface.shape)) {
@@ -149,11 +149,13 @@ std::vector<SolidData> solid_data(const airlight::ray_marcher::Plan& plan, const
   return data;
 }
 
-std::vector<LightData> light_data(const airlight::ray_marcher::Plan& plan, const Point3& middle) {
-  std::vector<LightData> data;
-  // Point and spot lights first: only they may have marches of their own.
-  std::vector<scene::Light> lights = plan.lights;
+std::vector<scene::Light> balls_first(std::vector<scene::Light> lights) {
   std::stable_partition(lights.begin(), lights.end(), [](const scene::Light& light) { return bool(ball(light)); });
+  return lights;
+}
+
+std::vector<LightData> light_data(const std::vector<scene::Light>& lights, const Point3& middle) {
+  std::vector<LightData> data;
   for (const scene::Light& light : lights) {
     const airlight::ray_marcher::LightShape shape = airlight::ray_marcher::light_shape(light);
     const Vec3 position(shape.position[0], shape.position[1], shape.position[2]),

@@ -57,18 +57,23 @@ struct SolidData {
   float unused;
 };
 
-// Centre of the finite regions and supports; of the camera if there are none.
-Point3 middle_of(const airlight::ray_marcher::Plan&);
+using Layers = std::vector<airlight::ray_marcher::Layer>;
+
+// Centre of the finite regions and supports; `otherwise` if there are none.
+Point3 middle_of(const Layers&, const Point3& otherwise);
 
 // With `textures` a grid's `first` is the number of its texture, else the place of its values.
-std::vector<LayerData> layer_data(const airlight::ray_marcher::Plan&, const Point3& middle, bool textures);
+std::vector<LayerData> layer_data(const Layers&, const Point3& middle, bool textures);
 // Values of all layers, one list after the other.
-std::vector<GaussianData> gaussian_data(const airlight::ray_marcher::Plan&);
-std::vector<float> brick_data(const airlight::ray_marcher::Plan&);
-std::vector<float> grid_data(const airlight::ray_marcher::Plan&);
+std::vector<GaussianData> gaussian_data(const Layers&);
+std::vector<float> brick_data(const Layers&);
+std::vector<float> grid_data(const Layers&);
 // Slice z of one grid, x fastest: padded samples.
 void grid_slice(const airlight::ray_marcher::GridField&, int z, std::vector<float>& values);
-std::vector<SolidData> solid_data(const airlight::ray_marcher::Plan&, const Point3& middle);
-std::vector<LightData> light_data(const airlight::ray_marcher::Plan&, const Point3& middle);
+std::vector<SolidData> solid_data(const scene::Scene&, const Point3& middle);
+
+// Lights in the order of the device: point and spot lights first, for only they may have marches of their own.
+std::vector<scene::Light> balls_first(std::vector<scene::Light>);
+std::vector<LightData> light_data(const std::vector<scene::Light>&, const Point3& middle);
 
 }  // namespace airlight::gpu::ray_marcher

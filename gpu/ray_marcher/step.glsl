@@ -17,10 +17,7 @@ void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float lengt
   if (occluded(point, from.to_light, from.distance)) return;
 #endif
   ++shadow_ray_count;
-  vec3 to_light = vec3(0);
-  for (int k = 0; k < layer_count; ++k)
-    to_light += layers[k].sigma_t * column_of(k, point, from.to_light, from.distance);
-  vec3 arrives = from.strength * exp(-to_light);
+  vec3 arrives = from.strength * exp(-depth_towards(l, point, from.to_light, from.distance));
   vec3 less = from.to_light - direction, more = from.to_light + direction;
   float minus = 0.5 * dot(less, less), plus = 0.5 * dot(more, more);
   for (int k = 0; k < layer_count; ++k)

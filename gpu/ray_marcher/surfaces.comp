@@ -8,7 +8,8 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/shadow_tree.glsl"
 #include "common/angle.glsl"
-uniform int skip_empty, light_count;
+uniform int skip_empty;
+uniform int light_count;
 #include "ray_marcher/light.glsl"
 #include "ray_marcher/columns.glsl"
 #include "ray_marcher/pixel.glsl"
@@ -25,19 +26,17 @@ uniform double nudge;  // [m] off the surface, where shadow rays start
 uint shadow_ray_count = 0, occlusion_ray_count = 0;
 
 // exp(-optical depth) from a point to a light, 0 behind a surface.
-vec3 transmittance_to(int own, dvec3 point, vec3 towards, dvec3 to_light, double distance_) {
+vec3 transmittance_to(int l, int own, dvec3 point, vec3 towards, dvec3 to_light, double distance_) {
   ++occlusion_ray_count;
   work += uint(solid_count);
   if (primitive_blocks(own, true, point, to_light, distance_) || tree_blocks(own, point, to_light, distance_)) return vec3(0);
   ++shadow_ray_count;
-  vec3 depth = vec3(0);
-  for (int k = 0; k < layer_count; ++k)
-    depth += layers[k].sigma_t * column_of(k, vec3(point - middle), towards, float(min(distance_, 1e37LF)));
-  return exp(-depth);
+  return exp(-depth_towards(l, vec3(point - middle), towards, float(min(distance_, 1e37LF))));
 }
 
 // Of one light, reflected by primitive `own` [W/m^2/sr].
-vec3 reflected(Light light, int own, Material material, dvec3 point, dvec3 normal, vec3 to_view) {
+vec3 reflected(int l, int own, Material material, dvec3 point, dvec3 normal, vec3 to_view) {
+  Light light = lights[l];
   dvec3 to_light = dvec3(light.axis);
   double distance_ = 1e37LF;
   vec3 irradiance = light.colour;
@@ -53,7 +52,7 @@ vec3 reflected(Light light, int own, Material material, dvec3 point, dvec3 norma
   if (!(cosine > 0) || irradiance == vec3(0)) return vec3(0);
   vec3 towards = vec3(to_light), result = brdf(material, vec3(normal), towards, to_view) * cosine * irradiance;
   if (result == vec3(0)) return vec3(0);
-  return result * transmittance_to(own, point + nudge * normal, towards, to_light, distance_);
+  return result * transmittance_to(l, own, point + nudge * normal, towards, to_light, distance_);
 }
 
 void main() {
@@ -84,7 +83,7 @@ void main() {
   bool moved = false;
   for (; light < light_count && !(moved && work > uint(budget)); ++light) {
     work += 8u;
-    sum += through * reflected(lights[light], primitive, materials[surface], origin + t * direction, normal, vec3(-direction));
+    sum += through * reflected(light, primitive, materials[surface], origin + t * direction, normal, vec3(-direction));
     moved = true;
   }
   for (int c = 0; c < 3; ++c) surface_layer[3 * film_place + c] = sum[c];

@@ -41,15 +41,14 @@ double depth_per_metre(const scene::Camera& camera, const Ray& ray) {
   return camera.kind == scene::Camera::Kind::orthographic ? 1 : ray.direction.dot(camera.forward);
 }
 
-Interval media_depths(const lit_media::LitMedia& lit, const scene::Scene& scene, const scene::View& view,
-                      const scene::Execution& execution) {
-  if (lit.layers().empty()) return {};
+Interval media_depths(const lit_media::Plan& plan, const scene::View& view, const scene::Execution& execution) {
+  if (plan.layers.empty()) return {};
   const scene::CameraRays rays(view.camera, view.width, view.height);
   return scene::parallel_sum<Union>(view.height, execution,
                                     [&](int y, Union& row) {
                                       for (int x = 0; x < view.width; ++x) {
                                         const Ray ray = rays(x + 0.5, y + 0.5);
-                                        const Interval t = seen(lit.layers(), ray, camera_end(scene, ray).t);
+                                        const Interval t = seen(plan.layers, ray, camera_end(*plan.scene, ray).t);
                                         const double along = depth_per_metre(view.camera, ray);
                                         if (!t.empty()) row += Interval{t.lo * along, t.hi * along};
                                       }

@@ -51,7 +51,7 @@ class PreparedFog final : public scene::Prepared {
     prepare_seconds_ = watch_.lap();
   }
 
-  std::vector<scene::Stage> stages() const override { return describe_stages(*scene_, *lit_, options_, settings_); }
+  std::vector<scene::Stage> stages() const override { return describe_stages(lit_->plan(), options_, settings_); }
   std::vector<scene::StageTime> prepare_times() const override {
     std::vector<scene::StageTime> times = {{"prepare", prepare_seconds_ - lit_->map_seconds()}};
     if (lit_->map_seconds() > 0) times.push_back({"light_maps", lit_->map_seconds()});
@@ -69,7 +69,7 @@ class PreparedFog final : public scene::Prepared {
     Parts parts(execution, options_.frames + 4);
     Interval range = slice_range(options_, {});
     if (range.empty()) {
-      range = slice_range(options_, media_depths(*lit_, *scene_, view, parts.next()));
+      range = slice_range(options_, media_depths(lit_->plan(), view, parts.next()));
       book("fit");
     }
     std::optional<Volume> volume;
@@ -191,7 +191,8 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
 std::optional<std::vector<scene::StageTime>> PreparedFog::next(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Execution& execution) {
   if (!options_.reproject) return std::nullopt;
-  const bool same = lit_->fits(*scene) && scene->width == scene_->width && scene->height == scene_->height;
+  const bool same =
+      lit_media::fits(lit_->plan(), *scene) && scene->width == scene_->width && scene->height == scene_->height;
   if (!same && !unsupported(*scene, options_).empty()) return std::nullopt;
   watch_.lap();
   std::vector<scene::StageTime> times;

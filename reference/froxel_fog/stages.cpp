@@ -28,29 +28,30 @@ std::string beyond(Interval media, Interval range) {
 
 }  // namespace
 
-std::vector<scene::Stage> describe_stages(const scene::Scene& scene, const lit_media::LitMedia& lit, const Options& o,
-                                          const std::string& settings) {
+std::vector<scene::Stage> describe_stages(const lit_media::Plan& plan, const Options& o, const std::string& settings) {
+  const scene::Scene& scene = *plan.scene;
   std::vector<scene::Stage> stages;
   const auto add = [&](const char* name, bool kept, const std::string& reason) {
     stages.push_back({name, kept, reason});
   };
-  const Interval media = media_depths(lit, scene, view_of(scene), {}), range = slice_range(o, media);
-  const bool seen = !lit.layers().empty() && !range.empty(), lights = !lit.lights().empty();
-  const char* const nothing = lit.layers().empty() ? "no medium with extinction"
-                              : media.empty()      ? "no ray meets a medium"
-                                                   : "no medium lies in the range";
+  const Interval media = media_depths(plan, view_of(scene), {}), range = slice_range(o, media);
+  const bool seen = !plan.layers.empty() && !range.empty(), lights = !plan.lights.empty();
+  const char* const nothing = plan.layers.empty() ? "no medium with extinction"
+                              : media.empty()     ? "no ray meets a medium"
+                                                  : "no medium lies in the range";
   if (o.preset != Preset::fitted) add("preset", true, settings);
-  add("light_maps", lit.map_bytes() > 0,
-      lit.map_bytes() > 0   ? fmt::format("{} lights, {}, {:.3g} MB", lit.lights().size(),
-                                          light_map::encoding_name(o.media.map.encoding), 1e-6 * double(lit.map_bytes()))
+  const double bytes = map_bytes(plan);
+  add("light_maps", bytes > 0,
+      bytes > 0             ? fmt::format("{} lights, {}, {:.3g} MB", plan.lights.size(),
+                                          light_map::encoding_name(o.media.map.encoding), 1e-6 * bytes)
       : o.media.self_shadow ? "nothing that varies to shadow"
                             : "self_shadow = none: media dim no light on its way, and are too bright");
   add("fit", o.far == 0, o.far == 0 ? "near and far from where the media begin and end" : "near and far are set");
   add("inject", seen, seen ? describe_grid(scene, o, media, range) : nothing);
-  add("scattering", seen && lit.scatters(),
-      lit.scatters() ? "light scattered once"
-      : lights       ? "no medium scatters"
-                     : "no light, or none that fog without end lets in");
+  add("scattering", seen && plan.scatters,
+      plan.scatters ? "light scattered once"
+      : lights      ? "no medium scatters"
+                    : "no light, or none that fog without end lets in");
   add("history", seen && (o.frames > 1 || o.reproject),
       o.reproject    ? "the last picture of this preparation, moved to the camera"
       : o.frames > 1 ? fmt::format("{} jittered frames of a still view", o.frames)

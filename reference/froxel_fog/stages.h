@@ -9,7 +9,6 @@
 namespace airlight::froxel_fog {
 
 // `settings`: the effective ones as text.
-std::vector<scene::Stage> describe_stages(const scene::Scene&, const lit_media::LitMedia&, const Options&,
-                                          const std::string& settings);
+std::vector<scene::Stage> describe_stages(const lit_media::Plan&, const Options&, const std::string& settings);
 
 }  // namespace airlight::froxel_fog

@@ -5,6 +5,8 @@
 namespace airlight::half_resolution_march {
 namespace {
 
+constexpr double same_weight = 1e-6;  // weights that differ by less are equal, whatever the rounding
+
 struct Weights {
   double of_distance[blur_radius + 1];
   Weights() {
@@ -70,10 +72,12 @@ FogPixel upsampled(const LowFilm& film, const Neighbours& across, const Neighbou
   if (nearest_depth && !film.depth.empty()) {
     int nearest = 0;
     double least = infinity, sum = 0;
+    const double slack = depth == infinity ? 0 : same_depth * depth;
     for (int k = 0; k < 4; ++k) {
       const double apart = depth_difference(depth, film.depth[at[k]]);
       sum += apart;
-      if (apart > least || (apart == least && weights[k] <= weights[nearest])) continue;
+      if (apart > least + slack || (apart >= least - slack && weights[k] <= weights[nearest] * (1 + same_weight)))
+        continue;
       nearest = k;
       least = apart;
     }

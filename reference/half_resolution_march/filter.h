@@ -23,7 +23,8 @@ Neighbours neighbours(const Blocks&, int pixel);
 Neighbours neighbours_at(const Blocks&, double x);
 
 // At a film pixel of this depth: bilinear; but, if `nearest_depth`, the neighbour of nearest depth where the four differ from it by more
-// than upsample_edges * edge together. Of several that are equally near the one that weighs most.
+// than upsample_edges * edge together. Of several that are equally near the one that weighs most, of those
+// the first.
 FogPixel upsampled(const LowFilm&, const Neighbours& across, const Neighbours& down, double depth, bool nearest_depth,
                    double edge);
 

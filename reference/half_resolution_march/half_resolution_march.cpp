@@ -35,7 +35,7 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
   PreparedHalfResolutionMarch(Plan plan, std::string settings, double seconds)
       : plan_(std::move(plan)), settings_(std::move(settings)), prepare_seconds_(seconds) {}
 
-  std::vector<scene::Stage> stages() const override { return describe_stages(plan_); }
+  std::vector<scene::Stage> stages() const override { return describe_stages(plan_.media->plan(), plan_.options); }
 
   std::vector<scene::StageTime> prepare_times() const override {
     if (plan_.media->map_bytes() == 0) return {{"prepare", prepare_seconds_}};
@@ -72,10 +72,10 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
               part_of(execution, {0.8, 0.85}), counters);
         lap("history");
       }
+      if (plan_.options.reproject) keep(low, view);
     }
-    if (plan_.options.reproject) keep(low, view);
     const double edge = plan_.options.edge * counters.longest;
-    if (blurs(plan_) && edge > 0) {
+    if (plan_.options.blur && edge > 0) {
       blur(low, edge, part_of(execution, {0.85, 0.9}));
       lap("blur");
     }
@@ -96,12 +96,14 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
     return result;
   }
 
-  // With reproject the last picture becomes the history of the next. Else a preparation keeps nothing.
+  // With reproject the last picture becomes the history of the next, and where the camera alone moves, media and maps are kept. Else a
+  // preparation keeps nothing.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
                                                     const scene::Execution& execution) override {
     if (!plan_.options.reproject) return std::nullopt;
     const scene::Scene& now = *plan_.scene;
-    const bool same = plan_.media->fits(*scene) && scene->width == now.width && scene->height == now.height;
+    const bool same =
+        lit_media::fits(plan_.media->plan(), *scene) && scene->width == now.width && scene->height == now.height;
     if (!same && !unsupported(*scene, plan_.options).empty()) return std::nullopt;
     std::vector<scene::StageTime> times;
     if (same) {

@@ -40,6 +40,10 @@ struct LowFilm {
   std::size_t at(int x, int y) const { return std::size_t(y) * width() + x; }
 };
 
+// Depths that differ by a share of a millionth are taken as equal where one of several pixels is chosen by them, so that rounding, of single
+// precision too, does not choose.
+constexpr double same_depth = 1e-6;
+
 // 0 between two rays that nothing ends.
 inline double depth_difference(double a, double b) { return a == b ? 0 : std::abs(a - b); }
 

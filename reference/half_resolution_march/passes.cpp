@@ -18,9 +18,6 @@ struct BlockRay {
   }
 };
 
-// Depths that differ by rounding are no edge.
-constexpr double rounding = 1e-9;
-
 // The ray of block (x, y). Even blocks of the checkerboard take their nearest pixel, odd ones their farthest; where all are equally
 // far, and with depth = centre, the ray goes through the middle.
 BlockRay block_ray(const Plan& plan, const scene::View& view, const scene::CameraRays& rays, const LowFilm& film,
@@ -35,11 +32,11 @@ BlockRay block_ray(const Plan& plan, const scene::View& view, const scene::Camer
   const auto depth = [&](int i, int j) { return behind.depth[std::size_t(j) * view.width + i]; };
   for (int j = film.down.begin(y); j < film.down.end(y); ++j)
     for (int i = film.across.begin(x); i < film.across.end(x); ++i) {
-      if (depth(i, j) < depth(least[0], least[1])) least[0] = i, least[1] = j;
-      if (depth(i, j) > depth(most[0], most[1])) most[0] = i, most[1] = j;
+      if (depth(i, j) < depth(least[0], least[1]) * (1 - same_depth)) least[0] = i, least[1] = j;
+      if (depth(i, j) > depth(most[0], most[1]) * (1 + same_depth)) most[0] = i, most[1] = j;
     }
   const double near = depth(least[0], least[1]), far = depth(most[0], most[1]);
-  if (depth_difference(near, far) <= rounding * near) return {middle.ray, near};
+  if (depth_difference(near, far) <= same_depth * near) return {middle.ray, near};
   const int* pixel = (x + y) % 2 == 0 ? least : most;
   return {rays(pixel[0] + 0.5, pixel[1] + 0.5), depth(pixel[0], pixel[1])};
 }

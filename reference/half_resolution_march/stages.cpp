@@ -20,27 +20,24 @@ std::string describe_march(const Options& o) {
 
 }  // namespace
 
-bool blurs(const Plan& plan) { return plan.options.blur && !plan.media->layers().empty(); }
-
-std::vector<scene::Stage> describe_stages(const Plan& plan) {
+std::vector<scene::Stage> describe_stages(const lit_media::Plan& plan, const Options& o) {
   std::vector<scene::Stage> stages;
   const auto add = [&](const char* name, bool kept, const std::string& reason) {
     stages.push_back({name, kept, reason});
   };
   const scene::Scene& scene = *plan.scene;
-  const Options& o = plan.options;
-  const lit_media::LitMedia& media = *plan.media;
-  const bool fog = !media.layers().empty(), lit = !media.lights().empty();
+  const bool fog = !plan.layers.empty(), lit = !plan.lights.empty();
   const char* no_fog = "no medium with extinction";
-  const bool varies = std::any_of(media.layers().begin(), media.layers().end(), [](const auto& l) { return l.varies; });
-  const bool maps = media.map_bytes() > 0;
+  const bool varies = std::any_of(plan.layers.begin(), plan.layers.end(), [](const auto& l) { return l.varies; });
+  const double map_bytes = lit_media::map_bytes(plan);
+  const bool maps = map_bytes > 0;
   add("light_maps", maps,
-      maps   ? fmt::format("{} lights: {}, {} floats a texel, {}^2 texels of {} steps, {:.3g} MB in all",
-                           media.lights().size(), light_map::encoding_name(o.media.map.encoding),
-                           light_map::floats_per_texel(o.media.map), o.media.map.size, o.media.map.steps,
-                           1e-6 * double(media.map_bytes()))
-      : !fog ? no_fog
-      : !lit ? "no light"
+      maps
+          ? fmt::format("{} lights: {}, {} floats a texel, {}^2 texels of {} steps, {:.3g} MB in all",
+                        plan.lights.size(), light_map::encoding_name(o.media.map.encoding),
+                        light_map::floats_per_texel(o.media.map), o.media.map.size, o.media.map.steps, 1e-6 * map_bytes)
+      : !fog                 ? no_fog
+      : !lit                 ? "no light"
       : !o.media.self_shadow ? "self_shadow = none: media do not dim light on its way"
       : !varies              ? "closed form: no medium varies"
                              : "nothing to shadow");
@@ -52,19 +49,19 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
       : behind                   ? "the environment is seen through the media"
                                  : "nothing behind the media");
   add("march", fog, fog ? describe_march(o) : no_fog);
-  add("scattering", media.scatters(),
-      media.scatters() ? fmt::format("light scattered once, of {} lights{}", media.lights().size(),
-                                     scene.geometry ? "; surfaces cast shadows" : "")
-      : !fog           ? no_fog
-      : !lit           ? "no light"
-                       : "no medium scatters");
+  add("scattering", plan.scatters,
+      plan.scatters ? fmt::format("light scattered once, of {} lights{}", plan.lights.size(),
+                                  scene.geometry ? "; surfaces cast shadows" : "")
+      : !fog        ? no_fog
+      : !lit        ? "no light"
+                    : "no medium scatters");
   add("history", fog && o.reproject,
       !fog           ? no_fog
       : !o.reproject ? "reproject = false: no picture goes on from the last one"
                      : fmt::format("the last picture weighs {:.3g}, found by {}{}", o.history_weight,
                                    o.airlight_depth ? "the depth of the airlight" : "the ends of rays",
                                    o.clamp ? "; limited to 3 x 3 marched pixels" : ""));
-  add("blur", blurs(plan),
+  add("blur", fog && o.blur,
       !fog               ? no_fog
       : !o.blur          ? "blur = none"
       : ends_rays(scene) ? fmt::format("bilateral; edges of depth: {:.3g} of the longest way through media", o.edge)

@@ -7,9 +7,6 @@
 
 namespace airlight::half_resolution_march {
 
-std::vector<scene::Stage> describe_stages(const Plan&);
-
-// Are film pixels another grid than marched ones, or marched ones blurred at all?
-bool blurs(const Plan&);
+std::vector<scene::Stage> describe_stages(const lit_media::Plan&, const Options&);
 
 }  // namespace airlight::half_resolution_march

@@ -32,6 +32,8 @@ class Encoder {
   explicit Encoder(const Options&);
   // The optical depths of all steps to floats_per_texel floats.
   void encode(std::span<const double> steps, float* texel) const;
+  // What the coefficients of `fourier` take of each step's optical depth, step by step.
+  const std::vector<double>& waves() const { return waves_; }
 
  private:
   void encode_slices(std::span<const double> steps, float* texel) const;

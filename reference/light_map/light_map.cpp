@@ -40,19 +40,12 @@ bool is_negative_somewhere(const scene::Medium& medium) {
 
 }  // namespace
 
-// A medium that varies, and where.
-struct LightMap::Part {
-  std::size_t number;
-  const scene::Medium* medium;
-  Box box;
-  Rgb extinction;  // at density 1, of the planes [1/m]
-  Interval extent(const Ray& ray, Interval t) const {
-    t = clip(medium->region, ray, t);
-    if (t.empty()) return t;
-    // A grid may be rotated in its box.
-    return grid_of(medium->field) ? scene::extent(medium->field, ray, t) : clip(scene::Region(box), ray, t);
-  }
-};
+Interval VariedMedia::Part::extent(const Ray& ray, Interval t) const {
+  t = clip(medium->region, ray, t);
+  if (t.empty()) return t;
+  // A grid may be rotated in its box.
+  return grid_of(medium->field) ? scene::extent(medium->field, ray, t) : clip(scene::Region(box), ray, t);
+}
 
 // Of some texels in a row: the parts of steps that lie in one medium, and the optical depths of all steps.
 struct LightMap::Row {
@@ -70,15 +63,30 @@ struct LightMap::Row {
   }
 };
 
-int planes_of(const std::vector<scene::Medium>& media, const Options& options) {
-  int count = 0;
-  bool grey = true;
-  for (const scene::Medium& medium : media) {
-    if (!extinguishes(medium) || varied_box(medium).empty()) continue;
-    ++count;
-    grey = grey && is_grey(medium);
+VariedMedia varied_media(const std::vector<scene::Medium>& media, const Options& options) {
+  VariedMedia varied;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    const scene::Medium& medium = media[i];
+    const Box box = varied_box(medium);
+    if (!extinguishes(medium) || box.empty()) continue;
+    varied.parts.push_back({i, &medium, box, medium.sigma_t});
+    varied.box = unite(varied.box, box);
+    varied.negative = varied.negative || is_negative_somewhere(medium);
+    varied.grey = varied.grey && is_grey(medium);
   }
-  return count == 0 ? 0 : grey || (count == 1 && options.encoding != Encoding::avsm) ? 1 : 3;
+  if (varied.parts.empty()) return varied;
+  const bool one = varied.parts.size() == 1 && options.encoding != Encoding::avsm;
+  varied.planes = varied.grey || one ? 1 : 3;
+  if (!varied.grey && varied.planes == 1) {
+    VariedMedia::Part& part = varied.parts[0];
+    part.extinction = Rgb::Constant(part.medium->sigma_t.maxCoeff());
+    varied.share = part.medium->sigma_t / part.medium->sigma_t.maxCoeff();
+  }
+  return varied;
+}
+
+double bytes_of_map(const VariedMedia& varied, const Options& options) {
+  return varied.planes * bytes_per_plane(options);
 }
 
 Densities densities_of(const std::vector<scene::Medium>& media) {
@@ -93,45 +101,28 @@ Densities densities_of(const std::vector<scene::Medium>& media) {
 
 LightMap::LightMap(const scene::Light& light, const std::vector<scene::Medium>& media, const Options& options,
                    const Densities& densities, const scene::Execution& execution)
-    : light_(light), options_(options) {
+    : light_(light), options_(options), varied_(varied_media(media, options)) {
   if (const std::string reason = unsupported(options); !reason.empty()) throw Error("light map: " + reason);
-  planes_ = planes_of(media, options);
-  std::vector<Part> parts;
-  Box box;
-  for (std::size_t i = 0; i < media.size(); ++i) {
-    const scene::Medium& medium = media[i];
-    if (!extinguishes(medium)) continue;
-    if (const double constant = constant_part(medium.field); constant > 0)
+  for (const scene::Medium& medium : media)
+    if (const double constant = constant_part(medium.field); extinguishes(medium) && constant > 0)
       constants_.push_back({medium.region, constant * medium.sigma_t});
-    const Box varied = varied_box(medium);
-    if (varied.empty()) continue;
-    parts.push_back({i, &medium, varied, medium.sigma_t});
-    box = unite(box, varied);
-    negative_ = negative_ || is_negative_somewhere(medium);
-    if (is_grey(medium)) continue;
-    grey_ = false;
-    if (planes_ > 1) continue;
-    parts.back().extinction = Rgb::Constant(medium.sigma_t.maxCoeff());
-    share_ = medium.sigma_t / medium.sigma_t.maxCoeff();
-  }
-  if (parts.empty()) return;
-  projection_ = fit(light, box, options.size);
+  if (empty()) return;
+  projection_ = fit(light, varied_.box, options.size);
   const std::size_t side = options.size + 2;
-  for (int c = 0; c < planes_; ++c) texels_[c].resize(side * side * floats_per_texel(options));
-  make_texels(parts, densities, execution);
+  for (int c = 0; c < varied_.planes; ++c) texels_[c].resize(side * side * floats_per_texel(options));
+  make_texels(densities, execution);
   make_border();
 }
 
-void LightMap::make_texels(const std::vector<Part>& parts, const Densities& densities,
-                           const scene::Execution& execution) {
+void LightMap::make_texels(const Densities& densities, const scene::Execution& execution) {
   const Encoder encoder(options_);
   scene::parallel_for(options_.size, execution, [&](int j) {
     const scene::FlushSubnormals flush;
     static thread_local Row row;
     for (int begin = 0; begin < options_.size; begin += texels_at_once) {
       const int end = std::min(begin + texels_at_once, options_.size);
-      march(parts, densities, j, begin, end, row);
-      for (int c = 0; c < planes_; ++c)
+      march(densities, j, begin, end, row);
+      for (int c = 0; c < varied_.planes; ++c)
         for (int i = begin; i < end; ++i)
           encoder.encode({row.depth[c].data() + std::size_t(i - begin) * options_.steps, std::size_t(options_.steps)},
                          texels_[c].data() + offset(i, j));
@@ -141,13 +132,12 @@ void LightMap::make_texels(const std::vector<Part>& parts, const Densities& dens
 
 // The optical depths of the steps of texels [begin, end) of row j. A medium counts in a step with the length that lies in
 // it, and with its density at the middle of that.
-void LightMap::march(const std::vector<Part>& parts, const Densities& densities, int j, int begin, int end,
-                     Row& row) const {
+void LightMap::march(const Densities& densities, int j, int begin, int end, Row& row) const {
   const int steps = options_.steps;
   const Interval range = projection_.depth;
   const double h = range.length() / steps;
-  for (int c = 0; c < planes_; ++c) row.depth[c].assign(std::size_t(end - begin) * steps, 0.0);
-  for (const Part& part : parts) {
+  for (int c = 0; c < varied_.planes; ++c) row.depth[c].assign(std::size_t(end - begin) * steps, 0.0);
+  for (const VariedMedia::Part& part : varied_.parts) {
     row.clear();
     for (int i = begin; i < end; ++i) {
       const Ray ray = texel_ray(projection_, i, j);
@@ -165,7 +155,7 @@ void LightMap::march(const std::vector<Part>& parts, const Densities& densities,
     for (auto* v : {&row.x, &row.y, &row.z}) v->resize(padded(n));
     row.density.resize(padded(n));
     densities(part.number, n, row.x.data(), row.y.data(), row.z.data(), row.density.data());
-    for (int c = 0; c < planes_; ++c)
+    for (int c = 0; c < varied_.planes; ++c)
       for (std::size_t k = 0; k < n; ++k)
         row.depth[c][row.step[k]] += part.extinction[c] * row.length[k] * double(row.density[k]);
   }
@@ -189,7 +179,8 @@ void LightMap::make_border() {
         from_j = std::clamp(from_j, 0, size - 1);
         if (whole) from_i = size - 1 - from_i;
       }
-      for (int c = 0; c < planes_; ++c) std::copy_n(texel(c, from_i, from_j), floats, texels_[c].data() + offset(i, j));
+      for (int c = 0; c < varied_.planes; ++c)
+        std::copy_n(texel(c, from_i, from_j), floats, texels_[c].data() + offset(i, j));
     }
 }
 
@@ -211,13 +202,13 @@ Rgb LightMap::varied_depth(const Point3& x) const {
   const double right = at.x - 0.5 - i, below = at.y - 0.5 - j;
   const double weights[2][2] = {{(1 - right) * (1 - below), right * (1 - below)}, {(1 - right) * below, right * below}};
   Rgb depth = Rgb::Zero();
-  for (int c = 0; c < planes_; ++c) {
+  for (int c = 0; c < varied_.planes; ++c) {
     double sum = 0;
     for (int dj = 0; dj < 2; ++dj)
       for (int di = 0; di < 2; ++di) sum += weights[dj][di] * decode(options_, texel(c, i + di, j + dj), at.depth);
-    depth[c] = negative_ ? sum : std::max(sum, 0.0);
+    depth[c] = varied_.negative ? sum : std::max(sum, 0.0);
   }
-  return planes_ == 1 ? Rgb(depth[0] * share_) : depth;
+  return varied_.planes == 1 ? Rgb(depth[0] * varied_.share) : depth;
 }
 
 Rgb LightMap::optical_depth(const Point3& x) const { return varied_depth(x) + constant_depth(x); }
@@ -235,7 +226,7 @@ Rgb LightMap::constant_depth(const Point3& x) const {
 }
 
 MapView LightMap::view(int plane) const {
-  return {texels_[plane].data(), (options_.size + 2) * floats_per_texel(options_), options_, negative_};
+  return {texels_[plane].data(), (options_.size + 2) * floats_per_texel(options_), options_, varied_.negative};
 }
 
 void LightMap::varied_depths(std::size_t n, const double* x, const double* y, const double* z,
@@ -250,17 +241,17 @@ void LightMap::varied_depths(std::size_t n, const double* x, const double* y, co
   for (auto& share : shares) share.resize(padded(n));
   const Places places{texels.data(), shares[0].data(), shares[1].data(), shares[2].data()};
   find_places(rule_of(projection_), floats_per_texel(options_), n, x, y, z, places);
-  for (int c = 0; c < planes_; ++c) look_up(view(c), n, places, depth[c]);
-  if (grey_ || planes_ == 3) return;
+  for (int c = 0; c < varied_.planes; ++c) look_up(view(c), n, places, depth[c]);
+  if (varied_.grey || varied_.planes == 3) return;
   for (int c = 2; c >= 0; --c)
-    for (std::size_t i = 0; i < n; ++i) depth[c][i] = float(share_[c]) * depth[0][i];
+    for (std::size_t i = 0; i < n; ++i) depth[c][i] = float(varied_.share[c]) * depth[0][i];
 }
 
 std::vector<std::shared_ptr<const LightMap>> make_maps(const std::vector<scene::Light>& lights,
                                                        const std::vector<scene::Medium>& media, const Options& options,
                                                        const Densities& densities, const scene::Execution& execution,
                                                        const std::string& who) {
-  scene::require_memory(double(lights.size()) * planes_of(media, options) * bytes_per_plane(options),
+  scene::require_memory(double(lights.size()) * bytes_of_map(varied_media(media, options), options),
                         fmt::format("{}: maps of {} lights", who, lights.size()));
   std::vector<std::shared_ptr<const LightMap>> maps;
   scene::Execution part = execution;

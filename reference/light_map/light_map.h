@@ -34,8 +34,27 @@ using Densities = std::function<void(std::size_t medium, std::size_t n, const do
 // Densities by the media's own functions, in double; the media must live as long as they do.
 Densities densities_of(const std::vector<scene::Medium>&);
 
-// Optical depths of a texel, 0 (nothing varies), 1 or 3.
-int planes_of(const std::vector<scene::Medium>&, const Options&);
+// The media that vary, as the maps of all lights hold them.
+struct VariedMedia {
+  struct Part {
+    std::size_t number;  // of the medium
+    const scene::Medium* medium;
+    Box box;         // where it varies
+    Rgb extinction;  // at density 1, of the planes [1/m]
+    Interval extent(const Ray&, Interval t) const;
+  };
+  std::vector<Part> parts;
+  Box box;                  // of all parts
+  int planes = 0;           // optical depths of a texel: 0 (nothing varies), 1 or 3
+  bool grey = true;         // all that varies is
+  Rgb share = Rgb::Ones();  // of a channel in the plane that it is read from
+  bool negative = false;    // a medium may have less than its constant
+};
+// The media must live as long.
+VariedMedia varied_media(const std::vector<scene::Medium>&, const Options&);
+
+// Memory of a light's map.
+double bytes_of_map(const VariedMedia&, const Options&);
 
 class LightMap {
  public:
@@ -55,22 +74,21 @@ class LightMap {
   void varied_depths(std::size_t n, const double* x, const double* y, const double* z, float* const* depth) const;
 
   // 1 where all that varies is grey, else 3.
-  int channels() const { return grey_ ? 1 : 3; }
-  bool empty() const { return planes_ == 0; }
+  int channels() const { return varied_.grey ? 1 : 3; }
+  bool empty() const { return varied_.planes == 0; }
   std::size_t bytes() const;
   const Projection& projection() const { return projection_; }
   // The floats of texel (i, j), i and j from -1 to size; the outermost repeat their neighbours on the map.
   const float* texel(int plane, int i, int j) const;
 
  private:
-  struct Part;
   struct Row;
   struct Constant {
     scene::Region region;
     Rgb extinction;  // [1/m]
   };
-  void make_texels(const std::vector<Part>&, const Densities&, const scene::Execution&);
-  void march(const std::vector<Part>&, const Densities&, int j, int begin, int end, Row&) const;
+  void make_texels(const Densities&, const scene::Execution&);
+  void march(const Densities&, int j, int begin, int end, Row&) const;
   void make_border();
   std::size_t offset(int i, int j) const;
   MapView view(int plane) const;
@@ -79,10 +97,7 @@ class LightMap {
   std::vector<Constant> constants_;
   Options options_;
   Projection projection_;
-  int planes_ = 0;
-  bool grey_ = true;
-  Rgb share_ = Rgb::Ones();  // of a channel in the plane that it is read from
-  bool negative_ = false;    // a medium may have less than its constant
+  VariedMedia varied_;
   std::vector<float> texels_[3];
 };
 

@@ -79,41 +79,62 @@ void Counters::operator+=(const Counters& other) {
   occlusion_rays += other.occlusion_rays;
 }
 
-LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
-    : scene_(std::move(scene)),
-      layers_(ray_marcher::make_layers(scene_->media)),
-      densities_(ray_marcher::too_fine_for_kernels(*scene_)
-                     ? light_map::densities_of(scene_->media)
-                     : ray_marcher::densities_by_kernels(layers_, scene_->media)),
-      nearest_(least_distance(layers_)) {
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
+  Plan plan{std::move(scene), options, {}, {}, false, 0};
+  plan.layers = ray_marcher::make_layers(plan.scene->media);
   // Media that dim no light swallow none.
-  const bool swallowed = options.self_shadow && scene::swallows_distant_light(scene_->media);
-  lights_ = scene::lights_from_directions(scene_->lights, options.environment_directions, swallowed);
-  for (const ray_marcher::Layer& layer : layers_)
-    if (!lights_.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) scatters_ = true;
-  if (!options.self_shadow || layers_.empty() || !(scatters_ || scene_->geometry)) return;
-  scene::Stopwatch watch;
-  maps_ = light_map::make_maps(lights_, scene_->media, options.map, densities_, execution, "lit media");
-  map_seconds_ = watch.lap();
+  const bool swallowed = options.self_shadow && scene::swallows_distant_light(plan.scene->media);
+  plan.lights = scene::lights_from_directions(plan.scene->lights, options.environment_directions, swallowed);
+  for (const ray_marcher::Layer& layer : plan.layers)
+    if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
+  plan.nearest = least_distance(plan.layers);
+  return plan;
 }
 
-bool LitMedia::fits(const scene::Scene& scene) const {
-  return !scene.hash.empty() && scene.matter_hash == scene_->matter_hash && scene.light_hash == scene_->light_hash;
+bool fits(const Plan& plan, const scene::Scene& scene) {
+  return !scene.hash.empty() && scene.matter_hash == plan.scene->matter_hash &&
+         scene.light_hash == plan.scene->light_hash;
+}
+
+bool needs_maps(const Plan& plan) {
+  return plan.options.self_shadow && !plan.layers.empty() && !plan.lights.empty() &&
+         (plan.scatters || plan.scene->geometry);
+}
+
+double map_bytes(const Plan& plan) {
+  const light_map::Options& options = plan.options.map;
+  return needs_maps(plan)
+             ? double(plan.lights.size()) * bytes_of_map(light_map::varied_media(plan.scene->media, options), options)
+             : 0;
+}
+
+LitMedia::LitMedia(Plan plan)
+    : plan_(std::move(plan)),
+      densities_(ray_marcher::too_fine_for_kernels(*plan_.scene)
+                     ? light_map::densities_of(plan_.scene->media)
+                     : ray_marcher::densities_by_kernels(plan_.layers, plan_.scene->media)) {}
+
+LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
+    : LitMedia(make_plan(std::move(scene), options)) {
+  if (!needs_maps(plan_)) return;
+  scene::Stopwatch watch;
+  maps_ = light_map::make_maps(plan_.lights, plan_.scene->media, options.map, densities_, execution, "lit media");
+  map_seconds_ = watch.lap();
 }
 
 void LitMedia::add_densities(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
   // Without an end: a single point would have no interval.
   const Interval range{t.front(), infinity};
-  s.density.resize(layers_.size());
-  for (std::size_t k = 0; k < layers_.size(); ++k) {
-    const ray_marcher::Layer& layer = layers_[k];
+  s.density.resize(plan_.layers.size());
+  for (std::size_t k = 0; k < plan_.layers.size(); ++k) {
+    const ray_marcher::Layer& layer = plan_.layers[k];
     std::vector<double>& density = s.density[k];
     density.assign(t.size(), 0.0);
     const auto [begin, end] = within(t, varied_extent(layer, ray, range));
     if (begin < end) {
       s.varied.resize(padded(end - begin));
-      densities_(std::size_t(layer.medium - scene_->media.data()), end - begin, s.x.data() + begin, s.y.data() + begin,
-                 s.z.data() + begin, s.varied.data());
+      densities_(std::size_t(layer.medium - plan_.scene->media.data()), end - begin, s.x.data() + begin,
+                 s.y.data() + begin, s.z.data() + begin, s.varied.data());
       std::copy_n(s.varied.begin(), end - begin, density.begin() + std::ptrdiff_t(begin));
       counters.points += std::int64_t(end - begin);
     }
@@ -124,7 +145,7 @@ void LitMedia::add_densities(const Ray& ray, const std::vector<double>& t, Sampl
 
 void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::size_t end, Samples& s,
                          Counters& counters) const {
-  const scene::Light& light = lights_[l];
+  const scene::Light& light = plan_.lights[l];
   const light_map::LightMap* map = maps_.empty() ? nullptr : maps_[l].get();
   if (map) {
     for (auto& depth : s.depth) depth.resize(padded(end - begin));
@@ -133,24 +154,24 @@ void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::
   }
   const bool everywhere_equal = !scene::ball(light);  // a sun: as at the first point
   scene::Incident from{Vec3::Zero(), 0, Rgb::Zero()};
-  s.per_density.resize(layers_.size());
+  s.per_density.resize(plan_.layers.size());
   for (std::size_t i = begin; i < end; ++i) {
     const Point3 x(s.x[i], s.y[i], s.z[i]);
     if (i == begin || !everywhere_equal) {
-      from = kept_off(light, incident(light, x), nearest_);
+      from = kept_off(light, incident(light, x), plan_.nearest);
       const double cosine = std::clamp(from.to_light.dot(ray.direction), -1.0, 1.0);
-      for (std::size_t k = 0; k < layers_.size(); ++k) {
-        const scene::Medium& medium = *layers_[k].medium;
+      for (std::size_t k = 0; k < plan_.layers.size(); ++k) {
+        const scene::Medium& medium = *plan_.layers[k].medium;
         s.per_density[k] = medium.albedo * medium.sigma_t * from.irradiance * phase_value(medium.phase, cosine);
       }
     }
     Rgb scattered = Rgb::Zero();
-    for (std::size_t k = 0; k < layers_.size(); ++k)
+    for (std::size_t k = 0; k < plan_.layers.size(); ++k)
       if (s.density[k][i] != 0) scattered += s.per_density[k] * s.density[k][i];
     if ((scattered == 0).all()) continue;
-    if (scene_->geometry) {
+    if (plan_.scene->geometry) {
       ++counters.occlusion_rays;
-      if (scene_->geometry->occluded({x, from.to_light}, from.distance)) continue;
+      if (plan_.scene->geometry->occluded({x, from.to_light}, from.distance)) continue;
     }
     if (map) {
       ++counters.look_ups;
@@ -167,7 +188,7 @@ void LitMedia::add_light(std::size_t l, const Ray& ray, std::size_t begin, std::
 
 void LitMedia::add_extinction(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
   s.extinction.assign(t.size(), Rgb::Zero());
-  if (t.empty() || layers_.empty()) return;
+  if (t.empty() || plan_.layers.empty()) return;
   for (auto* places : {&s.x, &s.y, &s.z}) places->resize(t.size() + room_of_kernels);
   for (std::size_t i = 0; i < t.size(); ++i) {
     const Point3 x = ray.at(t[i]);
@@ -175,7 +196,8 @@ void LitMedia::add_extinction(const Ray& ray, const std::vector<double>& t, Samp
   }
   add_densities(ray, t, s, counters);
   for (std::size_t i = 0; i < t.size(); ++i)
-    for (std::size_t k = 0; k < layers_.size(); ++k) s.extinction[i] += layers_[k].medium->sigma_t * s.density[k][i];
+    for (std::size_t k = 0; k < plan_.layers.size(); ++k)
+      s.extinction[i] += plan_.layers[k].medium->sigma_t * s.density[k][i];
 }
 
 void LitMedia::extinction_along(const Ray& ray, const std::vector<double>& t, Samples& samples) const {
@@ -186,7 +208,7 @@ void LitMedia::extinction_along(const Ray& ray, const std::vector<double>& t, Sa
 void LitMedia::along(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {
   add_extinction(ray, t, s, counters);
   s.source.assign(t.size(), Rgb::Zero());
-  if (!scatters_) return;
+  if (!plan_.scatters) return;
   std::size_t begin = t.size(), end = 0;  // of points where there is something
   for (std::size_t i = 0; i < t.size(); ++i) {
     if ((s.extinction[i] == 0).all()) continue;
@@ -194,7 +216,7 @@ void LitMedia::along(const Ray& ray, const std::vector<double>& t, Samples& s, C
     end = i + 1;
   }
   if (begin >= end) return;
-  for (std::size_t l = 0; l < lights_.size(); ++l) add_light(l, ray, begin, end, s, counters);
+  for (std::size_t l = 0; l < plan_.lights.size(); ++l) add_light(l, ray, begin, end, s, counters);
 }
 
 Rgb LitMedia::transmittance_to_light(std::size_t l, const Point3& x) const {
@@ -203,7 +225,7 @@ Rgb LitMedia::transmittance_to_light(std::size_t l, const Point3& x) const {
 
 Interval LitMedia::extent(const Ray& ray, Interval t) const {
   Interval all{infinity, -infinity};
-  for (const ray_marcher::Layer& layer : layers_)
+  for (const ray_marcher::Layer& layer : plan_.layers)
     for (const Interval part : {constant_extent(layer, ray, t), varied_extent(layer, ray, t)})
       if (!part.empty()) all = {std::min(all.lo, part.lo), std::max(all.hi, part.hi)};
   return all;

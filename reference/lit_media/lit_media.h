@@ -25,6 +25,24 @@ void bind(scene::SettingBinder&, Options&);
 // Reasons why these options cannot be used with the scene.
 std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
+// What is known of a scene before maps are made, on the CPU and on the device alike.
+struct Plan {
+  std::shared_ptr<const scene::Scene> scene;
+  Options options;
+  std::vector<ray_marcher::Layer> layers;
+  // Those that shine from one direction; directional lights in place of environments. With self_shadow there are none from infinitely far
+  // away where endless fog swallows them.
+  std::vector<scene::Light> lights;
+  bool scatters = false;  // may a point scatter light at all?
+  double nearest = 0;     // light comes from so far away at least [m]
+};
+Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
+// Do these media and lights stand for that scene's, too, so that maps and what else is made of them serve it?
+bool fits(const Plan&, const scene::Scene&);
+// Does a point or a surface ask for what media leave of a light? And the memory of the maps that then are made.
+bool needs_maps(const Plan&);
+double map_bytes(const Plan&);
+
 // Work done.
 struct Counters {
   long long points = 0;          // where the density of a medium was asked for
@@ -49,9 +67,8 @@ class LitMedia {
  public:
   // Throws Error where the lights' maps do not fit into memory. Its bits do not depend on the threads.
   LitMedia(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution&);
-
-  // Do these media and lights stand for that scene's, too?
-  bool fits(const scene::Scene&) const;
+  // Without maps, for extinctions alone.
+  explicit LitMedia(Plan);
 
   // At ascending distances t [m] on a ray; direction unit. Light nearer than 0.01 m counts as if it were so far away; where
   // media are smaller than a metre, light nearer than a hundredth of the smallest diagonal (mean free path of endless fog).
@@ -63,14 +80,12 @@ class LitMedia {
   // What media leave of light l on its way to x.
   Rgb transmittance_to_light(std::size_t l, const Point3& x) const;
 
-  // Those that shine from one direction; directional lights in place of environments. With self_shadow there are none from infinitely far away
-  // where endless fog swallows them.
-  const std::vector<scene::Light>& lights() const { return lights_; }
-  // May a point scatter light at all?
-  bool scatters() const { return scatters_; }
+  const Plan& plan() const { return plan_; }
+  const std::vector<scene::Light>& lights() const { return plan_.lights; }
+  bool scatters() const { return plan_.scatters; }
   // Ends of what media hold of the ray, in steps of any length; empty where it meets none.
   Interval extent(const Ray&, Interval t) const;
-  const std::vector<ray_marcher::Layer>& layers() const { return layers_; }
+  const std::vector<ray_marcher::Layer>& layers() const { return plan_.layers; }
   double map_seconds() const { return map_seconds_; }
   std::size_t map_bytes() const;
 
@@ -79,13 +94,9 @@ class LitMedia {
   void add_densities(const Ray&, const std::vector<double>& t, Samples&, Counters&) const;
   void add_light(std::size_t l, const Ray&, std::size_t begin, std::size_t end, Samples&, Counters&) const;
 
-  std::shared_ptr<const scene::Scene> scene_;
-  std::vector<ray_marcher::Layer> layers_;
+  Plan plan_;
   light_map::Densities densities_;
-  double nearest_;  // light comes from so far away at least [m]
-  std::vector<scene::Light> lights_;
   std::vector<std::shared_ptr<const light_map::LightMap>> maps_;  // none without self_shadow
-  bool scatters_ = false;
   double map_seconds_ = 0;
 };
 

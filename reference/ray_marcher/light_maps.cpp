@@ -45,8 +45,13 @@ double map_work(const scene::Scene& scene, const Options& options) {
          double(scene.media.size());
 }
 
+bool needs_maps(const Plan& plan) {
+  return plan.options.shadow == Shadow::map && !plan.layers.empty() && !plan.lights.empty() &&
+         (plan.scatters || plan.scene->geometry);
+}
+
 void make_light_maps(Plan& plan, const scene::Execution& execution) {
-  if (plan.layers.empty() || !(plan.scatters || plan.scene->geometry)) return;
+  if (!needs_maps(plan)) return;
   scene::Stopwatch watch;
   const std::vector<scene::Medium>& media = plan.scene->media;
   const light_map::Densities densities =

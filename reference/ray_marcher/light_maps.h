@@ -4,8 +4,11 @@
 
 namespace airlight::ray_marcher {
 
-// One for each light, into Plan::maps; nothing where no step and no surface asks for a depth. Throws Error where they do
-// not fit into memory.
+// Is shadow = map, and does a step or a surface ask for a depth?
+bool needs_maps(const Plan&);
+
+// One for each light, into Plan::maps, where they are needed. Throws Error where they do not fit into memory. Asks the execution
+// for threads, and whether to stop.
 void make_light_maps(Plan&, const scene::Execution&);
 
 // What varies of the media, by the kernels of the layers, which must live as long, and by the media's own functions where a layer has none.

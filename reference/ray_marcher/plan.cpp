@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "reference/ray_marcher/depth.h"
-#include "reference/ray_marcher/light_maps.h"
 #include "scene/base/place_error.h"
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
@@ -47,7 +46,7 @@ bool only_deep_lamps(const Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution) {
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
   Plan plan;
   plan.scene = scene;
   plan.options = options;
@@ -59,7 +58,6 @@ Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options
   if (too_fine_for_kernels(*scene)) plan.options.simd = false;
   // Kernels compute the light of steps in float, too, where what is below 1.2e-38 becomes 0.
   if (only_deep_lamps(plan)) plan.options.simd = false;
-  if (options.shadow == Shadow::map) make_light_maps(plan, execution);
   return plan;
 }
 

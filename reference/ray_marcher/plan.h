@@ -18,9 +18,8 @@ struct Plan {
   std::vector<scene::Light> lights;  // delta lights only: an environment is replaced by directional lights
   bool swallowed = false;  // fog without end takes all light from infinitely far away: such lights are left out
   bool scatters = false;   // some medium has an albedo, and there is light for it
-  std::vector<std::shared_ptr<const light_map::LightMap>>
-      maps;                // with shadow = map, one for each light; none where nothing asks
-  double map_seconds = 0;  // what they took
+  std::vector<std::shared_ptr<const light_map::LightMap>> maps;  // of make_light_maps, one for each light
+  double map_seconds = 0;                                        // what they took
 };
 
 // Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
@@ -29,8 +28,8 @@ double length_unit(const scene::Scene&);
 // Kernels compute places within media in float: is that too coarse for this scene?
 bool too_fine_for_kernels(const scene::Scene&);
 
-// Throws Error where the lights' maps do not fit into memory. Asks the execution for threads, and whether to stop.
-Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution& = {});
+// Without maps, which are made by make_light_maps (light_maps.h) or on a device.
+Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
 
 // One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
 // march of its own. A light that grades the ray around itself has one.

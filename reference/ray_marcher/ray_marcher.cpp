@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 
+#include "reference/ray_marcher/light_maps.h"
 #include "reference/ray_marcher/limits.h"
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/scalar.h"
@@ -161,7 +162,8 @@ std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<c
                                                                const scene::Execution& execution) const {
   const double start = now();
   const Options options = read_options(settings, length_unit(*scene));
-  Plan plan = make_plan(std::move(scene), options, execution);
+  Plan plan = make_plan(std::move(scene), options);
+  make_light_maps(plan, execution);
   return std::make_unique<PreparedMarch>(std::move(plan), settings.canonical(), now() - start);
 }
 

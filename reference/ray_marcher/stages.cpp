@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "reference/ray_marcher/light_maps.h"
 #include "scene/light/background.h"
 
 namespace airlight::ray_marcher {
@@ -9,11 +10,10 @@ namespace {
 
 std::string describe_maps(const Plan& plan) {
   const light_map::Options& o = plan.options.map;
-  std::size_t bytes = 0;
-  for (const auto& map : plan.maps) bytes += map->bytes();
-  return fmt::format("{} lights: {}, {} floats a texel, {}^2 texels of {} steps, {:.3g} MB in all", plan.maps.size(),
+  const double bytes = double(plan.lights.size()) * bytes_of_map(light_map::varied_media(plan.scene->media, o), o);
+  return fmt::format("{} lights: {}, {} floats a texel, {}^2 texels of {} steps, {:.3g} MB in all", plan.lights.size(),
                      light_map::encoding_name(o.encoding), light_map::floats_per_texel(o), o.size, o.steps,
-                     1e-6 * double(bytes));
+                     1e-6 * bytes);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<scene::Stage> describe_stages(const Plan& plan) {
                : ""));
   add("camera_march", !plan.layers.empty(),
       plan.layers.empty() ? "no medium with extinction" : fmt::format("{} media", plan.layers.size()));
-  const bool maps = !plan.maps.empty() && varying > 0;
+  const bool maps = needs_maps(plan) && varying > 0;
   add("light_maps", maps,
       maps                      ? describe_maps(plan)
       : o.shadow != Shadow::map ? "shadow is not map"

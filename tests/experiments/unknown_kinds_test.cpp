@@ -66,7 +66,7 @@ TEST_CASE("renderers refuse fields and lights that they do not know in the same 
   CHECK(shadow_planes == 2);
   CHECK(wavelet_fog == 2);
   CHECK(legendre_fluids == 2);
-  CHECK(others == 8);
+  CHECK(others == 10);
 }
 
 TEST_CASE(
@@ -89,7 +89,9 @@ TEST_CASE(
       {"deterministic", ""},
       {"ray_marcher", ""},
       {"half_resolution_march", ""},
+      {"half_resolution_march_gpu", "homogeneous or gaussians or grid or fitted"},
       {"froxel_fog", ""},
+      {"froxel_fog_gpu", "homogeneous or gaussians or grid or fitted"},
       {"ray_marcher_gpu", "homogeneous or gaussians or grid or fitted"},
       {"fogshop", "homogeneous or gaussians"},
       {"fogshop_gpu", "homogeneous or gaussians"},

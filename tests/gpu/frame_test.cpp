@@ -63,7 +63,7 @@ DEVICE_TEST_CASE("a warm frame allocates nothing, waits once and brings down wha
   CHECK(all.counters["bytes_up"] == 0);
   CHECK(all.counters["bytes_down"] == 2 * 768 + 8);
   CHECK(all.counters["dispatches"] == 2);
-  CHECK(all.counters["look_ups"] == 0);
+  CHECK(all.counters["program_look_ups"] == 0);
   for (int i = 0; i < 192; ++i) {
     CHECK(all.film.layer("mean")[i] == 1000.0f + float(i));
     CHECK(all.film.layer("surface")[i] == 2000.0f + float(i));

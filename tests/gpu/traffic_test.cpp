@@ -83,7 +83,7 @@ DEVICE_TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][
     CHECK(warm.counters["bytes_down"] == 0);
     CHECK(warm.counters["syncs"] == 1);
     CHECK(warm.counters["allocations"] == 0);
-    CHECK(warm.counters["look_ups"] == 0);
+    CHECK(warm.counters["program_look_ups"] == 0);
     CHECK(warm.counters["bytes_up"] <= 1024);  // a camera, lights: nothing that grows with the scene
     CHECK(warm.counters["dispatches"] > 0);
     // The processor's part, by the same stages, is a part of the frame.

@@ -42,10 +42,10 @@ Given little_work(const scene::Renderer& renderer) {
   const std::string name = renderer.name();
   if (renderer.monte_carlo()) return {{"samples", "16"}};
   if (name == "deterministic") return {{"relative_tolerance", "1e-3"}};
-  if (name == "half_resolution_march")
+  if (name.starts_with("half_resolution_march"))
     return {{"steps", "8"}, {"environment_directions", "8"}, {"map_size", "32"}, {"map_steps", "32"}};
   if (name.starts_with("ray_marcher")) return {{"steps", "8"}, {"shadow_steps", "4"}};
-  if (name == "froxel_fog")
+  if (name.starts_with("froxel_fog"))
     return {{"tile", "4"}, {"slices", "16"}, {"map_size", "32"}, {"environment_directions", "8"}};
   return {};
 }

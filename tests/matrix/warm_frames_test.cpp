@@ -28,7 +28,10 @@ struct Case {
 
 const Given stencil{{"shadows", "stencil"}}, vertices{{"shadows", "stencil"}, {"evaluation", "vertices"}},
     printed{{"shadows", "stencil"}, {"evaluation", "vertices"}, {"bounded", "paper"}},
-    marched{{"steps", "16"}, {"shadow_steps", "4"}}, systems{{"variant", "paper"}, {"n", "6"}},
+    marched{{"steps", "16"}, {"shadow_steps", "4"}},
+    mapped{{"steps", "16"}, {"shadow", "map"}, {"map_size", "32"}, {"environment_directions", "4"}},
+    few_steps{{"steps", "8"}, {"depth", "centre"}}, blurred{{"steps", "8"}, {"blur", "bilateral"}, {"map_size", "32"}},
+    froxels{{"environment_directions", "4"}, {"map_size", "32"}}, systems{{"variant", "paper"}, {"n", "6"}},
     upwind{{"variant", "paper"}, {"n", "6"}, {"closure", "upwind"}};
 
 // Shadow planes bring down counters, and what is known of each light. The paper's systems of Legendre fluids say how they ended.
@@ -46,6 +49,11 @@ const Case cases[] = {
     {"shadow_planes_gpu", "shadow_planes/media", printed, Moves::lights, 30, 1, 0, 48 + 32},
     {"shadow_planes_gpu", "shadow_planes/spot", {}, Moves::lights, 30, 1, 0, 48 + 32},
     {"ray_marcher_gpu", "crosscheck/mesh_in_fog", marched, Moves::camera, 57, 1, 0, 128},
+    {"ray_marcher_gpu", "crosscheck/mesh_in_fog", mapped, Moves::camera, 57, 1, 0, 128},
+    {"half_resolution_march_gpu", "crosscheck/mesh_in_fog", few_steps, Moves::camera, 24, 1, 0, 144},
+    {"half_resolution_march_gpu", "plume_sun", blurred, Moves::camera, 16, 1, 0, 96},
+    {"froxel_fog_gpu", "crosscheck/mesh_in_fog", froxels, Moves::camera, 57, 1, 0, 32 + 12 + 48 + 48},
+    {"froxel_fog_gpu", "fogshop/f100", {{"preset", "godot"}}, Moves::camera, 40, 1, 0, 32 + 12 + 48 + 48},
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
     {"compensated_ray_marching_gpu", "puffs", {{"cells", "8"}}, Moves::camera, 19, 1},
     {"compensated_ray_marching_gpu", "puffs", {{"variant", "paper"}}, Moves::camera, 32, 1},
@@ -88,7 +96,7 @@ DEVICE_TEST_CASE("a warm frame stays on the device, and is the cold one", "[gpu]
     };
     const auto check = [&](const scene::Rendering& warm) {
       CHECK(warm.counters.at("syncs") == 1);
-      for (const char* counter : {"bytes_up", "allocations", "look_ups"}) {
+      for (const char* counter : {"bytes_up", "allocations", "program_look_ups"}) {
         CAPTURE(counter);
         CHECK(warm.counters.at(counter) == 0);
       }
@@ -112,7 +120,7 @@ DEVICE_TEST_CASE("a warm frame stays on the device, and is the cold one", "[gpu]
     check(all);
     CHECK(all.film.layers == cold.layers);
   }
-  CHECK(renderers.size() == 6);
+  CHECK(renderers.size() == 8);
 }
 
 }  // namespace warm_frames_test

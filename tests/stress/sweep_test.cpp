@@ -35,10 +35,10 @@ std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std
       continue;
     }
     // Films of 3 x 3 pixels: froxels of one, every pixel marched.
-    specs.push_back(name == "wavelet_fog"             ? name + " sun=true"
-                    : name == "froxel_fog"            ? name + " tile=1 slices=256 map_size=64"
-                    : name == "half_resolution_march" ? name + " divide=1 jitter=none steps=256 map_size=64"
-                                                      : name);
+    specs.push_back(name == "wavelet_fog"                       ? name + " sun=true"
+                    : name == "froxel_fog"                      ? name + " tile=1 slices=256 map_size=64"
+                    : name.starts_with("half_resolution_march") ? name + " divide=1 jitter=none steps=256 map_size=64"
+                                                                : name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
     if (c.scene == "sky" || c.scene == "harmonics") specs.push_back(name + " environment_airlight=volume");
     if (c.scene == "fog" || c.scene == "smoke" || c.scene == "gaussian") specs.push_back(name + " variant=paper");

@@ -248,7 +248,7 @@ DEVICE_TEST_CASE("paper on the device: the next frame's light as the CPU's next 
     if (even == was_even) {  // else programs of another environment are wanted for what is seen behind the smoke
       // The light in four bands, and what is seen of it: nothing of the smoke.
       CHECK(moved.bytes_up == 8 * 3 * 16 + (even ? 0 : 4 * 3 * 4));
-      CHECK(moved.look_ups == 0);
+      CHECK(moved.program_look_ups == 0);
     }
     was_even = even;
     for (const scene::StageTime& time : *times) {

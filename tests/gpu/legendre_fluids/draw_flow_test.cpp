@@ -78,7 +78,7 @@ scene::Film drawn_while_nothing_comes_down(scene::Flow& flow, const test::Given&
   CHECK(warm.bytes_down == 4 * 8 * (1 + systems));
   CHECK(warm.bytes_up == 0);
   CHECK(warm.allocations == 0);
-  CHECK(warm.look_ups == 0);
+  CHECK(warm.program_look_ups == 0);
   return frame({1, {}});
 }
 

@@ -150,7 +150,7 @@ DEVICE_TEST_CASE("legendre fluids on the device: a warm step sends nothing and w
   CHECK(warm.bytes_down == 80);
   CHECK(warm.syncs == 10);
   CHECK(warm.allocations == 0);
-  CHECK(warm.look_ups == 0);
+  CHECK(warm.program_look_ups == 0);
   CHECK(warm.dispatches <= 300);
   // What is asked for comes down once.
   before = traffic;

@@ -148,7 +148,7 @@ DEVICE_TEST_CASE("particles on the device move without the processor, and go on 
   CHECK(warm.bytes_down == 4 * 8);  // the status of a step
   CHECK(warm.bytes_up == 0);
   CHECK(warm.allocations == 0);
-  CHECK(warm.look_ups == 0);
+  CHECK(warm.program_look_ups == 0);
   before = traffic;
   const std::string state = particles.state();
   particles.csv();

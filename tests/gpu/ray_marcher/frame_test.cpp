@@ -50,7 +50,8 @@ DEVICE_TEST_CASE("ray marcher: a warm frame stays on the device", "[gpu][ray_mar
         for (const std::string& layer : layers) CHECK(frame.film.layer(layer) == cold.film.layer(layer));
         CHECK((frame.counters.at("bytes_down") == 0) == layers.empty());
         CHECK(frame.counters.at("syncs") == 1);
-        for (const char* counter : {"bytes_up", "allocations", "look_ups"}) CHECK(frame.counters.at(counter) == 0);
+        for (const char* counter : {"bytes_up", "allocations", "program_look_ups"})
+          CHECK(frame.counters.at(counter) == 0);
         CHECK(frame.counters.at("dispatches") == warm.counters.at("dispatches"));
       }
     }

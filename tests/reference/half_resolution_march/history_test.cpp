@@ -185,6 +185,19 @@ TEST_CASE("half-resolution march: the first picture has no history, and pictures
   CHECK_FALSE(prepared(scene, {})->next(scene, {}).has_value());
 }
 
+// What a camera has nothing to do with is kept; a light that moved has a map of its own.
+TEST_CASE("half-resolution march: maps are made anew where lights moved", "[half_resolution_march]") {
+  const Given given = going_on();
+  const auto frames = prepared(smoke(camera_at(0), true), given);
+  CHECK(frames->next(smoke(camera_at(0.1), true), {1, {}})->empty());
+  const auto moved = smoke(camera_at(0.1), true, Vec3(-2, 1, 0).normalized());
+  CHECK(frames->next(moved, {1, {}})->size() == 2);
+  CHECK(frames->render(view_of(*moved), {1, {}}).film.layers ==
+        last_of(
+            3, [&](int) { return moved; }, going_on({{"history_weight", "0"}}))
+            .film.layers);
+}
+
 TEST_CASE("half-resolution march: a moving camera's pictures have the same bits whatever the threads",
           "[half_resolution_march]") {
   const auto at = [](int i) { return smoke(camera_at(0.02 * i), true); };

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "reference/ray_marcher/light_maps.h"
 #include "reference/ray_marcher/plan.h"
 #include "reference/ray_marcher/ray_marcher.h"
 #include "reference/ray_marcher/scalar.h"
@@ -34,7 +35,9 @@ inline scene::Medium make_medium(scene::DensityField field, scene::Region region
 }
 
 inline Plan plan_for(std::shared_ptr<const scene::Scene> scene, const Given& given, double unit = 1) {
-  return make_plan(std::move(scene), read_options(scene::Settings(option_specs(), given), unit));
+  Plan plan = make_plan(std::move(scene), read_options(scene::Settings(option_specs(), given), unit));
+  make_light_maps(plan, {});
+  return plan;
 }
 
 // The plain path along one ray, `n` steps on camera and shadow rays.

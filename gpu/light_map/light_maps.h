@@ -1,0 +1,53 @@
+// Maps of the optical depth towards lights (reference/light_map), made on the device and kept there: all lights' in one storage
+// buffer, which look_up.glsl reads.
+//
+// Depths of steps are computed first, many invocations a texel, and then encoded, one a texel: so no invocation loops over all steps
+// and all Gaussians.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "gpu/ray_marcher/media.h"
+#include "reference/light_map/light_map.h"
+
+namespace airlight::gpu::light_map {
+
+class LightMaps {
+ public:
+  // Of lights that shine from one direction. `layers` are those of the media on the device, made of `in_scene`. Throws Unavailable
+  // where a storage buffer of the device is too small for all, Interrupted if `progress` says so.
+  LightMaps(Context&, const ray_marcher::MediaOnDevice&, const std::vector<scene::Medium>& in_scene,
+            const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>&,
+            const airlight::light_map::Options&, const std::function<bool(double)>& progress);
+
+  // For a program that includes look_up.glsl.
+  std::map<std::string, std::string> definitions() const;
+  // Binds storage block 0, sets the uniforms.
+  void bind(LinkedProgram&) const;
+  int planes() const { return varied_.planes; }  // optical depths of a texel: 0, 1 or 3
+  std::size_t bytes() const { return buffer_.bytes(); }
+
+  // The floats of light l's plane, row by row with the border of one texel. Waits for the device: for tests.
+  std::vector<float> texels(int light, int plane) const;
+
+ private:
+  struct Part;
+  void make(const ray_marcher::MediaOnDevice&, const std::vector<airlight::ray_marcher::Layer>&,
+            const std::function<bool(double)>& progress);
+  std::vector<float> rules(const Point3& middle) const;
+  std::vector<Part> parts(const ray_marcher::MediaOnDevice&, const std::vector<airlight::ray_marcher::Layer>&) const;
+  std::size_t plane_floats() const;
+
+  Context& context_;
+  airlight::light_map::Options options_;
+  airlight::light_map::VariedMedia varied_;
+  std::vector<airlight::light_map::Projection> projections_;  // by light; none where nothing varies
+  int lights_;
+  Buffer buffer_;
+};
+
+}  // namespace airlight::gpu::light_map

@@ -1,0 +1,36 @@
+#include "gpu/ray_marcher/columns.h"
+
+#include "gpu/ray_marcher/interface.h"
+#include "gpu/ray_marcher/scene_data.h"
+
+namespace airlight::gpu::ray_marcher {
+
+Columns::Columns(Context& context, const MediaOnDevice& media, const std::vector<scene::Medium>& in_scene,
+                 const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>& lights,
+                 Depths depths, const airlight::light_map::Options& options, StageTimer& timer,
+                 const std::function<bool(double)>& progress)
+    : depths_(depths), lights_(context, "lights", light_data(lights, media.middle())) {
+  if (depths != Depths::maps) return;
+  timer.stage("upload");
+  maps_ = std::make_unique<light_map::LightMaps>(context, media, in_scene, layers, lights, options, progress);
+  timer.stage("light_maps");
+}
+
+std::map<std::string, std::string> Columns::definitions() const {
+  auto definitions = maps_ ? maps_->definitions() : std::map<std::string, std::string>{};
+  definitions["DEPTHS"] = std::to_string(int(depths_));
+  return definitions;
+}
+
+void Columns::bind(LinkedProgram& program, const airlight::ray_marcher::Options& o) const {
+  lights_.bind(at::lights);
+  if (maps_) maps_->bind(program);
+  if (depths_ != Depths::columns) return;
+  program.set("skip_empty", o.skip_empty);
+  program.set("exact_shadow", o.shadow == airlight::ray_marcher::Shadow::exact);
+  program.set("shadow_steps", o.shadow_steps);
+  program.set("shadow_step", o.shadow_step);
+  program.set("deepest_shadow_step", deepest_shadow_step(o));
+}
+
+}  // namespace airlight::gpu::ray_marcher

@@ -1,0 +1,38 @@
+// Optical depths from points towards lights, as columns.glsl has them, and the lights themselves.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/light_map/light_maps.h"
+#include "gpu/ray_marcher/media.h"
+#include "gpu/timer.h"
+#include "reference/ray_marcher/options.h"
+
+namespace airlight::gpu::ray_marcher {
+
+class Columns {
+ public:
+  // How media dim light on its way to a point: not at all, by marched or exact columns, or by what maps of the lights hold.
+  enum class Depths { none, columns, maps };
+
+  // Uploads, and makes the maps, the timer's stages "upload" (ended here) and "light_maps". `lights` in the order of the device (balls_first); the media are kept by reference. Throws
+  // Unavailable where the device has no room, Interrupted if `progress` says so.
+  Columns(Context&, const MediaOnDevice&, const std::vector<scene::Medium>&,
+          const std::vector<airlight::ray_marcher::Layer>&, const std::vector<scene::Light>& lights, Depths,
+          const airlight::light_map::Options&, StageTimer&, const std::function<bool(double)>& progress);
+
+  const light_map::LightMaps* maps() const { return maps_.get(); }  // null: there are none
+  // What a program that includes columns.glsl needs: DEPTHS, and of maps what look_up.glsl needs.
+  std::map<std::string, std::string> definitions() const;
+  // Binds storage blocks 0 (maps) and 4 (lights), sets the uniforms; `options` of columns, not read of maps.
+  void bind(LinkedProgram&, const airlight::ray_marcher::Options& options = {}) const;
+
+ private:
+  Depths depths_;
+  Buffer lights_;
+  std::unique_ptr<light_map::LightMaps> maps_;
+};
+
+}  // namespace airlight::gpu::ray_marcher

@@ -1,0 +1,36 @@
+// The media of a scene on the device, as layer.glsl reads them. Renderers of other folders share them.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/linked_program.h"
+#include "gpu/ray_marcher/grid_field.h"
+
+namespace airlight::gpu::ray_marcher {
+
+class MediaOnDevice {
+ public:
+  // Uploads. Places on the device are relative to `middle`. Throws Unavailable where the device has no room for a grid.
+  MediaOnDevice(Context&, const std::vector<airlight::ray_marcher::Layer>&, const Point3& middle, GridStorage);
+
+  const Point3& middle() const { return middle_; }
+  const GridsOnDevice& grids() const { return grids_; }
+  // LAYERS, GRIDS, TEXTURES and GAUSSIANS, for a program that includes layer.glsl.
+  std::map<std::string, std::string> definitions() const;
+  // Binds uniform block 0, storage blocks 1 to 3 and the textures, sets layer_count.
+  void bind(LinkedProgram&) const;
+
+ private:
+  Point3 middle_;
+  int count_;
+  bool has_grids_ = false, has_gaussians_ = false;
+  GridsOnDevice grids_;
+  Buffer layers_, gaussians_, bricks_;
+};
+
+// Why the device's media are not these, one line each: fields that layer.glsl does not know, or too many of them.
+std::vector<std::string> unknown_media(const std::vector<scene::Medium>&);
+
+}  // namespace airlight::gpu::ray_marcher
