@@ -16,7 +16,7 @@
 namespace airlight::experiments {
 
 inline constexpr const char* committed_folder = "experiments/data/references";  // below the project's root
-inline constexpr std::size_t most_committed_bytes = 8'000'000;                  // all films together
+inline constexpr std::size_t most_committed_bytes = 12'000'000;                 // all films together
 
 // A reference that experiments ask for, whether its film is there or not.
 struct CommittedReference {

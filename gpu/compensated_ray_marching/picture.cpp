@@ -89,9 +89,11 @@ std::optional<std::vector<scene::StageTime>> Picture::next(std::shared_ptr<const
       (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
   const Use use(context_);
+  const bool lit = !scene->light_hash.empty() && scene->light_hash == lit_by_;
+  lit_by_ = scene->light_hash;
   scene_ = std::move(scene);
   surroundings_->become(*scene_);
-  return light(execution);
+  return lit ? std::vector<scene::StageTime>{} : light(execution);
 }
 
 std::unique_ptr<Picture> Picture::in_other_smoke(std::shared_ptr<const Scene> scene, const Execution& execution) const {

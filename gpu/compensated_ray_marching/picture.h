@@ -60,6 +60,7 @@ class Picture : public scene::Prepared {
   virtual void count(std::map<std::string, double>& counters) const = 0;
 
   std::shared_ptr<const scene::Scene> first_, scene_;  // the first has the smoke
+  std::string lit_by_ = scene_->light_hash;            // what the last frame was lit by
   Options options_;
   std::string settings_;
   Solution last_;                                                        // of a frame before, where this one has none

@@ -65,6 +65,7 @@ class PreparedPicture final : public scene::Prepared {
   Rgb behind(const Ray&, const scene::RayEnd&) const;
 
   std::shared_ptr<const Scene> scene_;
+  std::string lit_by_ = scene_->light_hash;  // what the last frame was lit by
   std::vector<std::shared_ptr<const Scene>> kept_;  // of the frames before: the one whose smoke is marched through
   Options options_;
   std::string settings_;
@@ -126,23 +127,26 @@ std::vector<scene::StageTime> PreparedPicture::light(const Execution& execution)
   return grid_->times();
 }
 
-// Lights alone: the smoke, its depths and the last multiple scattering are kept.
+// Lights alone: the smoke, its depths and the last multiple scattering are kept. Where only the camera moved, all of it is.
 std::optional<std::vector<scene::StageTime>> PreparedPicture::next(std::shared_ptr<const Scene> scene,
                                                                    const Execution& execution) {
   if (scene->matter_hash != scene_->matter_hash || !unsupported(*scene, options_).empty() ||
       (incoming_ && !incoming_->fits(scene->lights)) ||
       (smoke_ && !scatters_ && scene::why_nothing_scatters(*scene).empty()))
     return std::nullopt;
+  const bool lit = !scene->light_hash.empty() && scene->light_hash == lit_by_;
+  lit_by_ = scene->light_hash;
   kept_.push_back(std::exchange(scene_, std::move(scene)));
   kept_.resize(1);  // the first, whose smoke is marched through
+  if (lit) return std::vector<scene::StageTime>{};
   std::vector<scene::StageTime> times;
   if (incoming_) {
     scene::Stopwatch watch;
     incoming_->become(scene_->lights);
     times.push_back({"environment", watch.lap()});
   }
-  const std::vector<scene::StageTime> lit = light(execution);
-  times.insert(times.end(), lit.begin(), lit.end());
+  const std::vector<scene::StageTime> of_light = light(execution);
+  times.insert(times.end(), of_light.begin(), of_light.end());
   return times;
 }
 

@@ -1,6 +1,7 @@
 // Frames of a scene of which something moves: the path of a camera, and what becomes of a preparation.
 #include "experiments/driver/next_frames.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "experiments/application/renderers.h"

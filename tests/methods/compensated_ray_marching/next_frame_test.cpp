@@ -43,6 +43,20 @@ TEST_CASE("compensated march: the next frame's light as if prepared anew", "[com
   }
 }
 
+TEST_CASE("compensated march: where only the camera moved, the light is kept", "[compensated_ray_marching]") {
+  for (const Given& given : {Given{{"cells", "8"}}, Given{{"variant", "paper"}, {"iterations", "50"}}}) {
+    const auto before = scene_of(puffs(), 4, 0.9, uneven());
+    auto after = std::make_shared<scene::Scene>(*before);
+    after->camera.position[0] += 0.1;
+    finish(*after);
+    const auto prepared = method.prepare(before, {method.settings(), given}, {1, {}});
+    const auto times = prepared->next(after, {1, {}});
+    REQUIRE(times);
+    CHECK(times->empty());
+    CHECK(prepared->render(view_of(*after), {1, {}}).film.layers == picture(method, after, given).layers);
+  }
+}
+
 TEST_CASE("compensated march: other smoke as if prepared anew, from the last frame's solution in fewer iterations",
           "[compensated_ray_marching]") {
   std::mt19937 random(5);
