@@ -20,7 +20,11 @@ using scene::Fogmap;
 using scene::Scene;
 
 bool move_lights(Scene& scene) {
-  for (scene::Light& light : scene.lights) light = scene::turned(scene::moved(light, {1e-3, 0, 0}), 1e-3);
+  for (scene::Light& light : scene.lights) {
+    light = scene::turned(scene::moved(light, {1e-3, 0, 0}), 1e-3);
+    if (auto* sun = std::get_if<scene::DirectionalLight>(&light))
+      sun->to_light = Eigen::AngleAxisd(1e-3, Vec3::UnitY()) * sun->to_light;
+  }
   return !scene.lights.empty();
 }
 

@@ -152,6 +152,21 @@ TEST_CASE("next frames: media of every form move by a millimetre", "[experiments
   }
 }
 
+TEST_CASE("next frames: lights of every kind move", "[experiments]") {
+  for (const char* const light :
+       {"type = \"point\"\nintensity = 1\nposition = [1, 2, 3]",
+        "type = \"spot\"\nintensity = 1\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nouter_angle = 0.5",
+        "type = \"directional\"\nirradiance = 1\nto_light = [1, 1, 1]",
+        "type = \"environment\"\nsh = [[1, 1, 1], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2], [0.3, 0.3, 0.3]]"}) {
+    CAPTURE(light);
+    const auto scene = std::make_shared<const scene::Scene>(scene::parse_scene(
+        "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\n[[light]]\n" + std::string(light) + "\n", "lit", "."));
+    const auto moved = moved_back(*scene, {Moving::What::lights});
+    CHECK(moved->light_hash != scene->light_hash);
+    CHECK(moved->matter_hash == scene->matter_hash);
+  }
+}
+
 TEST_CASE("next frames: the time after something moved, and whether all was prepared anew", "[experiments]") {
   const auto scene = ball();
   const auto after = [&](const char* renderer, Moving::What what, const Given& given) {
