@@ -65,7 +65,7 @@ class PreparedPicture final : public scene::Prepared {
   Rgb behind(const Ray&, const scene::RayEnd&) const;
 
   std::shared_ptr<const Scene> scene_;
-  std::string lit_by_ = scene_->light_hash;  // what the last frame was lit by
+  std::string lit_by_ = scene_->light_hash;         // what the last frame was lit by
   std::vector<std::shared_ptr<const Scene>> kept_;  // of the frames before: the one whose smoke is marched through
   Options options_;
   std::string settings_;

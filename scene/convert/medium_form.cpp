@@ -42,8 +42,8 @@ void bind(SettingBinder& b, MediumConversion& c) {
 Box sampled_box(const std::vector<Medium>& media, std::size_t i) {
   const Box box = bounding_box(media[i]);
   if (!box.empty() && box.size().allFinite() && (box.size().array() > 0).all()) return box;
-  const std::string reason = fmt::format("{} {}: a conversion needs one with an end in all directions",
-                                         label(media, i), box.empty() ? "is empty" : "has no end");
+  const std::string reason = fmt::format("{} {}: a conversion needs one with an end in all directions", label(media, i),
+                                         box.empty() ? "is empty" : "has no end");
   throw NotSupported(reason, reason);
 }
 

@@ -136,11 +136,11 @@ settings = { nodes = 64 }
 [[method]]
 name = "moving"
 renderer = "shadow_planes"
-moving = "lights"
+moving = { what = "lights" }
 [[method]]
 name = "marcher"
 renderer = "ray_marcher"
-moving = "lights"
+moving = { what = "lights" }
 [profile.quick]
 runs = 3
 )");
