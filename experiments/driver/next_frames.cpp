@@ -179,6 +179,7 @@ std::shared_ptr<const Scene> moved_back(const Scene& scene, const Moving& moving
   auto before = std::make_shared<Scene>(scene);
   if (!move(*before, moving)) return nullptr;
   finish(*before);
+  before->geometry = scene.geometry;  // surfaces stay, and preparations tell them by it
   return before;
 }
 
