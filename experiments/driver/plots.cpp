@@ -136,6 +136,9 @@ std::string axis_label(const std::string& given, const std::string& axis) {
   if (axis == "seconds") return "time of one render [s]";
   if (axis == "prepare_seconds") return "time of preparation [s]";
   if (axis == "total_seconds") return "time of preparation and one render [s]";
+  if (axis == "camera_seconds") return "time of a frame after the camera moved [s]";
+  if (axis == "lights_seconds") return "time of a frame after lights moved [s]";
+  if (axis == "media_seconds") return "time of a frame after media moved [s]";
   if (is_column(axis)) return axis.substr(7);
   return axis.starts_with("counter.") ? axis.substr(8) : axis;
 }
