@@ -15,7 +15,7 @@ void join(inout vec2 all_, vec2 part) {
   if (part.x < part.y) all_ = vec2(min(all_.x, part.x), max(all_.y, part.y));
 }
 
-// Of a ray, [m]: a colour channel ends in a constant medium, or where the media end that extinguish it.
+// Where media begin and end on a ray [m]. A colour channel ends in a constant medium, or where the media end that extinguish it.
 vec2 seen_media(vec3 origin, vec3 direction, float t_end) {
   vec2 of_channel[3] = vec2[3](nothing, nothing, nothing), all_ = nothing;
   vec3 dark = vec3(far_away);

@@ -61,7 +61,7 @@ class PreparedFogGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  // Of the first picture, or of the next one after this.
+  // Prepares the scene's pictures. `next`: as the frame after the last one, else as the first frame.
   void take(std::shared_ptr<const Scene>, const Execution&, bool next);
   // False where rounds were too few: the same again, looking.
   bool draw(const View&, const Execution&, bool looks, scene::Rendering&) const;

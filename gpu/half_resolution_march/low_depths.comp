@@ -4,7 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/far_away.glsl"
 #include "half_resolution_march/blocks.glsl"
 
-// Of film pixels, or of the middles of blocks [m along the rays].
+// Where the rays of film pixels end, or those through the middles of blocks [m along the ray].
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };
 uniform int has_distances;  // 0: nothing ends rays
 uniform int of_blocks;      // 1: distances are those of blocks

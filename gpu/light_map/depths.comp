@@ -4,7 +4,7 @@ layout(local_size_x = LOCAL_SIZE_X) in;
 #include "ray_marcher/layer.glsl"
 #include "light_map/texel.glsl"
 
-// Of the layers that vary: where, relative to the middle, and the extinction of the planes at density 1 [1/m].
+// Each layer that varies: its place relative to the scene's middle, and the extinction of the map's planes at density 1 [1/m].
 struct Part {
   vec4 lo, hi;  // lo.w: 0, nothing of the layer varies
   vec4 extinction;

@@ -18,8 +18,8 @@ namespace airlight::gpu::light_map {
 
 class LightMaps {
  public:
-  // Of lights that shine from one direction. `layers` are those of the media on the device, made of `in_scene`. Throws Unavailable
-  // where a storage buffer of the device is too small for all, Interrupted if `progress` says so.
+  // Makes the maps of lights that shine from one direction. `layers` are those of the media on the device, made of `in_scene`. Throws
+  // Unavailable where a storage buffer of the device is too small for all, Interrupted if `progress` says so.
   LightMaps(Context&, const ray_marcher::MediaOnDevice&, const std::vector<scene::Medium>& in_scene,
             const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>&,
             const airlight::light_map::Options&, const std::function<bool(double)>& progress);

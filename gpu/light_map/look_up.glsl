@@ -38,7 +38,7 @@ MapPlace map_place(int l, vec3 x) {
   if (kind > 0) {
     float near = light_maps[rule + 14], excess = light_maps[rule + 15], size = dot(abs(at), vec3(1)), radius = length(at);
     vec2 uv = at.xy / max(size, 1e-30);
-    // Of a light far away neither radius nor near has the digits of their difference: (radius^2 - near^2) / (radius + near).
+    // radius - near, as (radius^2 - near^2) / (radius + near): the difference loses its digits where the light is far away.
     float beyond = excess < far_away
                        ? (dot(at.xy, at.xy) + local.z * (2 * shift.z + local.z) + excess) / (radius + near)
                        : radius - near;

@@ -19,7 +19,7 @@ uniform float lit_nearest;    // light comes from so far away at least [m]
 // Work done by this invocation, as lit_media::Counters.
 uint lit_points = 0, lit_look_ups = 0, lit_occlusion_rays = 0;
 
-// Of each layer at the point in question; in shared memory, for compilers spill registers over private arrays.
+// The density of each layer at the point in question. It is in shared memory: private arrays make compilers spill registers.
 const int lit_lanes = LOCAL_SIZE_X * LOCAL_SIZE_Y;
 shared float lit_densities[LAYERS * lit_lanes];
 #define LIT_DENSITY(k) lit_densities[(k) * lit_lanes + int(gl_LocalInvocationIndex)]

@@ -19,7 +19,7 @@ struct Neighbours {
   double share;
 };
 Neighbours neighbours(const Blocks&, int pixel);
-// The same at a film position [film pixels].
+// Two neighbours of a film position [film pixels], like those of a film pixel.
 Neighbours neighbours_at(const Blocks&, double x);
 
 // At a film pixel of this depth: bilinear; but, if `nearest_depth`, the neighbour of nearest depth where the four differ from it by more

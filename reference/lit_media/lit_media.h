@@ -30,8 +30,8 @@ struct Plan {
   std::shared_ptr<const scene::Scene> scene;
   Options options;
   std::vector<ray_marcher::Layer> layers;
-  // Those that shine from one direction; directional lights in place of environments. With self_shadow there are none from infinitely far
-  // away where endless fog swallows them.
+  // Lights that shine from one direction; an environment is replaced by directional lights. With self_shadow there are none from
+  // infinitely far away where endless fog swallows them.
   std::vector<scene::Light> lights;
   bool scatters = false;  // may a point scatter light at all?
   double nearest = 0;     // light comes from so far away at least [m]

@@ -71,7 +71,7 @@ Given alone(Given given) {
   return given;
 }
 
-// The same rays in many steps.
+// A picture of the same scene in so many steps that it counts as the truth.
 scene::Film truth(const std::shared_ptr<const scene::Scene>& scene) {
   return picture(scene, {{"steps", "256"}, {"jitter", "none"}, {"map_size", "64"}});
 }
