@@ -22,6 +22,10 @@ bool judges(const GateCase& gate, const std::string& scene, const std::string& m
          (gate.method.empty() || method == gate.method) && (gate.setting.empty() || setting == gate.setting);
 }
 
+const ReferenceCase& reference_of(const Experiment& e, const SceneCase& c) {
+  return c.reference ? *c.reference : e.reference;
+}
+
 std::string results_name(const std::string& id, const std::string& profile) {
   return profile == "quick" ? id : id + "." + profile;
 }

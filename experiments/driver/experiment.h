@@ -16,14 +16,21 @@ namespace airlight::experiments {
 class ExperimentKind;
 using Pairs = std::map<std::string, std::string>;
 
+struct ReferenceCase {
+  std::string renderer;  // empty: nothing is compared
+  Pairs settings;
+  std::filesystem::path committed;  // folder of committed films; empty: none is asked for
+};
+
 struct SceneCase {  // kind "numbers": the input of a probe, all empty where there is none; "flow": the problem
   std::string name;
   std::string swept_from;  // the name without the sweep's value; empty without a sweep
   std::filesystem::path file;
-  Pairs overrides;                  // with those of the profile
-  std::optional<double> parameter;  // abscissa of plots over scenes
-  std::string position;             // file:line:column
-  std::string of_sequence;          // what is swept from picture to picture: "frame" of a medium, "angle" of what turns
+  Pairs overrides;                         // with those of the profile
+  std::optional<double> parameter;         // abscissa of plots over scenes
+  std::string position;                    // file:line:column
+  std::optional<ReferenceCase> reference;  // instead of the experiment's
+  std::string of_sequence;  // what is swept from picture to picture: "frame" of a medium, "angle" of what turns
 };
 
 struct MethodCase {
@@ -42,12 +49,6 @@ struct MethodCase {
 
 // Is the method on this scene? A swept scene is called "name value": the name means all of them.
 bool is_on(const MethodCase&, const SceneCase&);
-
-struct ReferenceCase {
-  std::string renderer;  // empty: nothing is compared
-  Pairs settings;
-  std::filesystem::path committed;  // folder of committed films; empty: none is asked for
-};
 
 struct TimingRule {
   int runs = 31;             // beside the warm-up; 5 where one takes over a second
@@ -112,6 +113,9 @@ struct Experiment {
   std::vector<SpeedUpCase> speed_ups;
   std::vector<ExpectedCase> expected;
 };
+
+// What judges the scene.
+const ReferenceCase& reference_of(const Experiment&, const SceneCase&);
 
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,
 // names that refer to one another, and that every gate has a row and a figure to judge, are checked here; scenes by

@@ -26,10 +26,13 @@ class ExperimentReader {
   std::string position(const std::string& key) const;
   // The tables of [[key]], each with its reader.
   std::vector<std::pair<const toml::table*, TableReader>> lists(const TableReader& top, const std::string& key) const;
+  static std::vector<std::pair<const toml::table*, TableReader>> lists(const toml::table& in, const TableReader&,
+                                                                       const std::string& key);
   bool in_profile(const toml::table& table, const TableReader& reader) const;
   void profile(const TableReader& top, Pairs& scene_overrides, Pairs& reference_settings);
   void check_component(const TableReader& reader, const std::string& name, const Pairs& given) const;
   void reference(const TableReader& top, const Pairs& finer);
+  void read_reference(const TableReader&, const toml::table&, const Pairs& finer, ReferenceCase&) const;
   void scenes(const TableReader& top, const Pairs& of_profile);
   void methods(const TableReader& top);
   // A row of a sweep goes without the settings that are not read beside its value, where another row reads them: a rule of upsampling in

@@ -107,12 +107,13 @@ class Conversions {
 PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
   PlannedScene planned;
   planned.scene = std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides));
-  if (e.reference.renderer.empty()) return planned;
-  planned.reference = &find_renderer(e.reference.renderer, "reference");
-  planned.reference_settings.emplace(planned.reference->settings(), e.reference.settings, "reference");
-  if (!e.reference.committed.empty())
+  const ReferenceCase& reference = reference_of(e, c);
+  if (reference.renderer.empty()) return planned;
+  planned.reference = &find_renderer(reference.renderer, "reference");
+  planned.reference_settings.emplace(planned.reference->settings(), reference.settings, "reference");
+  if (!reference.committed.empty())
     planned.committed =
-        committed_file(e.reference.committed, *planned.scene, *planned.reference, *planned.reference_settings, e.layer);
+        committed_file(reference.committed, *planned.scene, *planned.reference, *planned.reference_settings, e.layer);
   return planned;
 }
 

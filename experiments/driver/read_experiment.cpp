@@ -79,8 +79,8 @@ Experiment ExperimentReader::read() {
   experiment_.metrics = strings(toml_, "metrics", top);
   Pairs overrides, reference_settings;
   profile(top, overrides, reference_settings);
-  if (std::find(of_kind.begin(), of_kind.end(), "reference") != of_kind.end()) reference(top, reference_settings);
   scenes(top, overrides);
+  if (std::find(of_kind.begin(), of_kind.end(), "reference") != of_kind.end()) reference(top, reference_settings);
   methods(top);
   kind().check_metrics(experiment_, position("metrics"));
   plots(top);
@@ -97,13 +97,19 @@ std::string ExperimentReader::position(const std::string& key) const {
 
 std::vector<std::pair<const toml::table*, TableReader>> ExperimentReader::lists(const TableReader& top,
                                                                                 const std::string& key) const {
+  return lists(toml_, top, key);
+}
+
+std::vector<std::pair<const toml::table*, TableReader>> ExperimentReader::lists(const toml::table& in,
+                                                                                const TableReader& reader,
+                                                                                const std::string& key) {
   std::vector<std::pair<const toml::table*, TableReader>> all;
-  if (!top.has(key)) return all;
-  const toml::array* array = toml_.get(key)->as_array();
-  if (!array) top.expected(key, fmt::format("tables [[{}]]", key));
+  if (!reader.has(key)) return all;
+  const toml::array* array = in.get(key)->as_array();
+  if (!array) reader.expected(key, fmt::format("tables [[{}]]", key));
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::table* table = array->get_as<toml::table>(i);
-    if (!table) top.expected(key, fmt::format("tables [[{}]]", key));
+    if (!table) reader.expected(key, fmt::format("tables [[{}]]", key));
     all.emplace_back(table, TableReader(*table, fmt::format("{} {}", key, i)));
   }
   return all;
@@ -171,15 +177,35 @@ void ExperimentReader::reference(const TableReader& top, const Pairs& finer) {
         top.fail("metrics", fmt::format("there is {} and no [reference]", metric));
     return;
   }
-  reader->allow({kind().component_key(), "settings"});
-  experiment_.reference.renderer = reader->text(kind().component_key());
-  experiment_.reference.settings = settings(*toml_.get("reference")->as_table(), "settings", *reader);
-  for (const auto& [name, value] : finer) experiment_.reference.settings[name] = value;
-  check_component(*reader, experiment_.reference.renderer, experiment_.reference.settings);
-  if (!experiment_.reference.committed.empty() && !is_reference(find_renderer(experiment_.reference.renderer, "")))
-    reader->fail(kind().component_key(),
-                 "committed_references = true, but only those of reference/ may be committed: a test renders "
-                 "a part of each anew");
+  std::vector<std::string> keys{kind().component_key(), "settings"};
+  if (kind().draws_pictures()) keys.push_back("instead");
+  reader->allow(keys);
+  const toml::table& table = *toml_.get("reference")->as_table();
+  read_reference(*reader, table, finer, experiment_.reference);
+  if (!kind().draws_pictures()) return;
+  for (auto& [other, of_some] : lists(table, *reader, "instead")) {
+    of_some.allow({"scenes", kind().component_key(), "settings"});
+    ReferenceCase instead;
+    instead.committed = experiment_.reference.committed;
+    read_reference(of_some, *other, {}, instead);
+    for (const std::string& name : strings(*other, "scenes", of_some)) {
+      known(of_some, "scenes", name, "scene");
+      for (SceneCase& c : experiment_.scenes)
+        if (c.name == name || c.swept_from == name) c.reference = instead;
+    }
+  }
+}
+
+void ExperimentReader::read_reference(const TableReader& reader, const toml::table& table, const Pairs& finer,
+                                      ReferenceCase& to) const {
+  to.renderer = reader.text(kind().component_key());
+  to.settings = settings(table, "settings", reader);
+  for (const auto& [name, value] : finer) to.settings[name] = value;
+  check_component(reader, to.renderer, to.settings);
+  if (!to.committed.empty() && !is_reference(find_renderer(to.renderer, "")))
+    reader.fail(kind().component_key(),
+                "committed_references = true, but only those of reference/ may be committed: a test renders "
+                "a part of each anew");
 }
 
 void ExperimentReader::scenes(const TableReader& top, const Pairs& of_profile) {

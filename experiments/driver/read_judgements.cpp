@@ -128,7 +128,6 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
   const auto noisy = [this](const std::string& name) {
     return kind().draws_pictures() && !name.empty() && find_renderer(name, "gate").monte_carlo();
   };
-  const bool noisy_reference = noisy(experiment_.reference.renderer);
   bool found = false;
   for (const SceneCase& c : experiment_.scenes)
     for (const MethodCase& m : experiment_.methods) {
@@ -137,6 +136,7 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
       if (of_time_or_work || !kind().draws_pictures()) continue;
       if (m.picture_only && gate.method.empty()) continue;  // every method that has figures
       if (m.picture_only) wrong(fmt::format("method '{}' is picture_only: it has no {}", m.name, gate.metric));
+      const bool noisy_reference = noisy(reference_of(experiment_, c).renderer);
       if (test && !noisy_reference && !noisy(m.renderer))
         wrong(fmt::format("{} needs noise, and neither '{}' nor the reference has any", gate.metric, m.name));
       if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");

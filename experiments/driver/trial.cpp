@@ -29,12 +29,12 @@ scene::Settings short_settings(const scene::Renderer& renderer, Pairs given, con
 
 class Trial {
  public:
-  Trial(const Experiment& e, const PlannedScene& planned)
+  Trial(const Experiment& e, const SceneCase& c, const PlannedScene& planned)
       : e_(e), planned_(planned), view_(scene::view_of(*planned.scene)) {
     view_.width = std::min(view_.width, most_pixels);
     view_.height = std::min(view_.height, most_pixels);
     if (!planned.reference) return;
-    reference_ = render(*planned.reference, planned.scene, e.reference.settings, *planned.reference_settings);
+    reference_ = render(*planned.reference, planned.scene, reference_of(e, c).settings, *planned.reference_settings);
     require_finite(reference_, "reference " + planned.reference->name());
     reference_.layer(e.layer);
   }
@@ -78,7 +78,7 @@ void check_scene(const Experiment& e, const SceneCase& c, const Journal& finishe
     if (!finished.find(p.row.key)) open.push_back(&p);
   if (open.empty() || !trials) return;
   try {
-    const Trial trial(e, planned);
+    const Trial trial(e, c, planned);
     for (const PlannedRow* p : open)
       if (tried.insert(p->method).second) trial.method(*p);
   } catch (const Unavailable&) {
