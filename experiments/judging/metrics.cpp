@@ -10,6 +10,7 @@
 
 #include "experiments/judging/batches.h"
 #include "experiments/judging/equality.h"
+#include "experiments/judging/flip.h"
 #include "experiments/judging/metric_values.h"
 #include "experiments/judging/statistics.h"
 #include "scene/base/error.h"
@@ -324,6 +325,25 @@ bool is_test(const std::string& base) {
   return base == "objections" || base == "largest_z" || base == "detectable_bias";
 }
 
+bool is_whole_picture(const std::string& base) { return is_test(base) || base == "flip"; }
+
+// Noise is judged as it is seen: noise as large as the reference's is added to it, and what that changes may be off on both sides. The
+// mean over 48 x 36 pixels differs by less than a tenth from draw to draw (flip_test.cpp): a fifth is added.
+Measure measure_flip(const scene::Film& image, const scene::Film& reference, const std::string& layer,
+                     const std::vector<unsigned char>& left_out) {
+  std::vector<float> a = image.layer(layer), r = reference.layer(layer);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!left_out.empty() && left_out[i / 3]) a[i] = r[i];
+  const double value = flip(a, r, image.width, image.height);
+  const auto parts = batches(reference, layer, "reference");
+  if (parts.empty()) return {"", value, value, value, 0, false};
+  std::vector<float> once_more = r;
+  for (std::size_t b = 0; b < parts.size(); ++b)
+    for (std::size_t i = 0; i < r.size(); ++i) once_more[i] += (b % 2 ? 1 : -1) * parts[b][i] / float(parts.size());
+  const double noise = 1.2 * flip(once_more, r, image.width, image.height);
+  return {"", value, std::max(0.0, value - noise), value + noise, noise, value <= noise};
+}
+
 Measure test_of_equality(const std::string& name, const scene::Film& image, const scene::Film& reference,
                          const std::string& layer, const Masks& masks) {
   constexpr double alpha = 1e-4;
@@ -345,8 +365,8 @@ Measure test_of_equality(const std::string& name, const scene::Film& image, cons
 
 const std::vector<std::string>& metric_names() {
   static const std::vector<std::string> names = {
-      "rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse",   "bias",           "p95",
-      "p99",  "p999",   "wrong",          "objections", "largest_z", "detectable_bias"};
+      "rmse", "rel_l2", "rel_l2_squared", "rmse_range", "rel_mse",    "bias",      "p95",
+      "p99",  "p999",   "wrong",          "flip",       "objections", "largest_z", "detectable_bias"};
   return names;
 }
 
@@ -358,7 +378,7 @@ void check_metric_name(const std::string& name, const std::string& where) {
   if (std::find(names.begin(), names.end(), base) == names.end())
     throw Error(fmt::format("{}: unknown metric '{}', expected one of {}{}", where, name, fmt::join(names, ", "),
                             scene::nearest_hint(base, names)));
-  if (is_test(base) && name != base)
+  if (is_whole_picture(base) && name != base)
     throw Error(fmt::format("{}: metric '{}': expected '{}', which is of the whole picture", where, name, base));
 }
 
@@ -391,8 +411,9 @@ std::vector<Measure> measure(const std::vector<std::string>& names, const scene:
     if (parsed.foreground && masks.foreground.size() != image.pixels())
       throw Error(
           fmt::format("metric '{}' needs the foreground, and the reference has no layer 'transmittance'", name));
-    Measure m = is_test(parsed.base)
-                    ? test_of_equality(name, image, reference, layer, masks)
+    Measure m = is_test(parsed.base) ? test_of_equality(name, image, reference, layer, masks)
+                : parsed.base == "flip"
+                    ? measure_flip(image, reference, layer, masks.left_out)
                     : measure_values(parsed.base, Values(image, reference, layer, parsed, masks, noise));
     m.name = name;
     measures.push_back(m);

@@ -10,6 +10,9 @@
 //   p95, p99, p999  95th, 99th and 99.9th percentile of |d| / (R + 0.01 max R)
 //   wrong           share of pixels where |d| > 1e-4 mean(R) in some channel; not defined with noise
 //
+//   flip            HDR-FLIP (flip.h), the mean over all pixels: 0 to 1, a metric of display, not for gates of accuracy. Noise is
+//                   seen as it is; the interval is what noise as large as the reference's changes
+//
 //   objections       of the three tests of equality (equality.h, false alarms 1e-4 together), how many object: 0 if the
 //                    images are equal but for noise; not defined without noise. Where samples are too skewed for the
 //                    tests (fireflies), the lower end of its interval is what objects all the same
@@ -20,7 +23,7 @@
 // Prefix "converted.", before any other: against the picture of the media as they were converted for the method (key `convert`), which is what
 // the method itself adds. Without it: against the picture of the scene.
 // Prefix "foreground." : only pixels where 1 - transmittance > 1e-3 in some channel. Suffix ".r", ".g", ".b": one
-// channel; else all channels together. Tests of equality take neither. Pixels that touch a light's ball are left out of
+// channel; else all channels together. FLIP and tests of equality take neither. Pixels that touch a light's ball are left out of
 // all of them.
 //
 // With noise, squares are means over pairs of different batches, (A - R_p)(A - R_q), so that no noise is squared, and
