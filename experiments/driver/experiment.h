@@ -22,6 +22,15 @@ struct ReferenceCase {
   std::filesystem::path committed;  // folder of committed films; empty: none is asked for
 };
 
+// The pictures of a sequence: what differs from one to the next.
+struct SequenceCase {
+  int count = 0;
+  std::string key;           // path of an override that counts them: "medium.0.frame"; empty: media stand still
+  int first = 0, step = 1;   // its values
+  double turn = 0;           // [rad] by which suns and environments turn about the y axis
+  Vec3 move = Vec3::Zero();  // [m] by which point and spot lights move
+};
+
 struct SceneCase {  // kind "numbers": the input of a probe, all empty where there is none; "flow": the problem
   std::string name;
   std::string swept_from;  // the name without the sweep's value; empty without a sweep
@@ -29,6 +38,7 @@ struct SceneCase {  // kind "numbers": the input of a probe, all empty where the
   Pairs overrides;                         // with those of the profile
   std::optional<double> parameter;         // abscissa of plots over scenes
   std::string position;                    // file:line:column
+  std::optional<SequenceCase> frames;      // kind "sequence"
   std::optional<ReferenceCase> reference;  // instead of the experiment's
   std::string of_sequence;  // what is swept from picture to picture: "frame" of a medium, "angle" of what turns
 };
@@ -41,6 +51,7 @@ struct MethodCase {
   std::string setting;                             // the swept setting's value, as text; empty without a sweep
   std::string layer;                               // compared with the reference's layer
   bool count_noise = false;         // the noise of this method is part of its error; else it is taken out
+  bool anew = false;                // of a sequence every picture is prepared anew
   bool picture_only = false;        // rendered and timed, not compared
   std::optional<Moving> moving;     // each timed run is the next frame, of which this has moved; none: one frame
   std::vector<std::string> scenes;  // empty: all

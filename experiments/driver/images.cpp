@@ -235,14 +235,18 @@ std::string Images::conditions() const {
          "precomputation apart.";
 }
 
-Outcome Images::run(Experiment experiment, const RunOptions& options) const {
-  RowKeeper keeper(std::move(experiment), options);
+void add_histories(RowKeeper& keeper, const RunOptions& options) {
   for (const std::string& name : keeper.experiment().sequences) {
     Row history;
     history.method = name;
     history.columns = sequence_history(options.folders, name, keeper.experiment().profile);
     keeper.add_history(std::move(history));
   }
+}
+
+Outcome Images::run(Experiment experiment, const RunOptions& options) const {
+  RowKeeper keeper(std::move(experiment), options);
+  add_histories(keeper, options);
   return keeper.run([&](const SceneCase& c) {
     const auto judged = std::make_shared<Judged>();
     judged->planned = plan_scene(keeper.experiment(), c, keeper.store());

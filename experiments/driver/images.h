@@ -27,4 +27,8 @@ class Images : public ExperimentKind {
   std::string conditions() const override;
 };
 
+class RowKeeper;
+// Columns of the sequences that scenes show, for plots.
+void add_histories(RowKeeper&, const RunOptions&);
+
 }  // namespace airlight::experiments

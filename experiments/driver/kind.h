@@ -28,6 +28,8 @@ class ExperimentKind {
   virtual const scene::Component& find_component(const std::string& name, const std::string& position) const = 0;
   virtual std::vector<std::string> keys() const { return {}; }  // beside those of every kind
   virtual void read(const TableReader&, Experiment&) const {}
+  virtual std::vector<std::string> scene_keys() const { return {}; }
+  virtual void read_scene(const TableReader&, SceneCase&) const {}
   virtual std::vector<std::string> method_keys() const { return {}; }
   virtual void read_method(const TableReader&, const Experiment&, MethodCase&) const {}
   virtual void check_metrics(Experiment&, const std::string& position) const = 0;  // may add some that belong to them

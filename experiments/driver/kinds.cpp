@@ -4,6 +4,7 @@
 #include "experiments/driver/flows.h"
 #include "experiments/driver/images.h"
 #include "experiments/driver/numbers.h"
+#include "experiments/driver/sequence_images.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments {
@@ -12,7 +13,8 @@ const std::vector<const ExperimentKind*>& all_kinds() {
   static const Images images;
   static const Numbers numbers;
   static const Flows flows;
-  static const std::vector<const ExperimentKind*> kinds{&images, &numbers, &flows};
+  static const SequenceImages sequence;
+  static const std::vector<const ExperimentKind*> kinds{&images, &numbers, &flows, &sequence};
   return kinds;
 }
 

@@ -20,11 +20,8 @@ using scene::Fogmap;
 using scene::Scene;
 
 bool move_lights(Scene& scene) {
-  for (scene::Light& light : scene.lights) {
-    light = scene::turned(scene::moved(light, {1e-3, 0, 0}), 1e-3);
-    if (auto* sun = std::get_if<scene::DirectionalLight>(&light))
-      sun->to_light = Eigen::AngleAxisd(1e-3, Vec3::UnitY()) * sun->to_light;
-  }
+  for (scene::Light& light : scene.lights) light = scene::moved(light, {1e-3, 0, 0});
+  turn_lights(scene, 1e-3);
   return !scene.lights.empty();
 }
 
@@ -159,6 +156,14 @@ bool move(Scene& scene, const Moving& moving) {
 }
 
 }  // namespace
+
+void turn_lights(Scene& scene, double angle) {
+  for (scene::Light& light : scene.lights) {
+    light = scene::turned(light, angle);
+    if (auto* sun = std::get_if<scene::DirectionalLight>(&light))
+      sun->to_light = Eigen::AngleAxisd(angle, Vec3::UnitY()) * sun->to_light;
+  }
+}
 
 std::string name_of(Moving::What what) {
   for (const auto& [name, kind] : kinds)

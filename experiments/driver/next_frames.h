@@ -30,6 +30,9 @@ std::string canonical(const Moving&);
 
 std::string name_of(Moving::What);
 
+// Suns and environments about the y axis; other lights stay.
+void turn_lights(scene::Scene&, double angle);
+
 // The scene one frame before, finished. Null if it has nothing that moves so.
 std::shared_ptr<const scene::Scene> moved_back(const scene::Scene&, const Moving&);
 

@@ -57,6 +57,7 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
                                  fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
   parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving ? canonical(*m.moving) : ""));
+  if (m.anew) parts.push_back("anew");
   for (const Moving::What what : e.moves) parts.push_back(name_of(what));
   const std::string device = component.device();
   parts.push_back(device);
@@ -104,9 +105,11 @@ class Conversions {
 
 }  // namespace
 
-PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
+namespace {
+
+PlannedScene plan_reference(const Experiment& e, const SceneCase& c, std::shared_ptr<const scene::Scene> scene) {
   PlannedScene planned;
-  planned.scene = std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides));
+  planned.scene = std::move(scene);
   const ReferenceCase& reference = reference_of(e, c);
   if (reference.renderer.empty()) return planned;
   planned.reference = &find_renderer(reference.renderer, "reference");
@@ -117,8 +120,19 @@ PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
   return planned;
 }
 
+}  // namespace
+
+PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
+  return plan_reference(e, c, std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides)));
+}
+
 PlannedScene plan_scene(const Experiment& e, const SceneCase& c, const scene::ContentStore& store) {
-  PlannedScene planned = plan_reference(e, c);
+  return plan_scene(e, c, std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides)), store);
+}
+
+PlannedScene plan_scene(const Experiment& e, const SceneCase& c, std::shared_ptr<const scene::Scene> loaded,
+                        const scene::ContentStore& store) {
+  PlannedScene planned = plan_reference(e, c, std::move(loaded));
   const scene::Scene& scene = *planned.scene;
   std::string reference;
   if (planned.reference)

@@ -38,6 +38,9 @@ PlannedScene plan_reference(const Experiment&, const SceneCase&);
 // is no good.
 // What a conversion makes of its media is kept in the store.
 PlannedScene plan_scene(const Experiment&, const SceneCase&, const scene::ContentStore&);
+// Of a scene that is loaded, such as one picture of a sequence.
+PlannedScene plan_scene(const Experiment&, const SceneCase&, std::shared_ptr<const scene::Scene>,
+                        const scene::ContentStore&);
 
 // What the file says of a row, and the content of its scene.
 Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);

@@ -210,8 +210,12 @@ void ExperimentReader::read_reference(const TableReader& reader, const toml::tab
 
 void ExperimentReader::scenes(const TableReader& top, const Pairs& of_profile) {
   for (auto& [table, reader] : lists(top, "scene")) {
-    reader.allow({"name", "file", "overrides", "parameter", "profiles", "sweep"});
+    std::vector<std::string> keys{"name", "file", "overrides", "parameter", "profiles", "sweep"};
+    const std::vector<std::string> of_kind = kind().scene_keys();
+    keys.insert(keys.end(), of_kind.begin(), of_kind.end());
+    reader.allow(keys);
     SceneCase scene;
+    kind().read_scene(reader, scene);
     scene.file = folders_.root / "experiments" / reader.text("file");
     scene.name = reader.name("name", scene.file.stem().string());
     scene.position = scene::load::location(table->source());
