@@ -1,0 +1,167 @@
+// All methods on the same scenes: a table whose metric, budget, order and kind of movement can be switched, and a plot for each scene.
+// Its state stands in the address, so that a view can be sent to somebody.
+(() => {
+  const section = document.getElementById("common");
+  if (!section) return;
+  const data = JSON.parse(section.querySelector(".common-rows").textContent);
+  const state = { set: data.sets[0].name, metric: "rel_l2", budget: "0.1", moves: "camera_seconds" };
+  const element = (tag, props = {}, ...children) => {
+    const e = Object.assign(document.createElement(tag), props);
+    e.append(...children);
+    return e;
+  };
+  const svg = (tag, attributes, text) => {
+    const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) e.setAttribute(name, value);
+    if (text) e.textContent = text;
+    return e;
+  };
+
+  const digits = x => {
+    const size = Math.abs(x);
+    return size >= 10 ? x.toFixed(0) : size === 0 ? "0" : size < 1e-3 ? x.toExponential(0) : String(Number(x.toPrecision(2)));
+  };
+  const percent = x => `${digits(100 * x)} %`;
+  const time = s => s >= 1 ? `${digits(s)} s` : `${digits(1000 * s)} ms`;
+  const hidden = v => Math.abs(v[0]) < v[3];
+  const shown = (v, metric) => metric === "rmse" ? (hidden(v) ? "< " : "") + Number((hidden(v) ? v[3] : v[0]).toPrecision(2))
+    : hidden(v) ? `< ${percent(v[3])}` : percent(v[0]);
+  const error = row => row.v.rel_l2;
+
+  // Faster and closer; what the reference's noise hides is as close as anything.
+  const least = row => hidden(error(row)) ? 0 : error(row)[0];
+  const beats = (a, b) => a.t[state.moves] < b.t[state.moves] && (least(a) < least(b) || least(a) === 0);
+  const frontOf = rows => {
+    const timed = rows.filter(r => error(r) && r.t[state.moves] !== undefined && error(r)[0] < data.useless);
+    return timed.filter(r => !timed.some(o => beats(o, r)));
+  };
+
+  const describe = (row, method) => `${method}${row.c ? " (medium converted)" : ""}\n${row.set ? row.set + "\n" : ""}` +
+    `${data.metrics[state.metric]} ${shown(row.v[state.metric], state.metric)}` +
+    ` [${digits(row.v[state.metric][1])}, ${digits(row.v[state.metric][2])}]\n${time(row.t[state.moves])}\n${row.all}`;
+
+  const cell = (rows, method, fronts) => {
+    const drawn = rows.filter(error);
+    if (!drawn.length) return element("td", { className: "no", title: rows.length ? rows[0].note : "" }, rows.length ? "refuses" : "not tried");
+    const timed = drawn.filter(r => r.t[state.moves] !== undefined);
+    if (!timed.length) return element("td", { className: "no" }, "not timed");
+    const within = timed.filter(r => r.t[state.moves] <= Number(state.budget));
+    if (!within.length) return element("td", { className: "no" }, `(${time(Math.min(...timed.map(r => r.t[state.moves])))})`);
+    const best = within.reduce((a, b) => Math.abs(error(b)[0]) < Math.abs(error(a)[0]) ? b : a);
+    if (!best.v[state.metric]) return element("td", {}, "");
+    return element("td", { className: fronts.includes(best) ? "number front" : "number", title: describe(best, method) },
+      shown(best.v[state.metric], state.metric) + (best.c ? "\u00b0" : ""));
+  };
+
+  const table = set => {
+    const fronts = set.scenes.map((_, s) => frontOf(set.rows.filter(r => r.s === s)));
+    const head = element("tr", {}, ...["method", ...set.scenes, "on the front in"].map(t => element("th", {}, t)));
+    const body = set.methods.map((method, m) => {
+      const wins = fronts.filter(front => front.some(r => r.m === m)).length;
+      return element("tr", {}, element("th", { scope: "row" }, method),
+        ...set.scenes.map((_, s) => cell(set.rows.filter(r => r.s === s && r.m === m), method, fronts[s])),
+        element("td", { className: "number" }, wins ? `${wins} of ${set.scenes.length}` : ""));
+    });
+    return element("div", { className: "scroll" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+  };
+
+  // The papers' methods in colours, as published hollow; what engines do and the references in greys.
+  const colours = { "shadow planes": "#b8860b", "Fogshop": "#1a7f37", "wavelet fog": "#0b5cad", "Legendre fluids": "#8e44ad",
+    "compensated ray marching": "#b3261e" };
+  const look = method => {
+    const paper = Object.keys(colours).find(name => method.startsWith(name));
+    if (paper) return { fill: method.includes("as published") ? "#fff" : colours[paper], stroke: colours[paper], square: false };
+    const shades = { "froxels": "#9aa4ae", "half-resolution": "#6a7580", "ray marcher": "#3b444d", "path tracer": "#c7ced6" };
+    const kind = Object.keys(shades).find(name => method.startsWith(name));
+    return { fill: shades[kind] || "#ddd", stroke: "#3b444d", square: true };
+  };
+
+  const ticks = (low, high) => {
+    const all = [];
+    for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e)
+      for (const k of [1, 2, 5]) if (k * 10 ** e >= low && k * 10 ** e <= high) all.push(k * 10 ** e);
+    return all.length > 7 ? all.filter(t => /^1/.test(t.toExponential())) : all;
+  };
+
+  const plot = (set, s) => {
+    const rows = set.rows.filter(r => r.s === s && error(r) && r.t[state.moves] > 0);
+    const [w, h, left, right, top, bottom] = [540, 340, 58, 12, 28, 44];
+    const ys = rows.map(r => Math.max(error(r)[0], error(r)[3], 1e-6)), xs = rows.map(r => r.t[state.moves]);
+    const [x0, x1, y0, y1] = [Math.min(...xs) / 1.3, Math.max(...xs) * 1.3, Math.min(...ys) / 1.5, Math.max(...ys) * 1.3];
+    const X = t => left + (w - left - right) * Math.log(t / x0) / Math.log(x1 / x0);
+    const Y = v => top + (h - top - bottom) * Math.log(y1 / Math.max(v, y0)) / Math.log(y1 / y0);
+    const picture = svg("svg", { viewBox: `0 0 ${w} ${h}`, role: "img", "aria-label": `error against time, ${set.scenes[s]}` });
+    picture.append(svg("text", { x: left, y: 18, class: "title" }, set.scenes[s]));
+    const floor = Math.max(0, ...rows.map(r => error(r)[3]).filter((_, i) => hidden(error(rows[i]))));
+    if (floor > y0) {
+      picture.append(svg("rect", { x: left, y: Y(floor), width: w - left - right, height: h - bottom - Y(floor), class: "noise" }));
+      picture.append(svg("text", { x: w - right - 4, y: h - bottom - 5, "text-anchor": "end" }, "hidden by the reference's noise"));
+    }
+    for (const t of ticks(x0, x1)) {
+      picture.append(svg("line", { x1: X(t), x2: X(t), y1: top, y2: h - bottom, class: "grid" }));
+      picture.append(svg("text", { x: X(t), y: h - bottom + 16, "text-anchor": "middle" }, time(t)));
+    }
+    for (const v of ticks(y0, y1)) {
+      picture.append(svg("line", { x1: left, x2: w - right, y1: Y(v), y2: Y(v), class: "grid" }));
+      picture.append(svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, percent(v)));
+    }
+    picture.append(svg("text", { x: (left + w - right) / 2, y: h - 8, "text-anchor": "middle" }, `time of a frame when ${data.moves[state.moves]}`));
+    const front = frontOf(rows).sort((a, b) => a.t[state.moves] - b.t[state.moves]);
+    let line = "", last;
+    for (const r of front) {
+      const y = Y(Math.max(error(r)[0], y0));
+      line += last === undefined ? `M${X(r.t[state.moves])},${y}` : `H${X(r.t[state.moves])}V${y}`;
+      last = y;
+    }
+    picture.append(svg("path", { d: line, class: "front-line" }));
+    for (const r of rows) {
+      const { fill, stroke, square } = look(set.methods[r.m]), x = X(r.t[state.moves]), y = Y(error(r)[0]);
+      const mark = square ? svg("rect", { x: x - 4, y: y - 4, width: 8, height: 8 }) : svg("circle", { cx: x, cy: y, r: 5 });
+      mark.setAttribute("fill", fill);
+      mark.setAttribute("stroke", stroke);
+      mark.append(svg("title", {}, describe(r, set.methods[r.m])));
+      picture.append(mark);
+    }
+    return element("figure", {}, picture);
+  };
+
+  const legend = set => {
+    const entries = set.methods.map(method => {
+      const { fill, stroke, square } = look(method), box = svg("svg", { viewBox: "0 0 12 12", width: 12, height: 12 });
+      box.append(square ? svg("rect", { x: 2, y: 2, width: 8, height: 8, fill, stroke }) : svg("circle", { cx: 6, cy: 6, r: 5, fill, stroke }));
+      return element("span", {}, box, " " + method);
+    });
+    return element("p", { className: "legend" }, ...entries);
+  };
+
+  const choice = (key, words, options) => {
+    const select = element("select", { name: key, onchange: () => { state[key] = select.value; draw(); keep(); } },
+      ...options.map(([value, text]) => element("option", { value, selected: String(value) === state[key] }, text)));
+    return element("label", {}, words + " ", select);
+  };
+  const keep = () => history.replaceState(null, "", "#common?" + new URLSearchParams(state));
+  const view = element("div");
+  const draw = () => {
+    const set = data.sets.find(one => one.name === state.set);
+    view.replaceChildren(
+      element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}. Bold: on the front, no row of the scene is faster ` +
+        "and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: the reference's " +
+        "noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
+      table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))));
+  };
+
+  const asked = location.hash.match(/^#common\?(.*)$/);
+  if (asked) for (const [key, value] of new URLSearchParams(asked[1])) if (key in state) state[key] = value;
+  if (!data.sets.some(one => one.name === state.set)) state.set = data.sets[0].name;
+  if (!(state.metric in data.metrics)) state.metric = "rel_l2";
+  if (!(state.moves in data.moves)) state.moves = "camera_seconds";
+  if (!(Number(state.budget) > 0)) state.budget = "0.1";
+  section.append(element("h2", {}, "All methods on the same scenes"),
+    element("div", { className: "common-controls" },
+      choice("set", "light", data.sets.map(one => [one.name, one.words])),
+      choice("moves", "when", Object.entries(data.moves)),
+      choice("budget", "within", [...data.budgets.map(([s, text]) => [String(s), text]), ["1000", "any time"]]),
+      choice("metric", "metric", Object.entries(data.metrics))),
+    view);
+  draw();
+})();
