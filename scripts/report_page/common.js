@@ -42,7 +42,8 @@
 
   const cell = (rows, method, fronts) => {
     const drawn = rows.filter(error);
-    if (!drawn.length) return element("td", { className: "no", title: rows.length ? rows[0].note : "" }, rows.length ? "refuses" : "not tried");
+    if (!rows.length) return element("td", { className: "no" }, "not tried");
+    if (!drawn.length) return element("td", { className: "no", title: rows[0].note }, "refuses");
     const timed = drawn.filter(r => r.t[state.moves] !== undefined);
     if (!timed.length) return element("td", { className: "no" }, "not timed");
     const within = timed.filter(r => r.t[state.moves] <= Number(state.budget));
@@ -105,7 +106,8 @@
       picture.append(svg("line", { x1: left, x2: w - right, y1: Y(v), y2: Y(v), class: "grid" }));
       picture.append(svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, percent(v)));
     }
-    picture.append(svg("text", { x: (left + w - right) / 2, y: h - 8, "text-anchor": "middle" }, `time of a frame when ${data.moves[state.moves]}`));
+    const axis = `time of a frame when ${data.moves[state.moves]}`;
+    picture.append(svg("text", { x: (left + w - right) / 2, y: h - 8, "text-anchor": "middle" }, axis));
     const front = frontOf(rows).sort((a, b) => a.t[state.moves] - b.t[state.moves]);
     let line = "", last;
     for (const r of front) {
@@ -128,7 +130,8 @@
   const legend = set => {
     const entries = set.methods.map(method => {
       const { fill, stroke, square } = look(method), box = svg("svg", { viewBox: "0 0 12 12", width: 12, height: 12 });
-      box.append(square ? svg("rect", { x: 2, y: 2, width: 8, height: 8, fill, stroke }) : svg("circle", { cx: 6, cy: 6, r: 5, fill, stroke }));
+      box.append(square ? svg("rect", { x: 2, y: 2, width: 8, height: 8, fill, stroke })
+        : svg("circle", { cx: 6, cy: 6, r: 5, fill, stroke }));
       return element("span", {}, box, " " + method);
     });
     return element("p", { className: "legend" }, ...entries);
@@ -144,8 +147,8 @@
   const draw = () => {
     const set = data.sets.find(one => one.name === state.set);
     view.replaceChildren(
-      element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}. Bold: on the front, no row of the scene is faster ` +
-        "and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: the reference's " +
+      element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}. Bold: on the front, no row of the scene is ` +
+        "faster and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: the reference's " +
         "noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
       table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))));
   };
