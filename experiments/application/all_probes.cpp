@@ -4,7 +4,6 @@
 #include "experiments/compensated_ray_marching/gaussian_fit_probe.h"
 #include "experiments/compensated_ray_marching/residual_decode_probe.h"
 #include "experiments/compensated_ray_marching/residual_probe.h"
-#include "experiments/compensated_ray_marching/smoke_flicker_probe.h"
 #include "experiments/legendre_fluids/fluid_probes.h"
 #include "experiments/legendre_fluids/frame_probe.h"
 #include "experiments/legendre_fluids/rendering_probe.h"
@@ -45,7 +44,6 @@ const std::vector<std::unique_ptr<Probe>>& all_probes() {
     list.push_back(std::make_unique<ResidualDecode>());
     list.push_back(std::make_unique<GaussianFitProbe>());
     list.push_back(std::make_unique<FittedPicture>());
-    list.push_back(std::make_unique<SmokeFlicker>());
     return list;
   }();
   return probes;
