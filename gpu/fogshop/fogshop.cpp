@@ -87,6 +87,9 @@ std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const 
   airlight::fogshop::Plan plan = airlight::fogshop::make_plan(*scene, model);
   airlight::fogshop::Unchanged same;
   if (scene_) same = unchanged(*scene_, model_, *scene, model);
+  // All that asks whether to stop comes before anything is changed.
+  airlight::fogshop::SurfaceLighting lighting = airlight::fogshop::make_lighting(
+      *scene, model, plan.needs, lighting_, same, execution, [&](const std::string& stage) { timer.stage(stage); });
   if (!same.surfaces) {
     first_hits_.reset();
     shading_.reset();
@@ -98,9 +101,10 @@ std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const 
     background_.reset();
     on_device = {};
   }
+  const bool same_environment =
+      fog_ && lighting_.environment == lighting.environment && (model_.fog.albedo == model.fog.albedo).all();
   scene_ = std::move(scene);
-  const airlight::fogshop::SurfaceLighting before = std::exchange(lighting_, {});
-  const bool albedo_too = fog_ && (model_.fog.albedo == model.fog.albedo).all();
+  lighting_ = std::move(lighting);
   model_ = std::move(model);
   plan_ = std::move(plan);
   casts_shadows_ = needs_.surfaces && casts_shadows(*scene_, model_);
@@ -108,15 +112,13 @@ std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const 
     fog_->become(needs_, on_device);
   else
     fog_ = std::make_unique<FogOnDevice>(context_, model_, needs_);
-  if (needs_.distances && !(first_hits_ && first_hits_->move_balls(*scene_)))
-    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  if (!needs_.distances || !(first_hits_ && first_hits_->move_balls(*scene_))) first_hits_.reset();
+  if (needs_.distances && !first_hits_) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
   timer.stage("upload");
   maps_made_ = needs_.light_maps ? fog_->fill_light_maps() : 0;
   if (maps_made_ > 0) timer.stage("light maps");
   if (needs_.center_depths && fog_->fill_light_depths() > 0) timer.stage("depths to centres");
-  lighting_ = airlight::fogshop::make_lighting(*scene_, model_, needs_, before, same, execution,
-                                               [&](const std::string& stage) { timer.stage(stage); });
-  if (needs_.environment_airlight && !needs_.sky_volume && !(albedo_too && before.environment == lighting_.environment))
+  if (needs_.environment_airlight && !needs_.sky_volume && !same_environment)
     fog_->upload_environment(*lighting_.environment);
   if (needs_.sky_volume && !(on_device.fog && on_device.surfaces && on_device.environments)) {
     fog_->fill_sky_volume(*scene_, execution);
