@@ -108,10 +108,12 @@ std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const 
   model_ = std::move(model);
   plan_ = std::move(plan);
   casts_shadows_ = needs_.surfaces && casts_shadows(*scene_, model_);
-  if (fog_)
+  if (fog_) {
     fog_->become(needs_, on_device);
-  else
+  } else {
     fog_ = std::make_unique<FogOnDevice>(context_, model_, needs_);
+    if (needs_.f_table) timer.stage("table of F");
+  }
   if (!needs_.distances || !(first_hits_ && first_hits_->move_balls(*scene_))) first_hits_.reset();
   if (needs_.distances && !first_hits_) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
   timer.stage("upload");
