@@ -93,4 +93,13 @@ void Buffer::copy_to(GLuint buffer, std::size_t offset, std::size_t bytes) const
   context_->gl().CopyNamedBufferSubData(id_, buffer, 0, GLintptr(offset), GLsizeiptr(bytes));
 }
 
+bool reserve(std::unique_ptr<Buffer>& buffer, Context& context, const std::string& name, std::size_t bytes) {
+  if (buffer && buffer->bytes() >= bytes) return false;
+  const std::size_t spare = buffer ? bytes / 8 * 4 : 0;  // whole words, for fills
+  buffer.reset();
+  buffer = std::make_unique<Buffer>(
+      context, name, std::max(bytes, std::min(bytes + spare, context.limits().storage_block)), Contents::undefined);
+  return true;
+}
+
 }  // namespace airlight::gpu

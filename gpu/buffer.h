@@ -1,6 +1,7 @@
 // A storage buffer on the device: std430 arrays of plain values.
 #pragma once
 #include <cstring>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -64,5 +65,14 @@ class Buffer {
   Handle id_;
   bool filled_ = false;  // by the device, and nothing was uploaded since
 };
+
+// For buffers that live from frame to frame: makes room for so many bytes where `buffer` is null or smaller, with half as much to spare if it
+// was too small, so that what grows from frame to frame seldom allocates. True if the contents are lost (undefined).
+bool reserve(std::unique_ptr<Buffer>& buffer, Context&, const std::string& name, std::size_t bytes);
+template <class T>
+void refill(std::unique_ptr<Buffer>& buffer, Context& context, const std::string& name, const std::vector<T>& values) {
+  reserve(buffer, context, name, values.size() * sizeof(T));
+  buffer->upload(values);
+}
 
 }  // namespace airlight::gpu

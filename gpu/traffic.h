@@ -12,15 +12,15 @@ struct Traffic {
   long dispatches = 0, draws = 0;
   long program_look_ups = 0;  // of programs by file and definitions
 
-  // As a Rendering's counters name them.
-  std::map<std::string, double> counters() const {
-    return {{"bytes_up", double(bytes_up)},
-            {"bytes_down", double(bytes_down)},
-            {"syncs", double(syncs)},
-            {"allocations", double(allocations)},
-            {"dispatches", double(dispatches)},
-            {"draws", double(draws)},
-            {"program_look_ups", double(program_look_ups)}};
+  // As a Rendering's counters name them. Those of Prepared::next begin with "next_".
+  std::map<std::string, double> counters(const std::string& prefix = "") const {
+    return {{prefix + "bytes_up", double(bytes_up)},
+            {prefix + "bytes_down", double(bytes_down)},
+            {prefix + "syncs", double(syncs)},
+            {prefix + "allocations", double(allocations)},
+            {prefix + "dispatches", double(dispatches)},
+            {prefix + "draws", double(draws)},
+            {prefix + "program_look_ups", double(program_look_ups)}};
   }
 };
 

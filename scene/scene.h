@@ -24,10 +24,11 @@ struct Scene {
   std::shared_ptr<const Geometry> geometry;                // null without surfaces
   std::vector<std::shared_ptr<const Backdrop>> backdrops;  // pictures with depth, particles: seen by this camera alone
   Rgb ambient_in_scatter =
-      Rgb::Zero();          // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
-  std::string hash;         // 32 hex digits of the content: equal hash, equal picture
-  std::string matter_hash;  // of the media and surfaces alone
-  std::string light_hash;   // of the lights alone
+      Rgb::Zero();           // [W/m^2/sr]: radiance that the fog sends everywhere, scaled by 1 - transmittance
+  std::string hash;          // 32 hex digits of the content: equal hash, equal picture
+  std::string matter_hash;   // of the media and surfaces alone
+  std::string light_hash;    // of the lights alone
+  std::string surface_hash;  // of the surfaces alone
 };
 
 // Changes before reading: "film.width" -> "64", "medium.0.sigma_t" -> "[1, 2, 4]"; the value is TOML text.
@@ -42,6 +43,12 @@ Scene parse_scene(const std::string& toml, const std::string& name, const std::s
 
 // Fills geometry and hash of a scene made in code.
 void finish(Scene&);
+
+// Do these scenes have the same surfaces? Scenes that share their surfaces share their geometry or, where both were finished, their hash.
+inline bool same_surfaces(const Scene& a, const Scene& b) {
+  return a.surfaces.size() == b.surfaces.size() &&
+         (a.geometry == b.geometry || (!a.surface_hash.empty() && a.surface_hash == b.surface_hash));
+}
 
 // What ends a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
 struct RayEnd {

@@ -13,6 +13,9 @@ class Background {
   // of a storage block.
   Background(Context&, const scene::Scene&, const FogOnDevice&);
 
+  // Other turns, brightness and coefficients; false, and nothing is done: other maps, or lights of another kind.
+  bool become(const scene::Scene& scene) { return lights_.become(scene); }
+
   // Adds e^-T L of every pixel whose ray nothing ends to `surface`, 3 floats each: `distances` [m] by pixel (null: all
   // are infinite), `pixels` as FogOnDevice::airlight left them (null: there is no medium).
   void draw(const FogOnDevice&, const scene::View&, const Buffer* distances, const Buffer* pixels,

@@ -17,8 +17,9 @@ void FogOnDevice::upload_environment(const airlight::fogshop::EnvironmentLightin
       light.push_back({float(value[0]), float(value[1]), float(value[2]), 0});
     }
   const std::vector<double>& table = lighting.bands().values();
-  light_ = std::make_unique<Buffer>(context_, "harmonics of the environment", light);
-  band_table_ = std::make_unique<Buffer>(context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
+  refill(light_, context_, "harmonics of the environment", light);
+  if (!band_table_)  // it depends on the settings alone
+    refill(band_table_, context_, "bands of the PSF", std::vector<float>(table.begin(), table.end()));
   bands_ = lighting.order();
   band_depths_ = lighting.bands().depths();
   programs_.environment = &program(

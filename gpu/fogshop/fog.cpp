@@ -40,7 +40,9 @@ std::size_t map_values(const airlight::fogshop::Options& o) {
   return std::size_t(o.map_directions + 2) * (o.map_directions + 2) * (o.map_edges + 1);
 }
 
-std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool maps) {
+// Of all lights, the maps at the places `map_of_light`.
+std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool maps,
+                                  const std::vector<int>& map_of_light) {
   std::vector<LightData> data;
   for (std::size_t l = 0; l < model.lights.size(); ++l) {
     const airlight::fogshop::LightModel& light = model.lights[l];
@@ -48,7 +50,7 @@ std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool ma
         maps ? airlight::fogshop::frame_of(model.gaussians, light.position) : airlight::fogshop::MapFrame{};
     data.push_back({float3(light.position), float(frame.near), float3(light.intensity.matrix()), float(frame.far),
                     float3(frame.axes.row(0)), float(frame.tangent), float3(frame.axes.row(1)),
-                    int(l * map_values(model.options)), float3(frame.axes.row(2)), 0});
+                    int(std::size_t(map_of_light[l]) * map_values(model.options)), float3(frame.axes.row(2)), 0});
   }
   data.resize(most_lights);  // as many as the block has
   return data;
@@ -74,19 +76,58 @@ void check_iterations(const Context& context, double iterations, const char* wha
 }
 
 FogOnDevice::FogOnDevice(Context& context, const airlight::fogshop::Model& model, const airlight::fogshop::Needs& needs)
-    : context_(context),
-      model_(model),
-      needs_(needs),
-      gaussians_(context, "Gaussians", gaussian_data(model.gaussians)),
-      lights_(context, "lights", light_data(model, needs.light_maps)),
-      maps_(context, "light maps", needs.light_maps ? map_values(model.options) * model.lights.size() * 4 : 0),
-      depths_(context, "depths to centres",
-              needs.center_depths
-                  ? (std::size_t(model.gaussians.count) * (model.lights.size() + 1) + model.lights.size()) * 4
-                  : 0),
-      tables_(context, "tables of the fog", tables()) {
+    : context_(context), model_(model), needs_(needs) {
+  become(needs, {});
+}
+
+void FogOnDevice::become(const airlight::fogshop::Needs& needs, const airlight::fogshop::Unchanged& same) {
   const Use use_context(context_);
-  make_programs();
+  needs_ = needs;
+  const std::size_t count = std::size_t(model_.gaussians.count), lights = model_.lights.size();
+  if (!same.gaussians || !gaussians_) refill(gaussians_, context_, "Gaussians", gaussian_data(model_.gaussians));
+  if (!tables_ || (!same.fog && model_.gaussians.has_colours()))
+    refill(tables_, context_, "tables of the fog", tables());
+  reserve(maps_, context_, "light maps", needs.light_maps ? map_values(model_.options) * lights * 4 : 0);
+  const bool lost =
+      reserve(depths_, context_, "depths to centres", needs.center_depths ? (count * (lights + 1) + lights) * 4 : 0);
+  if (lost || !same.fog) depth_is_from_.assign(lights, std::nullopt);
+  place_maps(same.gaussians);
+  const std::vector<LightData> data = light_data(model_, needs.light_maps, map_of_light_);
+  const auto* bytes = reinterpret_cast<const char*>(data.data());
+  if (std::vector<char> now(bytes, bytes + data.size() * sizeof(LightData)); now != lights_uploaded_) {
+    refill(lights_, context_, "lights", data);
+    lights_uploaded_ = std::move(now);
+  }
+  if (!same.gaussians) make_programs();  // loops over Gaussians may be too long now
+}
+
+// A light keeps its map where it stands still, whatever its number is now; the others share the places that are left.
+void FogOnDevice::place_maps(bool keeps) {
+  const std::size_t count = model_.lights.size();
+  if (!keeps) map_is_from_.clear();
+  map_is_from_.resize(count);
+  map_of_light_.assign(count, -1);
+  std::vector<bool> taken(count);
+  for (std::size_t l = 0; l < count; ++l)
+    for (std::size_t place = 0; place < count && map_of_light_[l] < 0; ++place)
+      if (!taken[place] && map_is_from_[place] == model_.lights[l].position) {
+        map_of_light_[l] = int(place);
+        taken[place] = true;
+      }
+  for (int& place : map_of_light_) {
+    if (place >= 0) continue;
+    place = int(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    taken[std::size_t(place)] = true;
+    map_is_from_[std::size_t(place)].reset();
+  }
+}
+
+bool is_like(const airlight::fogshop::Model& a, const airlight::fogshop::Needs& needs_of_a,
+             const airlight::fogshop::Model& b, const airlight::fogshop::Needs& needs_of_b) {
+  return needs_of_a == needs_of_b && a.lights.size() == b.lights.size() &&
+         a.scattered_lights() == b.scattered_lights() && a.clear_ways == b.clear_ways &&
+         a.options.map == b.options.map && (a.noise != nullptr) == (b.noise != nullptr) &&
+         a.fog.one_albedo() == b.fog.one_albedo() && (a.gaussians.count > 0) == (b.gaussians.count > 0);
 }
 
 std::vector<float> FogOnDevice::tables() {
@@ -134,14 +175,17 @@ void FogOnDevice::use(Program& p) const {
 }
 
 void FogOnDevice::bind() const {
-  gaussians_.bind(at::gaussians);
-  lights_.bind_as(GL_UNIFORM_BUFFER, at::lights);
-  maps_.bind(at::light_maps);
-  depths_.bind(at::depths);
-  tables_.bind(at::fog_tables);
+  gaussians_->bind(at::gaussians);
+  lights_->bind_as(GL_UNIFORM_BUFFER, at::lights);
+  maps_->bind(at::light_maps);
+  depths_->bind(at::depths);
+  tables_->bind(at::fog_tables);
 }
 
-void FogOnDevice::fill_light_maps() {
+int FogOnDevice::fill_light_maps() {
+  const auto missing = [&](int place) { return !map_is_from_[std::size_t(place)]; };
+  const int made = int(std::count_if(map_of_light_.begin(), map_of_light_.end(), missing));
+  if (made == 0) return 0;
   const Use use_context(context_);
   bind();
   Program& p = program("fogshop/light_map.comp", {{"LOCAL_SIZE_X", "8"}, {"LOCAL_SIZE_Y", "8"}});
@@ -149,10 +193,13 @@ void FogOnDevice::fill_light_maps() {
   p.set("map_directions", model_.options.map_directions);
   p.set("map_edges", model_.options.map_edges);
   check_iterations(context_, (model_.options.map_edges / 8 + 1.0) * (model_.gaussians.count + 17), "a light map");
-  for (int l = 0; l < int(model_.lights.size()); ++l) {
-    p.set("light_index", l);
+  for (std::size_t l = 0; l < model_.lights.size(); ++l) {
+    if (!missing(map_of_light_[l])) continue;
+    p.set("light_index", int(l));
     p.dispatch(model_.options.map_directions + 2, model_.options.map_directions + 2);
+    map_is_from_[std::size_t(map_of_light_[l])] = model_.lights[l].position;
   }
+  return made;
 }
 
 // Depths between a point and every centre, one work group each; and between every light and the point.
@@ -167,10 +214,17 @@ void FogOnDevice::fill_depths(Program& p, const Point3& from, std::size_t first,
   p.dispatch(depth_group * row, (targets + row - 1) / row);
 }
 
-void FogOnDevice::fill_light_depths() {
+int FogOnDevice::fill_light_depths() {
   const Use use_context(context_);
-  for (std::size_t l = 0; l < model_.lights.size(); ++l)
-    fill_depths(*programs_.view_depths, model_.lights[l].position, l * model_.gaussians.count, false);
+  int filled = 0;
+  for (std::size_t l = 0; l < model_.lights.size(); ++l) {
+    const Point3& from = model_.lights[l].position;
+    if (depth_is_from_[l] == from) continue;
+    fill_depths(*programs_.view_depths, from, l * std::size_t(model_.gaussians.count), false);
+    depth_is_from_[l] = from;
+    ++filled;
+  }
+  return filled;
 }
 
 void FogOnDevice::fill_view_depths(const Point3& view) {

@@ -1,6 +1,7 @@
 // One fog on the device: what lies there, and the shaders that read it.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "methods/fogshop/environment_lighting.h"
 #include "methods/fogshop/low_resolution.h"
 #include "methods/fogshop/model.h"
+#include "methods/fogshop/next_frame.h"
 #include "methods/fogshop/stages.h"
 #include "scene/renderer.h"
 
@@ -31,11 +33,15 @@ class FogOnDevice {
   // the device has no room, or where a software renderer would end loops.
   FogOnDevice(Context&, const airlight::fogshop::Model&, const airlight::fogshop::Needs&);
 
-  void fill_light_maps();                     // variant S
-  void fill_light_depths();                   // variant paper: T(s,b_i)
+  // The model has become that of the next frame, which is_like() the one before: uploads what is not `unchanged`.
+  void become(const airlight::fogshop::Needs&, const airlight::fogshop::Unchanged&);
+
+  // Of lights that have none yet: how many.
+  int fill_light_maps();                      // variant S
+  int fill_light_depths();                    // variant paper: T(s,b_i)
   void fill_view_depths(const Point3& view);  // variant paper, every frame: T(v,b_i), T(s,v)
 
-  // Light of the environment that airlight() adds, by Eq. 28 or by a grid and slices: before the first frame.
+  // Light of the environment that airlight() adds, by Eq. 28 or by a grid and slices: before the first frame, and where it has changed.
   void upload_environment(const airlight::fogshop::EnvironmentLighting&);
   void fill_sky_volume(const scene::Scene&, const scene::Execution&);
 
@@ -77,6 +83,7 @@ class FogOnDevice {
   struct Strip;
 
   std::vector<float> tables();
+  void place_maps(bool keeps);
   bool sliced() const { return !model_.paper() && model_.scattered_lights() > 0 && model_.gaussians.count > 0; }
   float open_distance() const;  // [m] of rays that nothing ends
   void make_programs();
@@ -90,15 +97,23 @@ class FogOnDevice {
 
   Context& context_;
   const airlight::fogshop::Model& model_;
-  const airlight::fogshop::Needs needs_;
+  airlight::fogshop::Needs needs_;
   struct {
     int colours = 0, permutation = 0, f = 0, f_size = 0;  // f_size 0: there is no table of F
   } table_places_;
-  Buffer gaussians_, lights_, maps_, depths_, tables_;
-  int bands_ = 0, band_depths_ = 0;             // of the environment; 0: none
-  std::unique_ptr<Buffer> light_, band_table_;  // its harmonics, those of the PSF
-  std::unique_ptr<SkyVolumeOnDevice> sky_;      // null: none
+  std::unique_ptr<Buffer> gaussians_, lights_, maps_, depths_, tables_;
+  std::vector<char> lights_uploaded_;
+  std::vector<int> map_of_light_;                     // the place of its map in maps_
+  std::vector<std::optional<Point3>> map_is_from_;    // by place: where the light stands; nothing: not made yet
+  std::vector<std::optional<Point3>> depth_is_from_;  // by light, of depths_
+  int bands_ = 0, band_depths_ = 0;                   // of the environment; 0: none
+  std::unique_ptr<Buffer> light_, band_table_;        // its harmonics, those of the PSF
+  std::unique_ptr<SkyVolumeOnDevice> sky_;            // null: none
   Programs programs_;
 };
+
+// Do fogs of these models run the same programs, so that a FogOnDevice can become the other? Both have the same options.
+bool is_like(const airlight::fogshop::Model&, const airlight::fogshop::Needs&, const airlight::fogshop::Model&,
+             const airlight::fogshop::Needs&);
 
 }  // namespace airlight::gpu::fogshop

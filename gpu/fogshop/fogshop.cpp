@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gpu/fogshop/background.h"
 #include "gpu/fogshop/fog.h"
@@ -29,78 +30,134 @@ using scene::View;
 class PreparedFogshopGpu final : public scene::Prepared {
  public:
   // `map_side`: texels to a face of the light-distance maps.
-  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const airlight::fogshop::Options& options, int map_side,
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const scene::Settings& settings, int map_side,
                      const Execution& execution)
-      : scene_(std::move(scene)),
-        model_(airlight::fogshop::make_model(*scene_, options)),
-        plan_(airlight::fogshop::make_plan(*scene_, model_)),
-        casts_shadows_(needs_.surfaces && casts_shadows(*scene_, model_)),
+      : given_(settings),
+        options_(airlight::fogshop::read_options(settings)),
         context_(Context::get()),
         map_side_(map_side),
-        frame_(context_),
-        fog_(context_, model_, needs_) {
-    StageTimer& timer = frame_.timer;
-    if (needs_.f_table) timer.stage("table of F");
-    if (needs_.distances) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-    if (needs_.light_maps) {
-      fog_.fill_light_maps();
-      timer.stage("light maps");
-    }
-    if (needs_.center_depths) {
-      fog_.fill_light_depths();
-      timer.stage("depths to centres");
-    }
-    lighting_ = airlight::fogshop::make_lighting(*scene_, model_, needs_, execution,
-                                                 [&](const std::string& stage) { timer.stage(stage); });
-    if (needs_.environment_airlight && !needs_.sky_volume) fog_.upload_environment(*lighting_.environment);
-    if (needs_.sky_volume) {
-      fog_.fill_sky_volume(*scene_, execution);
-      timer.stage("sky volume");
-    }
-    if (needs_.environment) {
-      background_ = std::make_unique<Background>(context_, *scene_, fog_);
-      timer.stage("background");
-    }
-    if (needs_.surfaces) {
-      shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_, fog_);
-      timer.stage("tables of surfaces");
-      if (casts_shadows_) {
-        shading_->fill_light_distances(map_side);
-        timer.stage("light-distance maps");
-      }
-    }
-    times_ = timer.times();
+        frame_(context_) {
+    times_ = prepare(std::move(scene), execution);
   }
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
   // What a frame leaves on the device, null where the scene has no such thing.
   struct Picture {
     const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
   };
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>, const Execution&);
+  void prepare_surfaces(const airlight::fogshop::Unchanged&);
   void find_distances(const View&, Picture&) const;
   void find_airlight(const View&, Picture&) const;
   void find_surfaces(const View&, Picture&) const;
   void refuse_cut_loops(const scene::Film&) const;
 
+  scene::Settings given_;
+  airlight::fogshop::Options options_;  // as they were asked for; the model's may do without maps
   std::shared_ptr<const Scene> scene_;
   airlight::fogshop::Model model_;
   airlight::fogshop::Plan plan_;
   const airlight::fogshop::Needs& needs_ = plan_.needs;
-  bool casts_shadows_;
+  bool casts_shadows_ = false;
   Context& context_;
   int map_side_;
   mutable Frame frame_;
-  mutable FogOnDevice fog_;
   airlight::fogshop::SurfaceLighting lighting_;
+  std::unique_ptr<FogOnDevice> fog_;
   std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
   std::unique_ptr<Background> background_;   // the same
   std::vector<scene::StageTime> times_;
+  int maps_made_ = 0;            // for this frame; others are of frames before
+  std::optional<Traffic> next_;  // of next(), if there was one
 };
+
+// For a first frame, or one that keeps what the frame before has in common with it, on the host and on the device.
+std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const Scene> scene,
+                                                          const Execution& execution) {
+  const Use use(context_);
+  StageTimer& timer = frame_.timer;
+  timer.restart();
+  airlight::fogshop::Model model = airlight::fogshop::make_model(*scene, options_);
+  airlight::fogshop::Plan plan = airlight::fogshop::make_plan(*scene, model);
+  airlight::fogshop::Unchanged same;
+  if (scene_) same = unchanged(*scene_, model_, *scene, model);
+  // All that asks whether to stop comes before anything is changed.
+  airlight::fogshop::SurfaceLighting lighting = airlight::fogshop::make_lighting(
+      *scene, model, plan.needs, lighting_, same, execution, [&](const std::string& stage) { timer.stage(stage); });
+  if (!same.surfaces) {
+    first_hits_.reset();
+    shading_.reset();
+  }
+  airlight::fogshop::Unchanged on_device = same;
+  if (!fog_ || !is_like(model_, needs_, model, plan.needs)) {
+    fog_.reset();
+    shading_.reset();
+    background_.reset();
+    on_device = {};
+  }
+  const bool same_environment =
+      fog_ && lighting_.environment == lighting.environment && (model_.fog.albedo == model.fog.albedo).all();
+  scene_ = std::move(scene);
+  lighting_ = std::move(lighting);
+  model_ = std::move(model);
+  plan_ = std::move(plan);
+  casts_shadows_ = needs_.surfaces && casts_shadows(*scene_, model_);
+  if (fog_) {
+    fog_->become(needs_, on_device);
+  } else {
+    fog_ = std::make_unique<FogOnDevice>(context_, model_, needs_);
+    if (needs_.f_table) timer.stage("table of F");
+  }
+  if (!needs_.distances || !(first_hits_ && first_hits_->move_balls(*scene_))) first_hits_.reset();
+  if (needs_.distances && !first_hits_) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  timer.stage("upload");
+  maps_made_ = needs_.light_maps ? fog_->fill_light_maps() : 0;
+  if (maps_made_ > 0) timer.stage("light maps");
+  if (needs_.center_depths && fog_->fill_light_depths() > 0) timer.stage("depths to centres");
+  if (needs_.environment_airlight && !needs_.sky_volume && !same_environment)
+    fog_->upload_environment(*lighting_.environment);
+  if (needs_.sky_volume && !(on_device.fog && on_device.surfaces && on_device.environments)) {
+    fog_->fill_sky_volume(*scene_, execution);
+    timer.stage("sky volume");
+  }
+  if (needs_.environment && !(background_ && (on_device.environments || background_->become(*scene_)))) {
+    background_ = std::make_unique<Background>(context_, *scene_, *fog_);
+    timer.stage("background");
+  }
+  prepare_surfaces(on_device);
+  return timer.times();
+}
+
+void PreparedFogshopGpu::prepare_surfaces(const airlight::fogshop::Unchanged& same) {
+  if (!needs_.surfaces) return;
+  const bool made = !shading_;
+  if (made) shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_, *fog_);
+  if (made || shading_->become(*scene_, *fog_, same)) frame_.timer.stage("tables of surfaces");
+  if (casts_shadows_ && shading_->fill_light_distances(*scene_, map_side_) > 0)
+    frame_.timer.stage("light-distance maps");
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedFogshopGpu::next(std::shared_ptr<const Scene> scene,
+                                                                      const Execution& execution) {
+  if (!Fogshop().supports(*scene, given_).empty()) return std::nullopt;
+  const Traffic before = context_.traffic();
+  std::vector<scene::StageTime> times;
+  if (airlight::fogshop::camera_alone_moved(*scene_, *scene)) {
+    scene_ = std::move(scene);
+    plan_ = airlight::fogshop::make_plan(*scene_, model_);
+    maps_made_ = 0;
+  } else {
+    times = prepare(std::move(scene), execution);
+  }
+  next_ = context_.traffic() - before;
+  return times;
+}
 
 std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
   auto stages = plan_.stages;
@@ -129,10 +186,10 @@ void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const
   if (!needs_.airlight) return;
   if (needs_.center_depths) {
     frame_.timer.begin("depths to centres");
-    fog_.fill_view_depths(view.camera.position);
+    fog_->fill_view_depths(view.camera.position);
   }
   if (!needs_.low_resolution) {
-    picture.airlight = &fog_.airlight(view, picture.distances, frame_);
+    picture.airlight = &fog_->airlight(view, picture.distances, frame_);
     return;
   }
   const airlight::fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
@@ -142,7 +199,7 @@ void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const
     distances = &frame_.buffers.get("low distances", std::size_t(low.low_width()) * low.low_height() * 4);
     first_hits_->find(view, *distances, nullptr, {low.factor, 0});
   }
-  picture.airlight = &fog_.low_resolution_airlight(view, picture.distances, distances, frame_);
+  picture.airlight = &fog_->low_resolution_airlight(view, picture.distances, distances, frame_);
 }
 
 // Steps 4 and 7: e^-T L_p of Eq. 29.
@@ -154,14 +211,14 @@ void PreparedFogshopGpu::find_surfaces(const View& view, Picture& picture) const
   if (shading_) {
     frame_.timer.begin("surfaces");
     Buffer* scattered = needs_.scattered ? &frame_.buffers.get("reflected_airlight", bytes) : nullptr;
-    shading_->shade(fog_, *first_hits_, view, *picture.primitives, picture.airlight, surface, scattered);
+    shading_->shade(*fog_, *first_hits_, view, *picture.primitives, picture.airlight, surface, scattered);
     if (scattered) frame_.download.add("reflected_airlight", *scattered, bytes);
   } else {
     surface.clear();
   }
   if (background_) {
     frame_.timer.begin("background");
-    background_->draw(fog_, view, picture.distances, picture.airlight, surface);
+    background_->draw(*fog_, view, picture.distances, picture.airlight, surface);
   }
   frame_.download.add("surface", surface, bytes);
 }
@@ -192,7 +249,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   find_airlight(view, picture);
   find_surfaces(view, picture);
   if (picture.airlight || picture.surface)
-    fog_.compose(view, picture.airlight, picture.surface, frame_);  // L = L_a + e^-T L_p, Eq. 29
+    fog_->compose(view, picture.airlight, picture.surface, frame_);  // L = L_a + e^-T L_p, Eq. 29
   frame_.finish(result);
   if (!picture.airlight && !picture.surface) {  // no medium, and nothing that shines
     film.add("airlight");
@@ -206,6 +263,8 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   refuse_cut_loops(film);
   if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop_gpu: " + plan_.doubt;
   result.counters["rays"] = double(film.pixels());
+  if (next_) result.counters.merge(next_->counters("next_"));
+  result.counters["light_maps_made"] = maps_made_;
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
   if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());
@@ -244,7 +303,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
 std::unique_ptr<scene::Prepared> Fogshop::prepare_supported(std::shared_ptr<const Scene> scene,
                                                             const scene::Settings& settings,
                                                             const Execution& execution) const {
-  return std::make_unique<PreparedFogshopGpu>(std::move(scene), airlight::fogshop::read_options(settings),
+  return std::make_unique<PreparedFogshopGpu>(std::move(scene), settings,
                                               scene::read_settings(bind_maps, settings).side, execution);
 }
 

@@ -37,21 +37,40 @@ bool casts_shadows(const scene::Scene& scene, const airlight::fogshop::Model& mo
 
 SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, const airlight::fogshop::Model& model,
                                const airlight::fogshop::SurfaceLighting& lighting, const FogOnDevice& fog)
-    : context_(context),
-      scene_(scene),
-      model_(model),
-      lighting_(lighting),
-      magnitude_(magnitude(scene)),
-      places_(scene, lighting),
-      materials_(context, "materials", places_.materials),
-      light_places_(context, "light positions", light_places(model)),
-      tables_(context, "tables of surfaces", places_.values),
-      transfer_(context, "radiance transfer", places_.transfer) {
-  // On the device by now.
-  places_.materials.clear();
-  places_.values.clear();
-  places_.transfer.clear();
+    : context_(context), model_(model), lighting_(lighting), magnitude_(magnitude(scene)) {
+  upload_tables(scene, fog);
+  become(scene, fog, {});
+}
+
+bool SurfaceShading::become(const scene::Scene& scene, const FogOnDevice& fog,
+                            const airlight::fogshop::Unchanged& same) {
   const Use use(context_);
+  const bool tables_too = !(uploaded_ == lighting_);
+  if (tables_too) upload_tables(scene, fog);
+  std::vector<double> lights_at = light_places(model_);
+  const bool moved = lights_at != lights_at_ || !light_places_;
+  if (moved) refill(light_places_, context_, "light positions", lights_at);
+  lights_at_ = std::move(lights_at);
+  const bool lists = (moved || !same.gaussians) && !model_.lights.empty() && model_.gaussians.count > 0;
+  if (lists) list_gaussians(fog);
+  check_iterations(context_,
+                   double(model_.lights.size()) * (model_.gaussians.count + 60 + light_iterations_) + iterations_ +
+                       (lighting_.environment ? model_.gaussians.count : 0),
+                   "light on surfaces");
+  return tables_too || moved || lists;
+}
+
+void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice& fog) {
+  const Use use(context_);
+  const SurfaceTables tables(scene, lighting_);
+  refill(materials_, context_, "materials", tables.materials);
+  refill(tables_, context_, "tables of surfaces", tables.values);
+  if (!transfer_ || uploaded_.transfer != lighting_.transfer)
+    refill(transfer_, context_, "radiance transfer", tables.transfer);
+  uniforms_ = tables.uniforms;
+  iterations_ = tables.iterations;
+  light_iterations_ = tables.light_iterations;
+  uploaded_ = lighting_;
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const bool harmonics = lighting_.reflectances != nullptr, environment = lighting_.environment != nullptr,
              transfer = lighting_.transfer != nullptr;
@@ -78,11 +97,6 @@ SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, cons
                           {"SUN", flag(lighting_.points && lighting_.points->sun())}};
   definitions.merge(dawson_definitions());
   program_ = &fog.program("fogshop/surfaces.comp", definitions);
-  if (!model_.lights.empty() && model_.gaussians.count > 0) list_gaussians(fog);
-  check_iterations(context_,
-                   double(model_.lights.size()) * (model_.gaussians.count + 60 + places_.light_iterations) +
-                       places_.iterations + (lighting_.environment ? model_.gaussians.count : 0),
-                   "light on surfaces");
 }
 
 // As many cells as their lists have room for.
@@ -104,24 +118,27 @@ void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
   std::vector<int> begins;
   for (cells_ = 32; begins.empty(); cells_ /= 2) {
     const int count = lights * cells_ * cells_;
-    const Buffer numbers(context_, "numbers of Gaussians by direction", std::size_t(count) * 4);
-    run(*programs[0], numbers);
-    const std::vector<int> each = numbers.download<int>();
+    reserve(numbers_, context_, "numbers of Gaussians by direction", std::size_t(count) * 4);
+    run(*programs[0], *numbers_);
+    std::vector<int> each = numbers_->download<int>();
+    each.resize(std::size_t(count));
     const double all = std::accumulate(each.begin(), each.end(), double(count + 1));
     if (4 * all > double(most_bytes) && cells_ > 2) continue;
     begins.assign(1, count + 1);
     for (const int n : each) begins.push_back(begins.back() + n);
-    lists_ = std::make_unique<Buffer>(context_, "Gaussians by direction", std::size_t(begins.back()) * 4);
+    reserve(lists_, context_, "Gaussians by direction", std::size_t(begins.back()) * 4);
     lists_->upload(begins);
     run(*programs[1], *lists_);
     break;
   }
 }
 
-void SurfaceShading::fill_light_distances(int side) {
+int SurfaceShading::fill_light_distances(const scene::Scene& scene, int side) {
   std::vector<Point3> positions;
   for (const airlight::fogshop::LightModel& light : model_.lights) positions.push_back(light.position);
-  maps_ = std::make_unique<LightDistances>(context_, scene_, positions, side);
+  if (maps_) return maps_->move(positions);
+  maps_ = std::make_unique<LightDistances>(context_, scene, positions, side);
+  return int(positions.size());
 }
 
 void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const scene::View& view,
@@ -133,10 +150,10 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   fog.use(p);
   fog.bind();
   surfaces.bind();
-  materials_.bind(at::materials);
-  light_places_.bind(at::light_places);
-  tables_.bind(at::surface_tables);
-  if (lighting_.transfer) transfer_.bind(at::transfer);
+  materials_->bind(at::materials);
+  light_places_->bind(at::light_places);
+  tables_->bind(at::surface_tables);
+  if (lighting_.transfer) transfer_->bind(at::transfer);
   primitives.bind(at::primitives);
   if (lists_) lists_->bind(at::light_lists);
   if (maps_) {
@@ -154,7 +171,7 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   p.set("map_side", maps_ ? maps_->side() : 0);
   p.set("has_airlight", pixels != nullptr);
   p.set("has_scattered", scattered != nullptr);
-  for (const auto& [name, place] : places_.uniforms) p.set(name, place);
+  for (const auto& [name, place] : uniforms_) p.set(name, place);
   if (lighting_.reflectances) {
     p.set("sh_order", model_.options.sh_order);
     p.set("least_depth", airlight::fogshop::PsfBands::least_depth);

@@ -11,12 +11,18 @@ namespace airlight::gpu::fogshop {
 
 class SurfaceShading {
  public:
-  // Uploads materials, light positions and the tables of `lighting`. Both it and the model must live on.
+  // Uploads materials, light positions and the tables of `lighting`. Both it and the model must live on, and may become those of the next
+  // frame.
   SurfaceShading(Context&, const scene::Scene&, const airlight::fogshop::Model&,
                  const airlight::fogshop::SurfaceLighting& lighting, const FogOnDevice&);
 
-  // Light-distance maps of `side` texels to a face, where anything can cast a shadow (casts_shadows).
-  void fill_light_distances(int side);
+  // The model and the lighting have become those of the next frame, which runs the same programs of fogs (is_like) and has the same surfaces:
+  // uploads what has changed, and lists Gaussians anew where they or lights have moved. False if there was nothing to do.
+  bool become(const scene::Scene&, const FogOnDevice&, const airlight::fogshop::Unchanged&);
+
+  // Light-distance maps of `side` texels to a face, where anything can cast a shadow (casts_shadows): how many are drawn, those that are there
+  // already left out.
+  int fill_light_distances(const scene::Scene&, int side);
 
   // e^-T L_p of every pixel, 3 floats each: `pixels` as FogOnDevice::airlight left them (null: there is no medium),
   // `primitives` as the first hits did. The scattered part into `scattered` too, if it is there.
@@ -24,18 +30,22 @@ class SurfaceShading {
              const Buffer& surface, const Buffer* scattered);
 
  private:
-  Context& context_;
-  const scene::Scene& scene_;
-  const airlight::fogshop::Model& model_;
-  const airlight::fogshop::SurfaceLighting& lighting_;
-  double magnitude_;  // the largest coordinate [m]
-  SurfaceTables places_;
-  Buffer materials_, light_places_, tables_, transfer_;
+  void upload_tables(const scene::Scene&, const FogOnDevice&);
   void list_gaussians(const FogOnDevice&);
 
-  std::unique_ptr<Buffer> lists_;         // Gaussians by cells of directions from each light
-  int cells_ = 0;                         // to a side
-  std::unique_ptr<LightDistances> maps_;  // null: nothing casts a shadow
+  Context& context_;
+  const airlight::fogshop::Model& model_;
+  const airlight::fogshop::SurfaceLighting& lighting_;
+  double magnitude_;                             // the largest coordinate [m]
+  airlight::fogshop::SurfaceLighting uploaded_;  // whose tables these are
+  std::map<std::string, int> uniforms_;          // SurfaceTables::uniforms
+  double iterations_ = 0, light_iterations_ = 0;
+  std::vector<double> lights_at_;
+  std::unique_ptr<Buffer> materials_, light_places_, tables_, transfer_;
+
+  std::unique_ptr<Buffer> numbers_, lists_;  // Gaussians by cells of directions from each light
+  int cells_ = 0;                            // to a side
+  std::unique_ptr<LightDistances> maps_;     // null: nothing casts a shadow
   Program* program_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "gpu/froxel_fog/volume.h"
@@ -10,6 +11,7 @@
 #include "reference/froxel_fog/froxel_fog.h"
 #include "reference/froxel_fog/stages.h"
 #include "scene/base/error.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::gpu::froxel_fog {
 namespace {
@@ -39,6 +41,18 @@ struct SceneOnDevice {
   }
   SceneOnDevice(const SceneOnDevice&) = delete;
 
+  // Becomes the scene of the next frame where programs and buffers serve it, and uploads what has changed. False, and nothing is done, where
+  // they do not.
+  bool become(std::shared_ptr<const Scene> scene, const Options& options, Frame& frame, const Execution& execution) {
+    airlight::lit_media::Plan next = make_plan(std::move(scene), options.media, &plan);
+    if (!lit || next.layers.empty() != plan.layers.empty() || !lit->is_like(next)) return false;
+    if (!ends.become(*plan.scene, *next.scene) || !picture->become(*next.scene)) return false;
+    const bool same_media = scene::same_media(plan.scene->media, next.scene->media);
+    plan = std::move(next);
+    lit->become(same_media, frame.timer, execution.progress);
+    return true;
+  }
+
  private:
   airlight::ray_marcher::Options marched;  // nothing is
 };
@@ -57,7 +71,7 @@ class PreparedFogGpu final : public scene::Prepared {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
-  // As of the CPU: with reproject the last picture becomes the history of the next.
+  // Keeps on the device what still holds. As on the CPU, with reproject the last picture becomes the history of the next.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
@@ -78,16 +92,28 @@ class PreparedFogGpu final : public scene::Prepared {
   std::unique_ptr<Froxels> history_;
   mutable Froxels froxels_;         // of the last render
   mutable bool drawn_ = false;      // was there one since the last next()?
+  std::optional<Traffic> next_;     // of next(), if there was one
   std::unique_ptr<Volume> volume_;  // null: there are no media
 };
 
 void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& execution, bool next) {
   const Use use(context_);
   frame_.timer.restart();
-  auto made = std::make_unique<SceneOnDevice>(
-      context_, std::move(scene), options_, scene::read_settings(ray_marcher::bind_storage, given_), frame_, execution);
-  volume_.reset();
-  if (next) {
+  if (scene_ && scene_->become(scene, options_, frame_, execution)) {
+    // Without reproject the volume is that of the last picture.
+    if (!options_.reproject) {
+      frame_.timer.stage("upload");
+      times_ = frame_.timer.times();
+      return;
+    }
+    volume_.reset();
+  } else {
+    volume_.reset();
+    scene_ =
+        std::make_unique<SceneOnDevice>(context_, std::move(scene), options_,
+                                        scene::read_settings(ray_marcher::bind_storage, given_), frame_, execution);
+  }
+  if (next && options_.reproject) {
     ++pictures_;
     // A picture that saw no medium leaves the history that it began with.
     if (drawn_ && (options_.far > 0 || froxels_.slices->download<float>()[2] != 0)) {
@@ -97,7 +123,6 @@ void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& e
     }
     drawn_ = false;
   }
-  scene_ = std::move(made);
   if (!scene_->plan.layers.empty()) {
     std::vector<std::array<float, 4>> frames;
     for (int frame = 0; frame < options_.frames; ++frame) {
@@ -161,6 +186,8 @@ scene::Rendering PreparedFogGpu::render(const View& view, const Execution& execu
     throw Unavailable("froxel_fog_gpu: " + context_.renderer() + " reports froxels as done that are not");
   drawn_ = bool(volume_);
   count(view, result);
+  if (next_) result.counters.merge(next_->counters("next_"));
+  if (options_.media.self_shadow) result.counters["light_maps_made"] = scene_->lit ? scene_->lit->maps_made() : 0;
   const Scene& scene = *scene_->plan.scene;
   result.film.metadata = {
       {"method", "froxel_fog_gpu"}, {"settings", settings_}, {"scene", scene.name}, {"hash", scene.hash}};
@@ -169,8 +196,10 @@ scene::Rendering PreparedFogGpu::render(const View& view, const Execution& execu
 
 std::optional<std::vector<scene::StageTime>> PreparedFogGpu::next(std::shared_ptr<const Scene> scene,
                                                                   const Execution& execution) {
-  if (!options_.reproject || !FroxelFog().supports(*scene, given_).empty()) return std::nullopt;
+  if (!FroxelFog().supports(*scene, given_).empty()) return std::nullopt;
+  const Traffic before = context_.traffic();
   take(std::move(scene), execution, true);
+  next_ = context_.traffic() - before;
   return times_;
 }
 

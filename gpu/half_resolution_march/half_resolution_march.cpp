@@ -53,20 +53,25 @@ class PreparedHalfResolutionMarchGpu final : public scene::Prepared {
   std::unique_ptr<Passes> passes_;
   std::unique_ptr<const airlight::lit_media::LitMedia> on_processor_;  // for the warning alone
   std::vector<scene::StageTime> times_;
-  int pictures_ = 0;      // before this one, by next()
-  mutable Kept kept_[2];  // with reproject
-  int history_ = 0;       // which of them is the last picture's
+  int maps_made_ = 0;            // for this frame; others are of frames before
+  std::optional<Traffic> next_;  // of next(), if there was one
+  int pictures_ = 0;             // before this one, by next()
+  mutable Kept kept_[2];         // with reproject
+  int history_ = 0;              // which of them is the last picture's
 };
 
 void PreparedHalfResolutionMarchGpu::prepare(std::shared_ptr<const Scene> scene, const Execution& execution) {
   const Use use(context_);
   frame_.timer.restart();
-  passes_.reset();
   scene_ = std::move(scene);
-  passes_ = std::make_unique<Passes>(context_, scene_, options_, storage_, frame_.timer, execution.progress);
+  if (!passes_ || !passes_->become(scene_, frame_.timer, execution.progress)) {
+    passes_.reset();
+    passes_ = std::make_unique<Passes>(context_, scene_, options_, storage_, frame_.timer, execution.progress);
+  }
   on_processor_ = std::make_unique<airlight::lit_media::LitMedia>(passes_->media().plan());
   frame_.timer.stage("upload");
   times_ = frame_.timer.times();
+  maps_made_ = passes_->media().maps_made();
 }
 
 std::vector<scene::Stage> PreparedHalfResolutionMarchGpu::stages() const {
@@ -119,6 +124,8 @@ scene::Rendering PreparedHalfResolutionMarchGpu::render(const View& view, const 
     if (options_.reproject) result.counters["history_used"] = result.counters["history_rejected"] = 0;
     if (options_.clamp) result.counters["history_clamped"] = 0;
   }
+  if (next_) result.counters.merge(next_->counters("next_"));
+  if (options_.media.self_shadow) result.counters["light_maps_made"] = maps_made_;
   result.film.metadata = {{"method", "half_resolution_march_gpu"},
                           {"settings", settings_},
                           {"scene", scene_->name},
@@ -130,19 +137,24 @@ scene::Rendering PreparedHalfResolutionMarchGpu::render(const View& view, const 
   return result;
 }
 
-// With reproject the last picture becomes the history of the next. Where the camera alone moves the device keeps all it has.
+// The device keeps what still holds, and all it has where the camera alone moves. With reproject the last picture becomes the history of the
+// next.
 std::optional<std::vector<scene::StageTime>> PreparedHalfResolutionMarchGpu::next(std::shared_ptr<const Scene> scene,
                                                                                   const Execution& execution) {
-  if (!options_.reproject || !airlight::half_resolution_march::unsupported(*scene, options_).empty() ||
+  if (!airlight::half_resolution_march::unsupported(*scene, options_).empty() ||
       !lit_media::unsupported(*scene).empty())
     return std::nullopt;
+  const Traffic before = context_.traffic();
   times_.clear();
+  maps_made_ = 0;
   // Backdrops belong to a camera.
   if (scene_->backdrops.empty() && scene->backdrops.empty() &&
       airlight::lit_media::fits(passes_->media().plan(), *scene))
     scene_ = std::move(scene);
   else
     prepare(std::move(scene), execution);
+  next_ = context_.traffic() - before;
+  if (!options_.reproject) return times_;
   if (kept_[1 - history_].view) {
     kept_[history_].view.reset();
     history_ = 1 - history_;

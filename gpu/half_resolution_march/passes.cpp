@@ -5,6 +5,7 @@
 #include "gpu/view_uniforms.h"
 #include "reference/half_resolution_march/filter.h"
 #include "reference/half_resolution_march/passes.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::gpu::half_resolution_march {
 namespace {
@@ -51,6 +52,17 @@ Passes::Passes(Context& context, std::shared_ptr<const scene::Scene> scene, cons
   if (options.reproject) blend_ = &program(context, "history.comp", tiles({{"HISTORY", "1"}}));
   if (options.blur) blur_ = &program(context, "blur.comp", tiles());
   upsample_ = &program(context, "upsample.comp", tiles());
+}
+
+bool Passes::become(std::shared_ptr<const scene::Scene> scene, StageTimer& timer,
+                    const std::function<bool(double)>& progress) {
+  airlight::lit_media::Plan next = make_plan(std::move(scene), options_.media, &plan_);
+  if (next.layers.empty() != plan_.layers.empty() || !lit_.is_like(next)) return false;
+  if (!ends_.become(*plan_.scene, *next.scene) || !picture_.become(*next.scene)) return false;
+  const bool same_media = scene::same_media(plan_.scene->media, next.scene->media);
+  plan_ = std::move(next);
+  lit_.become(same_media, timer, progress);
+  return true;
 }
 
 std::size_t Passes::low_bytes(const scene::View& view) const {

@@ -24,6 +24,10 @@ class Passes {
   Passes(Context&, std::shared_ptr<const scene::Scene>, const Options&, ray_marcher::GridStorage, StageTimer&,
          const std::function<bool(double)>& progress);
 
+  // Becomes the passes of the next frame where programs and buffers serve it, and uploads what has changed. False, and nothing is done, where
+  // they do not.
+  bool become(std::shared_ptr<const scene::Scene>, StageTimer&, const std::function<bool(double)>& progress);
+
   const lit_media::LitMedia& media() const { return lit_; }
   const ray_marcher::RayEnds& ends() const { return ends_; }
   bool marches() const { return march_ != nullptr; }

@@ -9,6 +9,7 @@
 #include "gpu/ray_marcher/interface.h"
 #include "reference/light_map/encoding.h"
 #include "scene/base/error.h"
+#include "scene/light/same_light.h"
 #include "scene/renderer.h"
 
 namespace airlight::gpu::light_map {
@@ -50,10 +51,37 @@ LightMaps::LightMaps(Context& context, const ray_marcher::MediaOnDevice& media,
       buffer_(context, fmt::format("maps of {} lights", lights.size()),
               4 * std::size_t(count_floats(varied_, options, lights.size())), Contents::undefined) {
   if (varied_.planes == 0) return;
-  for (const scene::Light& light : lights)
-    projections_.push_back(airlight::light_map::fit(light, varied_.box, options.size));
+  project(lights);
   buffer_.upload(rules(media.middle()));
-  make(media, layers, progress);
+  Work work;
+  make(media, layers, std::vector<bool>(lights.size(), true), work, progress);
+}
+
+void LightMaps::project(const std::vector<scene::Light>& lights) {
+  projections_.clear();
+  for (const scene::Light& light : lights)
+    projections_.push_back(airlight::light_map::fit(light, varied_.box, options_.size));
+  drawn_ = lights;
+}
+
+bool LightMaps::fits(const std::vector<scene::Medium>& in_scene, const std::vector<scene::Light>& lights) const {
+  return lights.size() == std::size_t(lights_) && varied_media(in_scene, options_).planes == varied_.planes;
+}
+
+int LightMaps::become(const ray_marcher::MediaOnDevice& media, const std::vector<scene::Medium>& in_scene,
+                      const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>& lights,
+                      bool same_media, const std::function<bool(double)>& progress) {
+  varied_ = varied_media(in_scene, options_);
+  if (varied_.planes == 0) return 0;
+  std::vector<bool> wanted;
+  for (std::size_t l = 0; l < lights.size(); ++l)
+    wanted.push_back(!(same_media && scene::same_rays(drawn_[l], lights[l])));
+  const int made = int(std::count(wanted.begin(), wanted.end(), true));
+  if (made == 0) return 0;
+  project(lights);
+  buffer_.upload(rules(media.middle()));
+  make(media, layers, wanted, work_, progress);
+  return made;
 }
 
 std::size_t LightMaps::plane_floats() const { return std::size_t(bytes_per_plane(options_)) / 4; }
@@ -112,7 +140,7 @@ void LightMaps::bind(LinkedProgram& program) const {
 }
 
 void LightMaps::make(const ray_marcher::MediaOnDevice& media, const std::vector<airlight::ray_marcher::Layer>& layers,
-                     const std::function<bool(double)>& progress) {
+                     const std::vector<bool>& wanted, Work& work, const std::function<bool(double)>& progress) {
   const Use use(context_);
   const int steps = options_.steps, planes = varied_.planes, floats = floats_per_texel(options_);
   double per_step = 0;  // iterations
@@ -128,13 +156,14 @@ void LightMaps::make(const ray_marcher::MediaOnDevice& media, const std::vector<
   const int texels =
       std::min({all, progress ? watched_texels : most_texels,
                 std::max(group, int(work_bytes / (4 * std::size_t(planes) * (std::size_t(steps) + nodes))))});
-  const Buffer step_depths(context_, "depths of a light's map", 4 * std::size_t(texels) * planes * steps,
-                           Contents::undefined),
-      curves(context_, "nodes of a light's map", 4 * std::size_t(texels) * planes * nodes, Contents::undefined),
-      part_data(context_, "media of light maps", parts(media, layers));
-  const airlight::light_map::Encoder encoder(options_);
-  const std::vector<float> waves(encoder.waves().begin(), encoder.waves().end());
-  const Buffer wave_data(context_, "waves of light maps", waves);
+  reserve(work.steps, context_, "depths of a light's map", 4 * std::size_t(texels) * planes * steps);
+  reserve(work.nodes, context_, "nodes of a light's map", 4 * std::size_t(texels) * planes * nodes);
+  refill(work.parts, context_, "media of light maps", parts(media, layers));
+  if (!work.waves) {
+    const airlight::light_map::Encoder encoder(options_);
+    refill(work.waves, context_, "waves of light maps",
+           std::vector<float>(encoder.waves().begin(), encoder.waves().end()));
+  }
 
   auto definitions = media.definitions();
   definitions.insert({{"LOCAL_SIZE_X", std::to_string(group)}, {"MAP_PLANES", std::to_string(planes)}});
@@ -152,6 +181,7 @@ void LightMaps::make(const ray_marcher::MediaOnDevice& media, const std::vector<
   encode.set("map_entries", entries(options_));
   encode.set("plane_floats", int(plane_floats()));
   for (int l = 0; l < lights_; ++l) {
+    if (!wanted[std::size_t(l)]) continue;
     const Projection& p = projections_[std::size_t(l)];
     const bool octahedral = p.kind == Projection::Kind::octahedral;
     const Vec3 axes[3] = {p.axes.row(0), p.axes.row(1), p.axes.row(2)};
@@ -174,12 +204,12 @@ void LightMaps::make(const ray_marcher::MediaOnDevice& media, const std::vector<
         program->set("first_texel", first);
         program->set("texel_count", count);
       }
-      part_data.bind_as(GL_UNIFORM_BUFFER, at::parts);
-      step_depths.bind(at::steps);
+      work.parts->bind_as(GL_UNIFORM_BUFFER, at::parts);
+      work.steps->bind(at::steps);
       march.dispatch(count, (steps + at_once - 1) / at_once);
       buffer_.bind(at::texels);
-      if (fourier) wave_data.bind(at::waves);
-      if (avsm) curves.bind(at::nodes);
+      if (fourier) work.waves->bind(at::waves);
+      if (avsm) work.nodes->bind(at::nodes);
       const int steps_a_round = avsm ? std::max(1, most_iterations / (8 * (options_.nodes + 2))) : steps;
       for (int step = 0; step < steps; step += steps_a_round) {
         if (avsm) encode.set("first_step", step);

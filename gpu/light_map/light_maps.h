@@ -6,6 +6,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,14 @@ class LightMaps {
             const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>&,
             const airlight::light_map::Options&, const std::function<bool(double)>& progress);
 
+  // Do buffers for these maps serve as many lights in these media?
+  bool fits(const std::vector<scene::Medium>& in_scene, const std::vector<scene::Light>&) const;
+  // Becomes the maps of such lights: draws those that are not kept, and keeps a light's map where its rays are the same and no medium has
+  // changed (`same_media`). How many were drawn. From now on, keeps what maps are drawn with, too.
+  int become(const ray_marcher::MediaOnDevice&, const std::vector<scene::Medium>& in_scene,
+             const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>&, bool same_media,
+             const std::function<bool(double)>& progress);
+
   // For a program that includes look_up.glsl.
   std::map<std::string, std::string> definitions() const;
   // Binds storage block 0, sets the uniforms.
@@ -36,8 +45,14 @@ class LightMaps {
 
  private:
   struct Part;
+  // What the steps of a light's rays leave, what is kept of the nodes of curves, the parts of media, and waves.
+  struct Work {
+    std::unique_ptr<Buffer> steps, nodes, parts, waves;
+  };
+  void project(const std::vector<scene::Light>&);
+  // Of the lights for which `wanted` is set.
   void make(const ray_marcher::MediaOnDevice&, const std::vector<airlight::ray_marcher::Layer>&,
-            const std::function<bool(double)>& progress);
+            const std::vector<bool>& wanted, Work&, const std::function<bool(double)>& progress);
   std::vector<float> rules(const Point3& middle) const;
   std::vector<Part> parts(const ray_marcher::MediaOnDevice&, const std::vector<airlight::ray_marcher::Layer>&) const;
   std::size_t plane_floats() const;
@@ -46,8 +61,10 @@ class LightMaps {
   airlight::light_map::Options options_;
   airlight::light_map::VariedMedia varied_;
   std::vector<airlight::light_map::Projection> projections_;  // by light; none where nothing varies
+  std::vector<scene::Light> drawn_;                           // whose maps these are
   int lights_;
   Buffer buffer_;
+  Work work_;  // kept by become()
 };
 
 }  // namespace airlight::gpu::light_map

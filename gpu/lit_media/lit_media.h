@@ -8,6 +8,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "gpu/raster/first_hits.h"
@@ -24,6 +25,13 @@ class LitMedia {
   LitMedia(Context&, const airlight::lit_media::Plan&, ray_marcher::GridStorage, const FirstHits*, StageTimer&,
            const std::function<bool(double)>& progress);
 
+  // Do programs and buffers for the plan serve `next` too?
+  bool is_like(const airlight::lit_media::Plan& next) const;
+  // The plan has become another, which this is_like; `same_media`: with the same media as before. Uploads what has changed, and draws the maps
+  // that are not kept.
+  void become(bool same_media, StageTimer&, const std::function<bool(double)>& progress);
+  int maps_made() const { return maps_made_; }  // for the plan as it is now; others are of frames before
+
   const airlight::lit_media::Plan& plan() const { return plan_; }
   const ray_marcher::MediaOnDevice& media() const { return media_; }
   const ray_marcher::Columns& columns() const { return columns_; }
@@ -32,12 +40,14 @@ class LitMedia {
   void bind(LinkedProgram&) const;
 
  private:
+  Context& context_;
   const airlight::lit_media::Plan& plan_;
   const FirstHits* first_hits_;
   std::vector<scene::Light> lights_;  // in the order of the device
   ray_marcher::MediaOnDevice media_;
   ray_marcher::Columns columns_;
-  Buffer solids_;
+  std::unique_ptr<Buffer> solids_;
+  int maps_made_ = 0;
 };
 
 // Reasons of the device against a scene with these media and lights, one line each, beside those of the CPU.

@@ -17,16 +17,29 @@ scene::View LightDistances::face_view(const Point3& position, int face, int side
 LightDistances::LightDistances(Context& context, const scene::Scene& scene, const std::vector<Point3>& positions,
                                int side)
     : side_(side),
+      pass_(context, scene, false),
+      positions_(positions),
       distances_(context, "light-distance maps", positions.size() * 6 * side * side * 4),
       primitives_(context, "light-distance maps, primitives", positions.size() * 6 * side * side * 4) {
-  const Use use(context);
-  const FirstHits pass(context, scene, false);
-  std::size_t first = 0;
-  for (const Point3& position : positions)
-    for (int face = 0; face < 6; ++face) {
-      pass.find(face_view(position, face, side), distances_, &primitives_, {1, first});
-      first += std::size_t(side) * side;
-    }
+  for (std::size_t l = 0; l < positions.size(); ++l) draw(l);
+}
+
+int LightDistances::move(const std::vector<Point3>& positions) {
+  int moved = 0;
+  for (std::size_t l = 0; l < positions_.size(); ++l) {
+    if (positions_[l] == positions[l]) continue;
+    positions_[l] = positions[l];
+    draw(l);
+    ++moved;
+  }
+  return moved;
+}
+
+void LightDistances::draw(std::size_t light) {
+  for (int face = 0; face < 6; ++face) {
+    const std::size_t first = (6 * light + std::size_t(face)) * std::size_t(side_) * std::size_t(side_);
+    pass_.find(face_view(positions_[light], face, side_), distances_, &primitives_, {1, first});
+  }
 }
 
 }  // namespace airlight::gpu

@@ -18,6 +18,9 @@ class LightDistances {
   // a map takes 24 side^2 bytes in each of two buffers.
   LightDistances(Context&, const scene::Scene&, const std::vector<Point3>& positions, int side);
 
+  // Draws the maps of lights that stand elsewhere now, as many lights as before, among the same surfaces: how many.
+  int move(const std::vector<Point3>& positions);
+
   int side() const { return side_; }
   int texels_per_light() const { return 6 * side_ * side_; }
   const Buffer& distances() const { return distances_; }    // [m], far_away where there is nothing
@@ -27,7 +30,11 @@ class LightDistances {
   static scene::View face_view(const Point3& position, int face, int side);
 
  private:
+  void draw(std::size_t light);
+
   int side_;
+  FirstHits pass_;
+  std::vector<Point3> positions_;
   Buffer distances_, primitives_;
 };
 

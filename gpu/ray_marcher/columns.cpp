@@ -4,16 +4,46 @@
 #include "gpu/ray_marcher/scene_data.h"
 
 namespace airlight::gpu::ray_marcher {
+namespace {
+
+std::vector<char> bytes_of(const std::vector<LightData>& lights) {
+  const auto* bytes = reinterpret_cast<const char*>(lights.data());
+  return {bytes, bytes + lights.size() * sizeof(LightData)};
+}
+
+}  // namespace
 
 Columns::Columns(Context& context, const MediaOnDevice& media, const std::vector<scene::Medium>& in_scene,
                  const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>& lights,
                  Depths depths, const airlight::light_map::Options& options, StageTimer& timer,
                  const std::function<bool(double)>& progress)
-    : depths_(depths), lights_(context, "lights", light_data(lights, media.middle())) {
+    : depths_(depths),
+      count_(lights.size()),
+      lights_uploaded_(bytes_of(light_data(lights, media.middle()))),
+      lights_(context, "lights", lights_uploaded_) {
   if (depths != Depths::maps) return;
   timer.stage("upload");
   maps_ = std::make_unique<light_map::LightMaps>(context, media, in_scene, layers, lights, options, progress);
   timer.stage("light_maps");
+}
+
+bool Columns::is_like(const std::vector<scene::Medium>& media, const std::vector<scene::Light>& lights,
+                      Depths depths) const {
+  return lights.size() == count_ && depths == depths_ && (!maps_ || maps_->fits(media, lights));
+}
+
+int Columns::become(const MediaOnDevice& media, const std::vector<scene::Medium>& in_scene,
+                    const std::vector<airlight::ray_marcher::Layer>& layers, const std::vector<scene::Light>& lights,
+                    bool same_media, StageTimer& timer, const std::function<bool(double)>& progress) {
+  if (std::vector<char> now = bytes_of(light_data(lights, media.middle())); now != lights_uploaded_) {
+    lights_.upload(now);
+    lights_uploaded_ = std::move(now);
+  }
+  if (!maps_) return 0;
+  timer.stage("upload");
+  const int made = maps_->become(media, in_scene, layers, lights, same_media, progress);
+  if (made > 0) timer.stage("light_maps");
+  return made;
 }
 
 std::map<std::string, std::string> Columns::definitions() const {

@@ -23,6 +23,13 @@ class Columns {
           const std::vector<airlight::ray_marcher::Layer>&, const std::vector<scene::Light>& lights, Depths,
           const airlight::light_map::Options&, StageTimer&, const std::function<bool(double)>& progress);
 
+  // Do programs and buffers for these lights and maps serve those?
+  bool is_like(const std::vector<scene::Medium>&, const std::vector<scene::Light>& lights, Depths) const;
+  // Becomes such lights, and draws the maps that are not kept (LightMaps::become): how many, the timer's stage "light_maps".
+  int become(const MediaOnDevice&, const std::vector<scene::Medium>&, const std::vector<airlight::ray_marcher::Layer>&,
+             const std::vector<scene::Light>& lights, bool same_media, StageTimer&,
+             const std::function<bool(double)>& progress);
+
   const light_map::LightMaps* maps() const { return maps_.get(); }  // null: there are none
   // What a program that includes columns.glsl needs: DEPTHS, and of maps what look_up.glsl needs.
   std::map<std::string, std::string> definitions() const;
@@ -31,6 +38,8 @@ class Columns {
 
  private:
   Depths depths_;
+  std::size_t count_;
+  std::vector<char> lights_uploaded_;
   Buffer lights_;
   std::unique_ptr<light_map::LightMaps> maps_;
 };

@@ -14,8 +14,21 @@ void bind_storage(scene::SettingBinder& b, GridStorage& storage) {
            "voxel grids on the device; auto: textures, on a software renderer a buffer while one is enough");
 }
 
+namespace {
+
+std::vector<std::shared_ptr<const airlight::ray_marcher::GridSamples>> samples_of(
+    const std::vector<airlight::ray_marcher::Layer>& layers) {
+  std::vector<std::shared_ptr<const airlight::ray_marcher::GridSamples>> samples;
+  for (const airlight::ray_marcher::Layer& layer : layers)
+    if (layer.grid) samples.push_back(layer.grid->samples);
+  return samples;
+}
+
+}  // namespace
+
 GridsOnDevice::GridsOnDevice(Context& context, const std::vector<airlight::ray_marcher::Layer>& layers,
-                             GridStorage storage) {
+                             GridStorage storage)
+    : uploaded_(samples_of(layers)) {
   for (const airlight::ray_marcher::Layer& layer : layers)
     if (layer.grid) {
       ++grids_;
@@ -40,6 +53,20 @@ GridsOnDevice::GridsOnDevice(Context& context, const std::vector<airlight::ray_m
         std::make_unique<Texture3D>(context, "voxel grid", std::array<int, 3>{size[0], size[1], size[2]}));
     textures_.back()->upload([&](int z, std::vector<float>& values) { grid_slice(*layer.grid, z, values); });
   }
+}
+
+void GridsOnDevice::become(const std::vector<airlight::ray_marcher::Layer>& layers) {
+  auto samples = samples_of(layers);
+  if (samples == uploaded_) return;
+  if (textures_.empty()) buffer_->upload(grid_data(layers));
+  std::size_t i = 0;
+  for (const airlight::ray_marcher::Layer& layer : layers) {
+    if (!layer.grid) continue;
+    if (!textures_.empty() && samples[i] != uploaded_[i])
+      textures_[i]->upload([&](int z, std::vector<float>& values) { grid_slice(*layer.grid, z, values); });
+    ++i;
+  }
+  uploaded_ = std::move(samples);
 }
 
 std::string GridsOnDevice::description() const {

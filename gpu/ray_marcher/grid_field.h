@@ -19,12 +19,16 @@ class GridsOnDevice {
   // Throws Unavailable in one line where the device has no room.
   GridsOnDevice(Context&, const std::vector<airlight::ray_marcher::Layer>&, GridStorage);
 
+  // Other samples of grids of the same sizes: uploads those that are not shared with the frame before.
+  void become(const std::vector<airlight::ray_marcher::Layer>&);
+
   int textures() const { return int(textures_.size()); }  // 0: the buffer has the values
   std::string description() const;                        // one line; empty without grids
   // The buffer to binding 2, textures to units 0 and on.
   void bind() const;
 
  private:
+  std::vector<std::shared_ptr<const airlight::ray_marcher::GridSamples>> uploaded_;  // by grid
   std::size_t grids_ = 0, samples_ = 0;
   std::unique_ptr<Buffer> buffer_;
   std::vector<std::unique_ptr<Texture3D>> textures_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gpu/ray_marcher/interface.h"
 #include "gpu/ray_marcher/scene_data.h"
 #include "scene/media/fitted.h"
@@ -10,18 +12,48 @@
 
 namespace airlight::gpu::ray_marcher {
 
-MediaOnDevice::MediaOnDevice(Context& context, const std::vector<airlight::ray_marcher::Layer>& layers,
-                             const Point3& middle, GridStorage storage)
-    : middle_(middle),
-      count_(int(layers.size())),
-      grids_(context, layers, storage),
-      layers_(context, "layers", layer_data(layers, middle, grids_.textures() > 0)),
-      gaussians_(context, "Gaussians", gaussian_data(layers)),
-      bricks_(context, "maps of empty space", brick_data(layers)) {
-  for (const airlight::ray_marcher::Layer& layer : layers) {
+using airlight::ray_marcher::Layer;
+
+MediaOnDevice::MediaOnDevice(Context& context, const std::vector<Layer>& layers, const Point3& middle,
+                             GridStorage storage)
+    : context_(context), middle_(middle), count_(int(layers.size())), grids_(context, layers, storage) {
+  for (const Layer& layer : layers) {
     has_grids_ = has_grids_ || layer.grid;
     has_gaussians_ = has_gaussians_ || layer.gaussians;
   }
+  refill(gaussians_, context, "Gaussians", gaussian_data(layers));
+  refill(bricks_, context, "maps of empty space", brick_data(layers));
+  uploaded_ = layers;
+  become(layers, middle);
+}
+
+bool MediaOnDevice::is_like(const std::vector<Layer>& layers) const {
+  return std::equal(layers.begin(), layers.end(), uploaded_.begin(), uploaded_.end(),
+                    [](const Layer& a, const Layer& b) {
+                      return bool(a.grid) == bool(b.grid) && bool(a.gaussians) == bool(b.gaussians) &&
+                             (!a.grid || std::equal(a.grid->size, a.grid->size + 3, b.grid->size));
+                    });
+}
+
+void MediaOnDevice::become(const std::vector<Layer>& layers, const Point3& middle) {
+  middle_ = middle;
+  const std::vector<LayerData> data = layer_data(layers, middle, grids_.textures() > 0);
+  const auto* bytes = reinterpret_cast<const char*>(data.data());
+  if (std::vector<char> now(bytes, bytes + data.size() * sizeof(LayerData)); now != layers_uploaded_) {
+    refill(layers_, context_, "layers", data);
+    layers_uploaded_ = std::move(now);
+  }
+  const auto differ = [&](const auto& part) {
+    return !std::equal(layers.begin(), layers.end(), uploaded_.begin(), uploaded_.end(),
+                       [&](const Layer& a, const Layer& b) { return part(a) == part(b); });
+  };
+  if (differ([](const Layer& layer) { return layer.gaussians; }))
+    refill(gaussians_, context_, "Gaussians", gaussian_data(layers));
+  if (differ([](const Layer& layer) { return layer.grid ? layer.grid->samples : nullptr; })) {
+    grids_.become(layers);
+    refill(bricks_, context_, "maps of empty space", brick_data(layers));
+  }
+  uploaded_ = layers;
 }
 
 std::map<std::string, std::string> MediaOnDevice::definitions() const {
@@ -32,10 +64,10 @@ std::map<std::string, std::string> MediaOnDevice::definitions() const {
 }
 
 void MediaOnDevice::bind(LinkedProgram& program) const {
-  layers_.bind_as(GL_UNIFORM_BUFFER, at::layers);
-  gaussians_.bind(at::gaussians);
+  layers_->bind_as(GL_UNIFORM_BUFFER, at::layers);
+  gaussians_->bind(at::gaussians);
   grids_.bind();
-  bricks_.bind(at::free_distances);
+  bricks_->bind(at::free_distances);
   program.set("layer_count", count_);
 }
 

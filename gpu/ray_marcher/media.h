@@ -1,6 +1,7 @@
 // The media of a scene on the device, as layer.glsl reads them. Renderers of other folders share them.
 #pragma once
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ class MediaOnDevice {
   // Uploads. Places on the device are relative to `middle`. Throws Unavailable where the device has no room for a grid.
   MediaOnDevice(Context&, const std::vector<airlight::ray_marcher::Layer>&, const Point3& middle, GridStorage);
 
+  // Do programs for these media serve those, and buffers too: layers of the same kinds, grids of the same sizes?
+  bool is_like(const std::vector<airlight::ray_marcher::Layer>&) const;
+  // Becomes such media, and uploads what has changed.
+  void become(const std::vector<airlight::ray_marcher::Layer>&, const Point3& middle);
+
   const Point3& middle() const { return middle_; }
   const GridsOnDevice& grids() const { return grids_; }
   // LAYERS, GRIDS, TEXTURES and GAUSSIANS, for a program that includes layer.glsl.
@@ -23,11 +29,14 @@ class MediaOnDevice {
   void bind(LinkedProgram&) const;
 
  private:
+  Context& context_;
   Point3 middle_;
   int count_;
+  std::vector<airlight::ray_marcher::Layer> uploaded_;  // but for their media, which may be gone
   bool has_grids_ = false, has_gaussians_ = false;
   GridsOnDevice grids_;
-  Buffer layers_, gaussians_, bricks_;
+  std::vector<char> layers_uploaded_;
+  std::unique_ptr<Buffer> layers_, gaussians_, bricks_;
 };
 
 // Why the device's media are not these, one line each: fields that layer.glsl does not know, or too many of them.

@@ -25,6 +25,9 @@ class Picture {
   Picture(Context&, const scene::Scene&, const MediaOnDevice&, const Columns&, int lights,
           const airlight::ray_marcher::Options&, const FirstHits*);
 
+  // Environments of the next frame, among the same surfaces. False, and nothing is done: other maps, or lights of another kind.
+  bool become(const scene::Scene& scene) { return environments_.become(scene); }
+
   // For each band: what `fill` does to its pixels (null: there are no media), the stages "surfaces" and "composition". `totals`:
   // null, or where low and high words of the pixels' counters are added. `looks` as in Rounds. Throws scene::Interrupted if
   // `progress` says so.

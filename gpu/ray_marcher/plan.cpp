@@ -39,6 +39,14 @@ double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
   return sum;
 }
 
+int count_balls(const std::vector<scene::Light>& lights) {
+  return int(std::count_if(lights.begin(), lights.end(), [](const auto& l) { return bool(ball(l)); }));
+}
+
+Columns::Depths depths_of(const airlight::ray_marcher::Plan& plan) {
+  return needs_maps(plan) ? Columns::Depths::maps : Columns::Depths::columns;
+}
+
 }  // namespace
 
 PlanOnDevice::PlanOnDevice(Context& context, const airlight::ray_marcher::Plan& plan, GridStorage storage,
@@ -47,18 +55,15 @@ PlanOnDevice::PlanOnDevice(Context& context, const airlight::ray_marcher::Plan& 
       plan_(plan),
       first_hits_(first_hits),
       lights_(balls_first(plan.lights)),
-      balls_(int(std::count_if(lights_.begin(), lights_.end(), [](const auto& l) { return bool(ball(l)); }))),
+      balls_(count_balls(lights_)),
       has_occluders_(plan.scene->geometry && plan.scatters),
       media_(context, plan.layers, middle_of(plan.layers, plan.scene->camera.position), storage),
-      columns_(context, media_, plan.scene->media, plan.layers, lights_,
-               needs_maps(plan) ? Columns::Depths::maps : Columns::Depths::columns, plan.options.map, timer, progress),
-      solids_(context, "spheres and planes", solid_data(*plan.scene, media_.middle())),
+      columns_(context, media_, plan.scene->media, plan.layers, lights_, depths_of(plan), plan.options.map, timer,
+               progress),
       march_rounds_(context, "march"),
       picture_(context, *plan.scene, media_, columns_, int(lights_.size()), plan.options, first_hits) {
-  if (context.software() && iterations_at_once(plan) > software_most)
-    throw Unavailable(
-        fmt::format("gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected fewer shadow steps",
-                    iterations_at_once(plan), context.renderer(), software_most));
+  refill(solids_, context, "spheres and planes", solid_data(*plan.scene, media_.middle()));
+  check_iterations();
   if (plan.layers.empty()) return;
   auto definitions = media_.definitions();
   definitions.merge(columns_.definitions());
@@ -67,6 +72,29 @@ PlanOnDevice::PlanOnDevice(Context& context, const airlight::ray_marcher::Plan& 
                       {"OCCLUDERS", has_occluders_ ? "1" : "0"},
                       {"BALL_WORDS", std::to_string(balls_ / 32 + 1)}});
   march_ = &program(context, "ray_marcher/march.comp", definitions);
+}
+
+void PlanOnDevice::check_iterations() const {
+  if (context_.software() && iterations_at_once(plan_) > software_most)
+    throw Unavailable(
+        fmt::format("gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected fewer shadow steps",
+                    iterations_at_once(plan_), context_.renderer(), software_most));
+}
+
+bool PlanOnDevice::is_like(const airlight::ray_marcher::Plan& next) const {
+  return media_.is_like(next.layers) && next.scatters == plan_.scatters && count_balls(next.lights) == balls_ &&
+         columns_.is_like(next.scene->media, next.lights, depths_of(next)) && same_surfaces(*plan_.scene, *next.scene);
+}
+
+int PlanOnDevice::become(bool same_media, StageTimer& timer, const std::function<bool(double)>& progress) {
+  const Use use(context_);
+  check_iterations();
+  lights_ = balls_first(plan_.lights);
+  if (!same_media) {
+    media_.become(plan_.layers, middle_of(plan_.layers, plan_.scene->camera.position));
+    refill(solids_, context_, "spheres and planes", solid_data(*plan_.scene, media_.middle()));
+  }
+  return columns_.become(media_, plan_.scene->media, plan_.layers, lights_, same_media, timer, progress);
 }
 
 void PlanOnDevice::march(const scene::View& view, const FilmOnDevice& film, FrameBuffers& buffers, const Band& band) {
@@ -79,7 +107,7 @@ void PlanOnDevice::march(const scene::View& view, const FilmOnDevice& film, Fram
   band.pixels.bind(at::pixels);
   if (has_occluders_) {
     first_hits_->tree().bind(p);
-    solids_.bind(at::solids);
+    solids_->bind(at::solids);
     p.set("middle_in_tree", Vec3(media_.middle() - first_hits_->tree().middle()));
   }
   p.set("light_count", plan_.scatters ? int(plan_.lights.size()) : 0);

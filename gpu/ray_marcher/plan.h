@@ -13,6 +13,14 @@ class PlanOnDevice {
   PlanOnDevice(Context&, const airlight::ray_marcher::Plan&, GridStorage, const FirstHits*, StageTimer&,
                const std::function<bool(double)>& progress);
 
+  // Do programs and buffers for the plan serve `next` too?
+  bool is_like(const airlight::ray_marcher::Plan& next) const;
+  // The plan has become another, which this is_like; `same_media`: with the same media as before. Uploads what has changed, and draws the maps
+  // that are not kept: how many. Throws Unavailable where a software renderer would end loops.
+  int become(bool same_media, StageTimer&, const std::function<bool(double)>& progress);
+  // Environments of the next frame (Picture::become).
+  bool become_lit(const scene::Scene& scene) { return picture_.become(scene); }
+
   const GridsOnDevice& grids() const { return media_.grids(); }
   bool has_maps() const { return columns_.maps() != nullptr; }
 
@@ -25,6 +33,7 @@ class PlanOnDevice {
   bool unfinished(const Download&) const;
 
  private:
+  void check_iterations() const;
   void march(const scene::View&, const FilmOnDevice&, FrameBuffers&, const Band&);
 
   Context& context_;
@@ -35,7 +44,7 @@ class PlanOnDevice {
   bool has_occluders_;
   MediaOnDevice media_;
   Columns columns_;
-  Buffer solids_;
+  std::unique_ptr<Buffer> solids_;
   Program* march_ = nullptr;  // null: left out
   Rounds march_rounds_;
   Picture picture_;

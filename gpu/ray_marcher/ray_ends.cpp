@@ -21,6 +21,11 @@ RayEnds::RayEnds(Context& context, const scene::Scene& scene, FirstHits::Way way
   if (!scene.backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context, scene);
 }
 
+bool RayEnds::become(const scene::Scene& before, const scene::Scene& scene) {
+  if (backdrops_ || !scene.backdrops.empty() || !same_surfaces(before, scene)) return false;
+  return surfaces_ ? surfaces_->move_balls(scene) : !has_balls(scene);
+}
+
 std::vector<scene::Stage> RayEnds::stages() const {
   return {{"distances", bool(surfaces_), surfaces_ ? "where camera rays end" : "nothing ends a ray"},
           {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"}};

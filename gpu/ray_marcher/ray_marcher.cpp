@@ -13,6 +13,7 @@
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"
+#include "scene/media/same_medium.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu::ray_marcher {
@@ -25,40 +26,76 @@ using scene::View;
 
 class PreparedMarchGpu final : public scene::Prepared {
  public:
-  PreparedMarchGpu(Plan plan, std::string settings, GridStorage storage, FirstHits::Way way, const Execution& execution)
-      : plan_(std::move(plan)),
-        settings_(std::move(settings)),
-        context_(Context::get()),
-        frame_(context_),
-        ends_(context_, *plan_.scene, way) {
-    if (!plan_.layers.empty() || something_behind(*plan_.scene, plan_.lights.size()))
-      device_ =
-          std::make_unique<PlanOnDevice>(context_, plan_, storage, ends_.surfaces(), frame_.timer, execution.progress);
-    frame_.timer.stage("upload");
-    times_ = frame_.timer.times();
+  PreparedMarchGpu(std::shared_ptr<const Scene> scene, const scene::Settings& settings, const Execution& execution)
+      : settings_(settings), context_(Context::get()), frame_(context_) {
+    prepare(std::move(scene), execution);
   }
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
+  void prepare(std::shared_ptr<const Scene>, const Execution&);
+  bool become(Plan& next, const Execution&);
   // False where rounds were too few: the same again, looking.
   bool draw(const View&, const Execution&, bool looks, scene::Rendering&) const;
 
-  Plan plan_;
-  std::string settings_;
+  scene::Settings settings_;
   Context& context_;
   mutable Frame frame_;
-  RayEnds ends_;
+  Plan plan_;
+  std::unique_ptr<RayEnds> ends_;
   std::unique_ptr<PlanOnDevice> device_;  // null: no medium with extinction, and nothing that shines
   std::vector<scene::StageTime> times_;
+  int maps_made_ = 0;            // for this frame; others are of frames before
+  std::optional<Traffic> next_;  // of next(), if there was one
 };
+
+void PreparedMarchGpu::prepare(std::shared_ptr<const Scene> scene, const Execution& execution) {
+  const Use use(context_);
+  frame_.timer.restart();
+  Plan plan =
+      make_plan(scene, airlight::ray_marcher::read_options(settings_, airlight::ray_marcher::length_unit(*scene)),
+                plan_.scene ? &plan_ : nullptr);
+  if (!become(plan, execution)) {
+    device_.reset();
+    ends_.reset();
+    plan_ = std::move(plan);
+    ends_ = std::make_unique<RayEnds>(context_, *plan_.scene, scene::read_settings(FirstHits::bind, settings_));
+    if (!plan_.layers.empty() || something_behind(*plan_.scene, plan_.lights.size()))
+      device_ = std::make_unique<PlanOnDevice>(context_, plan_, scene::read_settings(bind_storage, settings_),
+                                               ends_->surfaces(), frame_.timer, execution.progress);
+    maps_made_ = device_ && device_->has_maps() ? int(plan_.lights.size()) : 0;
+  }
+  frame_.timer.stage("upload");
+  times_ = frame_.timer.times();
+}
+
+// Keeps what is on the device where programs and buffers serve the next plan. False, and nothing is done, where they do not.
+bool PreparedMarchGpu::become(Plan& next, const Execution& execution) {
+  if (!device_ || next.layers.empty() != plan_.layers.empty() || !device_->is_like(next)) return false;
+  if (!ends_->become(*plan_.scene, *next.scene) || !device_->become_lit(*next.scene)) return false;
+  const bool same_media = scene::same_media(plan_.scene->media, next.scene->media);
+  plan_ = std::move(next);
+  maps_made_ = device_->become(same_media, frame_.timer, execution.progress);
+  return true;
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedMarchGpu::next(std::shared_ptr<const Scene> scene,
+                                                                    const Execution& execution) {
+  if (!RayMarcher().supports(*scene, settings_).empty()) return std::nullopt;
+  const Traffic before = context_.traffic();
+  prepare(std::move(scene), execution);
+  next_ = context_.traffic() - before;
+  return times_;
+}
 
 std::vector<scene::Stage> PreparedMarchGpu::stages() const {
   std::vector<scene::Stage> stages = describe_stages(plan_);
   const std::string grids = device_ ? device_->grids().description() : "";
-  std::vector<scene::Stage> first = ends_.stages();
+  std::vector<scene::Stage> first = ends_->stages();
   first.push_back({"grids", !grids.empty(), grids.empty() ? "no voxel grid" : grids});
   stages.insert(stages.begin(), first.begin(), first.end());
   return stages;
@@ -67,7 +104,7 @@ std::vector<scene::Stage> PreparedMarchGpu::stages() const {
 bool PreparedMarchGpu::draw(const View& view, const Execution& execution, bool looks, scene::Rendering& result) const {
   frame_.begin(execution);
   Buffer& totals = frame_.buffers.get("totals", 8 * sizeof(unsigned));
-  const FilmOnDevice film = ends_.begin_film(view, frame_);
+  const FilmOnDevice film = ends_->begin_film(view, frame_);
   const bool counts = frame_.download.wants_any();
   if (counts) totals.clear();
   device_->render(view, film, frame_, counts ? &totals : nullptr, looks, execution.progress);
@@ -96,8 +133,10 @@ scene::Rendering PreparedMarchGpu::render(const View& view, const Execution& exe
     throw Unavailable("ray_marcher_gpu: " + context_.renderer() + " reports rays as done that are not");
   }
   result.counters["rays"] = double(result.film.pixels());
+  if (next_) result.counters.merge(next_->counters("next_"));
+  if (plan_.options.shadow == airlight::ray_marcher::Shadow::map) result.counters["light_maps_made"] = maps_made_;
   result.film.metadata = {{"method", "ray_marcher_gpu"},
-                          {"settings", settings_},
+                          {"settings", settings_.canonical()},
                           {"scene", plan_.scene->name},
                           {"hash", plan_.scene->hash}};
   return result;
@@ -140,11 +179,7 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
 std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<const Scene> scene,
                                                                const scene::Settings& settings,
                                                                const Execution& execution) const {
-  const airlight::ray_marcher::Options options =
-      airlight::ray_marcher::read_options(settings, airlight::ray_marcher::length_unit(*scene));
-  return std::make_unique<PreparedMarchGpu>(make_plan(std::move(scene), options), settings.canonical(),
-                                            scene::read_settings(bind_storage, settings),
-                                            scene::read_settings(FirstHits::bind, settings), execution);
+  return std::make_unique<PreparedMarchGpu>(std::move(scene), settings, execution);
 }
 
 }  // namespace airlight::gpu::ray_marcher

@@ -74,7 +74,7 @@ std::vector<LayerData> layer_data(const Layers& layers, const Point3& middle, bo
       d.first = int(textures ? grids : values), d.first_brick = int(bricks);
       d.size = {grid.size[0], grid.size[1], grid.size[2]};
       d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
-      values += samples(grid), bricks += grid.free_distance.size(), ++grids;
+      values += samples(grid), bricks += grid.samples->free_distance.size(), ++grids;
     };
     scene::match(
         layer.medium->field, [](const scene::Homogeneous&) {},
@@ -114,14 +114,15 @@ std::vector<GaussianData> gaussian_data(const Layers& layers) {
 std::vector<float> brick_data(const Layers& layers) {
   std::vector<float> data;
   for (const Layer& layer : layers)
-    if (layer.grid) data.insert(data.end(), layer.grid->free_distance.begin(), layer.grid->free_distance.end());
+    if (layer.grid)
+      data.insert(data.end(), layer.grid->samples->free_distance.begin(), layer.grid->samples->free_distance.end());
   return data;
 }
 
 void grid_slice(const airlight::ray_marcher::GridField& grid, int z, std::vector<float>& values) {
   // The CPU keeps each sample with its neighbour along z; here only the samples.
   values.resize(std::size_t(grid.size[0]) * grid.size[1]);
-  const float* pair = grid.pairs.data() + 2 * values.size() * std::size_t(z);
+  const float* pair = grid.samples->pairs.data() + 2 * values.size() * std::size_t(z);
   for (float& value : values) value = *pair, pair += 2;
 }
 

@@ -97,7 +97,7 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
     if (!x || !y) return a.index() == b.index();
     return x->map == y->map && (x->scale == y->scale).all() && x->to_map == y->to_map && x->sh.empty() && y->sh.empty();
   };
-  if (scene->geometry != scene_->geometry || scene->lights.size() != scene_->lights.size() ||
+  if (!same_surfaces(*scene, *scene_) || scene->lights.size() != scene_->lights.size() ||
       scene->media.size() != scene_->media.size() || !airlight::wavelet_fog::unsupported(*scene, options_).empty() ||
       !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light) ||
       lamps_light_surfaces(*scene) != lamps_light_surfaces(*scene_) ||

@@ -5,12 +5,13 @@
 namespace airlight::compensated_ray_marching {
 namespace {
 
-bool same(const scene::Gaussian& a, const scene::Gaussian& b) {
-  return a.center == b.center && a.width == b.width && a.amplitude == b.amplitude;
+bool same_but_for_place(const scene::Gaussian& a, const scene::Gaussian& b) {
+  return a.width == b.width && a.amplitude == b.amplitude;
 }
 
-bool same(const NodeGrid& a, const NodeGrid& b) {
-  return a.corner == b.corner && a.cells.size == b.cells.size && a.cells.cell == b.cells.cell;
+// A box that was moved has the size of the box before, but for rounding of its ends.
+bool same_but_for_place(const NodeGrid& a, const NodeGrid& b) {
+  return a.cells.size == b.cells.size && a.cells.cell.isApprox(b.cells.cell, 1e-9);
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ Eigen::VectorXd at_centres(const Solution& last, int channel, const std::vector<
   const Eigen::ArrayXXd& values = last.of_channel[std::size_t(channel)];
   if (values.size() == 0 || values.rows() != Eigen::Index(last.centres.size())) return {};
   if (std::equal(last.centres.begin(), last.centres.end(), centres.begin(), centres.end(),
-                 [](const auto& a, const auto& b) { return same(a, b); }))
+                 [](const auto& a, const auto& b) { return same_but_for_place(a, b); }))
     return values.col(0);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(Eigen::Index(centres.size()));
   for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -42,7 +43,7 @@ Eigen::VectorXd at_centres(const Solution& last, int channel, const std::vector<
 Eigen::ArrayXXd at_nodes(const Solution& last, int channel, const NodeGrid& grid, Eigen::Index columns) {
   const Eigen::ArrayXXd& values = last.of_channel[std::size_t(channel)];
   if (values.cols() != columns || values.rows() != last.nodes.cells.nodes()) return {};
-  if (same(last.nodes, grid)) return values;
+  if (same_but_for_place(last.nodes, grid)) return values;
   Eigen::ArrayXXd result = Eigen::ArrayXXd::Zero(grid.cells.nodes(), columns);
   const std::array<int, 3>& size = last.nodes.cells.size;
   for (Eigen::Index i = 0; i < grid.cells.nodes(); ++i) {

@@ -1,5 +1,5 @@
-// Where the iterations of multiple scattering begin when the smoke has changed: with the solution in the last frame's smoke, interpolated at
-// the new centres or nodes. Zhou et al. 2008, section 5.4.
+// Where the iterations of multiple scattering begin when the smoke has changed: with the solution in the last frame's smoke, taken along with
+// the smoke or interpolated at the new centres or nodes. Zhou et al. 2008, section 5.4.
 #pragma once
 #include <array>
 
@@ -17,11 +17,12 @@ struct Solution {
   bool empty() const;
 };
 
-// At other centres: the mean of the values weighted with the Gaussians (Eq. 7), 0 where none of them has a weight. At the same centres the
-// values themselves. Nothing where the solution is not one at centres.
+// At other centres: the mean of the values weighted with the Gaussians (Eq. 7), 0 where none of them has a weight. Gaussians that are the
+// same but for their places take their values along. Nothing where the solution is not one at centres.
 Eigen::VectorXd at_centres(const Solution&, int channel, const std::vector<scene::Gaussian>&);
 
-// At the nodes of another grid: trilinear, 0 beyond the nodes. At the same nodes the values themselves. Nothing where the solution is not
+// At the nodes of another grid: trilinear, 0 beyond the nodes. A grid that is the same but for its place takes its values along: it goes with
+// the smoke. Nothing where the solution is not
 // one of `columns` columns at nodes.
 Eigen::ArrayXXd at_nodes(const Solution&, int channel, const NodeGrid&, Eigen::Index columns);
 

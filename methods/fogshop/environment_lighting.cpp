@@ -8,14 +8,17 @@
 
 namespace airlight::fogshop {
 
-EnvironmentLighting::EnvironmentLighting(const scene::Scene& scene, const Options& options, bool spreads)
+EnvironmentLighting::EnvironmentLighting(const scene::Scene& scene, const Options& options, bool spreads,
+                                         const EnvironmentLighting* before)
     : order_(options.sh_order), light_(order_ * order_, Rgb::Zero()) {
   for (const scene::Light& light : scene.lights)
     if (const auto* environment = std::get_if<scene::EnvironmentLight>(&light)) {
       const std::vector<Rgb> one = project_environment(*environment, order_);
       for (std::size_t i = 0; i < one.size(); ++i) light_[i] += one[i];
     }
-  if (spreads) bands_ = std::make_unique<PsfBands>(options.environment_psf, order_);
+  if (spreads)
+    bands_ =
+        before && before->bands_ ? before->bands_ : std::make_shared<const PsfBands>(options.environment_psf, order_);
 }
 
 std::vector<Rgb> EnvironmentLighting::spread(const Fog& fog, double depth) const {

@@ -19,8 +19,9 @@ struct IncidentHarmonics {
 
 class EnvironmentLighting {
  public:
-  // All environment lights of the scene together. `spreads`: something scatters, else the PSF is not tabulated.
-  EnvironmentLighting(const scene::Scene&, const Options&, bool spreads);
+  // All environment lights of the scene together. `spreads`: something scatters, else the PSF is not tabulated. `before`: of a frame with
+  // the same options, whose table of the PSF is kept; may be null.
+  EnvironmentLighting(const scene::Scene&, const Options&, bool spreads, const EnvironmentLighting* before = nullptr);
 
   // Eq. 28: light of the environment scattered once towards the eye along a ray that no surface ends [W/m^2/sr], the
   // medium's albedo included. `direction` is the ray's, `depth` T(v,p) [-] for an extinction ratio of 1. Has no direct term. Bands
@@ -41,7 +42,7 @@ class EnvironmentLighting {
 
   int order_;
   std::vector<Rgb> light_;  // L_lm
-  std::unique_ptr<PsfBands> bands_;
+  std::shared_ptr<const PsfBands> bands_;
 };
 
 // Eq. 26: optical depth from a point to the environment, averaged over all directions [-], at extinction ratio 1; the constant reaches

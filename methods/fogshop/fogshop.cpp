@@ -23,57 +23,91 @@ using scene::View;
 
 class PreparedFogshop final : public scene::Prepared {
  public:
-  PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution);
+  PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
+      : options_(options) {
+    times_ = prepare(std::move(scene), execution);
+  }
   std::vector<scene::Stage> stages() const override { return plan_.stages; }
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>, const Execution&);
   AirlightImage find_airlight(const View&, const ViewModel&, const std::vector<double>& distance, const Execution&,
                               scene::Rendering&) const;
   void count(double rays, double evaluations, std::map<std::string, double>& counters) const;
 
   std::shared_ptr<const Scene> scene_;
+  Options options_;  // as they were asked for; the model's may do without maps
   Model model_;
   Plan plan_;
   SurfaceLighting lighting_;
   std::vector<scene::StageTime> times_;
+  int maps_made_ = 0;  // for this frame; others are of frames before
 };
 
-PreparedFogshop::PreparedFogshop(std::shared_ptr<const Scene> scene, const Options& options, const Execution& execution)
-    : scene_(std::move(scene)) {
+// For a first frame, or one that keeps what the frame before has in common with it.
+std::vector<scene::StageTime> PreparedFogshop::prepare(std::shared_ptr<const Scene> scene, const Execution& execution) {
+  std::vector<scene::StageTime> times;
   scene::Stopwatch watch;
-  model_ = make_model(*scene_, options);
-  plan_ = make_plan(*scene_, model_);
+  Model model = make_model(*scene, options_);
+  const Options& options = model.options;
+  Plan plan = make_plan(*scene, model);
+  const Needs& needs = plan.needs;
+  const Unchanged same = scene_ ? unchanged(*scene_, model_, *scene, model) : Unchanged{};
   const double seconds = watch.lap();
-  if (model_.gaussians.count > 0) times_.push_back({"gaussians", seconds});
-  const Needs& needs = plan_.needs;
-  if (needs.center_depths) {
-    for (LightModel& light : model_.lights)
-      light.center_depth = depths_to_centers(model_, light.position, execution, model_.evaluations);
-    times_.push_back({"depths to centres", watch.lap()});
-  }
-  if (needs.light_maps) {
-    for (LightModel& light : model_.lights) {
-      light.map = std::make_unique<LightMap>(model_.gaussians, light.position, options.map_directions,
-                                             options.map_edges, options.erf, execution);
-      model_.evaluations += light.map->evaluations();
+  if (model.gaussians.count > 0) times.push_back({"gaussians", seconds});
+  int depths_made = 0, maps_made = 0;
+  for (LightModel& light : model.lights) {
+    const LightModel* before = same.gaussians ? light_at(model_, light.position) : nullptr;
+    if (needs.center_depths) {
+      if (before && same.fog && !before->center_depth.empty()) {
+        light.center_depth = before->center_depth;
+      } else {
+        light.center_depth = depths_to_centers(model, light.position, execution, model.evaluations);
+        ++depths_made;
+      }
     }
-    times_.push_back({"light maps", watch.lap()});
+    if (needs.light_maps) {
+      if (before && before->map) {
+        light.map = before->map;
+      } else {
+        light.map = std::make_shared<LightMap>(model.gaussians, light.position, options.map_directions,
+                                               options.map_edges, options.erf, execution);
+        model.evaluations += light.map->evaluations();
+        ++maps_made;
+      }
+    }
   }
+  if (depths_made > 0) times.push_back({"depths to centres", watch.lap()});
+  if (maps_made > 0) times.push_back({"light maps", watch.lap()});
   if (needs.f_table) {
-    model_.f_table = std::make_unique<FTable>();
-    times_.push_back({"table of F", watch.lap()});
+    model.f_table = model_.f_table;
+    if (!model.f_table) {
+      model.f_table = std::make_shared<FTable>();
+      times.push_back({"table of F", watch.lap()});
+    }
   }
-  lighting_ = make_lighting(*scene_, model_, needs, execution, [&](const std::string& stage) {
-    times_.push_back({stage, watch.lap()});
-  });
+  SurfaceLighting lighting =
+      make_lighting(*scene, model, needs, lighting_, same, execution, [&](const std::string& stage) {
+        times.push_back({stage, watch.lap()});
+      });
   if (needs.sky_volume) {
-    model_.sky = std::make_unique<SkyVolume>(*scene_, model_.fog, model_.gaussians, options.erf, options.sky_cells,
-                                             options.sky_directions, execution);
-    model_.evaluations += model_.sky->evaluations();
-    times_.push_back({"sky volume", watch.lap()});
+    if (same.fog && same.surfaces && same.environments) model.sky = model_.sky;
+    if (!model.sky) {
+      model.sky = std::make_shared<SkyVolume>(*scene, model.fog, model.gaussians, options.erf, options.sky_cells,
+                                              options.sky_directions, execution);
+      model.evaluations += model.sky->evaluations();
+      times.push_back({"sky volume", watch.lap()});
+    }
   }
+  scene_ = std::move(scene);
+  model_ = std::move(model);
+  plan_ = std::move(plan);
+  lighting_ = std::move(lighting);
+  maps_made_ = maps_made;
+  return times;
 }
 
 // The airlight, and what the medium lets through, into layers of a film.
@@ -107,6 +141,7 @@ void PreparedFogshop::count(double rays, double evaluations, std::map<std::strin
   counters["rays"] = rays;
   counters["erf_evaluations"] = evaluations;
   counters["erf_evaluations_prepare"] = model_.evaluations;
+  counters["light_maps_made"] = maps_made_;
   counters["gaussians"] = model_.gaussians.count;
   counters["gaussians_dropped"] = model_.dropped;
   if (lighting_.depths) counters["average_depth_cells"] = double(lighting_.depths->cells().size());
@@ -169,6 +204,17 @@ scene::Rendering PreparedFogshop::render(const View& view, const Execution& exec
   return result;
 }
 
+std::optional<std::vector<scene::StageTime>> PreparedFogshop::next(std::shared_ptr<const Scene> scene,
+                                                                   const Execution& execution) {
+  if (!unsupported(*scene, options_).empty()) return std::nullopt;
+  if (!camera_alone_moved(*scene_, *scene)) return prepare(std::move(scene), execution);
+  scene_ = std::move(scene);
+  plan_ = make_plan(*scene_, model_);
+  maps_made_ = 0;
+  model_.evaluations = 0;
+  return std::vector<scene::StageTime>{};
+}
+
 }  // namespace
 
 std::string Fogshop::about() const {
@@ -178,7 +224,10 @@ std::string Fogshop::about() const {
 std::vector<scene::SettingSpec> Fogshop::settings() const { return setting_specs(); }
 
 std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Settings& settings) const {
-  const Options options = read_options(settings);
+  return unsupported(scene, read_options(settings));
+}
+
+std::vector<std::string> unsupported(const Scene& scene, const Options& options) {
   std::vector<std::string> reasons = unsupported_media(scene.media);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (const std::string why = scene::unknown_light<scene::PointLight, scene::EnvironmentLight>(scene.lights, i);

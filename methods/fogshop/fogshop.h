@@ -8,6 +8,11 @@
 
 namespace airlight::fogshop {
 
+struct Options;
+
+// Reasons why the scene cannot be rendered with these options, one line each; empty if it can.
+std::vector<std::string> unsupported(const scene::Scene&, const Options&);
+
 class Fogshop final : public scene::Renderer {
  public:
   std::string name() const override { return "fogshop"; }

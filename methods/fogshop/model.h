@@ -63,7 +63,7 @@ struct LightModel {
   Rgb intensity;  // [W/sr]
   std::vector<double>
       center_depth;  // paper: T(s,b_i) - T_i(s,b_i) by place, the constant included [-], at extinction ratio 1
-  std::unique_ptr<LightMap> map;  // slices, if asked for
+  std::shared_ptr<const LightMap> map;  // slices, if asked for
 };
 
 struct Model {
@@ -79,11 +79,11 @@ struct Model {
   // a tenth of eps_T. Their depths from lights are then 0.
   double taken = 0;
   bool clear_ways = false;
-  std::unique_ptr<FTable> f_table;
-  std::unique_ptr<Noise> noise;    // null: none
-  std::unique_ptr<SkyVolume> sky;  // the same
-  double evaluations = 0;          // of the error function
-  double map_error = 0;            // of light maps, estimated; where it is too great options.map is false
+  std::shared_ptr<const FTable> f_table;
+  std::unique_ptr<Noise> noise;          // null: none
+  std::shared_ptr<const SkyVolume> sky;  // null: left out
+  double evaluations = 0;                // of the error function, what was kept of a frame before left out
+  double map_error = 0;                  // of light maps, estimated; where it is too great options.map is false
 
   int scattered_lights() const { return scatters ? int(lights.size()) : 0; }
   bool paper() const { return options.variant == Options::Variant::paper; }

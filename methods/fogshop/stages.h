@@ -22,6 +22,8 @@ struct Needs {
   bool environment_psf;        // what Eqs. 27 and 28 spread it by
   bool transfer;               // surfaces that shadow scattered light and environments
   bool sky_volume;             // the grid instead of Eq. 28
+
+  bool operator==(const Needs&) const = default;
 };
 
 struct Plan {

@@ -6,30 +6,36 @@
 namespace airlight::fogshop {
 
 SurfaceLighting make_lighting(const scene::Scene& scene, const Model& model, const Needs& needs,
-                              const scene::Execution& execution, const std::function<void(const std::string&)>& stage) {
+                              const SurfaceLighting& before, const Unchanged& same, const scene::Execution& execution,
+                              const std::function<void(const std::string&)>& stage) {
   const Options& options = model.options;
   SurfaceLighting lighting;
-  if (needs.point_harmonics) {
-    lighting.points = make_reflection(scene, options);
-    stage(options.reflectance == Options::Reflectance::sun ? "tables of Sun et al." : "harmonics of the NPSF");
-  }
-  if (needs.reflectances) {
-    lighting.reflectances = std::make_unique<SurfaceReflectances>(scene.surfaces, options.sh_order);
-    stage("harmonics of reflectances");
-  }
-  if (needs.transfer) {
-    lighting.transfer = std::make_unique<RadianceTransfer>(scene, options.sh_order, options.prt_rays, options.prt_reach,
-                                                           options.prt_bounces, execution);
-    stage("radiance transfer");
-  }
-  if (needs.environment_harmonics) {
-    lighting.environment = std::make_unique<EnvironmentLighting>(scene, options, needs.environment_psf);
-    stage("harmonics of the environment");
-  }
-  if (needs.depth_tree) {
-    lighting.depths = std::make_unique<DepthTree>(model.gaussians, scene.surfaces, model.threshold, execution);
-    stage("tree of average depths");
-  }
+  // One part: what the frame before has of it, if that still holds, or else what is made.
+  const auto part = [&](auto& now, const auto& was, bool needed, bool holds, const char* name, const auto& make) {
+    if (!needed) return;
+    if (was && holds) {
+      now = was;
+      return;
+    }
+    now = make();
+    stage(name);
+  };
+  part(lighting.points, before.points, needs.point_harmonics, same.surfaces,
+       options.reflectance == Options::Reflectance::sun ? "tables of Sun et al." : "harmonics of the NPSF",
+       [&] { return make_reflection(scene, options); });
+  part(lighting.reflectances, before.reflectances, needs.reflectances, same.surfaces, "harmonics of reflectances",
+       [&] { return std::make_shared<SurfaceReflectances>(scene.surfaces, options.sh_order); });
+  part(lighting.transfer, before.transfer, needs.transfer, same.surfaces, "radiance transfer", [&] {
+    return std::make_shared<RadianceTransfer>(scene, options.sh_order, options.prt_rays, options.prt_reach,
+                                              options.prt_bounces, execution);
+  });
+  const bool spreads = needs.environment_psf;
+  part(lighting.environment, before.environment, needs.environment_harmonics,
+       same.environments && before.environment && before.environment->spreads() == spreads,
+       "harmonics of the environment",
+       [&] { return std::make_shared<EnvironmentLighting>(scene, options, spreads, before.environment.get()); });
+  part(lighting.depths, before.depths, needs.depth_tree, same.gaussians && same.surfaces, "tree of average depths",
+       [&] { return std::make_shared<DepthTree>(model.gaussians, scene.surfaces, model.threshold, execution); });
   return lighting;
 }
 

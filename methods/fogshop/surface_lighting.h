@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "methods/fogshop/environment_lighting.h"
+#include "methods/fogshop/next_frame.h"
 #include "methods/fogshop/radiance_transfer.h"
 #include "methods/fogshop/reflectance_table.h"
 #include "methods/fogshop/scattered_reflection.h"
@@ -14,17 +15,21 @@
 
 namespace airlight::fogshop {
 
-// Null: left out.
+// Null: left out. Shared with the next frame where it holds for that, too.
 struct SurfaceLighting {
-  std::unique_ptr<const ScatteredReflection> points;        // what the medium scatters of theirs
-  std::unique_ptr<const EnvironmentLighting> environment;   // light of the environment, for the air too
-  std::unique_ptr<const SurfaceReflectances> reflectances;  // for all that is in harmonics
-  std::unique_ptr<const RadianceTransfer> transfer;         // shadows of that
-  std::unique_ptr<const DepthTree> depths;                  // Eq. 26
+  std::shared_ptr<const ScatteredReflection> points;        // what the medium scatters of theirs
+  std::shared_ptr<const EnvironmentLighting> environment;   // light of the environment, for the air too
+  std::shared_ptr<const SurfaceReflectances> reflectances;  // for all that is in harmonics
+  std::shared_ptr<const RadianceTransfer> transfer;         // shadows of that
+  std::shared_ptr<const DepthTree> depths;                  // Eq. 26
+
+  bool operator==(const SurfaceLighting&) const = default;
 };
 
-// `stage` is called after each part, with its name.
-SurfaceLighting make_lighting(const scene::Scene&, const Model&, const Needs&, const scene::Execution&,
+// `stage` is called after each part that is made, with its name. `before`: of the frame before, with the same options; parts of it are kept
+// where their inputs are `unchanged`.
+SurfaceLighting make_lighting(const scene::Scene&, const Model&, const Needs&, const SurfaceLighting& before,
+                              const Unchanged&, const scene::Execution&,
                               const std::function<void(const std::string&)>& stage);
 
 // B_pv of Eq. 20 in the world's axes, times V_p where there is a visibility, and with what other surfaces reflect where the

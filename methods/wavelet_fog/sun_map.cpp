@@ -64,19 +64,35 @@ SunRows rows_towards(const Fogmap& fog, const Vec3& to_sun, double step) {
   return rows;
 }
 
-SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, const scene::Execution& execution)
+SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, const scene::Execution& execution,
+               const SunMap* before)
     : medium_(&medium),
       fog_(std::get<scene::FogmapPointer>(medium.field).get()),
       to_sun_(to_sun),
       step_(step),
       rows_(rows_towards(*fog_, to_sun, step)) {
   if (rows_.upright) return;
-  entries_.resize(std::size_t(rows_.columns) * rows_.rows);
-  scene::parallel_for(rows_.rows, execution, [&](int row) { fill_row(row); });
+  if (before && has_entries_of(*before)) {
+    entries_ = before->entries_;
+    return;
+  }
+  std::vector<Entry> entries(std::size_t(rows_.columns) * rows_.rows);
+  scene::parallel_for(rows_.rows, execution, [&](int row) { fill_row(row, entries); });
+  entries_ = std::make_shared<const std::vector<Entry>>(std::move(entries));
+}
+
+// What fill_row() reads: rows in the map's own axes, the map, and whether it falls in layers.
+bool SunMap::has_entries_of(const SunMap& before) const {
+  const scene::SplineMap &a = fog_->map, &b = before.fog_->map;
+  const auto layered = [](const Fogmap& fog) { return std::holds_alternative<scene::Layers>(fog.profile); };
+  return before.entries_ && before.step_ == step_ && before.rows_ == rows_ && layered(*fog_) == layered(*before.fog_) &&
+         (fog_ == before.fog_ ||
+          (a.degree() == b.degree() && std::equal(a.range().size, a.range().size + 2, b.range().size) &&
+           std::equal(a.range().lo, a.range().lo + 2, b.range().lo) && a.coefficients() == b.coefficients()));
 }
 
 // From the sun's side on.
-void SunMap::fill_row(int row) {
+void SunMap::fill_row(int row, std::vector<Entry>& entries) const {
   const double q = rows_.lo[1] + row * step_;
   const MapLine line{rows_.lo[0] * rows_.along[0] - q * rows_.along[1],
                      rows_.lo[0] * rows_.along[1] + q * rows_.along[0],
@@ -88,7 +104,7 @@ void SunMap::fill_row(int row) {
   const HeightProfile one = scene::SameAtAllHeights{};
   const bool layered = std::holds_alternative<scene::Layers>(fog_->profile);
   const Interval inside = clip(fog_->map, line, {0, reach});
-  Entry* entry = entries_.data() + std::size_t(row) * rows_.columns;
+  Entry* entry = entries.data() + std::size_t(row) * rows_.columns;
   Moments sum;
   for (int c = rows_.columns - 1; c >= 0; --c) {
     const Interval part = intersect(inside, {c * step_, (c + 1) * step_});
@@ -109,7 +125,7 @@ void SunMap::fill_row(int row) {
 
 // p: from the first entry [cells].
 SunMap::Moments SunMap::on_row(int row, double p) const {
-  const Entry* entry = entries_.data() + std::size_t(std::clamp(row, 0, rows_.rows - 1)) * rows_.columns;
+  const Entry* entry = entries_->data() + std::size_t(std::clamp(row, 0, rows_.rows - 1)) * rows_.columns;
   const double place = p / step_;
   if (!(place > 0)) return entry[0].sum;
   if (!(place < rows_.columns - 1)) return {};

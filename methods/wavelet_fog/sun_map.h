@@ -7,6 +7,7 @@
 // height that is none or made of straight lines is alpha + beta p' between knots, and takes differences of F_0 and F_1; above
 // its base an exponential one is h(y) E(p): exact at all heights, but for interpolation between the map's entries.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "scene/media/medium.h"
@@ -22,6 +23,8 @@ struct SunRows {
   double k = 0;              // scale heights per cell
   double lo[2] = {0, 0};     // first p and q of the rows [cells]
   int columns = 0, rows = 0;
+
+  bool operator==(const SunRows&) const = default;
 };
 SunRows rows_towards(const scene::Fogmap&, const Vec3& to_sun, double step);
 
@@ -34,8 +37,13 @@ class SunMap {
   static double entries(const scene::Fogmap&, const Vec3& to_sun, double step);
 
   // The medium is a fogmap and outlives this. to_sun: unit, not below the horizon where the profile is exponential. An
-  // entry every `step` cells along rows, and a row every `step`.
-  SunMap(const scene::Medium&, const Vec3& to_sun, double step, const scene::Execution&);
+  // entry every `step` cells along rows, and a row every `step`. `before`: of the frame before, whose medium still lives; its entries are
+  // shared where the fog has moved over the ground alone, or has not changed. May be null.
+  SunMap(const scene::Medium&, const Vec3& to_sun, double step, const scene::Execution&,
+         const SunMap* before = nullptr);
+
+  // Are they those of `other`?
+  bool shares_entries(const SunMap& other) const { return entries_ == other.entries_; }
 
   // Integral of the density from x to the sun, region included [m]; may be infinite. Cubic between entries (Hermite along
   // rows, by the map's own values; Catmull and Rom across).
@@ -49,7 +57,8 @@ class SunMap {
     Moments sum;
     double value;  // the map's
   };
-  void fill_row(int row);
+  bool has_entries_of(const SunMap& before) const;
+  void fill_row(int row, std::vector<Entry>&) const;
   Moments on_row(int row, double p) const;
   Moments at(double u, double v) const;
 
@@ -58,7 +67,7 @@ class SunMap {
   Vec3 to_sun_;
   double step_;
   SunRows rows_;
-  std::vector<Entry> entries_;
+  std::shared_ptr<const std::vector<Entry>> entries_;  // null where columns are walked
 };
 
 }  // namespace airlight::wavelet_fog

@@ -121,7 +121,8 @@ SunScattering::Rule SunScattering::rule_of(int points) {
   return rule;
 }
 
-SunScattering::SunScattering(const scene::Scene& scene, const Options& options, const scene::Execution& execution)
+SunScattering::SunScattering(const scene::Scene& scene, const Options& options, const scene::Execution& execution,
+                             const SunScattering* before)
     : geometry_(scene.geometry.get()),
       shadow_steps_(options.shadow_steps),
       least_(std::max(options.termination, std::exp(-opaque))) {
@@ -136,8 +137,14 @@ SunScattering::SunScattering(const scene::Scene& scene, const Options& options, 
     const auto* sun = std::get_if<scene::DirectionalLight>(&light);
     if (!sun || !scatter(scene.media, light)) continue;
     suns_.push_back({*sun, {}});
-    for (const Medium* medium : media_)
-      suns_.back().maps.emplace_back(*medium, sun->to_light, options.sun_step, execution);
+    // Most suns and fogs keep their number from frame to frame.
+    const std::size_t s = suns_.size() - 1;
+    for (std::size_t m = 0; m < media_.size(); ++m) {
+      const bool known = before && s < before->suns_.size() && m < before->media_.size();
+      const SunMap* map = known ? &before->suns_[s].maps[m] : nullptr;
+      suns_[s].maps.emplace_back(*media_[m], sun->to_light, options.sun_step, execution, map);
+      if (!map || !map->shares_entries(suns_[s].maps.back())) ++maps_made_;
+    }
   }
 }
 

@@ -31,8 +31,11 @@ class SunScattering {
   };
   static Rule rule_of(int points);
 
-  // Of all directional lights of the scene, which outlives this and has fogmaps alone.
-  SunScattering(const scene::Scene&, const Options&, const scene::Execution&);
+  // Of all directional lights of the scene, which outlives this and has fogmaps alone. `before`: of the frame before, whose maps are kept where
+  // they still hold; may be null.
+  SunScattering(const scene::Scene&, const Options&, const scene::Execution&, const SunScattering* before = nullptr);
+
+  int maps_made() const { return maps_made_; }  // those kept left out
 
   // Over 0 < t < length, which may be infinite [W/m^2/sr].
   Rgb airlight(const Ray&, double length, SunVisits&) const;
@@ -52,6 +55,7 @@ class SunScattering {
   std::vector<const scene::Medium*> media_;
   std::vector<Sun> suns_;
   Rule rule_;
+  int maps_made_ = 0;
   int shadow_steps_;
   double least_;  // transmittance at which a ray ends
 };

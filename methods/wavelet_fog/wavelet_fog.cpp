@@ -87,7 +87,7 @@ class PreparedWaveletFog final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
-// For a scene, from what is known of the same media before; maps of the sun are made anew.
+// For a scene, from what is known of the same media before.
 std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::shared_ptr<const Scene> scene,
                                                           std::vector<LeveledFog> known, const Execution& execution) {
   std::vector<scene::StageTime> times;
@@ -107,10 +107,11 @@ std::vector<scene::StageTime> PreparedWaveletFog::prepare(std::shared_ptr<const 
     }
   }
   times.push_back({"maps", watch.lap()});
-  sun_.reset();
+  const std::optional<SunScattering> sun_before = std::exchange(sun_, std::nullopt);
   if (!sunlit()) return times;
-  sun_.emplace(*scene_, options_, execution);
-  times.push_back({"sun maps", watch.lap()});
+  sun_.emplace(*scene_, options_, execution, sun_before ? &*sun_before : nullptr);
+  const double seconds = watch.lap();
+  if (sun_->maps_made() > 0) times.push_back({"sun maps", seconds});
   return times;
 }
 
@@ -201,6 +202,7 @@ scene::Rendering PreparedWaveletFog::render(const View& view, const Execution& e
   if (sun_) {
     result.counters["sun_points"] = double(work.of_sun.points);
     result.counters["shadow_rays"] = double(work.of_sun.shadow_rays);
+    result.counters["sun_maps_made"] = sun_->maps_made();
   }
   if (options_.keep < 1) {
     for (const CompressionReport& report : compression_) {

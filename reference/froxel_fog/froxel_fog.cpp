@@ -49,6 +49,7 @@ class PreparedFog final : public scene::Prepared {
         settings_(effective.canonical()),
         lit_(std::make_unique<lit_media::LitMedia>(scene_, options_.media, execution)) {
     prepare_seconds_ = watch_.lap();
+    maps_made_ = lit_->maps_made();
   }
 
   std::vector<scene::Stage> stages() const override { return describe_stages(lit_->plan(), options_, settings_); }
@@ -102,11 +103,12 @@ class PreparedFog final : public scene::Prepared {
                        {"points", double(counters.media.points)},
                        {"look_ups", double(counters.media.look_ups)},
                        {"occlusion_rays", double(counters.media.occlusion_rays)}};
+    if (options_.media.self_shadow) result.counters["light_maps_made"] = maps_made_;
     if (options_.reproject) result.counters["reprojected"] = double(counters.reprojected);
     return result;
   }
 
-  // With reproject the last picture becomes the history of the next. Else a preparation keeps nothing.
+  // Keeps the layers of media and the maps of lights that still hold. With reproject the last picture becomes the history of the next.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
                                                     const scene::Execution& execution) override;
 
@@ -163,6 +165,7 @@ class PreparedFog final : public scene::Prepared {
   std::string settings_;
   std::unique_ptr<const lit_media::LitMedia> lit_;
   double prepare_seconds_ = 0;
+  int maps_made_ = 0;               // for this frame; others are of frames before
   int pictures_ = 0;                // before this one, by next()
   std::optional<History> history_;  // what they left; any number of renders begins with it
   mutable std::mutex mutex_;
@@ -190,18 +193,19 @@ std::vector<std::string> unsupported(const scene::Scene& scene, const Options& o
 
 std::optional<std::vector<scene::StageTime>> PreparedFog::next(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Execution& execution) {
-  if (!options_.reproject) return std::nullopt;
   const bool same =
       lit_media::fits(lit_->plan(), *scene) && scene->width == scene_->width && scene->height == scene_->height;
   if (!same && !unsupported(*scene, options_).empty()) return std::nullopt;
   watch_.lap();
   std::vector<scene::StageTime> times;
   if (!same) {
-    lit_ = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution);
+    lit_ = std::make_unique<lit_media::LitMedia>(scene, options_.media, execution, lit_.get());
     prepare_seconds_ = watch_.lap();
     times = prepare_times();
   }
+  maps_made_ = same ? 0 : lit_->maps_made();
   scene_ = std::move(scene);
+  if (!options_.reproject) return times;
   if (last_) history_ = std::exchange(last_, std::nullopt);
   ++pictures_;
   return times;

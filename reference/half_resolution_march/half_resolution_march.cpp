@@ -25,22 +25,28 @@ scene::Execution part_of(const scene::Execution& execution, Interval share) {
   return part;
 }
 
-Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution) {
-  auto media = std::make_shared<const lit_media::LitMedia>(scene, options.media, execution);
+// `before`: the media of the frame before, which are kept where they still hold; may be null.
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution,
+               const lit_media::LitMedia* before = nullptr) {
+  auto media = std::make_shared<const lit_media::LitMedia>(scene, options.media, execution, before);
   return {std::move(scene), options, std::move(media)};
 }
 
 class PreparedHalfResolutionMarch final : public scene::Prepared {
  public:
   PreparedHalfResolutionMarch(Plan plan, std::string settings, double seconds)
-      : plan_(std::move(plan)), settings_(std::move(settings)), prepare_seconds_(seconds) {}
+      : plan_(std::move(plan)),
+        settings_(std::move(settings)),
+        prepare_seconds_(seconds),
+        maps_made_(plan_.media->maps_made()) {}
 
   std::vector<scene::Stage> stages() const override { return describe_stages(plan_.media->plan(), plan_.options); }
 
   std::vector<scene::StageTime> prepare_times() const override {
-    if (plan_.media->map_bytes() == 0) return {{"prepare", prepare_seconds_}};
     const double maps = plan_.media->map_seconds();
-    return {{"prepare", prepare_seconds_ - maps}, {"light_maps", maps}};
+    std::vector<scene::StageTime> times = {{"prepare", prepare_seconds_ - maps}};
+    if (maps > 0 && plan_.media->map_bytes() > 0) times.push_back({"light_maps", maps});
+    return times;
   }
 
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
@@ -88,6 +94,7 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
                        {"look_ups", double(counters.media.look_ups)},
                        {"occlusion_rays", double(counters.media.occlusion_rays)},
                        {"pixels_behind", double(counters.pixels)}};
+    if (plan_.options.media.self_shadow) result.counters["light_maps_made"] = maps_made_;
     if (plan_.options.reproject) {
       result.counters["history_used"] = double(counters.history_used);
       result.counters["history_rejected"] = double(counters.history_rejected);
@@ -96,11 +103,9 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
     return result;
   }
 
-  // With reproject the last picture becomes the history of the next, and where the camera alone moves, media and maps are kept. Else a
-  // preparation keeps nothing.
+  // Keeps the layers of media and the maps of lights that still hold. With reproject the last picture becomes the history of the next.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
                                                     const scene::Execution& execution) override {
-    if (!plan_.options.reproject) return std::nullopt;
     const scene::Scene& now = *plan_.scene;
     const bool same =
         lit_media::fits(plan_.media->plan(), *scene) && scene->width == now.width && scene->height == now.height;
@@ -110,10 +115,12 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
       plan_.scene = std::move(scene);
     } else {
       scene::Stopwatch watch;
-      plan_ = make_plan(std::move(scene), plan_.options, execution);
+      plan_ = make_plan(std::move(scene), plan_.options, execution, plan_.media.get());
       prepare_seconds_ = watch.lap();
       times = prepare_times();
     }
+    maps_made_ = same ? 0 : plan_.media->maps_made();
+    if (!plan_.options.reproject) return times;
     if (last_) history_ = std::exchange(last_, std::nullopt);
     ++pictures_;
     return times;
@@ -128,6 +135,7 @@ class PreparedHalfResolutionMarch final : public scene::Prepared {
   Plan plan_;
   std::string settings_;
   double prepare_seconds_;
+  int maps_made_;                   // for this frame; others are of frames before
   int pictures_ = 0;                // before this one, by next()
   std::optional<History> history_;  // what they left; any number of renders begins with it
   mutable std::mutex mutex_;

@@ -8,6 +8,7 @@
 
 #include "scene/base/flush_subnormals.h"
 #include "scene/base/limits.h"
+#include "scene/light/same_light.h"
 
 namespace airlight::light_map {
 namespace {
@@ -112,6 +113,7 @@ LightMap::LightMap(const scene::Light& light, const std::vector<scene::Medium>& 
   for (int c = 0; c < varied_.planes; ++c) texels_[c].resize(side * side * floats_per_texel(options));
   make_texels(densities, execution);
   make_border();
+  varied_.parts.clear();  // a map may outlive the media, in frames in which they do not change
 }
 
 void LightMap::make_texels(const Densities& densities, const scene::Execution& execution) {
@@ -247,20 +249,27 @@ void LightMap::varied_depths(std::size_t n, const double* x, const double* y, co
     for (std::size_t i = 0; i < n; ++i) depth[c][i] = float(varied_.share[c]) * depth[0][i];
 }
 
-std::vector<std::shared_ptr<const LightMap>> make_maps(const std::vector<scene::Light>& lights,
-                                                       const std::vector<scene::Medium>& media, const Options& options,
-                                                       const Densities& densities, const scene::Execution& execution,
-                                                       const std::string& who) {
+Maps make_maps(const std::vector<scene::Light>& lights, const std::vector<scene::Medium>& media, const Options& options,
+               const Densities& densities, const scene::Execution& execution, const std::string& who,
+               const std::vector<scene::Light>& lights_before,
+               const std::vector<std::shared_ptr<const LightMap>>& before) {
   scene::require_memory(double(lights.size()) * bytes_of_map(varied_media(media, options), options),
                         fmt::format("{}: maps of {} lights", who, lights.size()));
-  std::vector<std::shared_ptr<const LightMap>> maps;
+  Maps maps;
   scene::Execution part = execution;
   for (const scene::Light& light : lights) {
+    // Most lights keep their number from frame to frame.
+    const std::size_t l = maps.of_lights.size();
+    if (l < before.size() && scene::same_rays(lights_before[l], light)) {
+      maps.of_lights.push_back(before[l]);
+      continue;
+    }
     if (execution.progress)
       part.progress = [&](double fraction) {
-        return execution.progress((double(maps.size()) + fraction) / double(lights.size()));
+        return execution.progress((double(maps.of_lights.size()) + fraction) / double(lights.size()));
       };
-    maps.push_back(std::make_shared<LightMap>(light, media, options, densities, part));
+    maps.of_lights.push_back(std::make_shared<LightMap>(light, media, options, densities, part));
+    ++maps.made;
   }
   return maps;
 }

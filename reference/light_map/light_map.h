@@ -101,10 +101,15 @@ class LightMap {
   std::vector<float> texels_[3];
 };
 
-// The maps of all lights, in their order. Throws Error, which begins with `who`, where they do not fit into memory.
-std::vector<std::shared_ptr<const LightMap>> make_maps(const std::vector<scene::Light>&,
-                                                       const std::vector<scene::Medium>&, const Options&,
-                                                       const Densities&, const scene::Execution&,
-                                                       const std::string& who);
+// The maps of all lights, in their order. `lights_before` and `before`: of a frame with the same media, densities and options, whose maps of
+// lights with the same rays are shared; none, or as many of both. `made` is the number of the others. Throws Error, which begins with `who`,
+// where they do not fit into memory.
+struct Maps {
+  std::vector<std::shared_ptr<const LightMap>> of_lights;
+  int made = 0;
+};
+Maps make_maps(const std::vector<scene::Light>&, const std::vector<scene::Medium>&, const Options&, const Densities&,
+               const scene::Execution&, const std::string& who, const std::vector<scene::Light>& lights_before = {},
+               const std::vector<std::shared_ptr<const LightMap>>& before = {});
 
 }  // namespace airlight::light_map

@@ -8,6 +8,7 @@
 #include "reference/ray_marcher/light_maps.h"
 #include "scene/base/stopwatch.h"
 #include "scene/light/sky_directions.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::lit_media {
 namespace {
@@ -79,9 +80,10 @@ void Counters::operator+=(const Counters& other) {
   occlusion_rays += other.occlusion_rays;
 }
 
-Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const Plan* before) {
   Plan plan{std::move(scene), options, {}, {}, false, 0};
-  plan.layers = ray_marcher::make_layers(plan.scene->media);
+  plan.layers =
+      ray_marcher::make_layers(plan.scene->media, before ? before->layers : std::vector<ray_marcher::Layer>{});
   // Media that dim no light swallow none.
   const bool swallowed = options.self_shadow && scene::swallows_distant_light(plan.scene->media);
   plan.lights = scene::lights_from_directions(plan.scene->lights, options.environment_directions, swallowed);
@@ -110,16 +112,24 @@ double map_bytes(const Plan& plan) {
 
 LitMedia::LitMedia(Plan plan)
     : plan_(std::move(plan)),
-      densities_(ray_marcher::too_fine_for_kernels(*plan_.scene)
-                     ? light_map::densities_of(plan_.scene->media)
-                     : ray_marcher::densities_by_kernels(plan_.layers, plan_.scene->media)) {}
+      by_kernels_(!ray_marcher::too_fine_for_kernels(*plan_.scene)),
+      densities_(by_kernels_ ? ray_marcher::densities_by_kernels(plan_.layers, plan_.scene->media)
+                             : light_map::densities_of(plan_.scene->media)) {}
 
-LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution)
-    : LitMedia(make_plan(std::move(scene), options)) {
+LitMedia::LitMedia(std::shared_ptr<const scene::Scene> scene, const Options& options, const scene::Execution& execution,
+                   const LitMedia* before)
+    : LitMedia(make_plan(std::move(scene), options, before ? &before->plan_ : nullptr)) {
   if (!needs_maps(plan_)) return;
   scene::Stopwatch watch;
-  maps_ = light_map::make_maps(plan_.lights, plan_.scene->media, options.map, densities_, execution, "lit media");
-  map_seconds_ = watch.lap();
+  const bool keeps = before && !before->maps_.empty() && before->by_kernels_ == by_kernels_ &&
+                     scene::same_media(before->plan_.scene->media, plan_.scene->media);
+  light_map::Maps maps =
+      keeps ? make_maps(plan_.lights, plan_.scene->media, options.map, densities_, execution, "lit media",
+                        before->plan_.lights, before->maps_)
+            : make_maps(plan_.lights, plan_.scene->media, options.map, densities_, execution, "lit media");
+  maps_ = std::move(maps.of_lights);
+  maps_made_ = maps.made;
+  if (maps_made_ > 0) map_seconds_ = watch.lap();
 }
 
 void LitMedia::add_densities(const Ray& ray, const std::vector<double>& t, Samples& s, Counters& counters) const {

@@ -36,7 +36,8 @@ struct Plan {
   bool scatters = false;  // may a point scatter light at all?
   double nearest = 0;     // light comes from so far away at least [m]
 };
-Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
+// `before`: of the frame before, whose layers are shared where they still hold; may be null.
+Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&, const Plan* before = nullptr);
 // Do these media and lights stand for that scene's, too, so that maps and what else is made of them serve it?
 bool fits(const Plan&, const scene::Scene&);
 // Does a point or a surface ask for what media leave of a light? And the memory of the maps that then are made.
@@ -65,8 +66,10 @@ struct Samples {
 
 class LitMedia {
  public:
+  // `before`: of the frame before, with the same options; layers of media and maps of lights are shared where they still hold. May be null.
   // Throws Error where the lights' maps do not fit into memory. Its bits do not depend on the threads.
-  LitMedia(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution&);
+  LitMedia(std::shared_ptr<const scene::Scene>, const Options&, const scene::Execution&,
+           const LitMedia* before = nullptr);
   // Without maps, for extinctions alone.
   explicit LitMedia(Plan);
 
@@ -87,6 +90,7 @@ class LitMedia {
   Interval extent(const Ray&, Interval t) const;
   const std::vector<ray_marcher::Layer>& layers() const { return plan_.layers; }
   double map_seconds() const { return map_seconds_; }
+  int maps_made() const { return maps_made_; }  // those shared with the frame before left out
   std::size_t map_bytes() const;
 
  private:
@@ -95,9 +99,11 @@ class LitMedia {
   void add_light(std::size_t l, const Ray&, std::size_t begin, std::size_t end, Samples&, Counters&) const;
 
   Plan plan_;
+  bool by_kernels_;
   light_map::Densities densities_;
   std::vector<std::shared_ptr<const light_map::LightMap>> maps_;  // none without self_shadow
   double map_seconds_ = 0;
+  int maps_made_ = 0;
 };
 
 }  // namespace airlight::lit_media

@@ -30,7 +30,7 @@ void chebyshev_distance(const int n[3], std::vector<int>& distance) {
       for (int x = n[0]; x-- > 0;) relax(x, y, z, 1);
 }
 
-void map_free_space(GridField& field, const std::vector<float>& values) {
+std::vector<float> free_space(const GridField& field, const std::vector<float>& values) {
   constexpr int brick = 1 << GridField::brick_shift;
   const int* n = field.bricks;
   std::vector<int> distance(std::size_t(n[0]) * n[1] * n[2], n[0] + n[1] + n[2]);
@@ -45,9 +45,33 @@ void map_free_space(GridField& field, const std::vector<float>& values) {
               distance[i + std::size_t(n[0]) * (j + std::size_t(n[1]) * k)] = 0;
       }
   chebyshev_distance(n, distance);
-  field.free_distance.resize(distance.size());
-  std::transform(distance.begin(), distance.end(), field.free_distance.begin(),
+  std::vector<float> free(distance.size());
+  std::transform(distance.begin(), distance.end(), free.begin(),
                  [](int d) { return d == 0 ? -1.0f : float((d - 1) * brick); });
+  return free;
+}
+
+std::shared_ptr<const GridSamples> make_samples(const scene::VoxelGrid& grid, const GridField& field) {
+  constexpr int padding = GridField::padding;
+  const std::size_t slice = std::size_t(field.size[0]) * field.size[1];
+  std::vector<float> values(slice * field.size[2], 0.0f);
+  float* out = values.data();
+  for (int z = 0; z < field.size[2]; ++z)
+    for (int y = 0; y < field.size[1]; ++y)
+      for (int x = 0; x < field.size[0]; ++x, ++out) {
+        const int i = x - padding, j = y - padding, k = z - padding;
+        const int ci = std::clamp(i, 0, grid.size[0] - 1), cj = std::clamp(j, 0, grid.size[1] - 1),
+                  ck = std::clamp(k, 0, grid.size[2] - 1);
+        if (grid.clamp_border || (i == ci && j == cj && k == ck)) *out = grid.at(ci, cj, ck);
+      }
+  auto samples = std::make_shared<GridSamples>();
+  samples->pairs.assign(2 * values.size(), 0.0f);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    samples->pairs[2 * i] = values[i];
+    if (i >= slice) samples->pairs[2 * (i - slice) + 1] = values[i];
+  }
+  samples->free_distance = free_space(field, values);
+  return samples;
 }
 
 }  // namespace
@@ -59,7 +83,8 @@ Vec3 Frame::vector(const Vec3& v) const {
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid& grid) {
+std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid& grid, const scene::VoxelGrid* from,
+                                                 const GridField* before) {
   constexpr int padding = GridField::padding;
   auto field = std::make_shared<GridField>();
   const Mat3 to_local = grid.rotation.transpose() / grid.voxel_size;
@@ -73,23 +98,9 @@ std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid& grid) {
     field->lo[i] = padding - reach;
     field->hi[i] = padding + grid.size[i] - 1 + reach;
   }
-  const std::size_t slice = std::size_t(field->size[0]) * field->size[1];
-  std::vector<float> values(slice * field->size[2], 0.0f);
-  float* out = values.data();
-  for (int z = 0; z < field->size[2]; ++z)
-    for (int y = 0; y < field->size[1]; ++y)
-      for (int x = 0; x < field->size[0]; ++x, ++out) {
-        const int i = x - padding, j = y - padding, k = z - padding;
-        const int ci = std::clamp(i, 0, grid.size[0] - 1), cj = std::clamp(j, 0, grid.size[1] - 1),
-                  ck = std::clamp(k, 0, grid.size[2] - 1);
-        if (grid.clamp_border || (i == ci && j == cj && k == ck)) *out = grid.at(ci, cj, ck);
-      }
-  field->pairs.assign(2 * values.size(), 0.0f);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    field->pairs[2 * i] = values[i];
-    if (i >= slice) field->pairs[2 * (i - slice) + 1] = values[i];
-  }
-  map_free_space(*field, values);
+  const bool same_values = before && from && grid.size == from->size && grid.clamp_border == from->clamp_border &&
+                           grid.values == from->values;
+  field->samples = same_values ? before->samples : make_samples(grid, *field);
   return field;
 }
 

@@ -22,23 +22,30 @@ struct Frame {
   Vec3 vector(const Vec3& v) const;
 };
 
+// What does not depend on where the grid stands: shared by frames in which it moves.
+struct GridSamples {
+  // Each sample with its neighbour along z, x fastest: four corners of a cell are then 16 bytes in a row.
+  std::vector<float> pairs;
+  std::vector<float> free_distance;  // per brick, x fastest
+};
+
 struct GridField {
   Frame frame;
   int size[3];  // padded samples per axis
-  // Each sample with its neighbour along z, x fastest: four corners of a cell are then 16 bytes in a row.
-  std::vector<float> pairs;
   int bricks[3];
-  std::vector<float> free_distance;  // per brick, x fastest
-  float lo[3], hi[3];                // the support, local
+  float lo[3], hi[3];  // the support, local
+  std::shared_ptr<const GridSamples> samples;
 
   static constexpr int padding = 2, brick_shift = 2;
   // Of the brick around a local point inside the padded grid.
   float free_at(double px, double py, double pz) const {
     const int x = int(px) >> brick_shift, y = int(py) >> brick_shift, z = int(pz) >> brick_shift;
-    return free_distance[x + std::size_t(bricks[0]) * (y + std::size_t(bricks[1]) * z)];
+    return samples->free_distance[x + std::size_t(bricks[0]) * (y + std::size_t(bricks[1]) * z)];
   }
 };
 
-std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid&);
+// `before` was made of the grid `from`, another frame's: where the values are the same, the samples are shared.
+std::shared_ptr<const GridField> make_grid_field(const scene::VoxelGrid&, const scene::VoxelGrid* from = nullptr,
+                                                 const GridField* before = nullptr);
 
 }  // namespace airlight::ray_marcher

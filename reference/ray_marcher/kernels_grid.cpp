@@ -29,12 +29,9 @@ struct View {
 
 View view_of(const GridField& field) {
   const I i;
-  return {field.pairs.data(),
-          field.free_distance.data(),
-          hn::Set(i, field.size[0]),
-          hn::Set(i, field.size[0] * field.size[1]),
-          hn::Set(i, field.bricks[0]),
-          hn::Set(i, field.bricks[0] * field.bricks[1]),
+  return {field.samples->pairs.data(),      field.samples->free_distance.data(),
+          hn::Set(i, field.size[0]),        hn::Set(i, field.size[0] * field.size[1]),
+          hn::Set(i, field.bricks[0]),      hn::Set(i, field.bricks[0] * field.bricks[1]),
           2 * std::ptrdiff_t(field.size[0])};
 }
 

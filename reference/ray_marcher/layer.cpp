@@ -7,6 +7,7 @@
 #include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
 #include "scene/media/legendre_box.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::ray_marcher {
 
@@ -61,13 +62,14 @@ void set_shape(Layer& layer) {
       });
 }
 
-void set_grid(Layer& layer, const scene::VoxelGrid& grid) {
+void set_grid(Layer& layer, const scene::VoxelGrid& grid, const Layer* before) {
   layer.varies = true;
-  layer.grid = make_grid_field(grid);
+  layer.grid = make_grid_field(grid, before ? scene::grid_of(before->medium->field) : nullptr,
+                               before ? before->grid.get() : nullptr);
 }
 
 // What varies, and its kernel.
-void set_varied(Layer& layer) {
+void set_varied(Layer& layer, const Layer* before) {
   const Box box = varied_support(layer.medium->field);
   scene::match(
       layer.medium->field, [&](const scene::Homogeneous&) { layer.varies = false; },
@@ -75,10 +77,10 @@ void set_varied(Layer& layer) {
         layer.varies = !sum.gaussians.empty();
         if (layer.varies) layer.gaussians = make_gaussian_field(sum, box);
       },
-      [&](const scene::GridPointer& grid) { set_grid(layer, *grid); },
+      [&](const scene::GridPointer& grid) { set_grid(layer, *grid, before); },
       [&](const scene::FogmapPointer&) { layer.varies = true; },
       [&](const scene::LegendrePointer&) { layer.varies = true; },
-      [&](const scene::FittedPointer& fitted) { set_grid(layer, fitted->grid); });
+      [&](const scene::FittedPointer& fitted) { set_grid(layer, fitted->grid, before); });
   if (!layer.varies) return;
   layer.varied = box;
   const Box inside = intersect(box, bounding_box(*layer.medium));
@@ -87,15 +89,19 @@ void set_varied(Layer& layer) {
 
 }  // namespace
 
-std::vector<Layer> make_layers(const std::vector<scene::Medium>& media) {
+std::vector<Layer> make_layers(const std::vector<scene::Medium>& media, const std::vector<Layer>& all_before) {
   std::vector<Layer> layers;
   for (const scene::Medium& medium : media) {
     if (!extinguishes(medium)) continue;
-    Layer layer{};
+    const Layer* before = layers.size() < all_before.size() ? &all_before[layers.size()] : nullptr;
+    const bool same = before && same_medium(*before->medium, medium);
+    Layer layer = same ? *before : Layer{};
     layer.medium = &medium;
-    layer.constant = constant_part(medium.field);
-    set_shape(layer);
-    set_varied(layer);
+    if (!same) {
+      layer.constant = constant_part(medium.field);
+      set_shape(layer);
+      set_varied(layer, before);
+    }
     layers.push_back(std::move(layer));
   }
   double thickest = 0;

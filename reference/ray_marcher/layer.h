@@ -28,8 +28,9 @@ struct Layer {
   double thickest = 0;
 };
 
-// Media that can be seen at all: some extinction, some density.
-std::vector<Layer> make_layers(const std::vector<scene::Medium>&);
+// Media that can be seen at all: some extinction, some density. `before`: layers of the frame before, whose media still live; what is laid
+// out for the kernels is shared where the field is the same, and the samples of a grid where it has moved alone.
+std::vector<Layer> make_layers(const std::vector<scene::Medium>&, const std::vector<Layer>& before = {});
 
 // Where a ray meets the region; and where it meets the varying part, empty if there is none.
 Interval constant_extent(const Layer&, const Ray&, Interval t);

@@ -2,6 +2,7 @@
 
 #include "reference/ray_marcher/samples.h"
 #include "scene/base/stopwatch.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::ray_marcher {
 namespace {
@@ -50,14 +51,20 @@ bool needs_maps(const Plan& plan) {
          (plan.scatters || plan.scene->geometry);
 }
 
-void make_light_maps(Plan& plan, const scene::Execution& execution) {
+void make_light_maps(Plan& plan, const scene::Execution& execution, const Plan* before) {
   if (!needs_maps(plan)) return;
   scene::Stopwatch watch;
   const std::vector<scene::Medium>& media = plan.scene->media;
   const light_map::Densities densities =
       plan.options.simd ? densities_by_kernels(plan.layers, media) : light_map::densities_of(media);
-  plan.maps = light_map::make_maps(plan.lights, media, plan.options.map, densities, execution, "ray_marcher");
-  plan.map_seconds = watch.lap();
+  const bool keeps = before && !before->maps.empty() && before->options.simd == plan.options.simd &&
+                     scene::same_media(before->scene->media, media);
+  light_map::Maps maps = keeps ? make_maps(plan.lights, media, plan.options.map, densities, execution, "ray_marcher",
+                                           before->lights, before->maps)
+                               : make_maps(plan.lights, media, plan.options.map, densities, execution, "ray_marcher");
+  plan.maps = std::move(maps.of_lights);
+  plan.maps_made = maps.made;
+  if (maps.made > 0) plan.map_seconds = watch.lap();
 }
 
 }  // namespace airlight::ray_marcher

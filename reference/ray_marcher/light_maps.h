@@ -7,9 +7,10 @@ namespace airlight::ray_marcher {
 // Is shadow = map, and does a step or a surface ask for a depth?
 bool needs_maps(const Plan&);
 
-// One for each light, into Plan::maps, where they are needed. Throws Error where they do not fit into memory. Asks the execution
+// One for each light, into Plan::maps, where they are needed. `before`: of the frame before, whose maps are shared where they still hold; may
+// be null. Throws Error where they do not fit into memory. Asks the execution
 // for threads, and whether to stop.
-void make_light_maps(Plan&, const scene::Execution&);
+void make_light_maps(Plan&, const scene::Execution&, const Plan* before = nullptr);
 
 // What varies of the media, by the kernels of the layers, which must live as long, and by the media's own functions where a layer has none.
 light_map::Densities densities_by_kernels(const std::vector<Layer>&, const std::vector<scene::Medium>&);

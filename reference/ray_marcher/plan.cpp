@@ -46,11 +46,11 @@ bool only_deep_lamps(const Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options) {
+Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const Plan* before) {
   Plan plan;
   plan.scene = scene;
   plan.options = options;
-  plan.layers = make_layers(scene->media);
+  plan.layers = make_layers(scene->media, before ? before->layers : std::vector<Layer>{});
   plan.swallowed = scene::swallows_distant_light(scene->media);
   plan.lights = scene::lights_from_directions(scene->lights, options.environment_directions, plan.swallowed);
   for (const Layer& layer : plan.layers)

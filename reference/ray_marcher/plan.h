@@ -20,6 +20,7 @@ struct Plan {
   bool scatters = false;   // some medium has an albedo, and there is light for it
   std::vector<std::shared_ptr<const light_map::LightMap>> maps;  // of make_light_maps, one for each light
   double map_seconds = 0;                                        // what they took
+  int maps_made = 0;                                             // those shared with a frame before left out
 };
 
 // Size of the finest voxels [m], the unit of the settings `step` and `shadow_step`; 1 without a grid.
@@ -28,8 +29,9 @@ double length_unit(const scene::Scene&);
 // Kernels compute places within media in float: is that too coarse for this scene?
 bool too_fine_for_kernels(const scene::Scene&);
 
-// Without maps, which are made by make_light_maps (light_maps.h) or on a device.
-Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&);
+// Without maps, which are made by make_light_maps (light_maps.h) or on a device. `before`: of the frame before, whose layers are shared where
+// they still hold; may be null.
+Plan make_plan(std::shared_ptr<const scene::Scene>, const Options&, const Plan* before = nullptr);
 
 // One march along a camera ray. The first of a ray is common: it serves the transmittance, and every light that has no
 // march of its own. A light that grades the ray around itself has one.

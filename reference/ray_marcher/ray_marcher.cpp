@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 
 #include "reference/ray_marcher/light_maps.h"
@@ -21,8 +20,6 @@
 
 namespace airlight::ray_marcher {
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // The integral of 1/t^2 along every camera ray diverges there; steps would make any number of it.
 bool light_on_camera(const scene::Scene& scene) {
@@ -55,11 +52,11 @@ std::vector<scene::StageTime> stage_times(const std::vector<scene::Stage>& stage
 
 class PreparedMarch final : public scene::Prepared {
  public:
-  PreparedMarch(Plan plan, std::string settings, double seconds)
-      : plan_(std::move(plan)),
-        stages_(describe_stages(plan_)),
-        settings_(std::move(settings)),
-        prepare_seconds_(seconds) {}
+  PreparedMarch(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+                const scene::Execution& execution)
+      : settings_(settings) {
+    prepare(std::move(scene), execution);
+  }
 
   std::vector<scene::Stage> stages() const override { return stages_; }
   std::vector<scene::StageTime> prepare_times() const override {
@@ -68,14 +65,24 @@ class PreparedMarch final : public scene::Prepared {
     return times;
   }
 
+  // Keeps the layers of media and the maps of lights that still hold.
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene> scene,
+                                                    const scene::Execution& execution) override {
+    if (!RayMarcher().supports(*scene, settings_).empty()) return std::nullopt;
+    prepare(std::move(scene), execution);
+    return prepare_times();
+  }
+
   scene::Rendering render(const scene::View& view, const scene::Execution& execution) const override {
     require_own_camera(*plan_.scene, view);
     require_lights_apart(*plan_.scene, view, 1e-13, "ray_marcher");
     scene::Rendering result;
     result.film = scene::Film(view.width, view.height);
     const scene::PictureLayers layers(result.film, {});
-    result.film.metadata = {
-        {"method", "ray_marcher"}, {"settings", settings_}, {"scene", plan_.scene->name}, {"hash", plan_.scene->hash}};
+    result.film.metadata = {{"method", "ray_marcher"},
+                            {"settings", settings_.canonical()},
+                            {"scene", plan_.scene->name},
+                            {"hash", plan_.scene->hash}};
     scene::Stopwatch watch;
     // Steps of this many are in memory at once, a quarter of a kilobyte each.
     const auto rays_at_once =
@@ -103,7 +110,10 @@ class PreparedMarch final : public scene::Prepared {
                        {"shadow_rays", double(total.shadow_rays)},
                        {"shadow_steps", double(total.shadow_steps)},
                        {"occlusion_rays", double(total.occlusion_rays)}};
-    if (plan_.options.shadow == Shadow::map) result.counters["look_ups"] = double(total.look_ups);
+    if (plan_.options.shadow == Shadow::map) {
+      result.counters["look_ups"] = double(total.look_ups);
+      result.counters["light_maps_made"] = plan_.maps_made;
+    }
     result.film.metadata["seconds"] = fmt::format("{:.6f}", seconds);
     std::string& counters = result.film.metadata["counters"];
     for (const auto& [name, value] : result.counters)
@@ -112,6 +122,17 @@ class PreparedMarch final : public scene::Prepared {
   }
 
  private:
+  void prepare(std::shared_ptr<const scene::Scene> scene, const scene::Execution& execution) {
+    scene::Stopwatch watch;
+    const Options options = read_options(settings_, length_unit(*scene));
+    const Plan* before = plan_.scene ? &plan_ : nullptr;
+    Plan plan = make_plan(std::move(scene), options, before);
+    make_light_maps(plan, execution, before);
+    prepare_seconds_ = watch.lap();
+    plan_ = std::move(plan);
+    stages_ = describe_stages(plan_);
+  }
+
   std::vector<Pixel> plain(const std::vector<Ray>& rays, Counters& counters) const {
     std::vector<Pixel> pixels;
     for (const Ray& ray : rays) pixels.push_back(march_ray(plan_, ray, counters));
@@ -121,8 +142,8 @@ class PreparedMarch final : public scene::Prepared {
   static constexpr int tile_side = 8;
   Plan plan_;
   std::vector<scene::Stage> stages_;  // once: the default's stated error asks a grid for its greatest value
-  std::string settings_;
-  double prepare_seconds_;
+  scene::Settings settings_;
+  double prepare_seconds_ = 0;
 };
 
 }  // namespace
@@ -160,11 +181,7 @@ std::vector<std::string> RayMarcher::supports(const scene::Scene& scene, const s
 std::unique_ptr<scene::Prepared> RayMarcher::prepare_supported(std::shared_ptr<const scene::Scene> scene,
                                                                const scene::Settings& settings,
                                                                const scene::Execution& execution) const {
-  const double start = now();
-  const Options options = read_options(settings, length_unit(*scene));
-  Plan plan = make_plan(std::move(scene), options);
-  make_light_maps(plan, execution);
-  return std::make_unique<PreparedMarch>(std::move(plan), settings.canonical(), now() - start);
+  return std::make_unique<PreparedMarch>(std::move(scene), settings, execution);
 }
 
 }  // namespace airlight::ray_marcher

@@ -114,13 +114,17 @@ void add(ContentHash& hash, const Medium& medium) {
       [](Hazy) {}, [](Murky) {});
 }
 
+void add_surfaces(ContentHash& hash, const std::vector<Surface>& surfaces) {
+  hash.tag("surfaces");
+  hash.add(std::int64_t(surfaces.size()));
+  for (const Surface& surface : surfaces) load::add(hash, surface);
+}
+
 void add_matter(ContentHash& hash, const std::vector<Medium>& media, const std::vector<Surface>& surfaces) {
   hash.tag("media");
   hash.add(std::int64_t(media.size()));
   for (const Medium& medium : media) add(hash, medium);
-  hash.tag("surfaces");
-  hash.add(std::int64_t(surfaces.size()));
-  for (const Surface& surface : surfaces) load::add(hash, surface);
+  add_surfaces(hash, surfaces);
 }
 
 void add_lights(ContentHash& hash, const std::vector<Light>& lights) {
@@ -144,12 +148,18 @@ std::string light_hash(const Scene& scene) {
   return hash.digits();
 }
 
+std::string surface_hash(const Scene& scene) {
+  ContentHash hash;
+  add_surfaces(hash, scene.surfaces);
+  return hash.digits();
+}
+
 std::string content_hash(const Scene& scene) {
   ContentHash hash;
   hash.tag("airlight scene 1");  // raised when the meaning of the values changes
   // The geometry follows from the surfaces.
   const auto& [name, camera, width, height, lights, media, surfaces, geometry, backdrops, ambient_in_scatter, whole,
-               of_matter, of_lights] = scene;
+               of_matter, of_lights, of_surfaces] = scene;
   hash.all(width, height, ambient_in_scatter);
   add(hash, camera);
   add_lights(hash, lights);
@@ -171,6 +181,7 @@ void finish(Scene& scene) {
   scene.hash = content_hash(scene);
   scene.matter_hash = matter_hash(scene);
   scene.light_hash = light_hash(scene);
+  scene.surface_hash = surface_hash(scene);
 }
 
 }  // namespace airlight::scene

@@ -84,6 +84,13 @@ Interval density_bounds_at_samples(const VoxelGrid& grid, const Box& box) {
   const Box inside = intersect(box, sample_support(grid));
   if (inside.empty()) return {0, 0};
   const bool reaches_out = inside.lo != box.lo || inside.hi != box.hi;
+  const Box all = sample_support(grid);
+  if (inside.lo == all.lo && inside.hi == all.hi) {
+    // The whole grid, which is often asked for: its samples, and the zeros around them.
+    const Eigen::Map<const Eigen::ArrayXf> values(grid.values.data(), Eigen::Index(grid.values.size()));
+    const double least = grid.clamp_border && !reaches_out ? double(values.minCoeff()) : 0;
+    return {least * (1 - 4e-15), double(values.maxCoeff()) * (1 + 4e-15)};
+  }
 
   // A trilinear function takes its extremes over a box at the corners; over several voxels at the grid of the box's
   // faces and the samples between them.

@@ -179,8 +179,11 @@ TEST_CASE("next frames: the time after something moved, and whether all was prep
   REQUIRE(camera);
   REQUIRE(light);
   CHECK((!camera->anew && camera->seconds > 0));
-  CHECK((light->anew && light->seconds > camera->seconds));     // the map is made again
+  CHECK((!light->anew && light->seconds > camera->seconds));    // the map is made again, and nothing else
   CHECK_FALSE(after("ray_marcher", Moving::What::fog, steps));  // there is no fogmap
+  const auto traced = after("path_tracer", Moving::What::lights, {{"samples", "1"}});
+  REQUIRE(traced);
+  CHECK(traced->anew);
   const auto kept = after("compensated_ray_marching", Moving::What::lights, {{"cells", "8"}});
   REQUIRE(kept);
   CHECK_FALSE(kept->anew);

@@ -97,6 +97,21 @@ void check_moves(const scene::Renderer& renderer, const Given& given, const scen
   moved("lights", [](scene::Scene& s) {
     for (scene::Light& light : s.lights) light = scene::turned(scene::moved(light, Vec3(0.02, 0.03, -0.01)), 0.1);
   });
+  moved("dimmed lights", [](scene::Scene& s) {
+    for (scene::Light& light : s.lights) {
+      if (auto* point = std::get_if<scene::PointLight>(&light)) point->intensity *= 0.5;
+      if (auto* spot = std::get_if<scene::SpotLight>(&light)) spot->intensity *= 0.5;
+      if (auto* sun = std::get_if<scene::DirectionalLight>(&light)) sun->irradiance *= 0.5;
+      if (auto* sky = std::get_if<scene::EnvironmentLight>(&light)) sky->scale *= 0.5;
+    }
+  });
+  const auto sum_of = [](scene::Scene& s) -> scene::GaussianSum* {
+    for (scene::Medium& medium : s.media)
+      if (auto* sum = std::get_if<scene::GaussianSum>(&medium.field); sum && sum->gaussians.size() > 1) return sum;
+    return nullptr;
+  };
+  if (scene::Scene copy = still; sum_of(copy))
+    moved("a Gaussian less", [&](scene::Scene& s) { sum_of(s)->gaussians.pop_back(); });
   moved("media", [](scene::Scene& s) {
     for (scene::Medium& medium : s.media) medium.sigma_t *= 0.9;
   });

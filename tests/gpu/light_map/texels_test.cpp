@@ -40,7 +40,8 @@ Maps make(gpu::Context& context, const std::vector<scene::Medium>& media, const 
   const auto layers = ray_marcher::make_layers(media);
   const gpu::ray_marcher::MediaOnDevice on_device(context, layers, gpu::ray_marcher::middle_of(layers, Point3::Zero()),
                                                   gpu::ray_marcher::GridStorage::automatic);
-  return {make_maps(lights(), media, options, ray_marcher::densities_by_kernels(layers, media), {1, {}}, "texels_test"),
+  return {make_maps(lights(), media, options, ray_marcher::densities_by_kernels(layers, media), {1, {}}, "texels_test")
+              .of_lights,
           std::make_unique<gpu::light_map::LightMaps>(context, on_device, media, layers, lights(), options, progress)};
 }
 

@@ -91,6 +91,26 @@ TEST_CASE("wavelet fog: the next frame is that of a preparation from nothing", "
   }
 }
 
+// Another place alone.
+TEST_CASE("wavelet fog: fog that scrolls keeps its maps of the sun, a sun that turns does not", "[wavelet_fog]") {
+  auto still = std::make_shared<scene::Scene>(*scene_named("wavelet_fog/patchy", 24, 18));
+  still->lights = {scene::DirectionalLight{Vec3(1, 2, 0.5).normalized(), Rgb::Constant(3)}};
+  const auto scrolled = with_fog(still, [](scene::Fogmap& fog) { fog.x0 += 0.7, fog.z0 -= 0.2; });
+  auto dimmed = std::make_shared<scene::Scene>(*still), turned = std::make_shared<scene::Scene>(*still);
+  std::get<scene::DirectionalLight>(dimmed->lights[0]).irradiance *= 0.5;
+  std::get<scene::DirectionalLight>(turned->lights[0]).to_light = Vec3(1, 2, 0.6).normalized();
+  const Given given{{"sun", "true"}, {"sun_step", "2"}};
+  const auto prepared = method.prepare(still, {method.settings(), given}, {1, {}});
+  CHECK(prepared->render(view_of(*still), {1, {}}).counters.at("sun_maps_made") == 1);
+  const std::pair<ScenePointer, int> frames[] = {{scrolled, 0}, {dimmed, 0}, {turned, 1}, {changed(turned), 1}};
+  for (const auto& [frame, made] : frames) {
+    CAPTURE(made);
+    const scene::Rendering next = next_frame(*prepared, frame);
+    CHECK(next.counters.at("sun_maps_made") == made);
+    CHECK(next.film.layers == render(method, frame, given).film.layers);
+  }
+}
+
 TEST_CASE("wavelet fog: a next frame that a variant cannot draw is refused, and the frame before stays",
           "[wavelet_fog]") {
   const auto first = scene_named("wavelet_fog/patchy", 16, 12);
