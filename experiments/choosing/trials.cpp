@@ -1,0 +1,330 @@
+#include "experiments/choosing/trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "experiments/application/build_info.h"
+#include "experiments/application/interrupt.h"
+#include "experiments/application/renderers.h"
+#include "experiments/driver/timing.h"
+#include "scene/base/error.h"
+
+namespace airlight::experiments {
+namespace {
+
+using SharedScene = std::shared_ptr<const scene::Scene>;
+
+constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for the reference, and for any one candidate
+constexpr std::size_t least_frames = 3;   // timed, of each candidate on each film
+constexpr int groups = 4;                 // along each axis: of pixels that are left out in turn
+constexpr double hopeless = 4,
+                 worth = 1.25;  // times the time allowed: not timed any more; rendered on the scene's own film
+
+// A device's frame is complete there: what is timed reads nothing back.
+scene::Execution timed_on(const scene::Renderer& renderer, scene::Execution execution) {
+  if (!renderer.device().empty()) execution.layers.emplace();
+  return execution;
+}
+
+// Relative L2, with the noise of the reference taken out, and that of a path-traced picture counted. The interval has the noise in it, and
+// where not every pixel is looked at what other pixels could give: sixteen interleaved groups of them are left out in turn.
+Measure error_of(const scene::Film& film, const Truth& truth, bool count_noise) {
+  const ImageNoise noise = count_noise ? ImageNoise::counted : ImageNoise::removed;
+  const auto without = [&](const std::vector<unsigned char>& mask) {
+    return measure({"rel_l2"}, film, truth.film, "mean", {mask, {}}, noise).front();
+  };
+  Measure all = without(truth.left_out);
+  if (truth.sparse.stride == 1) return all;
+  std::vector<double> parts;
+  for (int group = 0; group < groups * groups; ++group) {
+    std::vector<unsigned char> mask = truth.left_out;
+    for (int y = group / groups; y < film.height; y += groups)
+      for (int x = group % groups; x < film.width; x += groups) mask[std::size_t(y * film.width + x)] = 1;
+    parts.push_back(without(mask).value);
+  }
+  const Estimate chosen = jackknife(all.value, parts);
+  if (!std::isfinite(chosen.low)) return all;
+  all.low = std::max(0.0, all.value - std::hypot(all.value - all.low, chosen.value - chosen.low));
+  all.high = all.value + std::hypot(all.high - all.value, chosen.high - chosen.value);
+  all.below_floor = all.below_floor || all.low <= 0;
+  return all;
+}
+
+Estimate plus(const Estimate& e, double seconds) { return {e.value + seconds, e.low + seconds, e.high + seconds}; }
+
+double pixels_of(const scene::View& view) { return double(view.width) * view.height; }
+
+// Half as wide and high.
+scene::View smaller_view(scene::View view) {
+  view.width = std::max(1, view.width / 2);
+  view.height = std::max(1, view.height / 2);
+  return view;
+}
+
+bool converts(const Moves& moves) {
+  return moves.empty() || std::find(moves.begin(), moves.end(), Moving::What::media) != moves.end();
+}
+
+}  // namespace
+
+Estimate extrapolated(const Estimate& small, double small_pixels, const Estimate& smaller, double smaller_pixels,
+                      double pixels) {
+  const auto line = [&](double at_small, double at_smaller) {
+    const double slope = (at_small - at_smaller) / (small_pixels - smaller_pixels);
+    return std::clamp(at_small + slope * (pixels - small_pixels), at_small, at_small * pixels / small_pixels);
+  };
+  return {line(small.value, smaller.value), line(small.low, smaller.high), line(small.high, smaller.low)};
+}
+
+struct Trials::Pass {
+  std::unique_ptr<scene::Prepared> prepared;
+  scene::Film film;
+  double prepare = 0, render = 0;  // [s]
+};
+
+Trials::Trials(SharedScene scene, TrialSetup setup, std::vector<Moves> moves, Report report)
+    : scene_(std::move(scene)),
+      setup_(setup),
+      moves_(std::move(moves)),
+      report_(std::move(report)),
+      start_(steady_seconds()),
+      deadline_(start_ + setup.spend) {
+  for (const Moves& all : moves_)
+    for (const Moving::What what : all)
+      if (!moved_back(*scene_, Moving{what}))
+        throw Error(fmt::format("{}: the scene has no {} that could move", scene_->name, name_of(what)));
+}
+
+double Trials::left() const { return start_ + setup_.spend - steady_seconds(); }
+
+scene::Execution Trials::execution() const {
+  return {setup_.threads, [this](double) {
+            report_(done_);
+            return !interrupted() && steady_seconds() < deadline_;
+          }};
+}
+
+Truth Trials::truth() const {
+  Truth truth;
+  truth.sparse = sparse_view(scene::view_of(*scene_), setup_.film);
+  truth.left_out = scene::ball_mask(*scene_, truth.sparse.small);
+  const scene::View& view = truth.sparse.small;
+  const scene::Renderer& renderer = find_renderer(setup_.all_orders ? "path_tracer" : "deterministic", "reference");
+  const double allowed = most_of_rest * left();
+  for (long long samples = setup_.samples;;) {
+    Pairs given{{"relative_tolerance", "1e-3"}};
+    if (setup_.all_orders) given = {{"samples", std::to_string(samples)}, {"stream", std::to_string(setup_.stream)}};
+    const double start = steady_seconds();
+    std::atomic<double> expected = 0;  // [s] of a reference that takes too long
+    scene::Execution how{
+        setup_.threads, [&](double fraction) {
+          report_(done_);
+          const double spent = steady_seconds() - start;
+          if (setup_.all_orders && samples > 64 && spent > 0.1 * allowed && fraction > 0 && spent / fraction > allowed)
+            expected = spent / fraction;
+          return !interrupted() && expected == 0;
+        }};
+    try {
+      truth.film = renderer.prepare(scene_, scene::Settings(renderer.settings(), given, "reference"), how)
+                       ->render(view, how)
+                       .film;
+    } catch (const scene::Interrupted&) {
+      if (expected == 0) throw;
+    }
+    check_interrupted();
+    if (expected == 0) {
+      truth.samples = setup_.all_orders ? samples : 0;
+      break;
+    }
+    samples = std::max(64LL, 64 * (long long)(double(samples) / 64 * 0.8 * allowed / expected));
+  }
+  require_finite(truth.film, fmt::format("{}: reference {}", scene_->name, renderer.name()));
+  truth.about = setup_.all_orders ? fmt::format("path tracing with all orders of scattering, {} samples", truth.samples)
+                                  : "quadrature of light scattered once";
+  return truth;
+}
+
+const Trials::Converted& Trials::scene_for(const Candidate& c) {
+  const auto [found, is_new] = converted_.try_emplace(c.convert ? canonical(*c.convert) : "");
+  Converted& made = found->second;
+  if (!is_new) return made;
+  if (!c.convert) {
+    made.scene = scene_;
+    return made;
+  }
+  try {
+    const auto all =
+        std::make_shared<const scene::ConvertedScene>(convert_media(*scene_, *c.convert, execution(), reference_id()));
+    made.scene = {all, &all->scene};
+    for (const scene::ConvertedMedium& medium : all->media) {
+      made.seconds += medium.seconds;
+      made.density_error = std::max(made.density_error, medium.density_error);
+    }
+  } catch (const scene::Interrupted&) {
+    converted_.erase(found);
+    throw;
+  } catch (const scene::NotSupported& objection) {
+    made.refused = objection.reason;
+  } catch (const Error& error) {
+    made.refused = error.what();
+  }
+  return made;
+}
+
+Trials::Pass Trials::pass(const Candidate& c, const Converted& converted, const scene::View& view) const {
+  Pass pass;
+  const scene::Execution how = execution();
+  double start = steady_seconds();
+  pass.prepared = c.renderer->prepare(converted.scene, c.settings, how);
+  pass.prepare = steady_seconds() - start;
+  // Drivers compile shaders at first use.
+  if (!c.renderer->device().empty()) pass.prepared->render(view, how);
+  start = steady_seconds();
+  pass.film = pass.prepared->render(view, how).film;
+  pass.render = steady_seconds() - start;
+  if (!how.progress(1)) throw scene::Interrupted("stopped");  // a renderer may keep what it has
+  require_finite(pass.film, c.name);
+  return pass;
+}
+
+// [s] of frames on each of the views; the preparation is used up.
+std::vector<Estimate> Trials::frames(const Candidate& c, const Converted& converted, const Moves& moves, Pass& pass,
+                                     const std::vector<scene::View>& views, bool& anew) const {
+  const scene::Execution how = timed_on(*c.renderer, execution());
+  std::vector<Estimate> all;
+  const double conversion = converts(moves) ? converted.seconds : 0;
+  if (moves.empty()) {
+    for (const scene::View& view : views) {
+      std::vector<double> times;
+      for (double spent = 0; times.empty() || (times.size() < 5 && spent + times.back() < setup_.frames_seconds);
+           spent += times.back()) {
+        const double start = steady_seconds();
+        c.renderer->prepare(converted.scene, c.settings, how)->render(view, how);
+        times.push_back(steady_seconds() - start);
+      }
+      all.push_back(plus(median_estimate(times), conversion));
+    }
+    anew = true;
+    return all;
+  }
+  const SharedScene other = all_moved_back(*converted.scene, moves);
+  if (!other) throw scene::NotSupported("", "nothing in the converted scene moves so");
+  if (const auto reasons = c.renderer->supports(*other, c.settings); !reasons.empty())
+    throw scene::NotSupported("", reasons.front());
+  if (!pass.prepared) {
+    pass.prepared = c.renderer->prepare(converted.scene, c.settings, how);
+    pass.prepared->render(views.front(), how);
+  }
+  FramesAfter after(*c.renderer, c.settings, converted.scene, other, std::move(pass.prepared));
+  for (const scene::View& view : views)
+    all.push_back(plus(median_estimate(after.some(view, how, setup_.frames_seconds, least_frames)), conversion));
+  anew = after.anew();
+  return all;
+}
+
+void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
+  const Candidate& c = *trial.candidate;
+  const Converted& converted = scene_for(c);
+  trial.density_error = converted.density_error;
+  if (!converted.scene) throw scene::NotSupported("", converted.refused);
+  if (const auto reasons = c.renderer->supports(*converted.scene, c.settings); !reasons.empty())
+    throw scene::NotSupported("", reasons.front());
+  const SparseView& sparse = truth.sparse;
+  Pass first = pass(c, converted, sparse.small);
+  trial.left_out = experiments::left_out(*c.renderer, first.prepared->stages());
+  trial.error = error_of(first.film, truth, c.renderer->monte_carlo());
+  trial.of_film = sparse.stride == 1;
+  const double small = pixels_of(sparse.small), whole = pixels_of(sparse.whole);
+  std::vector<scene::View> views{sparse.small};
+  if (!trial.of_film) views.push_back(smaller_view(sparse.small));
+  double cost = first.prepare;
+  for (const Moves& moves : moves_) {
+    FrameTime time;
+    const double frame = (moves.empty() ? first.prepare : 0) + first.render;
+    if (goal.seconds && frame > hopeless * *goal.seconds) {
+      const double conversion = converts(moves) ? converted.seconds : 0;
+      time.seconds = plus({first.render * whole / small, first.render, first.render * whole / small}, conversion);
+      time.at_least = true;
+    } else {
+      const std::vector<Estimate> of_views = frames(c, converted, moves, first, views, time.anew);
+      time.seconds =
+          trial.of_film ? of_views[0] : extrapolated(of_views[0], small, of_views[1], pixels_of(views[1]), whole);
+    }
+    trial.times.push_back(time);
+    cost += first.prepare + 4 * time.seconds.value;
+  }
+  costs_[&c] = cost;
+}
+
+void Trials::measure_on_film(Trial& trial, const Truth& truth) {
+  const Candidate& c = *trial.candidate;
+  const Converted& converted = scene_for(c);
+  Trial measured = trial;
+  measured.of_film = true;
+  Pass first = pass(c, converted, truth.sparse.whole);
+  measured.error = error_of(pick(first.film, truth.sparse), truth, c.renderer->monte_carlo());
+  for (std::size_t i = 0; i < moves_.size(); ++i)
+    measured.times[i].seconds =
+        frames(c, converted, moves_[i], first, {truth.sparse.whole}, measured.times[i].anew).front();
+  trial = measured;
+}
+
+// False, and says why in the trial, where there are no figures.
+bool Trials::attempt(Trial& trial, const std::function<void()>& work) {
+  deadline_ = steady_seconds() + std::max(0.0, most_of_rest * left());
+  try {
+    if (left() <= 0) throw scene::Interrupted("no time is left");
+    work();
+    check_interrupted();
+    return true;
+  } catch (const scene::Interrupted&) {
+    check_interrupted();
+    trial.stopped = "no time was left";
+  } catch (const scene::NotSupported& objection) {
+    trial.refused = objection.reason;
+  } catch (const Unavailable& reason) {
+    trial.refused = fmt::format("not available on this machine: {}", reason.what());
+  } catch (const Error& error) {
+    trial.refused = error.what();
+  }
+  return false;
+}
+
+std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal) {
+  std::vector<Trial> trials;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    done_ = 0.6 * double(i) / double(candidates.size());
+    report_(done_);
+    // A conversion only loses where the renderer knows the scene as it is.
+    if (c.convert && c.renderer->supports(*scene_, c.settings).empty()) continue;
+    Trial trial;
+    trial.candidate = &c;
+    if (!attempt(trial, [&] { screen(trial, truth, goal); })) trial.times.clear();
+    trials.push_back(std::move(trial));
+  }
+  std::vector<Trial*> open;
+  for (Trial& trial : trials) {
+    if (!trial.done() || trial.of_film) continue;
+    const bool in_time = !goal.seconds || std::any_of(trial.times.begin(), trial.times.end(), [&](const FrameTime& t) {
+      return !t.at_least && t.seconds.low <= worth * *goal.seconds;
+    });
+    if (in_time && (!goal.error || trial.error.low <= worth * *goal.error)) open.push_back(&trial);
+  }
+  std::stable_sort(open.begin(), open.end(), [&](const Trial* a, const Trial* b) {
+    return goal.error ? a->times[0].seconds.value < b->times[0].seconds.value : a->error.value < b->error.value;
+  });
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    done_ = 0.6 + 0.4 * double(i) / double(open.size());
+    report_(done_);
+    if (costs_[open[i]->candidate] > left()) continue;
+    Trial tried = *open[i];
+    if (attempt(tried, [&] { measure_on_film(tried, truth); })) *open[i] = tried;
+  }
+  return trials;
+}
+
+}  // namespace airlight::experiments

@@ -1,0 +1,107 @@
+// What candidates cost and how far they err in one scene, tried on a small film first, and on the scene's own where that is worth it.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/choosing/candidates.h"
+#include "experiments/choosing/sparse_view.h"
+#include "experiments/judging/metrics.h"
+#include "experiments/judging/statistics.h"
+
+namespace airlight::experiments {
+
+// What moves at once from one frame to the next. Empty: a still from nothing, whose time has the conversion and the preparation in it.
+using Moves = std::vector<Moving::What>;
+
+struct TrialSetup {
+  int film = 64;            // about as many pixels wide is the small film; that of the scene: nothing is extrapolated
+  bool all_orders = true;   // of scattering are in the reference; else one
+  long long samples = 256;  // of the reference, if it is path-traced
+  int stream = 0;           // of its random numbers
+  int threads = 0;          // 0: all
+  double spend = 60;        // [s] for everything
+  double frames_seconds = 0.1;  // [s] for the frames of one candidate on one film
+};
+
+// One of the two.
+struct Goal {
+  std::optional<double> seconds;  // of a frame, at most
+  std::optional<double> error;    // at most
+};
+
+// The truth on the small film.
+struct Truth {
+  SparseView sparse;
+  scene::Film film;
+  std::vector<unsigned char> left_out;  // pixels that touch a light's ball
+  long long samples = 0;                // 0: quadrature
+  std::string about;                    // "path tracing of all orders, 256 samples, 64 x 48 of the pixels"
+};
+
+// [s]
+struct FrameTime {
+  Estimate seconds{0, 0, 0};
+  bool anew = false;      // everything is prepared anew
+  bool at_least = false;  // the frame was not timed: its render alone takes much too long, at least the lower end
+};
+
+struct Trial {
+  const Candidate* candidate = nullptr;
+  std::string refused;           // why it cannot render the scene; else empty
+  std::string stopped;           // why there are no figures, though it could
+  Measure error;                 // relative L2 of the picture
+  std::vector<FrameTime> times;  // in the order of the moves asked for
+  bool of_film = false;          // error and times are those of the scene's own film; else times are extrapolated
+  std::string left_out;
+  double density_error = 0;  // of the conversion, relative L2; 0 without
+  bool done() const { return !times.empty(); }
+};
+
+// How far a run is, in [0, 1].
+using Report = std::function<void(double)>;
+
+class Trials {
+ public:
+  // Throws Error where something of `moves` has nothing in the scene that could move so.
+  Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
+
+  // Within a third of the time to spend: with fewer samples than asked for where they take longer. Throws NotSupported.
+  Truth truth() const;
+  // All candidates, in their order. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
+  std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
+
+ private:
+  struct Converted {
+    std::shared_ptr<const scene::Scene> scene;  // null: it cannot be converted
+    std::string refused;
+    double seconds = 0, density_error = 0;
+  };
+  struct Pass;  // a preparation and its first picture
+  const Converted& scene_for(const Candidate&);
+  scene::Execution execution() const;  // ends at the deadline
+  Pass pass(const Candidate&, const Converted&, const scene::View&) const;
+  std::vector<Estimate> frames(const Candidate&, const Converted&, const Moves&, Pass&, const std::vector<scene::View>&,
+                               bool& anew) const;
+  void screen(Trial&, const Truth&, const Goal&);
+  void measure_on_film(Trial&, const Truth&);
+  bool attempt(Trial&, const std::function<void()>& work);
+  double left() const;  // [s] of the time to spend
+
+  std::shared_ptr<const scene::Scene> scene_;
+  TrialSetup setup_;
+  std::vector<Moves> moves_;
+  Report report_;
+  double start_, deadline_;
+  double done_ = 0;  // share of the candidates
+  std::map<std::string, Converted> converted_;
+  std::map<const Candidate*, double> costs_;  // [s] that the trial on the scene's film takes, about
+};
+
+// Time on a film of `pixels` from medians on two smaller films, if it is a sum of one part that knows no film and one that grows with it.
+Estimate extrapolated(const Estimate& small, double small_pixels, const Estimate& smaller, double smaller_pixels,
+                      double pixels);
+
+}  // namespace airlight::experiments
