@@ -12,11 +12,6 @@
 namespace airlight::experiments {
 namespace {
 
-// Where noise hides the error, half of what it may be.
-double likely(const Measure& error) {
-  return error.below_floor ? std::max(error.value, 0.5 * error.high) : error.value;
-}
-
 // Two significant digits.
 std::string percent(double share) {
   const double value = 100 * share;
@@ -39,11 +34,17 @@ std::string renderers_of(const std::vector<const Trial*>& trials) {
 
 }  // namespace
 
+double likely(const Measure& error) {
+  return error.below_floor ? std::max(error.value, 0.5 * error.high) : error.value;
+}
+
 Ranking rank(const std::vector<Trial>& trials, const Goal& goal, std::size_t move) {
   Ranking ranking;
   for (const Trial& trial : trials) {
     if (!trial.done()) continue;
-    const bool fits = goal.seconds ? !trial.times[move].at_least && trial.times[move].seconds.value <= *goal.seconds
+    const FrameTime &time = trial.times[move], &screened = trial.screened[move];
+    const bool fits = goal.seconds ? !time.at_least && time.seconds.value <= *goal.seconds &&
+                                         screened.seconds.low <= worth_trying * *goal.seconds
                                    : trial.error.high <= *goal.error;
     (fits ? ranking.fit : ranking.beyond).push_back(&trial);
   }

@@ -7,6 +7,9 @@
 
 namespace airlight::experiments {
 
+// What errors are compared by. Where noise hides an error: half of what it may be.
+double likely(const Measure& error);
+
 // By trials' addresses; those without figures are in none of the lists.
 struct Ranking {
   std::vector<const Trial*> fit;     // within the goal: by error where a time is given, by time where an error is

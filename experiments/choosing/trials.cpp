@@ -256,6 +256,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
     trial.times.push_back(time);
     cost += first.prepare + 4 * time.seconds.value;
   }
+  trial.screened = trial.times;
   costs_[&c] = cost;
 }
 
@@ -310,9 +311,9 @@ std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const T
   for (Trial& trial : trials) {
     if (!trial.done() || trial.of_film) continue;
     const bool in_time = !goal.seconds || std::any_of(trial.times.begin(), trial.times.end(), [&](const FrameTime& t) {
-      return !t.at_least && t.seconds.low <= worth * *goal.seconds;
+      return !t.at_least && t.seconds.low <= worth_trying * *goal.seconds;
     });
-    if (in_time && (!goal.error || trial.error.low <= worth * *goal.error)) open.push_back(&trial);
+    if (in_time && (!goal.error || trial.error.low <= worth_trying * *goal.error)) open.push_back(&trial);
   }
   std::stable_sort(open.begin(), open.end(), [&](const Trial* a, const Trial* b) {
     return goal.error ? a->times[0].seconds.value < b->times[0].seconds.value : a->error.value < b->error.value;

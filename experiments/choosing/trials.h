@@ -50,11 +50,12 @@ struct FrameTime {
 
 struct Trial {
   const Candidate* candidate = nullptr;
-  std::string refused;           // why it cannot render the scene; else empty
-  std::string stopped;           // why there are no figures, though it could
-  Measure error;                 // relative L2 of the picture
-  std::vector<FrameTime> times;  // in the order of the moves asked for
-  bool of_film = false;          // error and times are those of the scene's own film; else times are extrapolated
+  std::string refused;              // why it cannot render the scene; else empty
+  std::string stopped;              // why there are no figures, though it could
+  Measure error;                    // relative L2 of the picture
+  std::vector<FrameTime> times;     // in the order of the moves asked for
+  std::vector<FrameTime> screened;  // times by the small film alone
+  bool of_film = false;             // error and times are those of the scene's own film; else times are extrapolated
   std::string left_out;
   double density_error = 0;  // of the conversion, relative L2; 0 without
   bool done() const { return !times.empty(); }
@@ -62,6 +63,9 @@ struct Trial {
 
 // How far a run is, in [0, 1].
 using Report = std::function<void(double)>;
+
+// What may take this many times the time allowed, by the small film, is tried on the scene's own.
+inline constexpr double worth_trying = 1.25;
 
 class Trials {
  public:

@@ -7,6 +7,7 @@
 #include "experiments/application/folders.h"
 #include "experiments/application/progress.h"
 #include "experiments/application/say.h"
+#include "experiments/choosing/choices.h"
 #include "experiments/choosing/ranking.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
@@ -116,7 +117,7 @@ int choose(const ChooseOptions& options) {
   setup.spend = read_duration("--spend", options.spend);
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
   const std::string rows = !options.rows.empty() ? options.rows
-                           : setup.all_orders    ? "common/all_orders"
+                           : setup.all_orders    ? rows_of_all_orders
                                                  : "common/one_order";
   const Folders folders(project_root(options.root));
   if (choose_experiments(folders.root, {rows}) != std::vector{rows})
