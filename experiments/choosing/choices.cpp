@@ -26,6 +26,7 @@ struct QuestionOptions {
   double budget = 0.016;
   Moving::What moves = Moving::What::camera;
   int variations = 3;
+  long long samples = 256;
 };
 
 void bind(scene::SettingBinder& b, QuestionOptions& o) {
@@ -33,6 +34,7 @@ void bind(scene::SettingBinder& b, QuestionOptions& o) {
   b.choice("moves", o.moves,
            {{"camera", Moving::What::camera}, {"lights", Moving::What::lights}, {"media", Moving::What::media}},
            "what moves from frame to frame");
+  b.integer("samples", o.samples, 64, 1e9, "of the reference that judges");
   b.integer("variations", o.variations, 0, 1000, "of each scene, besides the scene as it is");
 }
 
@@ -67,6 +69,7 @@ class SceneCases {
     for (const MethodCase& m : e.methods) {
       const QuestionOptions o = options_of(m);
       if (std::find(moves_.begin(), moves_.end(), Moves{o.moves}) == moves_.end()) moves_.push_back({o.moves});
+      samples_ = std::max(samples_, o.samples);
       longest_.seconds = std::max(longest_.seconds.value_or(0), o.budget);
     }
   }
@@ -105,10 +108,12 @@ class SceneCases {
       };
       TrialSetup setup;
       setup.threads = threads_;
+      setup.film = std::min(setup.film, next.scene->width / 3);  // some pixels alone, on small films too
       Trials choice(next.scene, setup, moves_, report);
       next.tried = choice.run(candidates_, choice.truth(), longest_);
       setup.film = next.scene->width;
       setup.stream = judging_stream;
+      setup.samples = samples_;
       setup.spend = 3600;
       Trials judgement(next.scene, setup, moves_, report);
       next.judged = judgement.run(candidates_, judgement.truth(), longest_);
@@ -120,6 +125,7 @@ class SceneCases {
   std::shared_ptr<const scene::Scene> scene_;
   const std::vector<Candidate>& candidates_;
   int threads_;
+  long long samples_ = 0;
   std::vector<Moves> moves_;
   Goal longest_;
   std::vector<Case> cases_;

@@ -18,8 +18,8 @@ namespace {
 using SharedScene = std::shared_ptr<const scene::Scene>;
 
 constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for the reference, and for any one candidate
-constexpr std::size_t least_frames = 3;   // timed, of each candidate on each film
-constexpr int groups = 4;                 // along each axis: of pixels that are left out in turn
+constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
+constexpr int groups = 4;                                 // along each axis: of pixels that are left out in turn
 constexpr double hopeless = 4,
                  worth = 1.25;  // times the time allowed: not timed any more; rendered on the scene's own film
 
@@ -64,6 +64,8 @@ scene::View smaller_view(scene::View view) {
   return view;
 }
 
+bool is_hopeless(double seconds, const Goal& goal) { return goal.seconds && seconds > hopeless * *goal.seconds; }
+
 bool converts(const Moves& moves) {
   return moves.empty() || std::find(moves.begin(), moves.end(), Moving::What::media) != moves.end();
 }
@@ -80,9 +82,10 @@ Estimate extrapolated(const Estimate& small, double small_pixels, const Estimate
 }
 
 struct Trials::Pass {
-  std::unique_ptr<scene::Prepared> prepared;
   scene::Film film;
+  std::vector<scene::Stage> stages;
   double prepare = 0, render = 0;  // [s]
+  std::optional<FramesAfter> after;
 };
 
 Trials::Trials(SharedScene scene, TrialSetup setup, std::vector<Moves> moves, Report report)
@@ -178,50 +181,51 @@ Trials::Pass Trials::pass(const Candidate& c, const Converted& converted, const 
   Pass pass;
   const scene::Execution how = execution();
   double start = steady_seconds();
-  pass.prepared = c.renderer->prepare(converted.scene, c.settings, how);
+  std::unique_ptr<scene::Prepared> prepared = c.renderer->prepare(converted.scene, c.settings, how);
   pass.prepare = steady_seconds() - start;
   // Drivers compile shaders at first use.
-  if (!c.renderer->device().empty()) pass.prepared->render(view, how);
+  if (!c.renderer->device().empty()) prepared->render(view, how);
   start = steady_seconds();
-  pass.film = pass.prepared->render(view, how).film;
+  pass.film = prepared->render(view, how).film;
   pass.render = steady_seconds() - start;
   if (!how.progress(1)) throw scene::Interrupted("stopped");  // a renderer may keep what it has
   require_finite(pass.film, c.name);
+  pass.stages = prepared->stages();
+  pass.after.emplace(*c.renderer, c.settings, converted.scene, std::move(prepared));
   return pass;
 }
 
-// [s] of frames on each of the views; the preparation is used up.
-std::vector<Estimate> Trials::frames(const Candidate& c, const Converted& converted, const Moves& moves, Pass& pass,
-                                     const std::vector<scene::View>& views, bool& anew) const {
+std::vector<Estimate> Trials::stills(const Candidate& c, const Converted& converted,
+                                     const std::vector<scene::View>& views) const {
   const scene::Execution how = timed_on(*c.renderer, execution());
   std::vector<Estimate> all;
-  const double conversion = converts(moves) ? converted.seconds : 0;
-  if (moves.empty()) {
-    for (const scene::View& view : views) {
-      std::vector<double> times;
-      for (double spent = 0; times.empty() || (times.size() < 5 && spent + times.back() < setup_.frames_seconds);
-           spent += times.back()) {
-        const double start = steady_seconds();
-        c.renderer->prepare(converted.scene, c.settings, how)->render(view, how);
-        times.push_back(steady_seconds() - start);
-      }
-      all.push_back(plus(median_estimate(times), conversion));
+  for (const scene::View& view : views) {
+    std::vector<double> times;
+    for (double spent = 0;
+         times.size() < least_frames || (times.size() < most_frames && spent + times.back() < setup_.frames_seconds);
+         spent += times.back()) {
+      const double start = steady_seconds();
+      c.renderer->prepare(converted.scene, c.settings, how)->render(view, how);
+      times.push_back(steady_seconds() - start);
     }
-    anew = true;
-    return all;
+    all.push_back(plus(median_estimate(times), converted.seconds));
   }
+  return all;
+}
+
+std::vector<Estimate> Trials::frames(const Candidate& c, const Converted& converted, const Moves& moves, Pass& pass,
+                                     const std::vector<scene::View>& views, const Goal& goal) const {
+  const scene::Execution how = timed_on(*c.renderer, execution());
   const SharedScene other = all_moved_back(*converted.scene, moves);
   if (!other) throw scene::NotSupported("", "nothing in the converted scene moves so");
   if (const auto reasons = c.renderer->supports(*other, c.settings); !reasons.empty())
     throw scene::NotSupported("", reasons.front());
-  if (!pass.prepared) {
-    pass.prepared = c.renderer->prepare(converted.scene, c.settings, how);
-    pass.prepared->render(views.front(), how);
-  }
-  FramesAfter after(*c.renderer, c.settings, converted.scene, other, std::move(pass.prepared));
+  const double conversion = converts(moves) ? converted.seconds : 0;
+  pass.after->go_to(other, views.front(), how);
+  if (is_hopeless(pass.after->one(views.front(), how) + conversion, goal)) return {};
+  std::vector<Estimate> all;
   for (const scene::View& view : views)
-    all.push_back(plus(median_estimate(after.some(view, how, setup_.frames_seconds, least_frames)), conversion));
-  anew = after.anew();
+    all.push_back(plus(median_estimate(pass.after->some(view, how, setup_.frames_seconds, least_frames)), conversion));
   return all;
 }
 
@@ -234,7 +238,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
     throw scene::NotSupported("", reasons.front());
   const SparseView& sparse = truth.sparse;
   Pass first = pass(c, converted, sparse.small);
-  trial.left_out = experiments::left_out(*c.renderer, first.prepared->stages());
+  trial.left_out = experiments::left_out(*c.renderer, first.stages);
   trial.error = error_of(first.film, truth, c.renderer->monte_carlo());
   trial.of_film = sparse.stride == 1;
   const double small = pixels_of(sparse.small), whole = pixels_of(sparse.whole);
@@ -242,19 +246,19 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   if (!trial.of_film) views.push_back(smaller_view(sparse.small));
   double cost = first.prepare;
   for (const Moves& moves : moves_) {
+    const double least = first.render + (moves.empty() ? first.prepare : 0) + (converts(moves) ? converted.seconds : 0);
+    std::vector<Estimate> of_views;
+    if (!is_hopeless(least, goal))
+      of_views = moves.empty() ? stills(c, converted, views) : frames(c, converted, moves, first, views, goal);
     FrameTime time;
-    const double frame = (moves.empty() ? first.prepare : 0) + first.render;
-    if (goal.seconds && frame > hopeless * *goal.seconds) {
-      const double conversion = converts(moves) ? converted.seconds : 0;
-      time.seconds = plus({first.render * whole / small, first.render, first.render * whole / small}, conversion);
-      time.at_least = true;
-    } else {
-      const std::vector<Estimate> of_views = frames(c, converted, moves, first, views, time.anew);
+    time.at_least = of_views.empty();
+    if (time.at_least)
+      time.seconds = {least - first.render + first.render * whole / small, least, infinity};
+    else
       time.seconds =
           trial.of_film ? of_views[0] : extrapolated(of_views[0], small, of_views[1], pixels_of(views[1]), whole);
-    }
     trial.times.push_back(time);
-    cost += first.prepare + 4 * time.seconds.value;
+    cost += first.prepare + double(least_frames + 2) * time.seconds.value;
   }
   trial.screened = trial.times;
   costs_[&c] = cost;
@@ -267,9 +271,13 @@ void Trials::measure_on_film(Trial& trial, const Truth& truth) {
   measured.of_film = true;
   Pass first = pass(c, converted, truth.sparse.whole);
   measured.error = error_of(pick(first.film, truth.sparse), truth, c.renderer->monte_carlo());
-  for (std::size_t i = 0; i < moves_.size(); ++i)
-    measured.times[i].seconds =
-        frames(c, converted, moves_[i], first, {truth.sparse.whole}, measured.times[i].anew).front();
+  const std::vector<scene::View> views{truth.sparse.whole};
+  for (std::size_t i = 0; i < moves_.size(); ++i) {
+    FrameTime& time = measured.times[i];
+    if (time.at_least) continue;
+    time.seconds = moves_[i].empty() ? stills(c, converted, views).front()
+                                     : frames(c, converted, moves_[i], first, views, {}).front();
+  }
   trial = measured;
 }
 

@@ -44,7 +44,6 @@ struct Truth {
 // [s]
 struct FrameTime {
   Estimate seconds{0, 0, 0};
-  bool anew = false;      // everything is prepared anew
   bool at_least = false;  // the frame was not timed: its render alone takes much too long, at least the lower end
 };
 
@@ -83,12 +82,14 @@ class Trials {
     std::string refused;
     double seconds = 0, density_error = 0;
   };
-  struct Pass;  // a preparation and its first picture
+  struct Pass;  // a preparation, its first picture, and frames after that
   const Converted& scene_for(const Candidate&);
   scene::Execution execution() const;  // ends at the deadline
   Pass pass(const Candidate&, const Converted&, const scene::View&) const;
+  std::vector<Estimate> stills(const Candidate&, const Converted&, const std::vector<scene::View>&) const;
+  // Empty where the first takes hopelessly long.
   std::vector<Estimate> frames(const Candidate&, const Converted&, const Moves&, Pass&, const std::vector<scene::View>&,
-                               bool& anew) const;
+                               const Goal&) const;
   void screen(Trial&, const Truth&, const Goal&);
   void measure_on_film(Trial&, const Truth&);
   bool attempt(Trial&, const std::function<void()>& work);

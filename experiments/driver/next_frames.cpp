@@ -236,12 +236,20 @@ scene::Rendering NextFrames::one(const SharedScene& at, scene::View view, const 
 }
 
 FramesAfter::FramesAfter(const scene::Renderer& renderer, scene::Settings settings, std::shared_ptr<const Scene> here,
-                         std::shared_ptr<const Scene> other, std::unique_ptr<scene::Prepared> prepared)
+                         std::unique_ptr<scene::Prepared> prepared)
     : renderer_(renderer),
       settings_(std::move(settings)),
-      now_(std::move(here)),
-      other_(std::move(other)),
+      here_(std::move(here)),
+      now_(here_),
+      other_(here_),
       prepared_(std::move(prepared)) {}
+
+void FramesAfter::go_to(std::shared_ptr<const Scene> other, const scene::View& view,
+                        const scene::Execution& execution) {
+  if (now_ != here_) one(view, execution);
+  other_ = std::move(other);
+  anew_ = false;
+}
 
 double FramesAfter::one(scene::View view, const scene::Execution& execution) {
   std::swap(now_, other_);
@@ -277,7 +285,8 @@ std::optional<FrameAfter> frame_after(Moving::What what, const scene::Renderer& 
   if (!other || !renderer.supports(*other, settings).empty()) return {};
   std::unique_ptr<scene::Prepared> prepared = renderer.prepare(here, settings, execution);
   prepared->render(view, execution);
-  FramesAfter frames(renderer, settings, here, other, std::move(prepared));
+  FramesAfter frames(renderer, settings, here, std::move(prepared));
+  frames.go_to(other, view, execution);
   const double seconds = median(frames.some(view, execution, budget));
   return FrameAfter{seconds, frames.anew()};
 }

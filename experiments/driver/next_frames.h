@@ -57,23 +57,25 @@ class NextFrames {
   std::size_t here_;               // the frame that was rendered last
 };
 
-// Frames that go back and forth between two scenes: each is the one after all that differs between them has moved.
+// Frames that go back and forth between a scene and another: each is the one after all that differs between them has moved.
 class FramesAfter {
  public:
-  // The preparation is of `here`. Its views may have another lens and film than the scenes' cameras, which say where they stand.
+  // The preparation is of `here`. Views may have another lens and film than the scenes' cameras, which say where they stand.
   FramesAfter(const scene::Renderer&, scene::Settings, std::shared_ptr<const scene::Scene> here,
-              std::shared_ptr<const scene::Scene> other, std::unique_ptr<scene::Prepared>);
+              std::unique_ptr<scene::Prepared>);
 
+  // The other scene from now on.
+  void go_to(std::shared_ptr<const scene::Scene> other, const scene::View&, const scene::Execution&);
   // [s] of next() and the render, or, where there is no next(), of a preparation anew and the render.
   double one(scene::View, const scene::Execution&);
   // A few, after one that warms up, in about `budget` seconds; at least `least`.
   std::vector<double> some(const scene::View&, const scene::Execution&, double budget, std::size_t least = 1);
-  bool anew() const { return anew_; }  // some frame was prepared anew
+  bool anew() const { return anew_; }  // some frame to this other scene or back was prepared anew
 
  private:
   const scene::Renderer& renderer_;
   scene::Settings settings_;
-  std::shared_ptr<const scene::Scene> now_, other_;
+  std::shared_ptr<const scene::Scene> here_, now_, other_;
   std::unique_ptr<scene::Prepared> prepared_;
   bool anew_ = false;
 };
