@@ -59,6 +59,7 @@ struct Case {
   std::string name;
   std::shared_ptr<const scene::Scene> scene;
   std::vector<Trial> tried, judged;
+  double waited = 0;  // share of the threads' time
 };
 
 // All questions about a scene share its trials: one run for the longest budget, of all that moves.
@@ -87,6 +88,7 @@ class SceneCases {
       const Verdict verdict = judge_choice(chosen, tried.judged, o.budget, move);
       hits += verdict.hit;
       worst = std::max(worst, verdict.ratio);
+      row.waited = std::max(row.waited, tried.waited);
       if (!verdict.hit) misses.push_back(fmt::format("variation {}: {}", variation, verdict.why));
     }
     row.measures = measures_of(o.variations + 1, hits, worst);
@@ -117,6 +119,8 @@ class SceneCases {
       setup.spend = 3600;
       Trials judgement(next.scene, setup, moves_, report);
       next.judged = judgement.run(candidates_, judgement.truth(), longest_);
+      next.waited = std::max(choice.waited(), judgement.waited());
+      keep_lower_times(next.judged, next.tried);
       cases_.push_back(std::move(next));
     }
     return cases_[std::size_t(variation)];

@@ -8,6 +8,7 @@
 
 #include "experiments/application/build_info.h"
 #include "experiments/application/interrupt.h"
+#include "experiments/application/machine.h"
 #include "experiments/application/renderers.h"
 #include "experiments/driver/timing.h"
 #include "scene/base/error.h"
@@ -18,6 +19,7 @@ namespace {
 using SharedScene = std::shared_ptr<const scene::Scene>;
 
 constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for the reference, and for any one candidate
+constexpr double near = 0.8;  // a time and the budget are near each other if the lesser is this share of the greater
 constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
 constexpr int groups = 4;                                 // along each axis: of pixels that are left out in turn
 constexpr double hopeless = 4,
@@ -264,7 +266,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   costs_[&c] = cost;
 }
 
-void Trials::measure_on_film(Trial& trial, const Truth& truth) {
+void Trials::measure_on_film(Trial& trial, const Truth& truth, const Goal& goal) {
   const Candidate& c = *trial.candidate;
   const Converted& converted = scene_for(c);
   Trial measured = trial;
@@ -275,8 +277,14 @@ void Trials::measure_on_film(Trial& trial, const Truth& truth) {
   for (std::size_t i = 0; i < moves_.size(); ++i) {
     FrameTime& time = measured.times[i];
     if (time.at_least) continue;
-    time.seconds = moves_[i].empty() ? stills(c, converted, views).front()
-                                     : frames(c, converted, moves_[i], first, views, {}).front();
+    const auto timed = [&] {
+      return moves_[i].empty() ? stills(c, converted, views).front()
+                               : frames(c, converted, moves_[i], first, views, {}).front();
+    };
+    time.seconds = timed();
+    // Near the budget a disturbance decides: of two timings the lower one counts.
+    if (goal.seconds && time.seconds.value > near * *goal.seconds && time.seconds.low < *goal.seconds / near)
+      if (const Estimate again = timed(); again.value < time.seconds.value) time.seconds = again;
   }
   trial = measured;
 }
@@ -303,6 +311,7 @@ bool Trials::attempt(Trial& trial, const std::function<void()>& work) {
 }
 
 std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal) {
+  const ProcessorTime before = processor_time();
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
@@ -331,8 +340,11 @@ std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const T
     report_(done_);
     if (costs_[open[i]->candidate] > left()) continue;
     Trial tried = *open[i];
-    if (attempt(tried, [&] { measure_on_film(tried, truth); })) *open[i] = tried;
+    if (attempt(tried, [&] { measure_on_film(tried, truth, goal); })) *open[i] = tried;
   }
+  const ProcessorTime after = processor_time();
+  const double waited = after.waited - before.waited, used = after.run - before.run;
+  waited_ = waited > 0 ? waited / (used + waited) : 0;
   return trials;
 }
 

@@ -75,6 +75,8 @@ class Trials {
   Truth truth() const;
   // All candidates, in their order. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
   std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
+  // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.
+  double waited() const { return waited_; }
 
  private:
   struct Converted {
@@ -91,7 +93,7 @@ class Trials {
   std::vector<Estimate> frames(const Candidate&, const Converted&, const Moves&, Pass&, const std::vector<scene::View>&,
                                const Goal&) const;
   void screen(Trial&, const Truth&, const Goal&);
-  void measure_on_film(Trial&, const Truth&);
+  void measure_on_film(Trial&, const Truth&, const Goal&);
   bool attempt(Trial&, const std::function<void()>& work);
   double left() const;  // [s] of the time to spend
 
@@ -100,6 +102,7 @@ class Trials {
   std::vector<Moves> moves_;
   Report report_;
   double start_, deadline_;
+  double waited_ = 0;
   double done_ = 0;  // share of the candidates
   std::map<std::string, Converted> converted_;
   std::map<const Candidate*, double> costs_;  // [s] that the trial on the scene's film takes, about

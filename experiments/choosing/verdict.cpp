@@ -32,4 +32,14 @@ Verdict judge_choice(const Trial* chosen, const std::vector<Trial>& judged, doub
           fmt::format("{}; judged: {}; best: {}, {}", choice, told(*same), best->candidate->name, told(*best))};
 }
 
+void keep_lower_times(std::vector<Trial>& judged, const std::vector<Trial>& tried) {
+  for (Trial& trial : judged)
+    for (const Trial& other : tried) {
+      if (other.candidate != trial.candidate || !other.of_film || !trial.done()) continue;
+      for (std::size_t move = 0; move < trial.times.size(); ++move)
+        if (!other.times[move].at_least && other.times[move].seconds.value < trial.times[move].seconds.value)
+          trial.times[move] = other.times[move];
+    }
+}
+
 }  // namespace airlight::experiments

@@ -22,4 +22,7 @@ struct Verdict {
 // may take `seconds` * time_margin.
 Verdict judge_choice(const Trial* chosen, const std::vector<Trial>& judged, double seconds, std::size_t move);
 
+// Of two timings of one frame the lower one counts: what was slower was disturbed. Takes those of `tried` over where they are of the film.
+void keep_lower_times(std::vector<Trial>& judged, const std::vector<Trial>& tried);
+
 }  // namespace airlight::experiments

@@ -11,6 +11,7 @@
 #include "experiments/choosing/ranking.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "experiments/driver/comparisons.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest.h"
 
@@ -126,11 +127,13 @@ int choose(const ChooseOptions& options) {
 
   Truth truth;
   std::vector<Trial> trials;
+  double waited = 0;
   {
     Progress progress("choosing for " + scene->name);
     Trials all(scene, setup, {moves}, [&](double share) { progress.update(share); });
     truth = all.truth();
     trials = all.run(candidates, truth, goal);
+    waited = all.waited();
   }
   if (truth.samples > 0 && truth.samples < setup.samples)
     say(fmt::format("--samples {}: {} took a third of the time to spend ({})", setup.samples, truth.samples,
@@ -139,6 +142,10 @@ int choose(const ChooseOptions& options) {
   fmt::print("{}, {}x{} pixels: {}, {}\n", scene->name, whole.width, whole.height, in_words(moves),
              goal.seconds ? "within " + options.budget : "with an error of at most " + options.error);
   fmt::print("Errors: relative L2 at {}x{} of the pixels, by {}.\n", small.width, small.height, truth.about);
+  if (waited > much_waiting)
+    say(fmt::format(
+        "threads waited for a processor for {:.0f} % of their time: without other programs frames take less",
+        100 * waited));
   print_choice(options, trials, rank(trials, goal), goal, truth);
   return 0;
 }
