@@ -66,7 +66,7 @@ std::vector<Candidate> candidates_of(const Experiment& e) {
   return all;
 }
 
-std::string command_line(const Candidate& c, const std::string& scene_file, const Pairs& overrides) {
+std::string command_line(const Candidate& c, const std::string& scene_file, const Pairs& overrides, int threads) {
   std::string line = fmt::format("airlight render {} -m {}", quoted(scene_file), c.renderer->name());
   for (const auto& [name, value] : c.given) line += fmt::format(" --set {}", quoted(name + "=" + value));
   for (const auto& [name, value] : overrides) line += fmt::format(" --override {}", quoted(name + "=" + value));
@@ -75,6 +75,7 @@ std::string command_line(const Candidate& c, const std::string& scene_file, cons
     std::replace(form.begin(), form.end(), ' ', ',');
     line += " --convert " + form;
   }
+  if (threads > 0) line += fmt::format(" --threads {}", threads);
   return line + " -o picture.exr";
 }
 

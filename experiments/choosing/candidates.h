@@ -20,8 +20,8 @@ struct Candidate {
 // picture are left out. Throws Error where the experiment has no pictures.
 std::vector<Candidate> candidates_of(const Experiment&);
 
-// The line that renders the scene so: "airlight render SCENE -m NAME --set ... -o picture.exr".
-std::string command_line(const Candidate&, const std::string& scene_file, const Pairs& overrides);
+// The line that renders the scene so: "airlight render SCENE -m NAME --set ... -o picture.exr". Threads: 0 for all.
+std::string command_line(const Candidate&, const std::string& scene_file, const Pairs& overrides, int threads = 0);
 
 // What the picture lacks by the method's own account, in short: "orders of scattering above one". Empty: nothing that it tells of.
 std::string left_out(const scene::Renderer&, const std::vector<scene::Stage>&);

@@ -112,13 +112,13 @@ class SceneCases {
       setup.threads = threads_;
       setup.film = std::min(setup.film, next.scene->width / 3);  // some pixels alone, on small films too
       Trials choice(next.scene, setup, moves_, report);
-      next.tried = choice.run(candidates_, choice.truth(), longest_);
+      next.tried = choice.run(candidates_, trace_truth(next.scene, setup, setup.spend / 3, report), longest_);
       setup.film = next.scene->width;
       setup.stream = judging_stream;
       setup.samples = samples_;
       setup.spend = 3600;
       Trials judgement(next.scene, setup, moves_, report);
-      next.judged = judgement.run(candidates_, judgement.truth(), longest_);
+      next.judged = judgement.run(candidates_, trace_truth(next.scene, setup, setup.spend, report), longest_);
       next.waited = std::max(choice.waited(), judgement.waited());
       keep_lower_times(next.judged, next.tried);
       cases_.push_back(std::move(next));

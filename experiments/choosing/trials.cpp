@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "experiments/application/build_info.h"
@@ -18,41 +17,15 @@ namespace {
 
 using SharedScene = std::shared_ptr<const scene::Scene>;
 
-constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for the reference, and for any one candidate
+constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for one candidate
 constexpr double near = 0.8;  // a time and the budget are near each other if the lesser is this share of the greater
 constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
-constexpr int groups = 4;                                 // along each axis: of pixels that are left out in turn
-constexpr double hopeless = 4,
-                 worth = 1.25;  // times the time allowed: not timed any more; rendered on the scene's own film
+constexpr double hopeless = 4;                            // times the time allowed: frames are not timed any more
 
 // A device's frame is complete there: what is timed reads nothing back.
 scene::Execution timed_on(const scene::Renderer& renderer, scene::Execution execution) {
   if (!renderer.device().empty()) execution.layers.emplace();
   return execution;
-}
-
-// Relative L2, with the noise of the reference taken out, and that of a path-traced picture counted. The interval has the noise in it, and
-// where not every pixel is looked at what other pixels could give: sixteen interleaved groups of them are left out in turn.
-Measure error_of(const scene::Film& film, const Truth& truth, bool count_noise) {
-  const ImageNoise noise = count_noise ? ImageNoise::counted : ImageNoise::removed;
-  const auto without = [&](const std::vector<unsigned char>& mask) {
-    return measure({"rel_l2"}, film, truth.film, "mean", {mask, {}}, noise).front();
-  };
-  Measure all = without(truth.left_out);
-  if (truth.sparse.stride == 1) return all;
-  std::vector<double> parts;
-  for (int group = 0; group < groups * groups; ++group) {
-    std::vector<unsigned char> mask = truth.left_out;
-    for (int y = group / groups; y < film.height; y += groups)
-      for (int x = group % groups; x < film.width; x += groups) mask[std::size_t(y * film.width + x)] = 1;
-    parts.push_back(without(mask).value);
-  }
-  const Estimate chosen = jackknife(all.value, parts);
-  if (!std::isfinite(chosen.low)) return all;
-  all.low = std::max(0.0, all.value - std::hypot(all.value - all.low, chosen.value - chosen.low));
-  all.high = all.value + std::hypot(all.high - all.value, chosen.high - chosen.value);
-  all.below_floor = all.below_floor || all.low <= 0;
-  return all;
 }
 
 Estimate plus(const Estimate& e, double seconds) { return {e.value + seconds, e.low + seconds, e.high + seconds}; }
@@ -77,7 +50,7 @@ bool converts(const Moves& moves) {
 Estimate extrapolated(const Estimate& small, double small_pixels, const Estimate& smaller, double smaller_pixels,
                       double pixels) {
   const auto line = [&](double at_small, double at_smaller) {
-    const double slope = (at_small - at_smaller) / (small_pixels - smaller_pixels);
+    const double slope = small_pixels > smaller_pixels ? (at_small - at_smaller) / (small_pixels - smaller_pixels) : 0;
     return std::clamp(at_small + slope * (pixels - small_pixels), at_small, at_small * pixels / small_pixels);
   };
   return {line(small.value, smaller.value), line(small.low, smaller.high), line(small.high, smaller.low)};
@@ -110,46 +83,6 @@ scene::Execution Trials::execution() const {
             report_(done_);
             return !interrupted() && steady_seconds() < deadline_;
           }};
-}
-
-Truth Trials::truth() const {
-  Truth truth;
-  truth.sparse = sparse_view(scene::view_of(*scene_), setup_.film);
-  truth.left_out = scene::ball_mask(*scene_, truth.sparse.small);
-  const scene::View& view = truth.sparse.small;
-  const scene::Renderer& renderer = find_renderer(setup_.all_orders ? "path_tracer" : "deterministic", "reference");
-  const double allowed = most_of_rest * left();
-  for (long long samples = setup_.samples;;) {
-    Pairs given{{"relative_tolerance", "1e-3"}};
-    if (setup_.all_orders) given = {{"samples", std::to_string(samples)}, {"stream", std::to_string(setup_.stream)}};
-    const double start = steady_seconds();
-    std::atomic<double> expected = 0;  // [s] of a reference that takes too long
-    scene::Execution how{
-        setup_.threads, [&](double fraction) {
-          report_(done_);
-          const double spent = steady_seconds() - start;
-          if (setup_.all_orders && samples > 64 && spent > 0.1 * allowed && fraction > 0 && spent / fraction > allowed)
-            expected = spent / fraction;
-          return !interrupted() && expected == 0;
-        }};
-    try {
-      truth.film = renderer.prepare(scene_, scene::Settings(renderer.settings(), given, "reference"), how)
-                       ->render(view, how)
-                       .film;
-    } catch (const scene::Interrupted&) {
-      if (expected == 0) throw;
-    }
-    check_interrupted();
-    if (expected == 0) {
-      truth.samples = setup_.all_orders ? samples : 0;
-      break;
-    }
-    samples = std::max(64LL, 64 * (long long)(double(samples) / 64 * 0.8 * allowed / expected));
-  }
-  require_finite(truth.film, fmt::format("{}: reference {}", scene_->name, renderer.name()));
-  truth.about = setup_.all_orders ? fmt::format("path tracing with all orders of scattering, {} samples", truth.samples)
-                                  : "quadrature of light scattered once";
-  return truth;
 }
 
 const Trials::Converted& Trials::scene_for(const Candidate& c) {
@@ -242,6 +175,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   Pass first = pass(c, converted, sparse.small);
   trial.left_out = experiments::left_out(*c.renderer, first.stages);
   trial.error = error_of(first.film, truth, c.renderer->monte_carlo());
+  if (!std::isfinite(trial.error.value)) throw Error("its error is not defined in this scene");
   trial.of_film = sparse.stride == 1;
   const double small = pixels_of(sparse.small), whole = pixels_of(sparse.whole);
   std::vector<scene::View> views{sparse.small};
@@ -295,7 +229,8 @@ bool Trials::attempt(Trial& trial, const std::function<void()>& work) {
   try {
     if (left() <= 0) throw scene::Interrupted("no time is left");
     work();
-    check_interrupted();
+    // What was stopped may have been timed as if it was done.
+    if (steady_seconds() >= deadline_) throw scene::Interrupted("no time is left");
     return true;
   } catch (const scene::Interrupted&) {
     check_interrupted();
@@ -317,12 +252,16 @@ std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const T
     const Candidate& c = candidates[i];
     done_ = 0.6 * double(i) / double(candidates.size());
     report_(done_);
-    // A conversion only loses where the renderer knows the scene as it is.
-    if (c.convert && c.renderer->supports(*scene_, c.settings).empty()) continue;
     Trial trial;
     trial.candidate = &c;
-    if (!attempt(trial, [&] { screen(trial, truth, goal); })) trial.times.clear();
-    trials.push_back(std::move(trial));
+    bool needed = true;
+    const bool done = attempt(trial, [&] {
+      // A conversion only loses where the renderer knows the scene as it is.
+      needed = !c.convert || !c.renderer->supports(*scene_, c.settings).empty();
+      if (needed) screen(trial, truth, goal);
+    });
+    if (!done) trial.times.clear();
+    if (needed) trials.push_back(std::move(trial));
   }
   std::vector<Trial*> open;
   for (Trial& trial : trials) {

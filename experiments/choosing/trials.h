@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "experiments/choosing/candidates.h"
-#include "experiments/choosing/sparse_view.h"
-#include "experiments/judging/metrics.h"
+#include "experiments/choosing/truth.h"
 #include "experiments/judging/statistics.h"
 
 namespace airlight::experiments {
@@ -16,29 +15,10 @@ namespace airlight::experiments {
 // What moves at once from one frame to the next. Empty: a still from nothing, whose time has the conversion and the preparation in it.
 using Moves = std::vector<Moving::What>;
 
-struct TrialSetup {
-  int film = 64;            // about as many pixels wide is the small film; that of the scene: nothing is extrapolated
-  bool all_orders = true;   // of scattering are in the reference; else one
-  long long samples = 256;  // of the reference, if it is path-traced
-  int stream = 0;           // of its random numbers
-  int threads = 0;          // 0: all
-  double spend = 60;        // [s] for everything
-  double frames_seconds = 0.1;  // [s] for the frames of one candidate on one film
-};
-
 // One of the two.
 struct Goal {
   std::optional<double> seconds;  // of a frame, at most
   std::optional<double> error;    // at most
-};
-
-// The truth on the small film.
-struct Truth {
-  SparseView sparse;
-  scene::Film film;
-  std::vector<unsigned char> left_out;  // pixels that touch a light's ball
-  long long samples = 0;                // 0: quadrature
-  std::string about;                    // "path tracing of all orders, 256 samples, 64 x 48 of the pixels"
 };
 
 // [s]
@@ -60,9 +40,6 @@ struct Trial {
   bool done() const { return !times.empty(); }
 };
 
-// How far a run is, in [0, 1].
-using Report = std::function<void(double)>;
-
 // What may take this many times the time allowed, by the small film, is tried on the scene's own.
 inline constexpr double worth_trying = 1.25;
 
@@ -71,8 +48,7 @@ class Trials {
   // Throws Error where something of `moves` has nothing in the scene that could move so.
   Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
 
-  // Within a third of the time to spend: with fewer samples than asked for where they take longer. Throws NotSupported.
-  Truth truth() const;
+  double left() const;  // [s] of the time to spend, which begins with the constructor
   // All candidates, in their order. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
   std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
   // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.
@@ -95,7 +71,6 @@ class Trials {
   void screen(Trial&, const Truth&, const Goal&);
   void measure_on_film(Trial&, const Truth&, const Goal&);
   bool attempt(Trial&, const std::function<void()>& work);
-  double left() const;  // [s] of the time to spend
 
   std::shared_ptr<const scene::Scene> scene_;
   TrialSetup setup_;

@@ -89,7 +89,7 @@ void print_choice(const ChooseOptions& options, const std::vector<Trial>& trials
     if (trial.candidate->convert)
       notes.push_back(fmt::format("the converted density is {:.0f} % off", 100 * trial.density_error));
     if (!notes.empty()) fmt::print("   {}\n", fmt::join(notes, "; "));
-    fmt::print("   {}\n", command_line(*trial.candidate, options.scene, options.overrides));
+    fmt::print("   {}\n", command_line(*trial.candidate, options.scene, options.overrides, options.setup.threads));
   }
   if (ranking.fit.size() > shown)
     fmt::print("\n{} more fit, with {} than the one of their renderer above.\n", ranking.fit.size() - shown,
@@ -131,7 +131,7 @@ int choose(const ChooseOptions& options) {
   {
     Progress progress("choosing for " + scene->name);
     Trials all(scene, setup, {moves}, [&](double share) { progress.update(share); });
-    truth = all.truth();
+    truth = trace_truth(scene, setup, setup.spend / 3, [&](double share) { progress.update(share); });
     trials = all.run(candidates, truth, goal);
     waited = all.waited();
   }
@@ -169,7 +169,7 @@ void add_choose(Commands& commands) {
   c->add_option("--film", options->setup.film, "about how many pixels of a row the reference has (default 64)")
       ->check(CLI::Range(8, 65536));
   c->add_option("--samples", options->setup.samples,
-                "samples of a path-traced reference, a multiple of 64 (default 256)")
+                "samples of a path-traced reference, at least 64 (default 256)")
       ->check(CLI::Range(64LL, 1LL << 30));
   c->add_option("--spend", options->spend, "time for the whole trial; what does not fit is told (default 60s)");
   c->add_option("--threads", options->setup.threads, "threads (default: all)")->check(CLI::Range(0, 4096));

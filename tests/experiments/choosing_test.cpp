@@ -100,8 +100,8 @@ TEST_CASE("choosing: candidates are the rows of an experiment, each once", "[cho
   std::vector<std::string> names;
   for (const Candidate& c : all) names.push_back(c.name);
   CHECK(names == std::vector<std::string>{"marched (steps 4)", "marched (steps 32)", "converted", "closed form"});
-  CHECK(command_line(all[0], "a.toml", {{"film.width", "8"}}) ==
-        "airlight render a.toml -m ray_marcher --set steps=4 --override film.width=8 -o picture.exr");
+  CHECK(command_line(all[0], "a.toml", {{"film.width", "8"}}, 2) ==
+        "airlight render a.toml -m ray_marcher --set steps=4 --override film.width=8 --threads 2 -o picture.exr");
   CHECK(command_line(all[2], "my scene's.toml", {}) ==
         "airlight render 'my scene'\\''s.toml' -m fogshop --convert to=gaussians,count=20,cut=false -o picture.exr");
   const SmallProject numbers(test::box_of_fog(8, 8), "kind = \"flow\"\ntitle = \"f\"\nmetrics = [\"mass\"]\n");

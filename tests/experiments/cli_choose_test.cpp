@@ -92,6 +92,11 @@ TEST_CASE("choose refuses bad options in one line", "[cli]") {
   const Result none = run("choose --budget 16ms", project);
   CHECK(none.code == 2);
   CHECK_THAT(none.err, Contains("SCENE is missing"));
+  project.write("black.toml", "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
+  const Result black = run("choose black.toml --budget 1s --root '" + project.path().string() + "'", project);
+  CHECK(black.code == 2);
+  CHECK(black.error_lines() == 1);
+  CHECK_THAT(black.err, Contains("the reference is black"));
   project.write("dark.toml", "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
   const Result dark =
       run("choose dark.toml --budget 1s --moves camera,light --root '" + project.path().string() + "'", project);
