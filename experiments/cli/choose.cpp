@@ -168,8 +168,7 @@ void add_choose(Commands& commands) {
       "experiment whose [[method]] rows are tried (default common/all_orders, or common/one_order with --orders one)");
   c->add_option("--film", options->setup.film, "about how many pixels of a row the reference has (default 64)")
       ->check(CLI::Range(8, 65536));
-  c->add_option("--samples", options->setup.samples,
-                "samples of a path-traced reference, at least 64 (default 256)")
+  c->add_option("--samples", options->setup.samples, "samples of a path-traced reference, at least 64 (default 256)")
       ->check(CLI::Range(64LL, 1LL << 30));
   c->add_option("--spend", options->spend, "time for the whole trial; what does not fit is told (default 60s)");
   c->add_option("--threads", options->setup.threads, "threads (default: all)")->check(CLI::Range(0, 4096));
