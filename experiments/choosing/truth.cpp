@@ -14,7 +14,8 @@
 namespace airlight::experiments {
 namespace {
 
-constexpr int groups = 4;  // along each axis: of pixels that are left out in turn
+constexpr int groups = 4;          // along each axis: of pixels that are left out in turn
+constexpr const char* cap = "64";  // orders of scattering, in endless media that absorb nothing
 
 }  // namespace
 
@@ -25,9 +26,18 @@ Truth trace_truth(std::shared_ptr<const scene::Scene> scene, const TrialSetup& s
   truth.left_out = scene::ball_mask(*scene, truth.sparse.small);
   const scene::View& view = truth.sparse.small;
   const scene::Renderer& renderer = find_renderer(setup.all_orders ? "path_tracer" : "deterministic", "reference");
+  Pairs given{{"relative_tolerance", "1e-3"}};
+  truth.about = "quadrature of light scattered once";
+  if (setup.all_orders) {
+    given = {{"stream", std::to_string(setup.stream)}};
+    truth.about = "path tracing with all orders of scattering";
+    if (!renderer.supports(*scene, scene::Settings(renderer.settings(), given, "reference")).empty()) {
+      given["max_order"] = cap;
+      truth.about = fmt::format("path tracing with up to {} orders of scattering", cap);
+    }
+  }
   for (long long samples = setup.samples;;) {
-    Pairs given{{"relative_tolerance", "1e-3"}};
-    if (setup.all_orders) given = {{"samples", std::to_string(samples)}, {"stream", std::to_string(setup.stream)}};
+    if (setup.all_orders) given["samples"] = std::to_string(samples);
     const double start = steady_seconds();
     std::atomic<double> expected = 0;  // [s] of a reference that takes too long
     scene::Execution how{
@@ -57,8 +67,7 @@ Truth trace_truth(std::shared_ptr<const scene::Scene> scene, const TrialSetup& s
   if (std::all_of(values.begin(), values.end(), [](float x) { return x == 0; }))
     throw Error(
         fmt::format("{}: the reference is black, expected a scene with light: errors are relative to it", scene->name));
-  truth.about = setup.all_orders ? fmt::format("path tracing with all orders of scattering, {} samples", truth.samples)
-                                 : "quadrature of light scattered once";
+  if (setup.all_orders) truth.about += fmt::format(", {} samples", truth.samples);
   return truth;
 }
 
