@@ -17,10 +17,10 @@ namespace {
 
 using SharedScene = std::shared_ptr<const scene::Scene>;
 
-constexpr double most_of_rest = 1.0 / 3;  // of the time that is left: for one candidate
+constexpr double most_of_rest = 1.0 / 6;  // of the time that is left: for one candidate
 constexpr double near = 0.8;  // a time and the budget are near each other if the lesser is this share of the greater
 constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
-constexpr double hopeless = 4;                            // times the time allowed: frames are not timed any more
+constexpr double hopeless = 4, hopeless_error = 2;        // times what is allowed: frames are not timed any more
 
 // A device's frame is complete there: what is timed reads nothing back.
 scene::Execution timed_on(const scene::Renderer& renderer, scene::Execution execution) {
@@ -184,7 +184,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   for (const Moves& moves : moves_) {
     const double least = first.render + (moves.empty() ? first.prepare : 0) + (converts(moves) ? converted.seconds : 0);
     std::vector<Estimate> of_views;
-    if (!is_hopeless(least, goal))
+    if (!is_hopeless(least, goal) && !(goal.error && trial.error.low > hopeless_error * *goal.error))
       of_views = moves.empty() ? stills(c, converted, views) : frames(c, converted, moves, first, views, goal);
     FrameTime time;
     time.at_least = of_views.empty();
@@ -245,12 +245,27 @@ bool Trials::attempt(Trial& trial, const std::function<void()>& work) {
   return false;
 }
 
+namespace {
+
+// The first row of each renderer, then the second, and so on: where time is short, all of them have been tried.
+std::vector<const Candidate*> in_turns(const std::vector<Candidate>& candidates) {
+  std::map<std::pair<const scene::Renderer*, bool>, int> counts;
+  std::vector<std::pair<int, const Candidate*>> turns;
+  for (const Candidate& c : candidates) turns.emplace_back(counts[{c.renderer, c.convert.has_value()}]++, &c);
+  std::stable_sort(turns.begin(), turns.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const Candidate*> ordered;
+  for (const auto& [turn, c] : turns) ordered.push_back(c);
+  return ordered;
+}
+
+}  // namespace
+
 std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal) {
   const ProcessorTime before = processor_time();
   std::vector<Trial> trials;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& c = candidates[i];
-    done_ = 0.6 * double(i) / double(candidates.size());
+  for (const Candidate* each : in_turns(candidates)) {
+    const Candidate& c = *each;
+    done_ += 0.6 / double(candidates.size());
     report_(done_);
     Trial trial;
     trial.candidate = &c;

@@ -24,7 +24,7 @@ struct Goal {
 // [s]
 struct FrameTime {
   Estimate seconds{0, 0, 0};
-  bool at_least = false;  // the frame was not timed: its render alone takes much too long, at least the lower end
+  bool at_least = false;  // the frame was not timed, being far from the goal: it takes at least the lower end
 };
 
 struct Trial {
@@ -49,7 +49,7 @@ class Trials {
   Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
 
   double left() const;  // [s] of the time to spend, which begins with the constructor
-  // All candidates, in their order. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
+  // All candidates, each renderer's first row first. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
   std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
   // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.
   double waited() const { return waited_; }

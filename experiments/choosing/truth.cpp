@@ -42,7 +42,7 @@ Truth trace_truth(std::shared_ptr<const scene::Scene> scene, const TrialSetup& s
     std::atomic<double> expected = 0;  // [s] of a reference that takes too long
     scene::Execution how{
         setup.threads, [&](double fraction) {
-          report(0);
+          report(fraction);
           const double spent = steady_seconds() - start;
           if (setup.all_orders && samples > 64 && spent > 0.1 * allowed && fraction > 0 && spent / fraction > allowed)
             expected = spent / fraction;

@@ -69,8 +69,8 @@ Moves read_moves(const std::string& text) {
 std::string in_words(const Moves& moves) {
   if (moves.empty()) return "a still, prepared from nothing";
   std::vector<std::string> names;
-  for (const Moving::What what : moves) names.push_back(name_of(what));
-  return fmt::format("a frame after moves of {}", fmt::join(names, " and "));
+  for (const Moving::What what : moves) names.push_back("the " + name_of(what));
+  return fmt::format("a frame after {} moved", fmt::join(names, " and "));
 }
 
 std::string figures(const Trial& trial) {
@@ -100,7 +100,7 @@ void print_choice(const ChooseOptions& options, const std::vector<Trial>& trials
   for (const Trial* trial : better) fmt::print("  {}: {}\n", trial->candidate->name, figures(*trial));
   fmt::print("\nHow sure: {}\n", fmt::join(doubts(ranking, goal, truth), " "));
   const auto lines = refusals(trials);
-  if (!lines.empty()) fmt::print("\nNot tried to the end:\n");
+  if (!lines.empty()) fmt::print("\nNot tried:\n");
   for (const std::string& line : lines) fmt::print("  {}\n", line);
 }
 
@@ -119,22 +119,21 @@ int choose(const ChooseOptions& options) {
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
   const std::string rows = !options.rows.empty() ? options.rows
                            : setup.all_orders    ? rows_of_all_orders
-                                                 : "common/one_order";
+                                                 : rows_of_one_order;
   const Folders folders(project_root(options.root));
   if (choose_experiments(folders.root, {rows}) != std::vector{rows})
     throw Error(fmt::format("--rows {}: expected one experiment, as group/name", rows));
   const std::vector<Candidate> candidates = candidates_of(read_experiment(folders, rows, "quick"));
 
   Truth truth;
-  std::vector<Trial> trials;
-  double waited = 0;
+  std::optional<Progress> progress("trying what can render " + scene->name);
+  Trials all(scene, setup, {moves}, [&](double share) { progress->update(share); });
   {
-    Progress progress("choosing for " + scene->name);
-    Trials all(scene, setup, {moves}, [&](double share) { progress.update(share); });
-    truth = trace_truth(scene, setup, setup.spend / 3, [&](double share) { progress.update(share); });
-    trials = all.run(candidates, truth, goal);
-    waited = all.waited();
+    Progress tracing("reference of " + scene->name);
+    truth = trace_truth(scene, setup, setup.spend / 3, [&](double share) { tracing.update(share); });
   }
+  const std::vector<Trial> trials = all.run(candidates, truth, goal);
+  progress.reset();  // clears its line
   if (truth.samples > 0 && truth.samples < setup.samples)
     say(fmt::format("--samples {}: {} took a third of the time to spend ({})", setup.samples, truth.samples,
                     options.spend));
@@ -142,10 +141,10 @@ int choose(const ChooseOptions& options) {
   fmt::print("{}, {}x{} pixels: {}, {}\n", scene->name, whole.width, whole.height, in_words(moves),
              goal.seconds ? "within " + options.budget : "with an error of at most " + options.error);
   fmt::print("Errors: relative L2 at {}x{} of the pixels, by {}.\n", small.width, small.height, truth.about);
-  if (waited > much_waiting)
+  if (all.waited() > much_waiting)
     say(fmt::format(
         "threads waited for a processor for {:.0f} % of their time: without other programs frames take less",
-        100 * waited));
+        100 * all.waited()));
   print_choice(options, trials, rank(trials, goal), goal, truth);
   return 0;
 }
