@@ -18,6 +18,7 @@ namespace {
 using SharedScene = std::shared_ptr<const scene::Scene>;
 
 constexpr double most_of_rest = 1.0 / 6;  // of the time that is left: for one candidate
+constexpr double screening = 0.7;         // of the time to spend: the rest is for the scene's own film
 constexpr double near = 0.8;  // a time and the budget are near each other if the lesser is this share of the greater
 constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
 constexpr double hopeless = 4, hopeless_error = 2;        // times what is allowed: frames are not timed any more
@@ -69,14 +70,15 @@ Trials::Trials(SharedScene scene, TrialSetup setup, std::vector<Moves> moves, Re
       moves_(std::move(moves)),
       report_(std::move(report)),
       start_(steady_seconds()),
-      deadline_(start_ + setup.spend) {
+      end_(start_ + setup.spend),
+      deadline_(end_) {
   for (const Moves& all : moves_)
     for (const Moving::What what : all)
       if (!moved_back(*scene_, Moving{what}))
         throw Error(fmt::format("{}: the scene has no {} that could move", scene_->name, name_of(what)));
 }
 
-double Trials::left() const { return start_ + setup_.spend - steady_seconds(); }
+double Trials::left() const { return end_ - steady_seconds(); }
 
 scene::Execution Trials::execution() const {
   return {setup_.threads, [this](double) {
@@ -262,6 +264,7 @@ std::vector<const Candidate*> in_turns(const std::vector<Candidate>& candidates)
 
 std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal) {
   const ProcessorTime before = processor_time();
+  end_ = start_ + screening * setup_.spend;
   std::vector<Trial> trials;
   for (const Candidate* each : in_turns(candidates)) {
     const Candidate& c = *each;
@@ -278,6 +281,7 @@ std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const T
     if (!done) trial.times.clear();
     if (needed) trials.push_back(std::move(trial));
   }
+  end_ = start_ + setup_.spend;
   std::vector<Trial*> open;
   for (Trial& trial : trials) {
     if (!trial.done() || trial.of_film) continue;

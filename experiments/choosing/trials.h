@@ -48,7 +48,6 @@ class Trials {
   // Throws Error where something of `moves` has nothing in the scene that could move so.
   Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
 
-  double left() const;  // [s] of the time to spend, which begins with the constructor
   // All candidates, each renderer's first row first. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
   std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
   // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.
@@ -70,13 +69,15 @@ class Trials {
                                const Goal&) const;
   void screen(Trial&, const Truth&, const Goal&);
   void measure_on_film(Trial&, const Truth&, const Goal&);
+  // [s] of the time to spend, which begins with the constructor; while films are small, of a part of it.
+  double left() const;
   bool attempt(Trial&, const std::function<void()>& work);
 
   std::shared_ptr<const scene::Scene> scene_;
   TrialSetup setup_;
   std::vector<Moves> moves_;
   Report report_;
-  double start_, deadline_;
+  double start_, end_, deadline_;
   double waited_ = 0;
   double done_ = 0;  // share of the candidates
   std::map<std::string, Converted> converted_;
