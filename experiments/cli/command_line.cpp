@@ -40,7 +40,8 @@ std::string full_name(const CLI::App& command) {
 Commands::Commands() : app("airlight: fog and smoke in real time, judged against references", "airlight") {
   app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
   app.option_defaults()->always_capture_default(false);
-  app.footer("Commands that may use a GPU (render, experiment run, gates, explain, verify, doctor) take --gpu WHICH.");
+  app.footer(
+      "Commands that may use a GPU (render, experiment run, gates, explain, choose, verify, doctor) take --gpu WHICH.");
   app.allow_extras();
 }
 

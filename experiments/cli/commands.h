@@ -26,6 +26,8 @@ void add_simulate(Commands&);
 void add_experiment(Commands&);
 void add_gates(Commands&);
 void add_explain(Commands&);
+// Tries what can render a scene, and ranks it within a time or an error (experiments/choosing).
+void add_choose(Commands&);
 // Runs a script of authoring operations (methods/fogshop/README.md) and writes the scene and its tables of Gaussians.
 void add_author(Commands&);
 void add_verify(Commands&);

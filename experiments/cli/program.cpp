@@ -68,6 +68,7 @@ int dispatch(int argc, char** argv) {
   add_experiment(commands);
   add_gates(commands);
   add_explain(commands);
+  add_choose(commands);
   add_author(commands);
   add_verify(commands);
   add_doctor(commands);

@@ -46,6 +46,8 @@ class RowKeeper {
   RunProgress::Step reference_step(const SceneCase&);
   void add(const ReferenceInfo& reference) { outcome_.references.push_back(reference); }
 
+  const std::vector<Row>& rows() const { return outcome_.rows; }  // of the scenes that are finished
+
   // As run_experiment.
   Outcome run(const Plan&);
 

@@ -1,6 +1,7 @@
 // The list of kinds.
 #include <fmt/format.h>
 
+#include "experiments/choosing/choices.h"
 #include "experiments/driver/flows.h"
 #include "experiments/driver/images.h"
 #include "experiments/driver/numbers.h"
@@ -14,7 +15,8 @@ const std::vector<const ExperimentKind*>& all_kinds() {
   static const Numbers numbers;
   static const Flows flows;
   static const SequenceImages sequence;
-  static const std::vector<const ExperimentKind*> kinds{&images, &numbers, &flows, &sequence};
+  static const Choices choices;
+  static const std::vector<const ExperimentKind*> kinds{&images, &numbers, &flows, &sequence, &choices};
   return kinds;
 }
 

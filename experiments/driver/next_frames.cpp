@@ -180,12 +180,27 @@ std::string canonical(const Moving& m) {
                      m.what == Moving::What::camera ? fmt::format(" {}", m.turn) : "");
 }
 
-std::shared_ptr<const Scene> moved_back(const Scene& scene, const Moving& moving) {
+namespace {
+
+std::shared_ptr<const Scene> moved_by_all(const Scene& scene, const std::vector<Moving>& all) {
   auto before = std::make_shared<Scene>(scene);
-  if (!move(*before, moving)) return nullptr;
+  for (const Moving& moving : all)
+    if (!move(*before, moving)) return nullptr;
   finish(*before);
   before->geometry = scene.geometry;  // surfaces stay, and preparations tell them by it
   return before;
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> moved_back(const Scene& scene, const Moving& moving) {
+  return moved_by_all(scene, {moving});
+}
+
+std::shared_ptr<const Scene> all_moved_back(const Scene& scene, const std::vector<Moving::What>& what) {
+  std::vector<Moving> all;
+  for (const Moving::What each : what) all.push_back({each});
+  return moved_by_all(scene, all);
 }
 
 NextFrames::NextFrames(std::shared_ptr<scene::Prepared> prepared, SharedScene here, const Moving& moving)
@@ -225,31 +240,60 @@ scene::Rendering NextFrames::one(const SharedScene& at, scene::View view, const 
   return rendering;
 }
 
+FramesAfter::FramesAfter(const scene::Renderer& renderer, scene::Settings settings, std::shared_ptr<const Scene> here,
+                         std::unique_ptr<scene::Prepared> prepared)
+    : renderer_(renderer),
+      settings_(std::move(settings)),
+      here_(std::move(here)),
+      now_(here_),
+      other_(here_),
+      prepared_(std::move(prepared)) {}
+
+void FramesAfter::go_to(std::shared_ptr<const Scene> other, const scene::View& view,
+                        const scene::Execution& execution) {
+  if (now_ != here_) one(view, execution);
+  other_ = std::move(other);
+  anew_ = false;
+}
+
+double FramesAfter::one(scene::View view, const scene::Execution& execution) {
+  std::swap(now_, other_);
+  const double start = steady_seconds();
+  // What a preparation without next() holds is the same for every camera.
+  const bool camera_alone = now_->matter_hash == other_->matter_hash && now_->light_hash == other_->light_hash;
+  if (!prepared_->next(now_, execution) && !camera_alone) {
+    prepared_ = renderer_.prepare(now_, settings_, execution);
+    anew_ = true;
+  }
+  view.camera.position = now_->camera.position;
+  view.camera.forward = now_->camera.forward;
+  view.camera.right = now_->camera.right;
+  view.camera.up = now_->camera.up;
+  prepared_->render(view, execution);
+  return steady_seconds() - start;
+}
+
+std::vector<double> FramesAfter::some(const scene::View& view, const scene::Execution& execution, double budget,
+                                      std::size_t least) {
+  std::vector<double> times;
+  for (double spent = 0; times.size() < least + 1 || (times.size() < 6 && spent + times.back() < budget);
+       spent += times.back())
+    times.push_back(one(view, execution));
+  times.erase(times.begin());
+  return times;
+}
+
 std::optional<FrameAfter> frame_after(Moving::What what, const scene::Renderer& renderer,
                                       const scene::Settings& settings, std::shared_ptr<const Scene> here,
                                       const scene::View& view, const scene::Execution& execution, double budget) {
-  std::shared_ptr<const Scene> now = here, other = moved_back(*here, {what});
+  const std::shared_ptr<const Scene> other = moved_back(*here, {what});
   if (!other || !renderer.supports(*other, settings).empty()) return {};
   std::unique_ptr<scene::Prepared> prepared = renderer.prepare(here, settings, execution);
   prepared->render(view, execution);
-  FrameAfter result;
-  std::vector<double> times;
-  for (double spent = 0; times.size() < 2 || (times.size() < 6 && spent + times.back() < budget);
-       spent += times.back()) {
-    std::swap(now, other);
-    const double start = steady_seconds();
-    scene::View seen = view;
-    seen.camera = now->camera;
-    if (!prepared->next(now, execution) && what != Moving::What::camera) {
-      prepared = renderer.prepare(now, settings, execution);
-      result.anew = true;
-    }
-    prepared->render(seen, execution);
-    times.push_back(steady_seconds() - start);
-  }
-  if (times.size() > 1) times.erase(times.begin());
-  result.seconds = median(times);
-  return result;
+  FramesAfter frames(renderer, settings, here, std::move(prepared));
+  frames.go_to(other, view, execution);
+  const double seconds = median(frames.some(view, execution, budget));
+  return FrameAfter{seconds, frames.anew()};
 }
 
 }  // namespace airlight::experiments

@@ -35,6 +35,8 @@ void turn_lights(scene::Scene&, double angle);
 
 // The scene one frame before, finished. Null if it has nothing that moves so.
 std::shared_ptr<const scene::Scene> moved_back(const scene::Scene&, const Moving&);
+// The same where all of these move at once.
+std::shared_ptr<const scene::Scene> all_moved_back(const scene::Scene&, const std::vector<Moving::What>&);
 
 class NextFrames {
  public:
@@ -58,12 +60,34 @@ class NextFrames {
   std::size_t here_;               // the frame that was rendered last
 };
 
-// [s] of the frame after something moved: of next() and the render, or, where there is no next(), of a preparation anew and the render.
+// Frames that go back and forth between a scene and another: each is the one after all that differs between them has moved.
+class FramesAfter {
+ public:
+  // The preparation is of `here`. Views may have another lens and film than the scenes' cameras, which say where they stand.
+  FramesAfter(const scene::Renderer&, scene::Settings, std::shared_ptr<const scene::Scene> here,
+              std::unique_ptr<scene::Prepared>);
+
+  // The other scene from now on.
+  void go_to(std::shared_ptr<const scene::Scene> other, const scene::View&, const scene::Execution&);
+  // [s] of next() and the render, or, where there is no next(), of a preparation anew and the render.
+  double one(scene::View, const scene::Execution&);
+  // A few, after one that warms up, in about `budget` seconds; at least `least`.
+  std::vector<double> some(const scene::View&, const scene::Execution&, double budget, std::size_t least = 1);
+  bool anew() const { return anew_; }  // some frame to this other scene or back was prepared anew
+
+ private:
+  const scene::Renderer& renderer_;
+  scene::Settings settings_;
+  std::shared_ptr<const scene::Scene> here_, now_, other_;
+  std::unique_ptr<scene::Prepared> prepared_;
+  bool anew_ = false;
+};
+
 struct FrameAfter {
   double seconds = 0;
   bool anew = false;
 };
-// The median of a few, after one that warms up, in about `budget` seconds. Nothing where nothing in the scene moves so.
+// The median of a few such frames in about `budget` seconds. Nothing where nothing in the scene moves so.
 std::optional<FrameAfter> frame_after(Moving::What, const scene::Renderer&, const scene::Settings&,
                                       std::shared_ptr<const scene::Scene>, const scene::View&, const scene::Execution&,
                                       double budget);

@@ -170,6 +170,7 @@ def queue_files():
     case('scene, missing', ['render', 'no.toml', *out], says='no.toml')
     case('scene, a folder', ['render', '.', *out])
     case('explain, corrupt scene', ['explain', write('half.toml', SCENE[:100])])
+    case('choose, corrupt scene', ['choose', write('half.toml', SCENE[:100]), '--budget', '1s'])
     vdb = open(os.path.join(DATA, 'plume_0024.vdb'), 'rb').read()
     kinds = {'csv': ('csv', CSV), 'coefficients': ('csv', COEFFICIENTS), 'vdb': ('vdb', vdb),
              'environment': ('exr', exr(8, 4)), 'obj': ('obj', OBJ), 'off': ('off', OFF), 'ply': ('ply', PLY)}
