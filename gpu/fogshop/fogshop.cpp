@@ -264,7 +264,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   if (!plan_.doubt.empty()) film.metadata["warning"] = "fogshop_gpu: " + plan_.doubt;
   result.counters["rays"] = double(film.pixels());
   if (next_) result.counters.merge(next_->counters("next_"));
-  result.counters["light_maps_made"] = maps_made_;
+  if (needs_.light_maps) result.counters["light_maps_made"] = maps_made_;
   result.counters["gaussians"] = model_.gaussians.count;
   result.counters["gaussians_dropped"] = model_.dropped;
   if (lighting_.depths) result.counters["average_depth_cells"] = double(lighting_.depths->cells().size());

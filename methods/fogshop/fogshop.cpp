@@ -141,7 +141,7 @@ void PreparedFogshop::count(double rays, double evaluations, std::map<std::strin
   counters["rays"] = rays;
   counters["erf_evaluations"] = evaluations;
   counters["erf_evaluations_prepare"] = model_.evaluations;
-  counters["light_maps_made"] = maps_made_;
+  if (plan_.needs.light_maps) counters["light_maps_made"] = maps_made_;
   counters["gaussians"] = model_.gaussians.count;
   counters["gaussians_dropped"] = model_.dropped;
   if (lighting_.depths) counters["average_depth_cells"] = double(lighting_.depths->cells().size());

@@ -138,8 +138,8 @@ name = "moving"
 renderer = "shadow_planes"
 moving = { what = "lights" }
 [[method]]
-name = "marcher"
-renderer = "ray_marcher"
+name = "quadrature"
+renderer = "deterministic"
 moving = { what = "lights" }
 [profile.quick]
 runs = 3
