@@ -110,6 +110,7 @@ class SceneCases {
       };
       TrialSetup setup;
       setup.threads = threads_;
+      setup.spend *= double(moves_.size());
       setup.film = std::min(setup.film, next.scene->width / 3);  // some pixels alone, on small films too
       Trials choice(next.scene, setup, moves_, report);
       next.tried = choice.run(candidates_, trace_truth(next.scene, setup, setup.spend / 3, report), longest_);

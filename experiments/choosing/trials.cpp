@@ -19,6 +19,7 @@ using SharedScene = std::shared_ptr<const scene::Scene>;
 
 constexpr double most_of_rest = 1.0 / 6;  // of the time that is left: for one candidate
 constexpr double screening = 0.7;         // of the time to spend: the rest is for the scene's own film
+constexpr double cheap = 1.0 / 60;        // of the time to spend: costs less on the scene's own film, at once
 constexpr double near = 0.8;  // a time and the budget are near each other if the lesser is this share of the greater
 constexpr std::size_t least_frames = 3, most_frames = 5;  // timed, of each candidate on each film
 constexpr double hopeless = 4, hopeless_error = 2;        // times what is allowed: frames are not timed any more
@@ -166,6 +167,20 @@ std::vector<Estimate> Trials::frames(const Candidate& c, const Converted& conver
   return all;
 }
 
+// Times of a frame on each of the views; of one where it is far from the goal, as little as is known.
+std::vector<FrameTime> Trials::times(const Trial& trial, const Converted& converted, const Moves& moves, Pass& first,
+                                     const std::vector<scene::View>& views, const Goal& goal) const {
+  const Candidate& c = *trial.candidate;
+  const double least = first.render + (moves.empty() ? first.prepare : 0) + (converts(moves) ? converted.seconds : 0);
+  std::vector<Estimate> found;
+  if (!is_hopeless(least, goal) && !(goal.error && trial.error.low > hopeless_error * *goal.error))
+    found = moves.empty() ? stills(c, converted, views) : frames(c, converted, moves, first, views, goal);
+  if (found.empty()) return {{{least, least, infinity}, true}};
+  std::vector<FrameTime> all;
+  for (const Estimate& seconds : found) all.push_back({seconds, false});
+  return all;
+}
+
 void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   const Candidate& c = *trial.candidate;
   const Converted& converted = scene_for(c);
@@ -180,47 +195,43 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
   if (!std::isfinite(trial.error.value)) throw Error("its error is not defined in this scene");
   trial.of_film = sparse.stride == 1;
   const double small = pixels_of(sparse.small), whole = pixels_of(sparse.whole);
-  std::vector<scene::View> views{sparse.small};
-  if (!trial.of_film) views.push_back(smaller_view(sparse.small));
-  double cost = first.prepare;
-  for (const Moves& moves : moves_) {
-    const double least = first.render + (moves.empty() ? first.prepare : 0) + (converts(moves) ? converted.seconds : 0);
-    std::vector<Estimate> of_views;
-    if (!is_hopeless(least, goal) && !(goal.error && trial.error.low > hopeless_error * *goal.error))
-      of_views = moves.empty() ? stills(c, converted, views) : frames(c, converted, moves, first, views, goal);
-    FrameTime time;
-    time.at_least = of_views.empty();
-    if (time.at_least)
-      time.seconds = {least - first.render + first.render * whole / small, least, infinity};
-    else
-      time.seconds =
-          trial.of_film ? of_views[0] : extrapolated(of_views[0], small, of_views[1], pixels_of(views[1]), whole);
-    trial.times.push_back(time);
-    cost += first.prepare + double(least_frames + 2) * time.seconds.value;
+  const double frames = double(least_frames + 3) * double(moves_.size());
+  if (!trial.of_film && first.prepare + frames * first.render * whole / small < cheap * setup_.spend) {
+    measure_on_film(trial, truth, goal);
+  } else {
+    std::vector<scene::View> views{sparse.small};
+    if (!trial.of_film) views.push_back(smaller_view(sparse.small));
+    costs_[&c] = first.prepare;
+    for (const Moves& moves : moves_) {
+      const std::vector<FrameTime> of_views = times(trial, converted, moves, first, views, goal);
+      FrameTime time = of_views.front();
+      if (time.at_least)
+        time.seconds.value += first.render * (whole / small - 1);
+      else if (!trial.of_film)
+        time.seconds = extrapolated(of_views[0].seconds, small, of_views[1].seconds, pixels_of(views[1]), whole);
+      trial.times.push_back(time);
+      costs_[&c] += first.prepare + double(least_frames + 2) * time.seconds.value;
+    }
   }
   trial.screened = trial.times;
-  costs_[&c] = cost;
 }
 
 void Trials::measure_on_film(Trial& trial, const Truth& truth, const Goal& goal) {
   const Candidate& c = *trial.candidate;
   const Converted& converted = scene_for(c);
+  Pass first = pass(c, converted, truth.sparse.whole);
   Trial measured = trial;
   measured.of_film = true;
-  Pass first = pass(c, converted, truth.sparse.whole);
   measured.error = error_of(pick(first.film, truth.sparse), truth, c.renderer->monte_carlo());
-  const std::vector<scene::View> views{truth.sparse.whole};
-  for (std::size_t i = 0; i < moves_.size(); ++i) {
-    FrameTime& time = measured.times[i];
-    if (time.at_least) continue;
-    const auto timed = [&] {
-      return moves_[i].empty() ? stills(c, converted, views).front()
-                               : frames(c, converted, moves_[i], first, views, {}).front();
-    };
-    time.seconds = timed();
+  measured.times.clear();
+  for (const Moves& moves : moves_) {
+    const auto timed = [&] { return times(measured, converted, moves, first, {truth.sparse.whole}, goal).front(); };
+    FrameTime time = timed();
     // Near the budget a disturbance decides: of two timings the lower one counts.
-    if (goal.seconds && time.seconds.value > near * *goal.seconds && time.seconds.low < *goal.seconds / near)
-      if (const Estimate again = timed(); again.value < time.seconds.value) time.seconds = again;
+    if (!time.at_least && goal.seconds && time.seconds.value > near * *goal.seconds &&
+        time.seconds.low < *goal.seconds / near)
+      if (const FrameTime again = timed(); !again.at_least && again.seconds.value < time.seconds.value) time = again;
+    measured.times.push_back(time);
   }
   trial = measured;
 }

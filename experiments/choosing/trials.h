@@ -1,4 +1,4 @@
-// What candidates cost and how far they err in one scene, tried on a small film first, and on the scene's own where that is worth it.
+// What candidates cost and how far they err in one scene: on its own film where that is cheap or worth it, else on a small one.
 #pragma once
 #include <functional>
 #include <memory>
@@ -66,6 +66,8 @@ class Trials {
   std::vector<Estimate> stills(const Candidate&, const Converted&, const std::vector<scene::View>&) const;
   // Empty where the first takes hopelessly long.
   std::vector<Estimate> frames(const Candidate&, const Converted&, const Moves&, Pass&, const std::vector<scene::View>&,
+                               const Goal&) const;
+  std::vector<FrameTime> times(const Trial&, const Converted&, const Moves&, Pass&, const std::vector<scene::View>&,
                                const Goal&) const;
   void screen(Trial&, const Truth&, const Goal&);
   void measure_on_film(Trial&, const Truth&, const Goal&);
