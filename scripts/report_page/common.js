@@ -23,9 +23,13 @@
   };
   const percent = x => `${digits(100 * x)} %`;
   const time = s => s >= 1 ? `${digits(s)} s` : `${digits(1000 * s)} ms`;
-  const hidden = v => Math.abs(v[0]) < v[3];
-  const shown = (v, metric) => metric === "rmse" ? (hidden(v) ? "< " : "") + Number((hidden(v) ? v[3] : v[0]).toPrecision(2))
-    : hidden(v) ? `< ${percent(v[3])}` : percent(v[0]);
+  // The noise of the reference hides a figure whose 95 % interval reaches 0.
+  const hidden = v => v[1] <= 0 && v[2] >= 0 && v[1] < v[2];
+  const most = v => Math.max(Math.abs(v[1]), Math.abs(v[2]));
+  const shown = (v, metric) => {
+    const x = hidden(v) ? most(v) : v[0];
+    return (hidden(v) ? "< " : "") + (metric === "rmse" ? String(Number(x.toPrecision(2))) : percent(x));
+  };
   const error = row => row.v.rel_l2;
 
   // Faster and closer; what the reference's noise hides is as close as anything.
@@ -87,13 +91,13 @@
   const plot = (set, s) => {
     const rows = set.rows.filter(r => r.s === s && error(r) && r.t[state.moves] > 0);
     const [w, h, left, right, top, bottom] = [540, 340, 58, 12, 28, 44];
-    const ys = rows.map(r => Math.max(error(r)[0], error(r)[3], 1e-6)), xs = rows.map(r => r.t[state.moves]);
+    const ys = rows.map(r => Math.max(error(r)[0], hidden(error(r)) ? most(error(r)) : 0, 1e-6)), xs = rows.map(r => r.t[state.moves]);
     const [x0, x1, y0, y1] = [Math.min(...xs) / 1.3, Math.max(...xs) * 1.3, Math.min(...ys) / 1.5, Math.max(...ys) * 1.3];
     const X = t => left + (w - left - right) * Math.log(t / x0) / Math.log(x1 / x0);
     const Y = v => top + (h - top - bottom) * Math.log(y1 / Math.max(v, y0)) / Math.log(y1 / y0);
     const picture = svg("svg", { viewBox: `0 0 ${w} ${h}`, role: "img", "aria-label": `error against time, ${set.scenes[s]}` });
     picture.append(svg("text", { x: left, y: 18, class: "title" }, set.scenes[s]));
-    const floor = Math.max(0, ...rows.map(r => error(r)[3]).filter((_, i) => hidden(error(rows[i]))));
+    const floor = Math.max(0, ...rows.filter(r => hidden(error(r))).map(r => most(error(r))));
     if (floor > y0) {
       picture.append(svg("rect", { x: left, y: Y(floor), width: w - left - right, height: h - bottom - Y(floor), class: "noise" }));
       picture.append(svg("text", { x: w - right - 4, y: h - bottom - 5, "text-anchor": "end" }, "hidden by the reference's noise"));
@@ -137,6 +141,67 @@
     return element("p", { className: "legend" }, ...entries);
   };
 
+  // The pictures of a scene in the experiment's own section: the reference first, then the closest row of each method.
+  const picturesOf = (set, scene) => {
+    let at = document.getElementById(`common-${set.name}`);
+    while (at && (at = at.nextElementSibling) && at.tagName !== "H2") {
+      const script = at.querySelector("script.pictures");
+      if (script && at.previousElementSibling.textContent === scene) return JSON.parse(script.textContent).pictures;
+    }
+    return [];
+  };
+
+  const side = 20, scale = 5;  // of a tile [pixels], and how much larger it is shown
+  // Relative L2 of each tile beside the mean of the reference, and the place of the worst.
+  const worstTile = (picture, reference) => {
+    const a = decode(picture), r = decode(reference), width = reference.width;
+    let mean = 0, worst = { error: -1 };
+    for (const v of r) mean += v / r.length;
+    for (let y = 0; y + side <= reference.height; y += side / 2)
+      for (let x = 0; x + side <= width; x += side / 2) {
+        let sum = 0;
+        for (let j = y; j < y + side; ++j)
+          for (let i = 3 * (j * width + x); i < 3 * (j * width + x + side); ++i) sum += (a[i] - r[i]) ** 2;
+        const error = Math.sqrt(sum / (3 * side * side)) / mean;
+        if (error > worst.error) worst = { error, x, y };
+      }
+    return worst;
+  };
+
+  const crop = (picture, tile, exposure) => {
+    const canvas = element("canvas", { width: side, height: side }), context = canvas.getContext("2d");
+    const image = context.createImageData(side, side), values = decode(picture);
+    for (let j = 0; j < side; ++j)
+      for (let i = 0; i < side; ++i)
+        for (let c = 0; c < 4; ++c)
+          image.data[4 * (j * side + i) + c] =
+            c === 3 ? 255 : toSrgb(exposure * values[3 * ((tile.y + j) * picture.width + tile.x + i) + c]);
+    context.putImageData(image, 0, 0);
+    canvas.style.width = canvas.style.height = `${side * scale}px`;
+    return canvas;
+  };
+
+  const crops = (set, scene) => {
+    const [reference, ...pictures] = picturesOf(set, scene);
+    if (!pictures.length) return element("p", { className: "about" }, "The pictures are not here: run the experiment.");
+    const bright = [...decode(reference)].sort((a, b) => a - b)[Math.floor(0.99 * decode(reference).length)];
+    return element("div", { className: "crops" }, ...pictures.map(picture => {
+      const tile = worstTile(picture, reference);
+      const exposure = 0.8 / Math.max(bright, 1e-9);
+      return element("figure", {}, crop(reference, tile, exposure), crop(picture, tile, exposure),
+        element("figcaption", {}, `${picture.label}: ${percent(tile.error)}`));
+    }));
+  };
+
+  const worst = set => element("div", {}, element("h3", {}, "Where each method is worst"),
+    element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error of each method's closest row: the ` +
+      "reference, the method, and the error beside the mean of the whole reference."),
+    ...set.scenes.map(scene => {
+      const details = element("details", {}, element("summary", {}, scene));
+      details.addEventListener("toggle", () => details.append(crops(set, scene)), { once: true });
+      return details;
+    }));
+
   const choice = (key, words, options) => {
     const select = element("select", { name: key, onchange: () => { state[key] = select.value; draw(); keep(); } },
       ...options.map(([value, text]) => element("option", { value, selected: String(value) === state[key] }, text)));
@@ -150,7 +215,7 @@
       element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}. Bold: on the front, no row of the scene is ` +
         "faster and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: the " +
         "reference's noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
-      table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))));
+      table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))), worst(set));
   };
 
   const asked = location.hash.match(/^#common\?(.*)$/);

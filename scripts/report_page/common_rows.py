@@ -17,15 +17,17 @@ class Fault(Exception):
 
 
 class Measure:
-    """A figure with its 95 % interval, and the noise of the reference in its unit (0: none)."""
+    """A figure with its 95 % interval. The noise of the reference is taken out of it, and is what the interval is made of."""
 
     def __init__(self, line, name):
-        number = lambda suffix: float(line[name + suffix])
-        self.value, self.low, self.high, self.floor = (number(s) for s in ("", "_low", "_high", "_noise_floor"))
+        self.value, self.low, self.high = (float(line[name + suffix]) for suffix in ("", "_low", "_high"))
 
     def hidden(self):
-        """Does the reference's noise hide it?"""
-        return abs(self.value) < self.floor
+        """Does the noise of the reference hide it? Then the interval reaches 0."""
+        return self.low <= 0 <= self.high and self.low < self.high
+
+    def most(self):
+        return max(abs(self.low), abs(self.high))
 
 
 class Row:
@@ -81,8 +83,8 @@ def percent(value):
 
 
 def text(measure):
-    """The figure, or the noise that hides it."""
-    return f"< {percent(measure.floor)}" if measure.hidden() else percent(measure.value)
+    """The figure, or what it is below."""
+    return f"< {percent(measure.most())}" if measure.hidden() else percent(measure.value)
 
 
 def milliseconds(seconds):
@@ -114,7 +116,7 @@ def fragment(results):
             "name": name, "words": words, "film": f"{film[0]} x {film[1]}", "scenes": scenes, "methods": methods,
             "machine": f'{run["machine"]["cpu"]}, {run["machine"]["threads"]} threads',
             "rows": [{"s": scenes.index(r.scene), "m": methods.index(r.method), "set": r.setting, "all": r.settings, "c": r.converted,
-                      "v": {k: [m.value, m.low, m.high, m.floor] for k, m in r.measures.items()},
+                      "v": {k: [m.value, m.low, m.high] for k, m in r.measures.items()},
                       "t": {k: t for k, t in r.times.items() if t is not None}, "note": r.note} for r in rows]})
     if not sets:
         return ""
