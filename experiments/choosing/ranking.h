@@ -22,7 +22,7 @@ Ranking rank(const std::vector<Trial>&, const Goal&, std::size_t move = 0);
 // The first of each renderer, apart with and without a conversion.
 std::vector<const Trial*> heads(const std::vector<const Trial*>&);
 
-// Those beyond the goal that have what is asked for: less error than the first choice and all that are nearer to the budget, or less time.
+// Trials beyond the goal that offer something: less error than the first choice and all that are nearer to the budget, or less time.
 std::vector<const Trial*> worth_more(const Ranking&, const Goal&, std::size_t move = 0);
 
 // One sentence each: what makes the first choice doubtful, or that nothing does.

@@ -22,7 +22,7 @@ struct Verdict {
 // may take `seconds` * time_margin.
 Verdict judge_choice(const Trial* chosen, const std::vector<Trial>& judged, double seconds, std::size_t move);
 
-// Of two timings of one frame the lower one counts: what was slower was disturbed. Takes those of `tried` over where they are of the film.
+// Takes the times of `tried` where these are lower and of the scene's own film: the slower of two timings of one frame was disturbed.
 void keep_lower_times(std::vector<Trial>& judged, const std::vector<Trial>& tried);
 
 }  // namespace airlight::experiments

@@ -35,7 +35,7 @@ void turn_lights(scene::Scene&, double angle);
 
 // The scene one frame before, finished. Null if it has nothing that moves so.
 std::shared_ptr<const scene::Scene> moved_back(const scene::Scene&, const Moving&);
-// The same where all of these move at once.
+// One frame before, where all of these move at once. Null if nothing in the scene moves so.
 std::shared_ptr<const scene::Scene> all_moved_back(const scene::Scene&, const std::vector<Moving::What>&);
 
 class NextFrames {

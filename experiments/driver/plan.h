@@ -38,7 +38,7 @@ PlannedScene plan_reference(const Experiment&, const SceneCase&);
 // is no good.
 // What a conversion makes of its media is kept in the store.
 PlannedScene plan_scene(const Experiment&, const SceneCase&, const scene::ContentStore&);
-// Of a scene that is loaded, such as one picture of a sequence.
+// Plans a scene that is loaded, such as one picture of a sequence.
 PlannedScene plan_scene(const Experiment&, const SceneCase&, std::shared_ptr<const scene::Scene>,
                         const scene::ContentStore&);
 

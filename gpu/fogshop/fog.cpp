@@ -40,7 +40,7 @@ std::size_t map_values(const airlight::fogshop::Options& o) {
   return std::size_t(o.map_directions + 2) * (o.map_directions + 2) * (o.map_edges + 1);
 }
 
-// Of all lights, the maps at the places `map_of_light`.
+// Packs all lights; `map_of_light` says where the map of each lies.
 std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool maps,
                                   const std::vector<int>& map_of_light) {
   std::vector<LightData> data;

@@ -36,7 +36,7 @@ class FogOnDevice {
   // The model has become that of the next frame, which is_like() the one before: uploads what is not `unchanged`.
   void become(const airlight::fogshop::Needs&, const airlight::fogshop::Unchanged&);
 
-  // Of lights that have none yet: how many.
+  // Each fills what lights lack, and returns how many lights that were.
   int fill_light_maps();                      // variant S
   int fill_light_depths();                    // variant paper: T(s,b_i)
   void fill_view_depths(const Point3& view);  // variant paper, every frame: T(v,b_i), T(s,v)

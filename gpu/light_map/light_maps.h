@@ -50,7 +50,7 @@ class LightMaps {
     std::unique_ptr<Buffer> steps, nodes, parts, waves;
   };
   void project(const std::vector<scene::Light>&);
-  // Of the lights for which `wanted` is set.
+  // Makes the maps of the lights for which `wanted` is set.
   void make(const ray_marcher::MediaOnDevice&, const std::vector<airlight::ray_marcher::Layer>&,
             const std::vector<bool>& wanted, Work&, const std::function<bool(double)>& progress);
   std::vector<float> rules(const Point3& middle) const;

@@ -21,8 +21,8 @@ class RayEnds {
   // Uploads; keeps the scene by reference. Throws Unavailable where the device has no room.
   RayEnds(Context&, const scene::Scene&, FirstHits::Way = FirstHits::Way::tree);
 
-  // The same surfaces, and balls of lights that have moved. False, and nothing is done: there are other surfaces, backdrops, or another number
-  // of balls.
+  // Takes over balls of lights that have moved, where surfaces are the same. False, and nothing is done: there are other surfaces,
+  // backdrops, or another number of balls.
   bool become(const scene::Scene& before, const scene::Scene&);
 
   const FirstHits* surfaces() const { return surfaces_.get(); }    // and balls of lights; null: there are none

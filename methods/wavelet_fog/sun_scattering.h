@@ -31,8 +31,8 @@ class SunScattering {
   };
   static Rule rule_of(int points);
 
-  // Of all directional lights of the scene, which outlives this and has fogmaps alone. `before`: of the frame before, whose maps are kept where
-  // they still hold; may be null.
+  // Scatters all directional lights of the scene, which outlives this and has fogmaps alone. `before`: the scattering of the frame before,
+  // whose maps are kept where they still hold; may be null.
   SunScattering(const scene::Scene&, const Options&, const scene::Execution&, const SunScattering* before = nullptr);
 
   int maps_made() const { return maps_made_; }  // those kept left out

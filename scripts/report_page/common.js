@@ -152,18 +152,19 @@
   };
 
   const side = 20, scale = 5;  // of a tile [pixels], and how much larger it is shown
-  // Relative L2 of each tile beside the mean of the reference, and the place of the worst.
+  // The tile with the greatest squared error: its place and its relative L2 error.
   const worstTile = (picture, reference) => {
     const a = decode(picture), r = decode(reference), width = reference.width;
-    let mean = 0, worst = { error: -1 };
-    for (const v of r) mean += v / r.length;
+    let worst = { sum: -1 };
     for (let y = 0; y + side <= reference.height; y += side / 2)
       for (let x = 0; x + side <= width; x += side / 2) {
-        let sum = 0;
+        let sum = 0, light = 0;
         for (let j = y; j < y + side; ++j)
-          for (let i = 3 * (j * width + x); i < 3 * (j * width + x + side); ++i) sum += (a[i] - r[i]) ** 2;
-        const error = Math.sqrt(sum / (3 * side * side)) / mean;
-        if (error > worst.error) worst = { error, x, y };
+          for (let i = 3 * (j * width + x); i < 3 * (j * width + x + side); ++i) {
+            sum += (a[i] - r[i]) ** 2;
+            light += r[i] ** 2;
+          }
+        if (sum > worst.sum) worst = { sum, error: Math.sqrt(sum / light), x, y };
       }
     return worst;
   };
@@ -194,8 +195,8 @@
   };
 
   const worst = set => element("div", {}, element("h3", {}, "Where each method is worst"),
-    element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error of each method's closest row: the ` +
-      "reference, the method, and the error beside the mean of the whole reference."),
+    element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error in each picture below: the reference, ` +
+      "the method, and the relative L2 error of the tile."),
     ...set.scenes.map(scene => {
       const details = element("details", {}, element("summary", {}, scene));
       details.addEventListener("toggle", () => details.append(crops(set, scene)), { once: true });

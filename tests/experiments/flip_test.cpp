@@ -21,7 +21,7 @@ struct Pair {
   std::vector<float> image, reference;
 };
 
-// Those of flip_oracle.py.
+// Makes the pictures of flip_oracle.py.
 Pair pictures(const std::string& kind) {
   Pair pair;
   for (int y = 0; y < height; ++y)

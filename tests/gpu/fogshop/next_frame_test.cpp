@@ -41,7 +41,7 @@ DEVICE_TEST_CASE("fogshop on the device: a next frame uploads what changed, into
   const auto prepared = method.prepare(still, {method.settings(), {{"average_depth", "exact"}}}, {1, {}});
   CHECK(prepared->render(view_of(*still), {1, {}}).counters.count("next_bytes_up") == 0);
   const double gaussians = 32 * 30, lights = 16 * 80;
-  // Of the lights on surfaces: places, and where the lists by directions begin (32^2 directions of two lights).
+  // Lights on surfaces send places, and where the lists by directions begin (32^2 directions of two lights).
   const double places = 2 * 24, lists = 4 * (2 * 32 * 32 + 1);
   struct Cost {
     std::string name;
