@@ -195,8 +195,8 @@
   };
 
   const worst = set => element("div", {}, element("h3", {}, "Where each method is worst"),
-    element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error in each picture below: the reference, ` +
-      "the method, and the relative L2 error of the tile."),
+    element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error in each picture below: ` +
+      "the reference, the method, and the relative L2 error of the tile."),
     ...set.scenes.map(scene => {
       const details = element("details", {}, element("summary", {}, scene));
       details.addEventListener("toggle", () => details.append(crops(set, scene)), { once: true });
