@@ -213,9 +213,9 @@
   const draw = () => {
     const set = data.sets.find(one => one.name === state.set);
     view.replaceChildren(
-      element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}. Bold: on the front, no row of the scene is ` +
-        "faster and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: the " +
-        "reference's noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
+      element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}; ${set.commit}. Bold: on the front, no row of ` +
+        "the scene is faster and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: " +
+        "the reference's noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
       table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))), worst(set));
   };
 
