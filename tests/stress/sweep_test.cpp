@@ -36,7 +36,7 @@ std::vector<std::string> with_variants(const SweepCase& c, const std::vector<std
     }
     // Films of 3 x 3 pixels: froxels of one, every pixel marched.
     specs.push_back(name == "wavelet_fog"                       ? name + " sun=true"
-                    : name == "froxel_fog"                      ? name + " tile=1 slices=256 map_size=64"
+                    : name.starts_with("froxel_fog")            ? name + " tile=1 slices=256 map_size=64"
                     : name.starts_with("half_resolution_march") ? name + " divide=1 jitter=none steps=256 map_size=64"
                                                                 : name);
     if (!name.starts_with("fogshop") || name.find(' ') != std::string::npos) continue;
