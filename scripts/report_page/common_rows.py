@@ -63,12 +63,17 @@ def path_of(results, name, file):
     return os.path.join(results, "common", name, file)
 
 
-def read(results, name):
+def read_rows(results, name):
     path = path_of(results, name, "table.csv")
     if not os.path.exists(path):
         raise Fault(f"{path} is not there: airlight experiment run common")
     with open(path, newline="", encoding="utf-8") as file:
-        rows = [Row(line) for line in csv.DictReader(file)]
+        return [Row(line) for line in csv.DictReader(file)]
+
+
+def read(results, name):
+    """The rows, and the record of the run that made them."""
+    rows = read_rows(results, name)
     with open(path_of(results, name, "run.json"), encoding="utf-8") as file:
         return rows, json.load(file)
 
