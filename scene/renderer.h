@@ -91,7 +91,7 @@ class Renderer : public Component {
   std::unique_ptr<Prepared> prepare(std::shared_ptr<const Scene>, const Settings&, const Execution&) const;
 
  private:
-  // Of a scene that supports() has nothing against.
+  // Called for scenes only to which supports() does not object.
   virtual std::unique_ptr<Prepared> prepare_supported(std::shared_ptr<const Scene>, const Settings&,
                                                       const Execution&) const = 0;
 };

@@ -38,7 +38,7 @@ using Overrides = std::map<std::string, std::string>;
 // valid key.
 Scene load_scene(const std::string& path, const Overrides& = {});
 
-// The same from text; relative asset names are resolved against `folder`.
+// Reads a scene from text. Relative asset names are resolved against `folder`.
 Scene parse_scene(const std::string& toml, const std::string& name, const std::string& folder, const Overrides& = {});
 
 // Fills geometry and hash of a scene made in code.
@@ -58,7 +58,7 @@ struct RayEnd {
   std::optional<Rgb> seen;  // what a backdrop sends from there [W/m^2/sr]; at t = infinity it stands for environments
 };
 RayEnd ray_end(const Scene&, const Ray&);
-// The same of a ray of the scene's own camera, which backdrops end too, where nothing is nearer.
+// The end of a ray of the scene's own camera. Backdrops end such a ray too, where nothing is nearer.
 RayEnd camera_end(const Scene&, const Ray&);
 
 }  // namespace airlight::scene

@@ -16,8 +16,8 @@ struct FitErrors {
   double rms = 0, rms_filled = 0, max = 0, max_filled = 0;
 };
 
-// T: float for fits, double where digits count. The same bits for any number of threads: a slice adds the Gaussians in their order, a
-// Gaussian's gradient is one thread's, sums over slices run in theirs.
+// T: float for fits, double where digits count. Results are bitwise equal for any number of threads: a slice adds the
+// Gaussians in their order, one thread computes a Gaussian's gradient, and sums over slices run in order.
 template <class T>
 class FitObjective {
  public:

@@ -15,7 +15,7 @@ struct GroundPixels {
   double x0 = 0, z0 = 0;
 };
 
-// As many square pixels as cover the field's box, `longer` of them along its longer side. Throws Error for a field without an end.
+// Square pixels that cover the field's box, `longer` of them along its longer side. Throws Error for an infinite field.
 GroundPixels ground_pixels(const DensityField&, int longer);
 
 // The columns over each pixel [m]: means over samples^2 upright rays. Throws Error for a field without an end in height.

@@ -16,8 +16,8 @@ struct QuantisationOptions {
   int threshold = 0;  // levels of this size or less become 0; 0 to 126
   // Density of one level [-], > 0; what passes 127 of them is cut off. By default the largest |R| is 127 levels.
   std::optional<double> step;
-  // Of residual_of(): samples without density stay without, whatever the threshold: there the level is rounded down. Otherwise Gaussians
-  // leave up to half a level, or the threshold, in empty space.
+  // Used by residual_of(): samples without density get none, for any threshold, because levels are rounded down there.
+  // Without it, Gaussians leave up to half a level, or the threshold, in empty space.
   bool keep_empty = false;
 };
 

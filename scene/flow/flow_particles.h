@@ -24,7 +24,7 @@ class FlowParticles {
 
   // By set, as in the problem.
   const std::vector<std::vector<Point3>>& positions() const { return now().positions; }
-  // As scenes read them: a row of set and place for each, exact.
+  // The text that scenes read: one row with set and position for each particle, exact.
   std::string csv() const;
 
   // All that the next step depends on, and back. Throws Error.

@@ -154,7 +154,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
 // The hash of its values; its name, and how they are written, do not count.
 std::string content_hash(const FlowProblem&);
 
-// The same problem with that one of its densities alone, as the first one: 0 the first, k the k-th of `densities`.
+// This problem with a single density, stored as the first one: `which` = 0 keeps the first, k the k-th of `densities`.
 FlowProblem with_density(const FlowProblem&, int which);
 // "density" for the first, else the name.
 std::string density_name(const FlowProblem&, int which);

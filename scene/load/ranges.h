@@ -23,7 +23,8 @@ class TableReader;
 
 inline constexpr double least_length = 1e-9, greatest_length = 1e9;  // [m]
 
-// Of a metre at the greatest extinction: a mean free path is then 1e5 times the rounding of places a metre away.
+// Optical depth of a metre at the greatest extinction. A mean free path is then 1e5 times the rounding of coordinates
+// at a distance of one metre.
 inline constexpr double greatest_depth = 1e11;
 
 inline constexpr Range coordinate =

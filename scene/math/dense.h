@@ -18,7 +18,8 @@ struct SymmetricModes {
 };
 SymmetricModes symmetric_modes(const Eigen::MatrixXd&);  // reads the lower triangle
 
-// A square matrix in factors L U with partial pivoting. Of a singular matrix `solve` gives values that are not finite.
+// A square matrix in factors L U with partial pivoting. For a singular matrix, `solve` returns values
+// that are not finite.
 class SquareFactors {
  public:
   explicit SquareFactors(const Eigen::MatrixXd&);

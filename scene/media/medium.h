@@ -49,7 +49,7 @@ double constant_part(const DensityField&);
 Box varied_support(const DensityField&);
 // The density of a field that cannot vary [-]; nothing for the others.
 std::optional<double> homogeneous_density(const DensityField&);
-// Of any of its parts [-]: where Gaussians overlap the sum may be greater.
+// Greatest density of any part of the field [-]. The sum can be greater where Gaussians overlap.
 double greatest_density(const DensityField&);
 std::string field_name(
     const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", "fitted", as in scene files

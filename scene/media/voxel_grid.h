@@ -43,7 +43,7 @@ double density_at_sample(const VoxelGrid&, const Point3& sample);
 // Least and greatest density over a world box; rigorous, and exact to rounding where the grid is not rotated against
 // it.
 Interval density_bounds(const VoxelGrid&, const Box&);
-// The same over a box in samples, always exact to rounding.
+// Least and greatest density over a box in samples, always exact to rounding.
 Interval density_bounds_at_samples(const VoxelGrid&, const Box& samples);
 
 // Integral of the density over t in [t0, t1] of the ray [m]: two-point Gauss in every voxel crossed, exact for the
