@@ -10,7 +10,7 @@ namespace airlight::compensated_ray_marching {
 
 class EnvironmentBands {
  public:
-  // Of a map as it lies: order^2 coefficients of the map's own directions.
+  // Projection of an unrotated map: order^2 coefficients in the map's own directions.
   using Project = std::function<std::vector<Rgb>(const std::shared_ptr<const scene::EnvironmentMap>&)>;
   explicit EnvironmentBands(int order);  // by project_environment
   EnvironmentBands(int order, Project);

@@ -22,8 +22,8 @@ namespace {
 constexpr int most_cells = 96;           // along a side, for cells that are not too deep
 constexpr double least_share = 1e-6;     // of the greatest mean density: below it a cell counts as empty
 constexpr double least_radiance = 1e-6;  // of the greatest
-// Of deepest_cell: light from one direction has creases where it comes in by one face or another, which cells of a box 1.3 deep miss by
-// 20 %, of 0.8 by 6 %, of 0.5 by 2 %.
+// Factor on deepest_cell for light from a single direction. Such light has creases where it enters by different faces.
+// In a box 1.3 deep, cells miss the creases by 20 %, in one 0.8 deep by 6 %, in one 0.5 deep by 2 %.
 constexpr double share_of_sharp_light = 1. / 3;
 constexpr double least_again = 1e-6;  // of an even light: ordinates that scatter less keep what they have
 constexpr std::size_t run = 64;       // nodes a task
@@ -312,7 +312,7 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
   std::atomic<bool> stopped{false};
   double single_seconds = 0, multiple_seconds = 0;
   for (Channels& group : channels_) {
-    // Of light without colour one channel stands for all.
+    // For light without colour one channel stands for all.
     const std::size_t lights = light.grey() ? 1 : group.which.size();
     const Moments source = scatter_once(group, lights, scatters, execution);
     single_seconds += watch.lap();

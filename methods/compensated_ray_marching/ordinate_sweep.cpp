@@ -159,7 +159,8 @@ class DiscreteOrdinates::GroupSweep {
   const double inflow_;
   const int bands_, lights_;
   std::vector<Way> ways_;
-  // Of plane k and its neighbours, at k % 3, and light at k % 2. Beyond the box nothing absorbs, light comes in, and the source goes on.
+  // Plane k and its neighbours are kept at k % 3, light at k % 2. Boundary condition: outside the box extinction is 0,
+  // the inflow radiance is given, and the source is extended by its last value.
   std::array<Padded, 3> extinction_;
   std::array<std::vector<Padded>, 3> emitted_;
   std::array<std::vector<Padded>, 2> light_;

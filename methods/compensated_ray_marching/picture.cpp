@@ -54,7 +54,7 @@ class PreparedPicture final : public scene::Prepared {
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
   std::vector<scene::StageTime> light(const Execution&);
-  // Of several orders, in what is drawn.
+  // Whether the picture contains multiple scattering.
   bool multiple() const { return scatters_ && (grid_ ? grid_->single_only() : centres_->single_only()).empty(); }
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }

@@ -59,14 +59,15 @@ void cross(const GaussianArrays&, const Line&, Erf, Crossings&);
 // Optical depth over [0, length] of the crossed line [-].
 double total_depth(const Crossings&, double length, Erf);
 
-// The same, and its parts: what the line's own length makes of each crossing, for any number of lights.
+// Like total_depth; also stores the parts of each crossing that depend on the line's own length, for any
+// number of lights.
 double whole_depths(Crossings&, double length, Erf);
 
 // total_depth at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
 void depths_at(const Crossings&, const double* t, int count, double* depth, Erf);
 
-// The same, and for each channel the sum of the depths times the colours of their Gaussians: what the medium up to
-// there scatters. `gaussians` are those that were crossed; they have colours.
+// Like depths_at; also computes, for each channel, the sum of the depths times the colours of their Gaussians: the
+// light that the medium scatters up to there. `gaussians` are those that were crossed; they have colours.
 void scattering_depths_at(const Crossings&, const GaussianArrays& gaussians, const double* t, int count, double* depth,
                           double* const scattering[3], Erf);
 

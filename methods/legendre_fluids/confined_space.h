@@ -39,7 +39,8 @@ class ConfinedSpace {
   Array divergence(const Array& u) const;
   // The nearest velocity without divergence: orthogonal in the inner product below, exact to rounding.
   Array project(const Array& u) const;
-  // Of the box in world units: sum over components of the integral of u_a v_a [m^(d+2)/s^2]. inner(u, u) / 2 is the energy.
+  // Inner product over the box in world units: sum over components of the integral of u_a v_a [m^(d+2)/s^2]. inner(u,
+  // u) / 2 is the energy.
   double inner(const Array& u, const Array& v) const;
   // The velocity w with inner(w, v) = the sum of w_a h_a^2 v_a for all v: M u, weighted.
   Array weighted(const Array& u) const;

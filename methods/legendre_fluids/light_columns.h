@@ -25,8 +25,9 @@ class LightColumns {
   void along(const Ray&, const double* t, int count, double* columns) const;
   double at(const Point3& x) const;  // at one point of the world
 
-  // Of a density that is nowhere below 0, or taken as it is: from points of the box to the face of an axis that the light comes in by, and
-  // over lengths towards the light [m]. Points are in the box's own coordinates, lanes of them.
+  // Integrals for a density that is nowhere below 0, or that is not clamped: from points of the box to
+  // the face of an axis by which the light enters, and over lengths towards the light [m]. Points are
+  // lanes in the box's own coordinates.
   using LocalLanes = std::array<Lanes, 3>;
   Lanes to_face(int axis, const LocalLanes& local) const;
   Lanes over(const LocalLanes& local, const Lanes& length) const;

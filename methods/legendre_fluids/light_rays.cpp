@@ -55,7 +55,7 @@ struct LightRays::Walk {
     return source.size() == 1 ? Rgb(irradiance * source[0]) : irradiance;
   }
 
-  // Of the series: depths come first.
+  // Channel c of the series: depths come first.
   Eigen::Map<Eigen::VectorXd> channel(int c) { return {series.coefficients.data() + c * node.size(), node.size()}; }
 
   // Values of a density at the Gauss points of a stretch within its box.

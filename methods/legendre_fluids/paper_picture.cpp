@@ -52,7 +52,7 @@ class PreparedPaper final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
-// Of channels with the same extinction only the first is solved.
+// Solves once for channels with equal extinction and copies the result.
 template <class F>
 void for_extinctions(const Rgb& sigma_t, Coefficients& all, const F& solve) {
   for (int c = 0; c < 3; ++c) {

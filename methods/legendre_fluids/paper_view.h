@@ -24,11 +24,12 @@ struct Scattered {
 
 class PaperView {
  public:
-  // Of a density under lights, one or more. References are kept. `ends`: rays may end within the box, or columns are asked for.
+  // View of a density under one or more lights. Keeps the references. `ends`: rays may end within the
+  // box, or columns are asked for.
   PaperView(const scene::LegendreBox&, const PaperLight&, const Scattered&, const Rgb& sigma_t, const scene::View&,
             bool ends);
 
-  // Of the film, by pixel.
+  // A row of the film, by pixel.
   struct Row {
     std::vector<double> end;     // given: where its ray ends, infinite where nothing ends it
     std::vector<Rgb> airlight;   // up to there [W/m^2/sr]; below 0 where the series is

@@ -26,8 +26,8 @@ class EdgeFan {
 
   static constexpr int levels = 8;  // of 4, 16, ... 65536 sectors
   static constexpr int total_sectors() { return first_sector(levels); }
-  // Of a whole turn, 4. Greater than what rounding does to angles of vectors whose part across the line is more than
-  // `least_across` of them; others are met by all rays, or meet all edges.
+  // `margin`: widening of angular ranges, where a whole turn is 4. It exceeds the rounding of angles for vectors with a
+  // share of more than `least_across` across the line. Other vectors are met by all rays, or meet all edges.
   static constexpr double margin = 1e-8, least_across = 1e-6;
 
  private:

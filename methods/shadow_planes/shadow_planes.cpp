@@ -25,7 +25,7 @@ struct Needs {
   bool medium = false, shadows = false, surfaces = false;
 };
 
-// Of a tile.
+// Counters and times of a tile.
 struct Tally {
   Counts counts;
   StageSeconds seconds;

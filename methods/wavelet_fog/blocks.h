@@ -9,7 +9,7 @@ namespace airlight::wavelet_fog {
 
 class Blocks {
  public:
-  // Of the map and its coarser grids; errors only where asked for.
+  // Blocks of the map and of its coarser grids. Errors are computed only if `errors` is set.
   Blocks(const Levels&, int most_level, bool errors);
 
   int most_level() const { return int(level_.size()) - 1; }
@@ -33,7 +33,7 @@ class Blocks {
 double skipped_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
                      double enough, Visits&);
 
-// The same by blocks of the coarsest level that is off by at most `most` [per metre of t].
+// Like skipped_depth, but uses in each block the coarsest level with an error of at most `most` [per metre of t].
 double bounded_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
                      double most, double enough, Visits&);
 

@@ -49,7 +49,7 @@ double integral_of_level(const scene::SplineMap&, int level, const scene::Height
 // paper after deconstruction.
 double summed_depth(const Levels&, const scene::HeightProfile&, const scene::MapLine&, Interval inside, double length,
                     double mu, Visits&);
-// The same by one grid at a time: between two reaches the sum of details is the finer grid alone.
+// Like summed_depth, but reads one grid at a time: between two reaches the sum of details equals the finer grid.
 double telescoped_depth(const Levels&, const scene::HeightProfile&, const scene::MapLine&, Interval inside,
                         double length, double mu, Visits&);
 

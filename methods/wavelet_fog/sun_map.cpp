@@ -17,7 +17,7 @@ using scene::MapLine;
 
 MapLine to_sun_from(const Fogmap& fog, const Point3& x, const Vec3& to_sun) { return line_over(fog, {x, to_sun}); }
 
-// Of the support, in axes along and across the azimuth.
+// Extent of the support along and across the azimuth.
 struct Extent {
   double lo[2] = {infinity, infinity}, hi[2] = {-infinity, -infinity};
 };
