@@ -48,7 +48,8 @@ Interval VariedMedia::Part::extent(const Ray& ray, Interval t) const {
   return grid_of(medium->field) ? scene::extent(medium->field, ray, t) : clip(scene::Region(box), ray, t);
 }
 
-// Of some texels in a row: the parts of steps that lie in one medium, and the optical depths of all steps.
+// Working memory for some texels in a row: the parts of steps that lie in one medium, and the optical
+// depths of all steps.
 struct LightMap::Row {
   std::vector<double> x, y, z, length;
   std::vector<float> density;

@@ -37,7 +37,7 @@ struct GridField {
   std::shared_ptr<const GridSamples> samples;
 
   static constexpr int padding = 2, brick_shift = 2;
-  // Of the brick around a local point inside the padded grid.
+  // Free distance of the brick around a local point inside the padded grid.
   float free_at(double px, double py, double pz) const {
     const int x = int(px) >> brick_shift, y = int(py) >> brick_shift, z = int(pz) >> brick_shift;
     return samples->free_distance[x + std::size_t(bricks[0]) * (y + std::size_t(bricks[1]) * z)];

@@ -23,8 +23,8 @@ struct Layer {
   LocalShape shape;  // the region for the kernels
   Frame shape_frame;
   double most_varied = 0;  // [-] upper bound of what varies
-  // Of all layers that vary, per unit of density, in the thickest channel [1/m]: how deep a shadow ray's steps are is
-  // judged by that, so that a medium in two halves is stepped as the whole.
+  // Sum over all layers that vary of the extinction per unit of density, in the thickest channel [1/m]. The step size
+  // of shadow rays depends on it, so that a medium in two halves is stepped like the whole.
   double thickest = 0;
 };
 

@@ -52,7 +52,7 @@ scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, cons
           intensity_towards(light, -to_light) * mean_inverse_square(approach(ray, ball->center), step)};
 }
 
-// The same passes with deep steps divided.
+// Divides deep steps; the passes remain.
 void divide_deep_steps(const Plan& plan, const Ray& ray, std::vector<Pass>& passes, std::vector<Step>& steps) {
   if (std::none_of(steps.begin(), steps.end(),
                    [&](const Step& step) { return may_be_deep(plan.layers, plan.options, step); }))

@@ -19,7 +19,7 @@ class TileMarcher {
   // Pixels of the rays, in their order. Rays near each other make the kernels more efficient.
   const std::vector<Pixel>& march(const Plan&, const std::vector<Ray>&, Counters&);
 
-  // The same, so many rays at a time: no pixel depends on it.
+  // Marches at most `at_once` rays at a time. The pixels do not depend on this number.
   std::vector<Pixel> march_in_parts(const Plan&, const std::vector<Ray>&, std::size_t at_once, Counters&);
 
  private:

@@ -62,7 +62,7 @@ class GridFlow : public scene::Flow {
 
   void step(double dt) override {
     arena_.execute([&] { advance(dt); });
-    // Of equal steps a product, not a sum that drifts.
+    // Time after equal steps is computed as a product, because a sum would drift.
     if (dt != last_step_) {
       since_ = time_;
       equal_steps_ = 0;
