@@ -23,8 +23,8 @@ Neighbours neighbours(const Blocks&, int pixel);
 Neighbours neighbours_at(const Blocks&, double x);
 
 // Value at a film pixel of this depth by bilinear interpolation. With `nearest_depth`, the neighbour of nearest depth
-// is used instead, where the depth differences of all four add up to more than upsample_edges * edge. Of equally near
-// neighbours the one with the largest weight is used; of equal weights, the first.
+// is used instead, where the depth differences of all four add up to more than upsample_edges * edge. Among equally
+// near neighbours the one with the largest weight is used; among equal weights the first.
 FogPixel upsampled(const LowFilm&, const Neighbours& across, const Neighbours& down, double depth, bool nearest_depth,
                    double edge);
 
