@@ -34,7 +34,7 @@ struct StateData {
   int done, iterations;
 };
 
-// As DiscreteOrdinates::sweep has them.
+// Axis and steps of a direction, with the conventions of DiscreteOrdinates::sweep.
 WayData way_of(const Ordinate& d, double edge) {
   int axis = 0;
   for (int a = 1; a < 3; ++a)

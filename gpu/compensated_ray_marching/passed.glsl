@@ -96,7 +96,7 @@ double product_at(int k, int a, int b) {
   for (int t = terms[k].i; t < terms[k].j; ++t) sum += terms[t].value * vectors[a + terms[t].i] * vectors[b + terms[t].j];
   return sum;
 }
-// Of two vectors into the first.
+// Replaces the first vector by the triple product of both, times the factor.
 void multiply(int a, int b, double factor) {
   double product = lane < BANDS ? factor * product_at(lane, a, b) : 0;
   barrier();

@@ -40,7 +40,7 @@ Reflected reflectance_of(Material m, vec3 normal, vec3 to_view) {
   vec3 x = sine > 1e-6 ? aside / sine : normalize(cross(normal, other));
   return Reflected(false, vec3(0), x, normal, m.places.x + 3 * SH_SIZE * entry, place - float(entry));
 }
-// Of a table, in its own axes.
+// Coefficient of a tabulated reflectance, in the table's own axes.
 vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb_at(r.low + 3 * (SH_SIZE + i)), r.share); }
 
 #if TRANSFER

@@ -156,7 +156,7 @@ float deep_column(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
-// Of layer k from x over a distance in a unit direction [m].
+// Column of layer k from x over a distance in a unit direction [m].
 float column_of(int k, vec3 x, vec3 direction, float distance_) {
   vec2 t = clip_region(k, x, direction, vec2(0, distance_));
   if (!(t.x < t.y)) return 0;

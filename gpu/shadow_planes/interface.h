@@ -76,13 +76,13 @@ struct alignas(32) MediumData {
   int region;
 };
 
-// That of light_state.glsl.
+// Layout of light_state.glsl.
 struct LightStateData {
   int edge_count, count_at_camera;
   unsigned edge_groups[3], plane_groups[3];
 };
 
-// That of counters.glsl, with the first of resume_groups.
+// Layout of counters.glsl, with the first entry of resume_groups.
 struct CountersData {
   unsigned lit_parts, crossings, gatherings_after_first, loops_were_cut, values_missing, unused[3], unfinished[4];
 };

@@ -1,4 +1,5 @@
-// What the device knows of one light: the host never waits for it. Those who only read do so through a uniform block.
+// State of one light that only the device knows, so that the host never waits for it. Shaders that only read it do so
+// through a uniform block.
 #if FINDS_LIGHT_STATE
 layout(std430, binding = AT_LIGHT_STATE) buffer LightState {
   int edge_count;

@@ -30,7 +30,7 @@ class PlaneShading {
   PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const airlight::shadow_planes::Options&,
                const AirlightTermsOnDevice&, const SurfacesOnDevice* surfaces);
 
-  // Of one light, the edges whose planes rays may cross: null where nothing casts a shadow.
+  // Edges of one light whose planes rays may cross: null where nothing casts a shadow.
   struct Edges {
     const LightEdges* edges = nullptr;
     const FanOnDevice* fan = nullptr;

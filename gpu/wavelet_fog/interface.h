@@ -58,7 +58,7 @@ struct LitData {
   float reflected[4], sum[4];
   double t, unused;
 };
-// Of a ray under a sun, without the edges of shadows that it keeps.
+// State of a ray under a sun, without the shadow edges that it stores.
 struct SunState {
   double end, from, known, cell, before, low, high, way;
   float light[3], depth[3];

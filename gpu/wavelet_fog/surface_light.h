@@ -27,8 +27,8 @@ class SurfaceLight {
 
   // False: no lamp lights a surface, and there is no environment: `lit` is not written.
   bool shines() const { return reflects_ || environments_.count() > 0; }
-  // Of the lights of `scene`, the one it was made for or one whose lamps moved. `primitives` may be null. `dim` takes from what `lit` has
-  // of a light what the media between it and the surfaces take.
+  // Renders with the lights of `scene`, which is the original scene or one whose lamps moved. `primitives` may be null.
+  // `dim` multiplies the light of a lamp in `lit` by the transmittance of the media between lamp and surfaces.
   void render(const scene::Scene&, const scene::View&, const Buffer* primitives, const Buffer& lit,
               const std::function<void(const scene::Light&)>& dim);
 

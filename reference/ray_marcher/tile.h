@@ -1,9 +1,8 @@
 // The fast path: a tile of camera rays at once, all their steps as arrays, so that the vector kernels have enough to
 // do.
 //
-// The same scheme, and the same steps, as scalar.h, in float where kernels run. Stages: rays and steps (double),
-// densities, transmittances, then per light: directions, occlusion, shadow columns, scattering; last the surfaces
-// behind.
+// Scheme and steps are those of scalar.h, with float where kernels run. Stages: rays and steps (double), densities,
+// transmittances; then for each light directions, occlusion, shadow columns, scattering; last the surfaces behind.
 #pragma once
 #include <chrono>
 
